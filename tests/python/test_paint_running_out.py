@@ -12,7 +12,7 @@ from sampling import sample
 
 from brushsvg import _core
 from brushsvg.cli import main
-from brushsvg.jobs.conversion import tried
+from brushsvg.jobs.conversion import simulate_and_check
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import marks_of
 from brushsvg.jobs.preparation.preparation import prepare
@@ -137,11 +137,11 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
 @pytest.mark.parametrize(("order", "first"), [("nearest", 1), ("drawn", 31)])
 def test_another_order_and_a_job_that_is_resumed_are_reported(tmp_path, order, first):
     work = prepared(tmp_path, 0.2)
-    reported = tried(work, ".ngc", Job(first_stroke=first), order).remarks()
+    reported = simulate_and_check(work, ".ngc", Job(first_stroke=first), order).remarks()
     assert is_reported(reported, "paint-out-of-turn" + (" 31" if first > 1 else ""))
-    assert not tried(work, ".ngc").remarks()
+    assert not simulate_and_check(work, ".ngc").remarks()
     often = prepared(tmp_path, 0.2, cell_with(Reload("stroke")))
-    assert not tried(often, ".ngc", Job(first_stroke=first), order).remarks()
+    assert not simulate_and_check(often, ".ngc", Job(first_stroke=first), order).remarks()
 
 
 def test_shapes_and_dabs_and_closed_paths_are_pressed_deeper_too(tmp_path):

@@ -13,7 +13,7 @@ def main(argv: list[str] | None = None) -> int:
     interrupts = _Interrupts()
     try:
         interrupts.count()
-        return _with_streams(argv, interrupts)
+        return _run_with_streams(argv, interrupts)
     except KeyboardInterrupt:
         pass
     except Exception:
@@ -52,22 +52,22 @@ class _Interrupts:
         raise KeyboardInterrupt
 
 
-def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
+def _run_with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
     """Run the command with any terminal encoding, and with a reader that may stop reading."""
     from ..errors import Notice
-    from .console import let_go, say_notice
+    from .console import discard_output, say_notice
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     try:
-        status = _run(argv, interrupts)
+        status = _run_command(argv, interrupts)
         if sys.stdout is not None:
             sys.stdout.flush()
         return status
     except OSError as problem:
         if sys.stdout is not None:
-            let_go(sys.stdout)
+            discard_output(sys.stdout)
         if isinstance(problem, BrokenPipeError):
             return 0  # the reader closed the pipe
         reason = (problem.strerror or str(problem)).lower()
@@ -75,7 +75,7 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
         return 1
 
 
-def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
+def _run_command(argv: list[str] | None, interrupts: _Interrupts) -> int:
     from dataclasses import replace
 
     from ..errors import unexpected

@@ -21,7 +21,7 @@ class RefusedError(Exception):
 
 
 @contextmanager
-def about(file: str):
+def refuse_errors(file: str):
     """Lets a user's error inside be reported as one of this file, unless the error names another, behind what is to be
     warned of."""
     try:
@@ -44,10 +44,10 @@ def _write_line(text: str) -> None:
         sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
     except OSError:  # nobody reads: the command still ends as usual
-        let_go(sys.stderr)
+        discard_output(sys.stderr)
 
 
-def let_go(stream) -> None:
+def discard_output(stream) -> None:
     """What is still buffered goes nowhere, without another complaint at exit."""
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), stream.fileno())
@@ -86,14 +86,14 @@ _in_json = False
 
 def stage(text: str) -> None:
     """What is being done, for a terminal only, until the next line replaces it."""
-    _to_terminal(f"\r\x1b[K{text} ...")
+    _write_to_terminal(f"\r\x1b[K{text} ...")
 
 
 def clear_stage() -> None:
-    _to_terminal("\r\x1b[K")
+    _write_to_terminal("\r\x1b[K")
 
 
-def _to_terminal(text: str) -> None:
+def _write_to_terminal(text: str) -> None:
     if sys.stderr is not None and sys.stderr.isatty():
         sys.stderr.write(text)
         sys.stderr.flush()

@@ -18,7 +18,7 @@ from ..errors import Error
 FOLDER = "brushsvg"
 NOTE = "brushsvg-executable.txt"  # read by the extension
 _SUFFIXES = (".py", ".inx")
-_LARGEST = 10_000_000  # bytes; ours has a hundredth of it
+_MAX_UNZIPPED_BYTES = 10_000_000  # bytes; ours has a hundredth of it
 SOURCE = Path(__file__).parents[3] / "plugins" / "inkscape"
 
 
@@ -27,7 +27,7 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
 
     Error when there is nothing to copy, or the folder cannot be written.
     """
-    files = _from_zip(zipped) if zipped else _from_tree(source)
+    files = _read_zip(zipped) if zipped else _read_tree(source)
     folder = extensions_folder() / FOLDER
     note = own_program()
     try:
@@ -94,7 +94,7 @@ def extensions_folder() -> Path:
     return data / "inkscape" / "extensions"
 
 
-def _from_tree(source: Path) -> dict[str, bytes]:
+def _read_tree(source: Path) -> dict[str, bytes]:
     found = sorted(path for path in source.glob("*") if path.suffix in _SUFFIXES or path.name == "LICENSE")
     if not found:
         raise Error(
@@ -105,7 +105,7 @@ def _from_tree(source: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in found}
 
 
-def _from_zip(path: str) -> dict[str, bytes]:
+def _read_zip(path: str) -> dict[str, bytes]:
     try:
         with zipfile.ZipFile(path) as file:
             inside = [each for each in file.infolist() if not each.is_dir()]
@@ -113,8 +113,10 @@ def _from_zip(path: str) -> dict[str, bytes]:
             known = all(name.endswith(_SUFFIXES) or name == "LICENSE" for name in names.values())
             if not known or "brushsvg_program.py" not in names.values():
                 raise Error("this is not the extension's zip", file=path, code="plugin-zip")
-            if sum(each.file_size for each in inside) > _LARGEST:
-                raise Error(f"it holds more than {_LARGEST} bytes", file=path, code="file-too-large")
+            if sum(each.file_size for each in inside) > _MAX_UNZIPPED_BYTES:
+                raise Error(
+                    f"it holds more than {_MAX_UNZIPPED_BYTES} bytes", file=path, code="file-too-large"
+                )
             return {names[each.filename]: file.read(each) for each in inside}
     except OSError as problem:
         raise Error(

@@ -36,10 +36,10 @@ from ..files import read_bytes
 from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
 from ..reporting.report_text import Report
-from .calibration_options import AIMS, LEAST_DPI, MOST_DPI, CalibrationOptions, contradiction, is_photograph
-from .choices import brush_of, cell_of, concerning
+from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
+from .choices import load_brush, load_cell, name_file_in_errors
 from .json_files import read_plan
-from .machine_parts import undoable_parts
+from .machine_parts import select_correctable_parts
 
 Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about it
 
@@ -129,7 +129,7 @@ class BrushCalibration(Generic[Fit]):
             raise Error("a brush that a job updated has no picture of its fit", code="nothing-to-show")
         if self.kind == "lag":
             return brush_picture(self.brush, suffix)
-        return _REPORTS[self.kind].report_picture(self.fit, suffix)
+        return _REPORT_MODULES[self.kind].report_picture(self.fit, suffix)
 
     def picture(self) -> bytes:
         """Return a PNG of the flattened photograph with the outlines that were read and those predicted."""
@@ -140,7 +140,12 @@ class BrushCalibration(Generic[Fit]):
         return photo_report.read_picture(self._read, self.fit if self.kind == "marks" else self.fit.made)
 
 
-_REPORTS = {"numbers": law_report, "marks": mark_report, "overlap": by_overlap_report, "dabs": dab_report}
+_REPORT_MODULES = {
+    "numbers": law_report,
+    "marks": mark_report,
+    "overlap": by_overlap_report,
+    "dabs": dab_report,
+}
 
 
 @overload
@@ -198,17 +203,17 @@ def calibrate(
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")
     notices: list[Notice] = []
-    made = calibrated(
+    made = run_calibration(
         given,
         name,
-        checked_options(options),
+        make_checked_options(options),
         progress or (lambda text: None),
         lambda _, found: notices.extend(found),
     )
     return replace(made, notices=tuple(notices))
 
 
-def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
+def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     """Return options by their names. TypeError for an unknown name, Error for a wrong value."""
     known = CalibrationOptions.__dataclass_fields__
     for name in options:
@@ -222,7 +227,7 @@ def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
         need_truth(options.get(name, False), name)
     for name, least, most in (
         ("bar_mm", 0.001, 1e3),
-        ("dpi", LEAST_DPI, MOST_DPI),
+        ("dpi", MIN_DPI, MAX_DPI),
         ("height_mm", 0.001, 10.0),
     ):
         if name in options:
@@ -235,15 +240,15 @@ def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     return CalibrationOptions(**options)
 
 
-def calibrated(
+def run_calibration(
     source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Warn
 ) -> BrushCalibration:
     """Return a brush with its report; see calibrate. warn: called with a file and the warnings about it."""
-    if why := contradiction(source, options):
+    if why := find_contradiction(source, options):
         raise Error(why, code="options-contradict")
     if options.cell is not None:
-        cell = cell_of(options.cell)
-        machine, left_out = undoable_parts(options.machine, cell)
+        cell = load_cell(options.cell)
+        machine, left_out = select_correctable_parts(options.machine, cell)
         options = replace(options, machine=machine)
         warn(cell.name, left_out)
     if isinstance(source, (tuple, list)) and len(source) == 1:
@@ -251,23 +256,23 @@ def calibrated(
     several = isinstance(source, (tuple, list))
     photos = source if several else [source] if is_photograph(source) else None
     if not photos:
-        return _from_measurements(source, name, options, stage, warn)
+        return _calibrate_from_measurements(source, name, options, stage, warn)
     name = name or os.path.splitext(os.path.basename(photos[0]))[0]
     if options.plan is not None:
-        return _from_job(photos, name, options, stage, warn)
-    read = read_photographs(photos, options, stage, warn)
+        return _update_from_job(photos, name, options, stage, warn)
+    read = read_chart_photographs(photos, options, stage, warn)
     if is_of_dabs(read.chart):
-        return _from_dabs(photos, read, name, options, warn)
+        return _calibrate_from_dabs(photos, read, name, options, warn)
     if options.brush is not None:
-        return _lag_from_strokes(photos, read, name, options, stage, warn)
-    return _from_strokes(photos, read, name, options, stage, warn)
+        return _fit_lag_from_strokes(photos, read, name, options, stage, warn)
+    return _calibrate_from_strokes(photos, read, name, options, stage, warn)
 
 
-def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
+def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
     """Return what photographs of one painted chart show; warns of missing strokes."""
-    with concerning(options.chart):
+    with name_file_in_errors(options.chart):
         chart = read_chart(read_bytes(options.chart))
-    with concerning(photos[0]):
+    with name_file_in_errors(photos[0]):
         stage("reading the photographs")
         read = read_chart_photos(
             chart,
@@ -280,9 +285,9 @@ def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, 
     return read
 
 
-def _from_measurements(source, name, options, stage, warn) -> BrushCalibration:
+def _calibrate_from_measurements(source, name, options, stage, warn) -> BrushCalibration:
     file = "" if isinstance(source, Mapping) else source
-    with concerning(file):
+    with name_file_in_errors(file):
         made = fit_measurements(
             source,
             name,
@@ -302,18 +307,18 @@ def _from_measurements(source, name, options, stage, warn) -> BrushCalibration:
     else:
         warn(file, made.doubts)
         kind = "numbers"
-    return BrushCalibration(made.brush, kind, made, _REPORTS[kind].report(made))
+    return BrushCalibration(made.brush, kind, made, _REPORT_MODULES[kind].report(made))
 
 
-def _from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+def _calibrate_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
     """Return a brush from painted strokes of a chart."""
-    with concerning(photos[0]):
+    with name_file_in_errors(photos[0]):
         by_edges = made = _fit_strokes(read, name, options, stage)
         if options.aim == "overlap":
             made = by_overlap(by_edges, stage)
     warn(photos[0], mark_report.list_strays(by_edges) + doubts(by_edges.painted, by_edges.expected))
     kind = "overlap" if options.aim == "overlap" else "marks"
-    text = _REPORTS[kind].report(made, of_photo=True)
+    text = _REPORT_MODULES[kind].report(made, of_photo=True)
     return BrushCalibration(made.brush, kind, made, text, reading_in_words(read), _read=read)
 
 
@@ -328,7 +333,7 @@ def _fit_strokes(read: Read, name, options, stage) -> MarkCalibration:
     return fit(painted, name, options=fit_options, edge_mm=edge_mm(read), leave_out_strays=True)
 
 
-def _from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
+def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
     """Return a brush of known lag with outlines from dabs."""
     for broken, why in (
         (
@@ -340,21 +345,21 @@ def _from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
     ):
         if broken:
             raise Error(why, code="options-contradict")
-    before = brush_of(options.brush)
+    before = load_brush(options.brush)
     joined = tuple(stroke for pair in read.marks.joined for stroke in pair)
-    with concerning(photos[0]):
+    with name_file_in_errors(photos[0]):
         made = calibrate_dabs(dabs_of(read), before, name, edge_mm(read), joined)
     warn(photos[0], made.remarks)
     text = dab_report.report(made)
     return BrushCalibration(made.brush, "dabs", made, text, reading_in_words(read), _read=read)
 
 
-def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+def _fit_lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
     """Return a brush of known outlines with the lag of painted strokes."""
-    own = brush_of(options.brush)
-    with concerning("" if isinstance(options.brush, _core.Brush) else options.brush):
+    own = load_brush(options.brush)
+    with name_file_in_errors("" if isinstance(options.brush, _core.Brush) else options.brush):
         refuse_assumed(own)
-    with concerning(photos[0]):
+    with name_file_in_errors(photos[0]):
         made = _fit_strokes(read, name, options, stage)
         found = lag_by_outlines(made, own, name)
     warn(photos[0], mark_report.list_strays(made))
@@ -362,19 +367,19 @@ def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCa
     return BrushCalibration(found.brush, "lag", found, text, reading_in_words(read), _read=read)
 
 
-def _from_job(photos, name, options, stage, warn) -> BrushCalibration:
+def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
     """Return a known brush, updated by photographs of a painted job."""
-    before = brush_of(options.prior)
-    with concerning(options.plan):
+    before = load_brush(options.prior)
+    with name_file_in_errors(options.plan):
         plan = read_plan(options.plan)
-    with concerning(options.spread or ""):
+    with name_file_in_errors(options.spread or ""):
         spread_mm = read_displacement_mm(options.spread) if options.spread else None
     pictures = [(path, read_bytes(path)) for path in photos]
     digests = [hashlib.sha256(data).hexdigest() for _, data in pictures]
-    with concerning("" if isinstance(options.prior, _core.Brush) else options.prior):
+    with name_file_in_errors("" if isinstance(options.prior, _core.Brush) else options.prior):
         refuse_learned(before, digests)
     warn(options.plan, other_brush(plan, before))
-    with concerning(photos[0]):
+    with name_file_in_errors(photos[0]):
         stage("reading the photographs and fitting the brush")
         learnt = learn(plan, before, pictures, name, options.machine, spread_mm)
     with_lineage(learnt.updated.brush, before, digests)

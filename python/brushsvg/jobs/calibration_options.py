@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..machine.cells.cell import Cell
 
 AIMS = ("edges", "overlap")
-LEAST_DPI, MOST_DPI = 102.0, 20000.0  # of a scan; the former is 4 pixels per mm
+MIN_DPI, MAX_DPI = 102.0, 20000.0  # of a scan; the former is 4 pixels per mm
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +51,7 @@ def is_photograph(path) -> bool:
     return not isinstance(path, Mapping) and os.path.splitext(os.fspath(path))[1].lower() in PHOTOS
 
 
-def contradiction(source, options: CalibrationOptions) -> str:
+def find_contradiction(source, options: CalibrationOptions) -> str:
     """Return why options do not go together, in a sentence that names the command's flags; "" if they do."""
     photos = [source] if isinstance(source, (str, Mapping)) else list(source)
     other = next((path for path in photos if not is_photograph(path)), "")

@@ -12,20 +12,20 @@ from typing import Protocol
 
 from ..errors import need
 
-LOOKS_S = 0.05
-PATIENCE_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
+POLL_INTERVAL_S = 0.05
+MAX_CANCEL_WAIT_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
 
 
-class Cancelled(Protocol):
+class CancelFlag(Protocol):
     """What a threading.Event has."""
 
     def is_set(self) -> bool: ...
 
 
-Cancel = Callable[[], object] | Cancelled
+Cancel = Callable[[], object] | CancelFlag
 
 
-class _GivenUp(BaseException):
+class _WorkCancelled(BaseException):
     """Raised in the work's thread: no `except Exception` on its way takes it for an error."""
 
 
@@ -62,9 +62,9 @@ def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=
     try:
         while thread.is_alive():
             look()
-            thread.join(LOOKS_S)
+            thread.join(POLL_INTERVAL_S)
     except BaseException:
-        _give_up(thread)
+        _stop_thread(thread)
         raise
     result, problem = outcome[0]
     if problem is not None:
@@ -72,9 +72,13 @@ def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=
     return result
 
 
-def _give_up(thread: threading.Thread) -> None:
+def _stop_thread(thread: threading.Thread) -> None:
     """What does not hear it within PATIENCE_S ends on its own: it writes nothing."""
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + MAX_CANCEL_WAIT_S
     while thread.is_alive() and time.monotonic() < end:
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(_GivenUp))
-        thread.join(PATIENCE_S / 4)  # raised where Python ignores exceptions, as in a destructor, it is lost
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(thread.ident), ctypes.py_object(_WorkCancelled)
+        )
+        thread.join(
+            MAX_CANCEL_WAIT_S / 4
+        )  # raised where Python ignores exceptions, as in a destructor, it is lost

@@ -36,36 +36,44 @@ from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
+    CHOICE_BY_FLAG,
     CHOICES,
     LAYOUT_FLAGS,
-    MADE_FLAGS,
-    NAMED_OTHERWISE,
+    PLANNING_FLAGS,
+    ChoiceKeywords,
     Choices,
-    Given,
-    brush_of,
-    cell_of,
-    concerning,
     drop_from_project,
-    name_of,
-    options_of,
-    overruled_names,
+    drop_overruled,
+    find_overruled_names,
+    load_brush,
+    load_cell,
+    make_options,
+    name_file_in_errors,
+    path_of,
+    report_ineffective_flags,
     suffix_of,
-    without_effect,
-    without_overruled,
 )
-from .conversion import chosen_of, of_arm
+from .conversion import list_arm_notices, make_choices
 from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
-from .work import Work, nearest_first, whole_strokes
+from .work import Work, match_whole_strokes, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
 
 Warn = Callable[[str, Iterable[Notice]], object]
-STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
-SAID = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")  # by the program
+MAX_BORDER_DIFFERENCE_MM = 0.02  # what a plan's rounding makes of where its paint ends
+SET_BY_PROGRAM = (
+    "compensation",
+    "tolerance",
+    "lag",
+    "terminals",
+    "start",
+    "end",
+    "margin_strokes",
+)  # by the program
 
 
 @dataclass(frozen=True)
@@ -103,7 +111,7 @@ def check(
     *,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> Check:
     """A program read back and simulated, as `brushsvg check` does: whether it keeps the limits of its brush and its
     machine, and whether it paints what it should.
@@ -117,9 +125,9 @@ def check(
     to run it stands in `problems`.
     """
     need(program, (str, os.PathLike), "a path, which program is")
-    chosen = chosen_of(drawing, choices)
-    chosen = drop_from_project(chosen, SAID)
-    for name in SAID:
+    chosen = make_choices(drawing, choices)
+    chosen = drop_from_project(chosen, SET_BY_PROGRAM)
+    for name in SET_BY_PROGRAM:
         if getattr(chosen, name) is not None:
             sentence = f"a program says itself how it was made: {name} would change nothing"
             raise Error(sentence, name, code="flag-without-effect")
@@ -127,14 +135,16 @@ def check(
         raise Error("corrections need the drawing that they are of", "corrections", code="options-contradict")
     found: list[Notice] = []
     done = cancelling.run(
-        lambda stage: checked(os.fspath(program), chosen, stage, lambda _, notices: found.extend(notices)),
+        lambda stage: check_program(
+            os.fspath(program), chosen, stage, lambda _, notices: found.extend(notices)
+        ),
         progress,
         cancel,
     )
     return replace(done, notices=tuple(found))
 
 
-def checked(
+def check_program(
     path: str,
     chosen: Choices,
     stage: Callable[[str], object] = lambda text: None,
@@ -142,14 +152,14 @@ def checked(
 ) -> Check:
     """Check a program, and report notices with the file that they are of as soon as they are known."""
     suffix = suffix_of(path)
-    with concerning(path):
+    with name_file_in_errors(path):
         data = read_bytes(path)
         text = text_of_file(b"" if suffix == ".cdr" else data)
         if suffix in GCODE and not is_ours(text):
-            return _foreign(path, text, chosen, warn)
-        text = _whole_text(path, suffix, text)
+            return _check_foreign_program(path, text, chosen, warn)
+        text = _read_with_called_files(path, suffix, text)
         made = made_of(text)
-        chosen = _as_program_says(chosen, made)
+        chosen = _drop_project_choices(chosen, made)
         for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
             if getattr(chosen, kind) is None and name not in names:
                 raise Error(
@@ -158,18 +168,18 @@ def checked(
                     advice=f"give --{kind} FILE",
                 )
         tolerance_mm = made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
-        cell = preflight.as_exact_as(cell_of(chosen.cell or made.cell), tolerance_mm)
-        brush = brush_of(chosen.brush) or find_brush(made.brush)
+        cell = preflight.as_exact_as(load_cell(chosen.cell or made.cell), tolerance_mm)
+        brush = load_brush(chosen.brush) or find_brush(made.brush)
         read = read_program(text, suffix, cell)
-    warn(cell.name, of_arm(cell))
-    program = _Program(path, text, made, read, cell, brush)
+    warn(cell.name, list_arm_notices(cell))
+    program = _OwnProgram(path, text, made, read, cell, brush)
     if made.border_mm or made.heights_mm or made.first_mm:
-        return _setup(program, chosen, stage, warn)
-    return _painting(program, chosen, stage, warn)
+        return _check_setup_program(program, chosen, stage, warn)
+    return _check_painting(program, chosen, stage, warn)
 
 
 @dataclass(frozen=True)
-class _Program:
+class _OwnProgram:
     """A program of ours: made, what its header says; read, its moves; cell, brush: those that it is for."""
 
     path: str
@@ -183,7 +193,7 @@ class _Program:
         return self.made.z_offset_mm if chosen.z_offset is None else chosen.z_offset
 
 
-def _whole_text(path: str, suffix: str, text: str) -> str:
+def _read_with_called_files(path: str, suffix: str, text: str) -> str:
     """Read a program with the files that it calls, next to it."""
     if suffix == ".robodk":
         raise Error(
@@ -210,24 +220,24 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
     return "".join([text, *called.values()])
 
 
-def _as_program_says(chosen: Choices, made) -> Choices:
+def _drop_project_choices(chosen: Choices, made) -> Choices:
     """Drop what a project file chose and the program's header says itself."""
     if not chosen.from_project:
         return chosen
     said = {} if chosen.input is None else settings_in(chosen.input)
-    chosen = without_overruled(chosen, {name: said[name] for name in said if name not in ("brush", "cell")})
+    chosen = drop_overruled(chosen, {name: said[name] for name in said if name not in ("brush", "cell")})
     named = {"brush": made.brush, "cell": made.cell}
-    dropped = {"z_offset"} | overruled_names(chosen, named, unknown=False)
+    dropped = {"z_offset"} | find_overruled_names(chosen, named, unknown=False)
     if made.sheet_mm and chosen.input is None:
         dropped.add("sheet")
     return drop_from_project(chosen, dropped)
 
 
-def _painting(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
+def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
     made, read, cell, brush = program.made, program.read, program.cell, program.brush
-    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
+    work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
     z_offset_mm = program.z_offset_mm(chosen)
-    with concerning(program.path):
+    with name_file_in_errors(program.path):
         sheet_mm = work.plan.sheet_mm if work else chosen.sheet or made.sheet_mm
         if sheet_mm is None:
             raise Error(
@@ -235,23 +245,23 @@ def _painting(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
                 code="sheet-unknown",
             )
         ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
-    warn(program.path, _of_offset(z_offset_mm))
-    with concerning(program.path):
+    warn(program.path, _report_offset(z_offset_mm))
+    with name_file_in_errors(program.path):
         problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
         strokes, drawn, speeds = None, None, None
         if work:
             loads = in_loads(work.plan, brush, cell)
             which, unlike = against_plan.with_plan(ran, loads, cell, made.first_stroke)
             if made.is_of_plan and work.strokes is not None:
-                unlike = _unlike_drawing(unlike)
+                unlike = _merge_style_differences(unlike)
             problems = problems + unlike
             speeds = None if None in which else [loads.loads[k].speed_mm_s for k in which]
             if work.strokes is not None:
-                whole = whole_strokes(work, loads)
+                whole = match_whole_strokes(work, loads)
                 strokes = None if None in which else [whole[k] for k in which]
                 whole_job = made.first_stroke == 1
                 drawn = [each for each in work.strokes if not is_margin(each)] if whole_job else None
-        again, changed = _written_again(program, ran, work, speeds, z_offset_mm)
+        again, changed = _compare_with_rewritten(program, ran, work, speeds, z_offset_mm)
         problems = problems + changed
         if again and not problems:
             problems = out_of_arm(again, sheet_mm)
@@ -273,7 +283,7 @@ def _painting(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
     )
 
 
-def _of_offset(z_offset_mm: float) -> list[Notice]:
+def _report_offset(z_offset_mm: float) -> list[Notice]:
     """A notice where the paper is expected at another height than the cell has it."""
     if not z_offset_mm:
         return []
@@ -285,7 +295,7 @@ def _of_offset(z_offset_mm: float) -> list[Notice]:
     return [Notice("", sentence, code="paper-offset")]
 
 
-def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
+def _merge_style_differences(unlike: list[Notice]) -> list[Notice]:
     """The same, with one notice for all strokes that are painted in another way: neither the program nor its plan.json
     says how it was planned, so they may be as requested."""
     otherwise = [
@@ -302,12 +312,12 @@ def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
     return [*rest, Notice("", sentence, code="plan-unlike-drawing", advice=advice)]
 
 
-def _written_again(
-    program: _Program, ran, work: Work | None, speeds, z_offset_mm: float
+def _compare_with_rewritten(
+    program: _OwnProgram, ran, work: Work | None, speeds, z_offset_mm: float
 ) -> tuple[object, list[Notice]]:
     """What we would write of the plan that was read, and where the program differs from it."""
     made, cell, brush = program.made, program.cell, program.brush
-    header_notes = against_regenerated.HeaderNotes(*_header_notes(made, work))
+    header_notes = against_regenerated.HeaderNotes(*_make_expected_header(made, work))
     again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, header_notes, speeds)
     if not again:
         return again, []
@@ -322,7 +332,7 @@ def _written_again(
     return again, said
 
 
-def _header_notes(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
+def _make_expected_header(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
     """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as for
     a program that was made of a plan."""
     if (
@@ -336,18 +346,18 @@ def _header_notes(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
     return work.title or "untitled", (*outputs.notes(work), *order)
 
 
-def _foreign(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
+def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
     """A program that somebody else wrote for a pen: what a brush paints with it, and which limits it breaks."""
     if chosen.input is not None:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
     chosen = drop_from_project(chosen, {*CHOICES} - {"brush", "cell", "sheet", "paper_z"})
-    for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections"):
-        given = getattr(chosen, NAMED_OTHERWISE.get(flag, flag))
+    for flag in (*LAYOUT_FLAGS, *PLANNING_FLAGS, "speed", "z-offset", "corrections"):
+        given = getattr(chosen, CHOICE_BY_FLAG.get(flag, flag))
         if flag not in ("sheet", "paper-z") and given:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
-    cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
+    cell, brush = load_cell(chosen.cell), load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
     found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     warn(path, found.warnings)
     shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
@@ -355,23 +365,23 @@ def _foreign(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
     return Check("painting", found.problems, is_foreign=True, work=shown, marks=found.marks, figures=figures)
 
 
-def _setup(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
+def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
     """A program before the first stroke: it paints no drawing, and says in its header all that it does."""
     made, read, text = program.made, program.read, program.text
     cell, brush = program.cell, program.brush
-    with concerning(program.path):
+    with name_file_in_errors(program.path):
         if (made.heights_mm or made.first_mm) and chosen.input is not None:
             raise Error(
                 "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
             )
         if made.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
-    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
-    with concerning(program.path):
+    work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
+    with name_file_in_errors(program.path):
         if made.border_mm:
             sheet_mm, z_offset_mm = work.plan.sheet_mm if work else made.sheet_mm, program.z_offset_mm(chosen)
             looked = setup_programs.look_at_border(text, read, made, brush, cell, sheet_mm, z_offset_mm)
-            problems = [*looked.problems, *(_border_notices(made, work, stage) if work else [])]
+            problems = [*looked.problems, *(_compare_border(made, work, stage) if work else [])]
             return Check(
                 "border",
                 tuple(problems),
@@ -386,11 +396,14 @@ def _setup(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
         return Check("height", tuple(looked.problems), looked.time_s, heights_mm=tuple(made.heights_mm))
 
 
-def _border_notices(made, work: Work, stage) -> list[Notice]:
+def _compare_border(made, work: Work, stage) -> list[Notice]:
     """A sentence where an air run does not go round what a drawing's paint needs."""
     marks = prediction.predict(work, outlines=False, stage=stage)
     needed, found = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), made.border_mm
-    if max(abs(ours - theirs) for ours, theirs in zip(found, needed, strict=True)) <= STRAY_MM:
+    if (
+        max(abs(ours - theirs) for ours, theirs in zip(found, needed, strict=True))
+        <= MAX_BORDER_DIFFERENCE_MM
+    ):
         return []
     place = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
     sentence = (
@@ -402,24 +415,24 @@ def _border_notices(made, work: Work, stage) -> list[Notice]:
 
 def _is_corrected_plan(source) -> bool:
     if isinstance(source, str | os.PathLike) and suffix_of(source) == ".json":
-        with concerning(name_of(source)):
+        with name_file_in_errors(path_of(source)):
             source = read_plan(source)
     return isinstance(source, _core.Plan) and is_corrected(source)
 
 
-def _as_made(program: _Program, chosen: Choices, stage, warn: Warn) -> Work:
+def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Work:
     """Return the drawing or plan that a program should paint, prepared as its header says; notices on parts that are
     left out or painted otherwise are repeated: this is the last look."""
     made, source = program.made, chosen.input
     if made.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
-        with concerning(program.path):
+        with name_file_in_errors(program.path):
             raise Error(
                 "its strokes were moved by corrections, which are not known here",
                 code="corrections-missing",
                 advice="give --corrections FILE",
             )
     if suffix_of(source) != ".json":
-        with concerning(name_of(source)):
+        with name_file_in_errors(path_of(source)):
             wide = chosen.wide or settings_in(source).get("wide")
         chosen = replace(
             chosen,
@@ -432,9 +445,9 @@ def _as_made(program: _Program, chosen: Choices, stage, warn: Warn) -> Work:
             wide=wide,
             margin_strokes="on" if made.has_margin else "off",
         )
-    warn(name_of(source), without_effect(chosen))
-    options = options_of(chosen, program.cell, program.brush)
-    with concerning(name_of(source)):
+    warn(path_of(source), report_ineffective_flags(chosen))
+    options = make_options(chosen, program.cell, program.brush)
+    with name_file_in_errors(path_of(source)):
         work = preparation.prepare(source, options, stage)
-    warn(name_of(source), work.notices)
-    return nearest_first(work) if made.nearest_first else work
+    warn(path_of(source), work.notices)
+    return order_nearest_first(work) if made.nearest_first else work

@@ -35,10 +35,10 @@ LAYOUT_FLAGS = (
     "origin",
     "as",
 )
-NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
+CHOICE_BY_FLAG = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
     name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
 }  # flag: choice
-MADE_FLAGS = (
+PLANNING_FLAGS = (
     "wide",
     "corners",
     "detail",
@@ -53,7 +53,7 @@ MADE_FLAGS = (
     "margin-strokes",
 )
 TERMINALS = ("auto", "round", "butt", "pointed")
-RANGES = {  # the same as a flag's
+CHOICE_RANGES = {  # the same as a flag's
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
     "lag": (0.0, 1000.0),
@@ -62,7 +62,7 @@ RANGES = {  # the same as a flag's
     "z_offset": (-20.0, 20.0),
     "paper_z": (-1000.0, 1000.0),
 }
-ONE_OF = {
+CHOICE_VALUES = {
     "units": UNITS,
     "background": BACKGROUNDS,
     "pen": PENS,
@@ -123,7 +123,7 @@ class Choices:
     from_project: tuple[str, ...] = ()
 
 
-class Given(TypedDict, total=False):
+class ChoiceKeywords(TypedDict, total=False):
     """The same as keywords, for editors and type checkers; see `convert`."""
 
     brush: str | os.PathLike[str] | _core.Brush | None
@@ -160,16 +160,16 @@ class Given(TypedDict, total=False):
     margin_strokes: str | None
 
 
-def checked(chosen: Choices) -> Choices:
+def check_choices(chosen: Choices) -> Choices:
     """The choices themselves. Error for what no flag would take."""
     need(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
     for name in chosen.from_project:
         need_one_of(name, CHOICES, "a name of from_project")
-    chosen = without_overruled(chosen)
-    for name, choices in ONE_OF.items():
+    chosen = drop_overruled(chosen)
+    for name, choices in CHOICE_VALUES.items():
         if getattr(chosen, name) is not None:
             need_one_of(getattr(chosen, name), choices, name)
-    for name, limits in RANGES.items():
+    for name, limits in CHOICE_RANGES.items():
         if getattr(chosen, name) is not None:
             need_number(getattr(chosen, name), name, *limits)
     for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
@@ -189,7 +189,7 @@ def checked(chosen: Choices) -> Choices:
                 need_number(side, "a number of skip_region", -1e6, 1e6)
     if chosen.colour is not None:
         need(chosen.colour, str, "a colour, as #1a237e")
-        chosen = replace(chosen, colour=colour_of(chosen.colour))
+        chosen = replace(chosen, colour=read_colour(chosen.colour))
     if chosen.join is not None:
         need_truth(chosen.join, "join")
     for name in ("layer", "select", "skip_comment"):
@@ -221,7 +221,7 @@ def checked(chosen: Choices) -> Choices:
     return chosen
 
 
-def colour_of(text: str) -> str:
+def read_colour(text: str) -> str:
     """A colour as SVG writes it, as "#rrggbb". Error for anything else."""
     from ..read.svg.colour import parse_colour
 
@@ -244,13 +244,13 @@ def suffix_of(source) -> str:
     return getattr(source, "extension", "")
 
 
-def name_of(source) -> str:
+def path_of(source) -> str:
     """What a person calls it: its path, or nothing."""
     return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
 
 
 @contextmanager
-def concerning(file: str | os.PathLike[str]) -> Iterator[None]:
+def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
     """Lets an error inside be one of this file, unless it names another."""
     try:
         yield
@@ -259,11 +259,11 @@ def concerning(file: str | os.PathLike[str]) -> Iterator[None]:
         raise
 
 
-def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
+def apply_drawing_settings(chosen: Choices, drawing, alone: bool = False) -> Choices:
     """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
     nothing else of the drawing is read."""
     said = settings_in(drawing, alone)
-    chosen = without_overruled(chosen, said)
+    chosen = drop_overruled(chosen, said)
     if chosen.terminals is not None and "terminals" not in chosen.from_project:
         said = {name: value for name, value in said.items() if name not in ("start", "end")}
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
@@ -278,7 +278,7 @@ def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
     return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
 
 
-def without_overruled(chosen: Choices, said: Mapping[str, object] | None = None) -> Choices:
+def drop_overruled(chosen: Choices, said: Mapping[str, object] | None = None) -> Choices:
     """Drop what a project file chose where something more specific says otherwise, or where it has no effect.
 
     More specific are the choices of this call, the settings `said` in the drawing, and the brush that a plan names. A
@@ -288,7 +288,7 @@ def without_overruled(chosen: Choices, said: Mapping[str, object] | None = None)
         return chosen
     said = said or {}
     mine = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
-    dropped = {*said} - {"brush", "cell"} | _idle(chosen)
+    dropped = {*said} - {"brush", "cell"} | _find_ineffective_choices(chosen)
     if "terminals" in mine:
         dropped |= {"start", "end"}
     for one, other in (("fit", "scale"), ("scale", "fit")):
@@ -299,8 +299,8 @@ def without_overruled(chosen: Choices, said: Mapping[str, object] | None = None)
         compensation = said.get("compensation", compensation)
     if compensation != "constant":
         dropped.add("lag")
-    named = said if suffix_of(chosen.input) != ".json" else {"brush": _brush_of_plan(chosen)}
-    return drop_from_project(chosen, dropped | overruled_names(chosen, named))
+    named = said if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
+    return drop_from_project(chosen, dropped | find_overruled_names(chosen, named))
 
 
 def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
@@ -310,13 +310,13 @@ def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
     return replace(chosen, from_project=kept, **dict.fromkeys(dropped))
 
 
-def overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool = True) -> set[str]:
+def find_overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool = True) -> set[str]:
     """Return "brush" and "cell" where a drawing, plan or program names another one than the project file.
 
     unknown: a name that does not come along overrules the project file, too.
     """
     found = set()
-    for kind, names, read in (("brush", brush_names(), brush_of), ("cell", cell_names(), cell_of)):
+    for kind, names, read in (("brush", brush_names(), load_brush), ("cell", cell_names(), load_cell)):
         name = named.get(kind)
         if name is None or kind not in chosen.from_project or not (unknown or name in names):
             continue
@@ -325,7 +325,7 @@ def overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool 
     return found
 
 
-def _brush_of_plan(chosen: Choices) -> str | None:
+def _find_plan_brush(chosen: Choices) -> str | None:
     """The shipped brush that a plan names, if a project file names one too."""
     plan = chosen.input
     if "brush" in chosen.from_project and isinstance(plan, str | os.PathLike):
@@ -335,65 +335,65 @@ def _brush_of_plan(chosen: Choices) -> str | None:
     return name if name in brush_names() else None
 
 
-def _idle(chosen: Choices) -> set[str]:
+def _find_ineffective_choices(chosen: Choices) -> set[str]:
     """Return names of choices that have no effect on this kind of drawing."""
     suffix, flags = suffix_of(chosen.input), ()
     if suffix == ".json":
-        flags = (*LAYOUT_FLAGS, *MADE_FLAGS)
+        flags = (*LAYOUT_FLAGS, *PLANNING_FLAGS)
     elif suffix in GCODE:
         flags = ("layer", "select", "units")
     elif chosen.input is not None:
         is_svg, is_dxf = suffix in (".svg", ".svgz"), suffix == ".dxf"
         flags = (*GCODE_FLAGS, *["units"] * is_svg, *["select"] * is_dxf)
-    return {NAMED_OTHERWISE.get(flag, flag) for flag in flags}
+    return {CHOICE_BY_FLAG.get(flag, flag) for flag in flags}
 
 
-def without_effect(chosen: Choices) -> list[Notice]:
+def report_ineffective_flags(chosen: Choices) -> list[Notice]:
     """What was chosen for a plan, whose poses are fixed, and for G-code where the drawing is none."""
     suffix = suffix_of(chosen.input)
     flags, on = GCODE_FLAGS, "a drawing that is not G-code"
     if suffix == ".json":
-        flags, on = (*LAYOUT_FLAGS, *MADE_FLAGS), "a plan, whose poses are fixed"
+        flags, on = (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
     elif suffix in GCODE:
         flags = ()
     return [
         Notice("", f"--{flag} has no effect on {on}", code="flag-without-effect", about=flag)
         for flag in flags
-        if getattr(chosen, NAMED_OTHERWISE.get(flag, flag)) is not None
+        if getattr(chosen, CHOICE_BY_FLAG.get(flag, flag)) is not None
     ]
 
 
-def on_a_page(chosen: Choices) -> Choices:
+def choose_margin_strokes(chosen: Choices) -> Choices:
     """The same for a page that is painted and photographed: strokes in its margin where the brush is not calibrated."""
     if chosen.margin_strokes or suffix_of(chosen.input) == ".json":
         return chosen
     return replace(chosen, margin_strokes="auto")
 
 
-def brush_of(given):
+def load_brush(given):
     """The brush of a name or path, itself, or None."""
     if given is None or isinstance(given, _core.Brush):
         return given
-    with concerning(given):
+    with name_file_in_errors(given):
         return find_brush(given)
 
 
-def cell_of(given) -> Cell:
+def load_cell(given) -> Cell:
     """The cell of a name or path, itself, or the default one."""
     if given is None or isinstance(given, Cell):
         return given or find_cell()
-    with concerning(given):
+    with name_file_in_errors(given):
         return find_cell(given)
 
 
-def sheet_before_of(path: str | os.PathLike[str] | None) -> SheetBefore:
+def load_sheet_before(path: str | os.PathLike[str] | None) -> SheetBefore:
     if path is None:
         return SheetBefore()
-    with concerning(path):
+    with name_file_in_errors(path):
         return read_sheet_before(path)
 
 
-def reading_of(chosen: Choices) -> ReadOptions:
+def make_read_options(chosen: Choices) -> ReadOptions:
     return ReadOptions(
         chosen.sheet,
         chosen.units,
@@ -407,17 +407,17 @@ def reading_of(chosen: Choices) -> ReadOptions:
     )
 
 
-def layout_of(chosen: Choices) -> Layout:
+def make_layout(chosen: Choices) -> Layout:
     return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin)
 
 
-def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
+def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
     """cell, brush: where they are known already."""
-    cell = cell or cell_of(chosen.cell)
+    cell = cell or load_cell(chosen.cell)
     return Options(
-        brush=brush or brush_of(chosen.brush),
-        reading=reading_of(chosen),
-        layout=layout_of(chosen),
+        brush=brush or load_brush(chosen.brush),
+        reading=make_read_options(chosen),
+        layout=make_layout(chosen),
         compensation=chosen.compensation or Options.compensation,
         lag_mm=chosen.lag,
         tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance) or Options.tolerance_mm,
@@ -435,7 +435,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         speed_of_all_mm_s=chosen.paint_speed,
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,
-        corrections=sheet_before_of(chosen.corrections).corrections,
+        corrections=load_sheet_before(chosen.corrections).corrections,
     )
 
 

@@ -42,17 +42,17 @@ from . import cancelling, prediction
 from .cancelling import Cancel
 from .checking import Warn
 from .choices import (
+    ChoiceKeywords,
     Choices,
-    Given,
-    concerning,
-    name_of,
-    on_a_page,
-    options_of,
-    settled,
-    sheet_before_of,
-    without_effect,
+    apply_drawing_settings,
+    choose_margin_strokes,
+    load_sheet_before,
+    make_options,
+    name_file_in_errors,
+    path_of,
+    report_ineffective_flags,
 )
-from .conversion import chosen_of
+from .conversion import make_choices
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
 from .work import Work
@@ -63,7 +63,10 @@ if TYPE_CHECKING:
 Read = TypeVar("Read")
 
 
-LEAST_PRINT_SCALE, SAME_SCALE = 0.015, 0.006  # shares: print scales begin at 2 %, and both axes share one
+MIN_PRINT_SCALE_ERROR, MAX_AXIS_SCALE_DIFFERENCE = (
+    0.015,
+    0.006,
+)  # shares: print scales begin at 2 %, and both axes share one
 
 
 @dataclass(frozen=True)
@@ -130,7 +133,7 @@ def compare(
     *,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> PaintedJob:
     """Compare photographs of one painted sheet with targets and predictions, as `brushsvg compare` does.
 
@@ -148,39 +151,41 @@ def compare(
         raise Error("there is no photograph", "photos", code="wrong-type")
     for each in paths:
         need(each, (str, os.PathLike), "a path, which each of photos is")
-    chosen, notices = chosen_of(drawing, choices), []
+    chosen, notices = make_choices(drawing, choices), []
 
     def work(stage) -> PaintedJob:
         def warn(_, found):
             notices.extend(found)
 
-        return compared(painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn)
+        return compare_sheet(
+            prepare_painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn
+        )
 
     return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
 
 
-def painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
+def prepare_painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
     """Return the contents of the painted page; notices are reported with the file that they are of."""
-    before = sheet_before_of(chosen.corrections)
-    return _sheet(replace(chosen, corrections=None), before, stage, warn)
+    before = load_sheet_before(chosen.corrections)
+    return _prepare_sheet(replace(chosen, corrections=None), before, stage, warn)
 
 
-def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
-    name = name_of(given.input)
-    with concerning(name):
-        chosen = settled(given, given.input)
-        warn(name, without_effect(chosen))
-        chosen = on_a_page(chosen)
-        work = preparation.prepare(chosen.input, options_of(chosen), stage)
+def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
+    name = path_of(given.input)
+    with name_file_in_errors(name):
+        chosen = apply_drawing_settings(given, given.input)
+        warn(name, report_ineffective_flags(chosen))
+        chosen = choose_margin_strokes(chosen)
+        work = preparation.prepare(chosen.input, make_options(chosen), stage)
         warn(name, work.notices)
         painted, corrections_before = None, before
         if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
-            _refuse_corrections_of_two(before)
+            _refuse_second_corrections(before)
             painted = work.plan
             planned, known = uncorrected(painted)
             work, before = replace(work, plan=planned), SheetBefore(known)
         marks = prediction.predict(work, True, stage)
-        before = replace(before, corrections=select_for_machine(before.corrections, _undone(work)))
+        before = replace(before, corrections=select_for_machine(before.corrections, _get_cell_machine(work)))
         plan = painted or corrected(work.plan, before.corrections, work.brush)
         target = {} if work.strokes is None else {one.id: target_rings([one]) for one in work.strokes}
         strokes = (
@@ -190,15 +195,15 @@ def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], 
         otherwise = None
         if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
             without = replace(given, margin_strokes="off")
-            otherwise = functools.partial(_sheet, without, corrections_before, stage, drop_notices)
+            otherwise = functools.partial(_prepare_sheet, without, corrections_before, stage, ignore_notices)
         return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), otherwise)
 
 
-def drop_notices(file: str, notices: Iterable[Notice]) -> None:
+def ignore_notices(file: str, notices: Iterable[Notice]) -> None:
     """Keep warnings from being printed twice when a drawing is prepared again."""
 
 
-def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
+def read_matching_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
     """What photographs show, read with the sheet whose page they show."""
     try:
         return sheet, read(sheet)
@@ -209,23 +214,23 @@ def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Rea
     return sheet, read(sheet)
 
 
-def _refuse_corrections_of_two(given: SheetBefore) -> None:
+def _refuse_second_corrections(given: SheetBefore) -> None:
     if given.corrections:
         sentence = "the plan was written with corrections and holds them: leave --corrections out"
         raise Error(sentence, "corrections", code="corrections-twice")
 
 
-def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
+def read_photos(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
     """Names, and what their files hold."""
     stage("reading the photographs")
     return [(path, read_bytes(path)) for path in paths]
 
 
-def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], warn: Warn) -> PaintedJob:
+def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object], warn: Warn) -> PaintedJob:
     """paths: photographs of one sheet; notices are reported with the first of them."""
-    with concerning(paths[0]):
-        photos = photographs(paths, stage)
-        sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
+    with name_file_in_errors(paths[0]):
+        photos = read_photos(paths, stage)
+        sheet, found = read_matching_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     stage("estimating faults")
     every = found, sheet.page, strokes
@@ -239,14 +244,14 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], war
     cell, machine, residual = work.options.cell, None, None
     if cell and faults:
         along = axes_along_paper(cell)
-        machine, left_out = _undoable(faults, found.middle_mm, cell, along)
-        warn(paths[0], _not_undone(faults, cell, left_out))
+        machine, left_out = _find_correctable_machine(faults, found.middle_mm, cell, along)
+        warn(paths[0], _report_uncorrectable(faults, cell, left_out))
         if machine:
             certain = sure(faults, cell.machine, along, left_out)
             rest = subtract_faults(found, certain, sheet.plan, brush, strokes)
             residual = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
     ends = ends_of(found, strokes, work.strokes or ())
-    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
+    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_get_cell_machine(work)))
     any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
     places = report.places_of(found, strokes)
     return PaintedJob(
@@ -265,10 +270,12 @@ def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], war
     )
 
 
-def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | None, dict[str, str]]:
+def _find_correctable_machine(
+    faults: Faults, middle_mm, cell: Cell, along
+) -> tuple[Machine | None, dict[str, str]]:
     """The machine for the next cell, without the numbers that such a cell refuses; and why, by key."""
     left_out = not_undone(cell)
-    if printed := _printed_at(faults):
+    if printed := _estimate_print_scale(faults):
         left_out["scale"] = f"the page was probably printed at {100 * printed:.1f} %"
     while True:
         machine = corrected_machine(faults, middle_mm, cell.machine, along, left_out)
@@ -283,10 +290,10 @@ def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | N
             left_out[key] = str(problem)
 
 
-def _not_undone(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
+def _report_uncorrectable(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
     """One notice on all that is certain of the machine and goes into no cell of its kind."""
     certain = [name for name, value in certain_of(faults).items() if value]
-    printed = _printed_at(faults)
+    printed = _estimate_print_scale(faults)
     rest = [
         name for name in certain if key_of(name) in left_out and not (printed and key_of(name) == "scale")
     ]
@@ -303,14 +310,14 @@ def _not_undone(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[No
     return [*notices, Notice("machine", sentence, code="machine-not-undone", advice=advice)]
 
 
-def _printed_at(faults: Faults) -> float | None:
+def _estimate_print_scale(faults: Faults) -> float | None:
     """The scale of the page's print, where both axes of the machine seem to be off by as much: printers shrink a page
     to its printable area, and machines seldom have the same fault in both axes."""
     x, y = (certain_of(faults).get(f"scale in {axis}", 0.0) for axis in "xy")
-    if min(abs(x), abs(y)) < LEAST_PRINT_SCALE or abs(x - y) > SAME_SCALE:
+    if min(abs(x), abs(y)) < MIN_PRINT_SCALE_ERROR or abs(x - y) > MAX_AXIS_SCALE_DIFFERENCE:
         return None
     return 1.0 / (1.0 + (x + y) / 2)
 
 
-def _undone(work: Work):
+def _get_cell_machine(work: Work):
     return work.options.cell.machine if work.options.cell else None

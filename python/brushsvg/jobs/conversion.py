@@ -26,26 +26,26 @@ from ..text_summary import summarized
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
+    ChoiceKeywords,
     Choices,
-    Given,
-    checked,
-    concerning,
-    name_of,
-    on_a_page,
-    options_of,
-    settled,
+    apply_drawing_settings,
+    check_choices,
+    choose_margin_strokes,
+    make_options,
+    name_file_in_errors,
+    path_of,
+    report_ineffective_flags,
     suffix_of,
-    without_effect,
 )
 from .preparation import preparation
-from .work import Work, nearest_first
+from .work import Work, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
 
 ORDERS = ("drawn", "nearest")
-MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg setup height` try 1 mm
-FORMATS = {
+MAX_SILENT_LOWERING_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg setup height` try 1 mm
+OUTPUT_SUFFIXES = {
     "picture": (".png", ".svg"),
     "report": (".txt", ".json", ".csv"),
     "page": (".pdf", ".svg"),
@@ -90,7 +90,7 @@ def convert(
     lenient: bool = False,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> Conversion:
     """A drawing to a plan and a program, as `brushsvg convert` makes them, byte for byte. Nothing is written but to
     the paths given: all of them or none.
@@ -116,13 +116,13 @@ def convert(
     Raises Error, with a code of docs/reference/diagnostics.md, for what cannot be read, painted or run. Of several
     reasons it gives the first, its notes the others, its notices what was to be warned of.
     """
-    chosen = chosen_of(drawing, choices)
+    chosen = make_choices(drawing, choices)
     extras = {"picture": picture, "report": report, "page": page}
-    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path(path, name)}
-    out = os.fspath(out) if _is_path(out, "out") else None
+    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path_given(path, name)}
+    out = os.fspath(out) if _is_path_given(out, "out") else None
     for name, path in paths.items():
-        if suffix_of(path) not in FORMATS[name]:
-            sentence = f"{name} {path[:80]!r} does not end in {' or '.join(FORMATS[name])}"
+        if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
+            sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
             raise Error(sentence, name, code="program-format")
     need(formats, (tuple, list), "a list of extensions, which formats is")
     for each in formats:
@@ -135,7 +135,9 @@ def convert(
     job = Job(chosen.z_offset or 0.0, first)
 
     def work(stage) -> tuple[Conversion, dict]:
-        return _converted(chosen, out, paths, tuple(formats), bool(figures), job, order, bool(lenient), stage)
+        return _make_conversion(
+            chosen, out, paths, tuple(formats), bool(figures), job, order, bool(lenient), stage
+        )
 
     done, files = cancelling.run(work, progress, cancel)
     if files:
@@ -143,22 +145,22 @@ def convert(
     return replace(done, files=tuple(files))
 
 
-def chosen_of(drawing, choices: Mapping) -> Choices:
+def make_choices(drawing, choices: Mapping) -> Choices:
     """Choices by their names. Error for a name or value that there is not."""
     known = {name for name in Choices.__dataclass_fields__ if name != "input"}
     for name in choices:
         if name not in known:
             raise TypeError(f"{name!r} is no choice; known are {', '.join(sorted(known))}")
-    return checked(Choices(input=drawing, **choices))
+    return check_choices(Choices(input=drawing, **choices))
 
 
-def _is_path(path, name: str) -> bool:
+def _is_path_given(path, name: str) -> bool:
     if path is not None:
         need(path, (str, os.PathLike), f"a path, which {name} is")
     return path is not None
 
 
-def _converted(
+def _make_conversion(
     chosen: Choices,
     out,
     paths: dict,
@@ -170,22 +172,22 @@ def _converted(
     stage,
 ) -> tuple[Conversion, dict]:
     source = chosen.input
-    with concerning(name_of(source)):
-        chosen = settled(chosen, source)
-        ignored = without_effect(chosen)
-        chosen = on_a_page(chosen) if "page" in paths else chosen
-        work = preparation.prepare(source, options_of(chosen), stage)
+    with name_file_in_errors(path_of(source)):
+        chosen = apply_drawing_settings(chosen, source)
+        ignored = report_ineffective_flags(chosen)
+        chosen = choose_margin_strokes(chosen) if "page" in paths else chosen
+        work = preparation.prepare(source, make_options(chosen), stage)
         cell = work.options.cell
         if out is not None:
             formats = tuple(dict.fromkeys([suffix_of(out), *formats]))
-        formats = formats or (first_format(cell),)
+        formats = formats or (default_suffix(cell),)
         files = {paths["page"]: outputs.page(suffix_of(paths["page"]), work)} if "page" in paths else {}
         tries = {}
         for suffix in formats:
             wants_rings = suffix_of(paths.get("picture")) == ".svg"
             marks = tries[formats[0]].marks if tries else None
-            tries[suffix] = tried(work, suffix, job, order, lenient, wants_rings, stage, marks)
-            _refuse(tries[suffix].problems, work.notices)
+            tries[suffix] = simulate_and_check(work, suffix, job, order, lenient, wants_rings, stage, marks)
+            _raise_first_problem(tries[suffix].problems, work.notices)
         one = tries[formats[0]]
         stage("writing the program")
         texts: dict[str, str] = {}
@@ -204,18 +206,18 @@ def _converted(
             measured = outputs.reported(one.work, one.marks, cell)
         if "report" in paths:
             files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured)
-    of_machine = of_cell(cell) if one.is_program else []
+    of_machine = list_cell_notices(cell) if one.is_program else []
     notices = (*ignored, *one.work.notices, *one.remarks(), *of_machine)
     done = Conversion(work.title, one.work.plan, notices, one.time_s(), texts, measured)
     return done, dict(sorted(files.items(), key=lambda each: each[0] != out))  # the program first
 
 
-def first_format(cell: Cell) -> str:
+def default_suffix(cell: Cell) -> str:
     post = POSTS.get(cell.language)
     return post.extensions[0] if post else ".json"
 
 
-def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
+def _raise_first_problem(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
     """Error for the first, with the others as notes. notices: what is to be warned of."""
     if problems:
         first, *others = problems
@@ -227,7 +229,7 @@ def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
 
 
 @dataclass(frozen=True)
-class Tried:
+class SimulatedWork:
     """Work that was simulated and held against all limits of a machine. suffix: of the program, or ".json" for a plan;
     work: with its strokes in the requested order; cell: as it is for that output; notes: for the header; problems: what
     forbids to write it, one for each kind."""
@@ -257,10 +259,10 @@ class Tried:
         first = self.walk.job.first_stroke
         pens = with_one_pen(self.loads, self.cell, first) if self.is_program else []
         brush, cell = self.work.brush, self.cell
-        out_of_turn = _out_of_turn(self.work, self.order, first)
+        out_of_turn = _check_stroke_order(self.work, self.order, first)
         beyond = beyond_field(self.loads.loads, cell) if self.is_program else []
         long = beyond_part(self.loads, self.cell) if self.is_program else []
-        low = _lowered(self.walk.job.z_offset_mm) if self.is_program else []
+        low = _check_lowering(self.walk.job.z_offset_mm) if self.is_program else []
         return [
             *without_paint(brush, cell),
             *out_of_turn,
@@ -273,12 +275,14 @@ class Tried:
 
     def time_s(self) -> float | None:
         """How long the machine takes for the program, or for one of the plan."""
-        return time_written_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
+        return estimate_output_time_s(
+            self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell
+        )
 
 
-def _lowered(z_offset_mm: float) -> list[Notice]:
+def _check_lowering(z_offset_mm: float) -> list[Notice]:
     """A notice where the tool goes so much further down than the paper was taught that it may be a slip."""
-    if z_offset_mm > -MOST_LOWERED_MM:
+    if z_offset_mm > -MAX_SILENT_LOWERING_MM:
         return []
     sentence = (
         f"the tool goes {-z_offset_mm:g} mm further down than where the cell has the paper, which the strokes of "
@@ -287,7 +291,7 @@ def _lowered(z_offset_mm: float) -> list[Notice]:
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
 
-def _out_of_turn(work: Work, order: str, first_stroke: int) -> list[Notice]:
+def _check_stroke_order(work: Work, order: str, first_stroke: int) -> list[Notice]:
     """A notice where strokes are pressed for paint that is left of others than those that are painted before them."""
     is_pressed = work.brush.paint and work.strokes is not None
     if not is_pressed or work.options.compensation not in ("closed", "refined"):
@@ -306,7 +310,7 @@ def _out_of_turn(work: Work, order: str, first_stroke: int) -> list[Notice]:
     ]
 
 
-def tried(
+def simulate_and_check(
     work: Work,
     suffix: str,
     job: Job = WHOLE_JOB,
@@ -316,15 +320,15 @@ def tried(
     stage=lambda text: None,
     marks=None,
     path: str = "",
-) -> Tried:
+) -> SimulatedWork:
     """rings: trace the marks' outlines; marks: of the same work in the same order, where they are known; path: of the
     program, for errors about its format."""
     cell, brush, tolerance_mm = work.options.cell, work.brush, work.options.tolerance_mm
     notes = outputs.notes(work)
     if order == "nearest":
-        work, notes = nearest_first(work), (*notes, "order: nearest first")
+        work, notes = order_nearest_first(work), (*notes, "order: nearest first")
     if suffix != ".json":
-        with concerning(path):
+        with name_file_in_errors(path):
             writer.post_for(suffix, cell)
         preflight.check_rounding(cell, tolerance_mm)
     if marks is None:
@@ -336,29 +340,29 @@ def tried(
     problems = summarized([*walk.problems, *damaged])
     if damaged:
         problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
-    return Tried(suffix, work, cell, notes, marks, loads, walk, problems, order)
+    return SimulatedWork(suffix, work, cell, notes, marks, loads, walk, problems, order)
 
 
-def time_of_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:
+def estimate_time_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:
     """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
     with suppress(Error):
         return writer.time_s(loads, brush, cell)
     return None
 
 
-def time_written_s(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
+def estimate_output_time_s(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
     """How long the machine takes for a program that was gone through, or for one of a plan.json."""
     if suffix != ".json":
         return duration_s(walk.made)
-    return time_of_s(in_loads(plan, brush, cell), brush, cell)
+    return estimate_time_s(in_loads(plan, brush, cell), brush, cell)
 
 
-def of_cell(cell: Cell) -> list[Notice]:
+def list_cell_notices(cell: Cell) -> list[Notice]:
     """What makes a program less sure than it looks: a paper that nobody taught, an arm that is not followed."""
-    return [*([OF_EXAMPLE] if cell.paper.example else []), *of_arm(cell)]
+    return [*([OF_EXAMPLE] if cell.paper.example else []), *list_arm_notices(cell)]
 
 
-def of_arm(cell: Cell) -> list[Notice]:
+def list_arm_notices(cell: Cell) -> list[Notice]:
     if not cell.arm or is_installed():
         return []
     sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"

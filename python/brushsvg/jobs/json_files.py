@@ -12,15 +12,15 @@ from ..files import read_bytes
 def read_plan(path: str | os.PathLike[str]) -> _core.Plan:
     """The plan in a plan.json. path: of the file; a text that begins with "{" is what would stand in it. Error, with
     the path in `file` and the key in `where`, when it cannot be read."""
-    return _read(_core.read_plan, "a plan", path)
+    return _read_json_file(_core.read_plan, "a plan", path)
 
 
 def read_marks(path: str | os.PathLike[str]) -> _core.Marks:
     """The marks in a marks.json, given and refused as a plan is."""
-    return _read(_core.read_marks, "marks", path)
+    return _read_json_file(_core.read_marks, "marks", path)
 
 
-def _read(parse, what: str, path: str | os.PathLike[str]):
+def _read_json_file(parse, what: str, path: str | os.PathLike[str]):
     if isinstance(path, str) and path.lstrip().startswith("{"):
         return parse(path)
     try:

@@ -21,10 +21,10 @@ from ..show.marks_svg import marks_svg
 from ..show.overlap_svg import overlap_svg
 from ..show.timeline import timeline
 from .options import Options
-from .preparation.margin_strokes import KIND, is_margin, without_margin_strokes
+from .preparation.margin_strokes import MARGIN_KIND, is_margin, remove_margin_strokes
 from .work import Work
 
-SHOWN_MM = 0.02  # how exactly a page shows the target: less cannot be seen
+TARGET_TOLERANCE_MM = 0.02  # how exactly a page shows the target: less cannot be seen
 
 
 def notes(work: Work) -> tuple[str, ...]:
@@ -38,9 +38,9 @@ def notes(work: Work) -> tuple[str, ...]:
     count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     lines = (made, count) if work.strokes is not None else (count,)
     if any(map(is_margin, work.strokes or ())):
-        lines += (f"{KIND}: {sum(map(is_margin, work.strokes))} strokes",)
+        lines += (f"{MARGIN_KIND}: {sum(map(is_margin, work.strokes))} strokes",)
     elif any(notice.code == "margin-strokes-left-out" for notice in work.notices):
-        lines += (f"{KIND}: 0 strokes",)
+        lines += (f"{MARGIN_KIND}: 0 strokes",)
     if options.corrections:
         farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
         lines += (
@@ -128,7 +128,7 @@ def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed
     _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
     runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is commanded
     moves = timeline(whole_program(loads, work.brush, runs), marks)
-    target = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    target = [_core.wanted_outline(stroke, TARGET_TOLERANCE_MM) for stroke in work.strokes or ()]
     return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
 
 
@@ -150,7 +150,7 @@ def reported(
     known = warnings if warnings is not None else work.notices
     if seconds is None:
         seconds = time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
-    work, marks, as_run = without_margin_strokes(work, marks, as_run)
+    work, marks, as_run = remove_margin_strokes(work, marks, as_run)
     leans = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
     painted = report.PaintedPlan(
@@ -179,12 +179,12 @@ def reported(
         is_tilted=leans,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
-        assumed=assumed(work.brush),
+        assumed=list_assumed_laws(work.brush),
         places=report.worst_places(painted) if is_drawing else (),
     )
 
 
-def assumed(brush: _core.Brush) -> tuple[str, ...]:
+def list_assumed_laws(brush: _core.Brush) -> tuple[str, ...]:
     """Return the names of the laws that were never measured."""
     names = {"lag": "lag", "half_width": "width"}
     return tuple(name for law, name in names.items() if getattr(brush, law).assumed)

@@ -31,23 +31,23 @@ def marks_of(
 ) -> _core.Marks:
     """The marks of any plan. cell: where it fetches paint, of a brush whose marks narrow until then; where none does
     every stroke is taken to begin freshly dipped, but those that are to be painted without (`reload`)."""
-    marks = _core.simulate(plan, brush, progress=_counted(stage, "simulated"))
+    marks = _core.simulate(plan, brush, progress=_make_counter(stage, "simulated"))
     if brush.paint:
         _core.narrow(marks, brush.paint, fetched_mm(plan, brush, cell))
     if not outlines:
         return marks
-    return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
+    return outlined(marks, brush, stage) if whole else _trace_each_pass(marks, brush, stage)
 
 
 def outlined(
     marks: _core.Marks, brush: _core.Brush, stage: Callable[[str], object] = lambda text: None
 ) -> _core.Marks:
     """The marks with their rings traced."""
-    _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
+    _core.trace_outlines(marks, brush, progress=_make_counter(stage, "outlined"))
     return marks
 
 
-def _outlined_apart(marks, brush, stage):
+def _trace_each_pass(marks, brush, stage):
     """The marks with the rings of each pass alone, which is all that a picture needs, on all processors."""
     from concurrent.futures import ThreadPoolExecutor
 
@@ -57,7 +57,7 @@ def _outlined_apart(marks, brush, stage):
         _core.trace_outlines(alone, brush)
         return alone.passes[0]
 
-    count = _counted(stage, "outlined")
+    count = _make_counter(stage, "outlined")
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         done = []
@@ -70,5 +70,5 @@ def _outlined_apart(marks, brush, stage):
     return marks
 
 
-def _counted(stage, doing: str):
+def _make_counter(stage, doing: str):
     return lambda now, all_: stage(f"{doing} {now} of {all_} strokes")

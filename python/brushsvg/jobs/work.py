@@ -15,7 +15,7 @@ from .options import Options
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownSimulation:
     """What was found of a plan as it then was, a copy: its marks, without outlines and freshly dipped, and limits."""
 
     plan: _core.Plan
@@ -44,7 +44,7 @@ class Work:
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
     missed: tuple = ()  # pieces that strokes reach and the mark does not
     astray: tuple = ()  # names of strokes whose paint is visibly elsewhere
-    known: Known | None = None  # of the plan, or of what it was before something of it changed
+    known: KnownSimulation | None = None  # of the plan, or of what it was before something of it changed
 
     def marks(self) -> _core.Marks | None:
         """Of the plan, where they are known: not to be changed."""
@@ -59,7 +59,7 @@ class Work:
         return self.known is not None and not self.brush.paint and self.known.plan == self.plan
 
 
-def whole_strokes(work: Work, loads: PlanInLoads) -> list:
+def match_whole_strokes(work: Work, loads: PlanInLoads) -> list:
     """For each of the work's loads the stroke that it paints whole; None for the parts of one."""
     whole, left = [], iter(work.strokes)
     for a_pass in loads.loads:
@@ -70,7 +70,7 @@ def whole_strokes(work: Work, loads: PlanInLoads) -> list:
     return whole
 
 
-def colours(work: Work) -> list[str]:
+def list_colours(work: Work) -> list[str]:
     """Colours of the work's strokes, the lightest first: dark paint covers light, and rests of it spoil light paint."""
 
     def lightness(colour: str) -> float:  # luma of ITU-R BT.601
@@ -81,18 +81,18 @@ def colours(work: Work) -> list[str]:
     return sorted(found, key=lightness, reverse=True)
 
 
-def of_colour(work: Work, colour: str) -> Work:
+def select_colour(work: Work, colour: str) -> Work:
     """The strokes of one colour; those without one are painted with the first. Error if there are none."""
-    all_colours = colours(work)
+    all_colours = list_colours(work)
     if colour not in all_colours:
         known = ", ".join(all_colours) or "none"
         sentence = f"nothing is painted in {colour}; colours of this drawing: {known}"
         raise Error(sentence, "colour", code="nothing-to-paint")
     without = {"", colour} if colour == all_colours[0] else {colour}
-    return _of_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in without])
+    return _select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in without])
 
 
-def _of_rows(work: Work, rows: list[int]) -> Work:
+def _select_rows(work: Work, rows: list[int]) -> Work:
     was = work.plan
     plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [was.passes[k] for k in rows], was.extra)
     strokes = None if work.strokes is None else [work.strokes[k] for k in rows]
@@ -100,9 +100,9 @@ def _of_rows(work: Work, rows: list[int]) -> Work:
     return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)
 
 
-def nearest_first(work: Work) -> Work:
+def order_nearest_first(work: Work) -> Work:
     """The work with its strokes in the order of the shortest way from the end of one to the start of the next.
 
     Only strokes that follow each other in one layer change places; none is painted backwards.
     """
-    return _of_rows(work, travel_order.nearest_first(work.plan.passes))
+    return _select_rows(work, travel_order.nearest_first(work.plan.passes))

@@ -11,10 +11,10 @@ from . import values
 TERMINALS = ("auto", "round", "butt", "pointed")
 
 
-A_PROGRAM = "a program; its extension names the language (see convert --help)"
+PROGRAM_HELP = "a program; its extension names the language (see convert --help)"
 
 
-def programs() -> str:
+def list_program_formats() -> str:
     """The extensions of programs, each with the language it stands for."""
     titles: dict[str, str] = {}
     for post in POSTS.values():
@@ -24,8 +24,8 @@ def programs() -> str:
     return " or ".join(f"{title} ({name})" for name, title in titles.items())
 
 
-def plans_and_programs() -> str:
-    return f"a plan (.json) or {programs()}"
+def list_output_formats() -> str:
+    return f"a plan (.json) or {list_program_formats()}"
 
 
 def add_output(command: argparse.ArgumentParser, what: str, is_needed: bool = True) -> None:
@@ -44,7 +44,7 @@ def add_report(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help="print the report as JSON")
 
 
-def add_looks(commands, kind: str, about: str, shown: str, file: str):
+def add_list_show_check(commands, kind: str, about: str, shown: str, file: str):
     """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
     whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
     whats.add_parser("list", help="list the shipped ones").set_defaults(run=f"{kind}_list")
@@ -57,7 +57,7 @@ def add_looks(commands, kind: str, about: str, shown: str, file: str):
     return whats
 
 
-def add_job(command: argparse.ArgumentParser) -> None:
+def add_job_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add_z_offset(command)
     add("--from-stroke", metavar="N", type=values.count, default=1, help="resume a job at this stroke")
@@ -101,7 +101,7 @@ def add_quiet(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="print warnings only")
 
 
-def add_writes(command: argparse.ArgumentParser) -> None:
+def add_write_options(command: argparse.ArgumentParser) -> None:
     """For a command that writes files of names that were typed."""
     command.add_argument(
         "--force",

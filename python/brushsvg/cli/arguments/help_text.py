@@ -20,7 +20,7 @@ TOPICS = {
     "strokes": "wide detail terminals start end corners script join order from-stroke margin-strokes per-colour",
 }
 # Options that --help leaves to --help-all.
-RARE = {
+RARE_OPTIONS = {
     f"--{name}"
     for name in (
         "z-offset compensation lag tolerance corrections origin units select colour background width as lenient pen "
@@ -28,7 +28,7 @@ RARE = {
         "spread height dpi mirrored prior noise aim paint playback editable at-least explain"
     ).split()
 }
-IN_CONVERT = {
+COMMON_IN_CONVERT = {
     "--explain",
     "--wide",
     "--detail",
@@ -36,7 +36,7 @@ IN_CONVERT = {
     "--scale",
     "--speed",
 }  # common there, rare in other commands
-MANY = 12  # options of a command from which on its rare ones are left to --help-all
+MAX_UNGROUPED_OPTIONS = 12  # options of a command from which on its rare ones are left to --help-all
 
 
 def commands_text(parser: argparse.ArgumentParser, commands: argparse._SubParsersAction) -> str:
@@ -58,8 +58,8 @@ def commands_text(parser: argparse.ArgumentParser, commands: argparse._SubParser
 def group_options(parser: argparse.ArgumentParser) -> None:
     """Sort the options of a command into the groups of its help; those of no topic stay with the output."""
     own = parser._optionals
-    own.title = "output and more" if len(own._group_actions) > MANY else "options"
-    for title, names in TOPICS.items() if len(own._group_actions) > MANY else ():
+    own.title = "output and more" if len(own._group_actions) > MAX_UNGROUPED_OPTIONS else "options"
+    for title, names in TOPICS.items() if len(own._group_actions) > MAX_UNGROUPED_OPTIONS else ():
         flags = {f"--{name}" for name in names.split()}
         found = [action for action in own._group_actions if flags & {*action.option_strings}]
         if found:
@@ -78,13 +78,13 @@ def group_options(parser: argparse.ArgumentParser) -> None:
 def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
     """Return the help of a command. is_whole: with its rare options."""
     options = [action for action in parser._actions if action.option_strings]
-    rare = RARE if parser.prog.endswith(" convert") else RARE | IN_CONVERT
-    is_long = len(options) > MANY and not is_whole
+    rare = RARE_OPTIONS if parser.prog.endswith(" convert") else RARE_OPTIONS | COMMON_IN_CONVERT
+    is_long = len(options) > MAX_UNGROUPED_OPTIONS and not is_whole
     hidden = [action for action in options if is_long and (rare | {"--help-all"}) & {*action.option_strings}]
     kept = {action: action.help for action in hidden}
     for action in hidden:
         action.help = argparse.SUPPRESS
-    parser.usage = " ".join([parser.prog, *_operands(parser._actions)])
+    parser.usage = " ".join([parser.prog, *_list_operands(parser._actions)])
     text = argparse.ArgumentParser.format_help(parser)
     parser.usage = None
     for action, words in kept.items():
@@ -93,7 +93,7 @@ def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
     return text + more * bool(hidden)
 
 
-def _operands(actions: Iterable[argparse.Action]) -> list[str]:
+def _list_operands(actions: Iterable[argparse.Action]) -> list[str]:
     """Return what a command cannot do without, and [options]."""
     found = ["[options]"]
     for action in actions:

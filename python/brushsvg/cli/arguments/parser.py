@@ -115,17 +115,17 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_compare(commands)
     drawings.add_simulate_photo(commands)
     installation.add_doctor(commands)
-    for command in _with_those_below(commands):
-        if sum(bool(action.option_strings) for action in command._actions) > help_text.MANY:
+    for command in _iterate_parsers(commands):
+        if sum(bool(action.option_strings) for action in command._actions) > help_text.MAX_UNGROUPED_OPTIONS:
             command.add_argument("--help-all", action=_HelpAll, nargs=0, help="show all options and exit")
         help_text.group_options(command)
     return parser
 
 
-def _with_those_below(commands: argparse._SubParsersAction) -> Iterator[argparse.ArgumentParser]:
+def _iterate_parsers(commands: argparse._SubParsersAction) -> Iterator[argparse.ArgumentParser]:
     """Yield the parsers of commands and of their commands, such as `cell place`."""
     for command in commands.choices.values():
         yield command
         for action in command._actions:
             if isinstance(action, argparse._SubParsersAction):
-                yield from _with_those_below(action)
+                yield from _iterate_parsers(action)

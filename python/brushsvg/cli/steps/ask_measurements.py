@@ -12,17 +12,19 @@ from ..arguments import values
 from ..console import RefusedError, say
 
 # Medians of 12 hidden brushes: benchmarks/typed_brushes.py
-WORTH = "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
+ACCURACY_GAIN = (
+    "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
+)
 HOW_TO_MEASURE = (
     "Choose three press depths, for example a quarter, half and all of the deepest that you use.",
     "At each depth paint a straight line of 40 mm, turn by 90 degrees, and paint 40 mm more.",
     "Width: measure across the straight part of the mark.",
     "Turn: measure how far before the tool's second line the middle of the mark starts to turn.",
     "Lag: the turn plus 0.3 times the width.",
-    f"What it is worth: {WORTH}.",
+    f"What it is worth: {ACCURACY_GAIN}.",
 )
-PLACES = ("shallow", "middle", "deep")
-FLAGS = "--lag-at DEPTH=LAG --width-at DEPTH=WIDTH, once for each depth"
+DEPTH_NAMES = ("shallow", "middle", "deep")
+MEASUREMENT_FLAGS = "--lag-at DEPTH=LAG --width-at DEPTH=WIDTH, once for each depth"
 
 
 def can_answer(args) -> bool:
@@ -37,10 +39,10 @@ def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[f
     for line in HOW_TO_MEASURE:
         say(line)
     lags, widths = [], []
-    for place in PLACES:
-        depth = _number(f"{place} depth [mm]: ")
-        width = _number("  width of the mark [mm]: ")
-        turn = _number("  turn, before the second line [mm]: ", values.lag)
+    for place in DEPTH_NAMES:
+        depth = _ask_length(f"{place} depth [mm]: ")
+        width = _ask_length("  width of the mark [mm]: ")
+        turn = _ask_length("  turn, before the second line [mm]: ", values.lag)
         widths.append((depth, width))
         lags.append((depth, round(lag_of_turn(turn, width), 2)))
     flags = [
@@ -51,7 +53,7 @@ def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[f
     return lags, widths
 
 
-def _number(question: str, read=values.width) -> float:
+def _ask_length(question: str, read=values.width) -> float:
     """Ask until the answer is a length."""
     while True:
         sys.stderr.write(question)
@@ -59,7 +61,9 @@ def _number(question: str, read=values.width) -> float:
         answer = sys.stdin.readline()
         if not answer:
             why = Notice(
-                "", f"the answers ended. Answer all questions, or give {FLAGS}", code="measurement-missing"
+                "",
+                f"the answers ended. Answer all questions, or give {MEASUREMENT_FLAGS}",
+                code="measurement-missing",
             )
             raise RefusedError("brush new", [why])
         try:
@@ -68,12 +72,12 @@ def _number(question: str, read=values.width) -> float:
             say(str(problem))
 
 
-def few_depths(args, widths) -> list[Notice]:
+def warn_of_few_depths(args, widths) -> list[Notice]:
     """Warn about what lag and width at fewer depths than three cost; not for pens and copies."""
     if args.like is not None or args.lag == 0:
         return []
     fewest = min(len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths))
-    if fewest >= len(PLACES):
+    if fewest >= len(DEPTH_NAMES):
         return []
-    sentence = f"lag or width is known at {fewest} depth{'s' * (fewest > 1)}. Typically {WORTH}"
-    return [Notice("", sentence, code="few-depths", advice=f"measure at three depths: {FLAGS}")]
+    sentence = f"lag or width is known at {fewest} depth{'s' * (fewest > 1)}. Typically {ACCURACY_GAIN}"
+    return [Notice("", sentence, code="few-depths", advice=f"measure at three depths: {MEASUREMENT_FLAGS}")]

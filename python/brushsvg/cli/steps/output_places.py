@@ -8,15 +8,15 @@ from collections.abc import Collection
 from ...errors import Notice
 from ...files import write_files
 from ...units import clock
-from ..console import RefusedError, about, clear_stage, print_text, say, stage
-from .replacing import refuse_replacing, remember
+from ..console import RefusedError, clear_stage, print_text, refuse_errors, say, stage
+from .replacing import record_written, refuse_replacing
 
 
 def suffix_of(path: str | None) -> str:
     return os.path.splitext(path or "")[1].lower()
 
 
-def check_places(args, *paths: str | None, sources: Collection[str | None] = ()) -> None:
+def check_outputs(args, *paths: str | None, sources: Collection[str | None] = ()) -> None:
     """Whether the outputs can be written, as far as that can be said before any work is done. sources: those of them
     that are brushes, cells, corrections or drawings, see refuse_replacing."""
     for path in filter(None, paths):
@@ -34,7 +34,7 @@ def check_places(args, *paths: str | None, sources: Collection[str | None] = ())
     refuse_replacing(filter(None, paths), sources, args.force)
 
 
-def write(
+def write_outputs(
     args,
     files,
     strokes: int | None = None,
@@ -46,9 +46,9 @@ def write(
     """Write all files, and say so with what is known of them, unless --quiet. sources: as for check_places."""
     stage("writing")
     refuse_replacing(files, sources, args.force)
-    with about(""):  # the error names the file
+    with refuse_errors(""):  # the error names the file
         write_files(files)
-    remember(path for path in files if path not in sources)
+    record_written(path for path in files if path not in sources)
     clear_stage()
     if args.quiet:
         return
@@ -62,5 +62,5 @@ def write(
 def print_list(names: list[str], describe) -> None:
     width = max(map(len, names))
     for name in names:
-        with about(name):
+        with refuse_errors(name):
             print_text(f"{name.ljust(width)}  {describe(name)}\n")

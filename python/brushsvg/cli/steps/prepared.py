@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ...errors import Error, Notice
 from ...jobs import prediction
-from ...jobs.choices import Choices, without_effect
+from ...jobs.choices import Choices, report_ineffective_flags
 from ...jobs.preparation import preparation
 from ...jobs.work import Work
 from ...machine import preflight
@@ -15,20 +15,20 @@ from ...machine.cells.cell import Cell
 from ...machine.motion import duration_s
 from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
 from ...machine.program import Walked
-from ..console import about, stage, warn
-from .options import options_of
+from ..console import refuse_errors, stage, warn
+from .options import make_options
 
 
 def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False, plan=None) -> Work:
     """plan: what the input holds, where that is a file of another kind."""
-    warn(chosen.input, without_effect(chosen))
-    options = options_of(chosen, cell, brush)
-    with about(chosen.input):
+    warn(chosen.input, report_ineffective_flags(chosen))
+    options = make_options(chosen, cell, brush)
+    with refuse_errors(chosen.input):
         return preparation.prepare(plan or chosen.input, options, stage, partly)
 
 
 @dataclass(frozen=True)
-class Looked:
+class PreparedPaint:
     """marks: of the strokes, or of the loads where those are looked at; walk: of the loads, None where no stroke is
     left; forbidden: which of the warnings forbid to run a program: to someone who looks they only warn."""
 
@@ -47,19 +47,19 @@ class Looked:
         return None
 
 
-def look(
+def prepare_and_simulate(
     chosen: Choices,
     outlines: bool,
     at_loads: bool = False,
     partly: bool = False,
     whole: bool = True,
     tilted: bool = False,
-) -> Looked:
+) -> PreparedPaint:
     """tilted: look at the marks of a tilted brush, too, which no cell can paint: it is warned of, and there are no
     loads."""
     work = prepare(chosen, partly=partly)
     brush, cell, of_drawing = work.brush, work.options.cell, work.strokes is not None
-    with about(chosen.input):
+    with refuse_errors(chosen.input):
         held_upright = []
         try:
             loads = in_loads(work.plan, brush, cell)
@@ -85,4 +85,4 @@ def look(
         warnings = [*work.notices, *forbidden, *astray, *held_upright]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
-    return Looked(work, loads, marks, walk, warnings, forbidden)
+    return PreparedPaint(work, loads, marks, walk, warnings, forbidden)

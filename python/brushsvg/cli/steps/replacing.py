@@ -19,7 +19,7 @@ from ...errors import Error, Notice
 from ...files import read_bytes, write_files
 from ..console import RefusedError
 
-MOST_BYTES = 4_000_000  # of what is remembered: some 30,000 files; of more, the older half is forgotten
+MAX_RECORD_BYTES = 4_000_000  # of what is remembered: some 30,000 files; of more, the older half is forgotten
 
 
 def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force: bool = False) -> None:
@@ -31,14 +31,12 @@ def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force:
     for path in paths:
         if not os.path.isfile(path):
             continue
-        known = _remembered() if known is None else known
+        known = _read_record() if known is None else known
         if path in sources:
             sentence = "the file is there already, and might be somebody's own"
-        elif _key(path) not in known:
-            sentence = (
-                f"the file is there already, and brushsvg does not know that it wrote it{_unwritable()}"
-            )
-        elif known[_key(path)] != _sha256_of(path):
+        elif _hash_path(path) not in known:
+            sentence = f"the file is there already, and brushsvg does not know that it wrote it{_explain_unwritable()}"
+        elif known[_hash_path(path)] != _hash_content(path):
             sentence = "the file is there already, and was changed since brushsvg wrote it"
         else:
             continue
@@ -46,20 +44,20 @@ def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force:
         raise RefusedError(path, [Notice("", sentence, code="file-exists", advice=advice)])
 
 
-def remember(paths: Iterable[str]) -> None:
+def record_written(paths: Iterable[str]) -> None:
     """That these files are as brushsvg wrote them. Where that cannot be written, they count as somebody's own later."""
-    lines = [f"{_key(path)} {_sha256_of(path)}\n" for path in paths if os.path.isfile(path)]
+    lines = [f"{_hash_path(path)} {_hash_content(path)}\n" for path in paths if os.path.isfile(path)]
     with suppress(OSError, Error, RuntimeError):  # RuntimeError: nobody's home
-        place = _place()
+        place = _find_record_path()
         place.parent.mkdir(parents=True, exist_ok=True)
         with open(place, "a", encoding="ascii") as file:
             file.write("".join(lines))  # short: whole also where others write at the same time
-        if place.stat().st_size > MOST_BYTES:
+        if place.stat().st_size > MAX_RECORD_BYTES:
             kept = place.read_text("ascii").splitlines(keepends=True)
             write_files({place: "".join(kept[len(kept) // 2 :])})
 
 
-def _place() -> Path:
+def _find_record_path() -> Path:
     if os.environ.get("XDG_STATE_HOME"):
         return Path(os.environ["XDG_STATE_HOME"], "brushsvg", "written.txt")
     if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
@@ -67,29 +65,29 @@ def _place() -> Path:
     return Path.home() / ".local" / "state" / "brushsvg" / "written.txt"
 
 
-def _unwritable() -> str:
+def _explain_unwritable() -> str:
     """Why nothing is remembered, if nothing can be: in a container, for example, whose home cannot be written."""
     with suppress(RuntimeError):
-        place = _place()
+        place = _find_record_path()
         there = next(folder for folder in place.parents if folder.exists())
         if not os.access(there, os.W_OK) or (place.exists() and not os.access(place, os.W_OK)):
             return f": {place}, where brushsvg keeps this, cannot be written"
     return ""
 
 
-def _remembered() -> dict[str, str]:
+def _read_record() -> dict[str, str]:
     """The hash of its content by that of its path, the last one of each."""
     with suppress(OSError, ValueError, RuntimeError):
-        lines = [line.split() for line in _place().read_text("ascii").splitlines()]
+        lines = [line.split() for line in _find_record_path().read_text("ascii").splitlines()]
         return dict(line for line in lines if len(line) == 2)
     return {}
 
 
-def _key(path: str) -> str:
+def _hash_path(path: str) -> str:
     return hashlib.sha256(os.fsencode(os.path.realpath(path))).hexdigest()
 
 
-def _sha256_of(path: str) -> str:
+def _hash_content(path: str) -> str:
     """Of a file's content; "" of one that cannot be read."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()

@@ -11,17 +11,17 @@ from contextlib import contextmanager
 
 from ...errors import Error, lacking
 
-PATIENCE_S = 10  # for a scheduler to answer
+MAX_SCHEDULER_WAIT_S = 10  # for a scheduler to answer
 
 
 @contextmanager
-def processes(jobs: int) -> Iterator[Executor]:
+def start_processes(jobs: int) -> Iterator[Executor]:
     """As many processes. They end when the context does, in the middle of what they do, and where this process is
     killed: each holds an end of a pipe, whose other end is here alone."""
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     theirs, ours = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(jobs, context, initializer=_end_with, initargs=(theirs,))
+    pool = ProcessPoolExecutor(jobs, context, initializer=_end_with_parent, initargs=(theirs,))
     try:
         yield pool
     except BaseException:
@@ -35,7 +35,7 @@ def processes(jobs: int) -> Iterator[Executor]:
         theirs.close()
 
 
-def _end_with(pipe) -> None:
+def _end_with_parent(pipe) -> None:
     """In a worker: Ctrl-C is its parent's."""
     import signal
 
@@ -49,14 +49,14 @@ def _end_with(pipe) -> None:
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Executor]:
+def connect_cluster(address: str) -> Iterator[Executor]:
     """The workers of a scheduler of Dask's."""
     try:
         from dask.distributed import Client
     except ImportError:
         raise lacking("a cluster needs", "distributed") from None
     try:
-        client = Client(address, timeout=PATIENCE_S, set_as_default=False)
+        client = Client(address, timeout=MAX_SCHEDULER_WAIT_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as problem:
         sentence = f"no scheduler answers there: {str(problem).splitlines()[0][:200]}"
         raise Error(sentence, file=address, code="cluster-unreachable") from None

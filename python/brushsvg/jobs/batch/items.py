@@ -16,9 +16,9 @@ from ...files import read_bytes
 from ...read import READERS, InMemory
 from ...read.text import text_svg
 
-IN_FOLDERS = (".svg", ".svgz", ".dxf")  # G-code is read only by its path: programs are in folders, too
-LIST = ".txt"
-MOST_LETTERS = 60  # of a word, in the name of its files
+FOLDER_SUFFIXES = (".svg", ".svgz", ".dxf")  # G-code is read only by its path: programs are in folders, too
+LIST_SUFFIX = ".txt"
+MAX_NAME_LETTERS = 60  # of a word, in the name of its files
 
 
 @dataclass(frozen=True)
@@ -34,42 +34,47 @@ class Item:
     path: str = ""
 
 
-def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
+def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
     """Of files, folders (all SVG and DXF below them), patterns with * ? [], and lists (.txt: a path on each line, from
     the folder of the list), in that order. Error where one names nothing, or two would have the same name."""
     items = []
     for operand in map(os.fspath, operands):
         if os.path.isdir(operand):
-            items += [_drawing(path, path.relative_to(operand)) for path in _below(Path(operand))]
-        elif Path(operand).suffix.lower() == LIST:
-            items += drawings(_listed(operand))
+            items += [
+                _make_drawing_item(path, path.relative_to(operand))
+                for path in _find_drawings_below(Path(operand))
+            ]
+        elif Path(operand).suffix.lower() == LIST_SUFFIX:
+            items += list_drawings(_read_list(operand))
         elif os.path.exists(operand) or not glob.has_magic(operand):
-            items.append(_drawing(Path(operand), Path(Path(operand).name)))
+            items.append(_make_drawing_item(Path(operand), Path(Path(operand).name)))
         else:
             found = [
                 Path(path) for path in sorted(glob.glob(operand, recursive=True)) if os.path.isfile(path)
             ]
             drawn = [path for path in found if path.suffix.lower() in READERS]
-            items += [_drawing(path, Path(path.name)) for path in drawn]
+            items += [_make_drawing_item(path, Path(path.name)) for path in drawn]
             if not drawn:
                 raise Error("no drawing has such a name", file=operand, code="file-unreadable")
     return items
 
 
-def _below(folder: Path) -> list[Path]:
-    found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in IN_FOLDERS and path.is_file())
+def _find_drawings_below(folder: Path) -> list[Path]:
+    found = sorted(
+        path for path in folder.rglob("*") if path.suffix.lower() in FOLDER_SUFFIXES and path.is_file()
+    )
     if not found:
-        sentence = f"no drawing is in this folder; looked for {', '.join(IN_FOLDERS)}"
+        sentence = f"no drawing is in this folder; looked for {', '.join(FOLDER_SUFFIXES)}"
         raise Error(sentence, file=str(folder), code="file-unreadable")
     return found
 
 
-def _listed(path: str) -> list[str]:
-    lines = _lines(path)
+def _read_list(path: str) -> list[str]:
+    lines = _read_lines(path)
     return [os.path.join(os.path.dirname(path), line) for line in lines]
 
 
-def _lines(path: str | os.PathLike[str]) -> list[str]:
+def _read_lines(path: str | os.PathLike[str]) -> list[str]:
     """Lines of a text that are not blank, without blanks around them."""
     try:
         lines = [line.strip() for line in read_bytes(path).decode("utf-8-sig").splitlines()]
@@ -80,10 +85,10 @@ def _lines(path: str | os.PathLike[str]) -> list[str]:
     return [line for line in lines if line]
 
 
-def _drawing(path: Path, name: Path) -> Item:
+def _make_drawing_item(path: Path, name: Path) -> Item:
     stem = name.with_suffix("").as_posix() if name.name else ""
     if not stem.isprintable():
-        return _unnamed(_printable(stem), _printable(str(path)))
+        return _make_refused_item(_escape_unprintable(stem), _escape_unprintable(str(path)))
 
     def read() -> InMemory:
         extension = path.suffix.lower()
@@ -100,7 +105,7 @@ def _drawing(path: Path, name: Path) -> Item:
     return Item(stem, str(path), digest, read, os.path.realpath(path))
 
 
-def _unnamed(name: str, source: str) -> Item:
+def _make_refused_item(name: str, source: str) -> Item:
     """A drawing that is refused when it is its turn, since its files cannot have its name."""
 
     def read() -> InMemory:
@@ -112,7 +117,7 @@ def _unnamed(name: str, source: str) -> Item:
     return Item(name, source, "", read)
 
 
-def _printable(text: str) -> str:
+def _escape_unprintable(text: str) -> str:
     """With what is not printed, as the end of a line, written as in Python."""
     return "".join(
         each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode()
@@ -120,7 +125,7 @@ def _printable(text: str) -> str:
     )
 
 
-def words(
+def list_words(
     path: str | os.PathLike[str],
     font: bytes,
     size_mm: float = 20.0,
@@ -128,7 +133,7 @@ def words(
 ) -> list[Item]:
     """A drawing of each line of a text file (\\n in it starts a line), as `brushsvg text` makes it, named by its
     letters."""
-    lines = _lines(path)
+    lines = _read_lines(path)
     _check_font(lines[0], font, size_mm, sheet_mm)
     setting = [hashlib.sha256(font).hexdigest(), size_mm, sheet_mm]
 
@@ -149,8 +154,8 @@ def words(
     names: dict[str, int] = {}
     items = []
     for line in lines:
-        name = "".join(each if _may_name(each) else "_" for each in line)[:MOST_LETTERS]
-        count = names[as_one_file(name)] = names.get(as_one_file(name), 0) + 1
+        name = "".join(each if _is_name_letter(each) else "_" for each in line)[:MAX_NAME_LETTERS]
+        count = names[file_name_key(name)] = names.get(file_name_key(name), 0) + 1
         items.append(item(line, name if count == 1 else f"{name}~{count}"))
     return items
 
@@ -164,51 +169,51 @@ def _check_font(line: str, font: bytes, size_mm: float, sheet_mm) -> None:
             raise
 
 
-def _may_name(letter: str) -> bool:
+def _is_name_letter(letter: str) -> bool:
     return letter in "-" or unicodedata.category(letter)[0] in "LMN"
 
 
-def given(items: Iterable) -> list[Item]:
+def make_items(items: Iterable) -> list[Item]:
     """Paths, pairs of a name and an SVG document (text or bytes), and Items as they are."""
     found = []
     for each in items:
         if isinstance(each, Item):
             found.append(each)
         elif isinstance(each, str | os.PathLike):
-            found += drawings([each])
+            found += list_drawings([each])
         else:
             need(each, tuple, "a path, or a pair of a name and an SVG document")
             if len(each) != 2 or not isinstance(each[0], str) or not isinstance(each[1], str | bytes):
                 raise Error("a pair is a name and an SVG document as text or bytes", code="wrong-type")
-            found.append(_in_memory(*each))
-    _make_unique(found)
+            found.append(_make_memory_item(*each))
+    _check_names(found)
     return found
 
 
-def _in_memory(name: str, document: str | bytes) -> Item:
+def _make_memory_item(name: str, document: str | bytes) -> Item:
     data = document.encode() if isinstance(document, str) else document
     return Item(name, name, hashlib.sha256(b".svg\n" + data).hexdigest(), lambda: InMemory(".svg", data))
 
 
-def _make_unique(items: list[Item]) -> None:
+def _check_names(items: list[Item]) -> None:
     """Error where two would be written to the same place, or one outside of the folder."""
     by_name: dict[str, Item] = {}
     for item in items:
         parts = Path(item.name).parts
         if not parts or Path(item.name).is_absolute() or ".." in parts or not item.name.isprintable():
             raise Error(f"{item.name[:60]!r} cannot be the name of a file", code="name-invalid")
-        other = by_name.setdefault(as_one_file(item.name), item)
+        other = by_name.setdefault(file_name_key(item.name), item)
         if other is not item:
             sentence = f"{other.source} and {item.source} would both be written as {item.name}"
-            raise Error(sentence, code="name-taken", advice=_way_out(other, item, items))
+            raise Error(sentence, code="name-taken", advice=_suggest_remedy(other, item, items))
 
 
-def as_one_file(name: str) -> str:
+def file_name_key(name: str) -> str:
     """Equal for names that are one file on Windows or macOS, which ignore case and how accents are composed."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
 
 
-def _way_out(one: Item, other: Item, items: list[Item]) -> str:
+def _suggest_remedy(one: Item, other: Item, items: list[Item]) -> str:
     """What helps where two drawings have one name."""
     if one.path and one.path == other.path:
         return "it is one drawing: give it once"

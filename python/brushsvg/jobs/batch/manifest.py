@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...errors import Error, Notice
 from ...files import read_bytes, reason, write_files
-from .items import Item, as_one_file
+from .items import Item, file_name_key
 from .one import Figures, sha256
 
 try:
@@ -48,11 +48,11 @@ class Row:
         return ": ".join(filter(None, (self.where, self.sentence)))
 
 
-def as_line(row: Row) -> str:
+def format_row(row: Row) -> str:
     return json.dumps(asdict(row), ensure_ascii=False) + "\n"
 
 
-def _row(line: bytes) -> Row | None:
+def _parse_row(line: bytes) -> Row | None:
     """None for a line that a killed run left half, and for one that is no row."""
     try:
         said = json.loads(line)
@@ -104,11 +104,11 @@ class Manifest:
         if said != FORMAT:
             sentence = f"this is not a manifest of {FORMAT['format']}, version {FORMAT['version']}"
             raise Error(sentence, file=str(self.path), code="format-unknown")
-        for row in filter(None, map(_row, lines)):
+        for row in filter(None, map(_parse_row, lines)):
             self._refuse_outside(row)
             self._by_name.setdefault(row.name, []).append(row)
             for name in row.files:
-                self._by_file.setdefault(as_one_file(name), []).append(row)
+                self._by_file.setdefault(file_name_key(name), []).append(row)
         if lines and lines[-1]:
             self._add("\n")  # what was left half stays a line of its own
 
@@ -131,7 +131,7 @@ class Manifest:
 
     def add(self, row: Row) -> None:
         """After its files were written."""
-        self._add(as_line(row))
+        self._add(format_row(row))
 
     def done(self, key: str, item: Item) -> Row | None:
         """Return the row of a drawing whose files are there as they were written. A refused drawing is not finished:
@@ -163,7 +163,7 @@ class Manifest:
 
     def other_source(self, item: Item, path: str) -> str:
         """The other drawing, still there, that an earlier run made this file of; "" where there is none."""
-        for row in self._by_file.get(as_one_file(path), []):
+        for row in self._by_file.get(file_name_key(path), []):
             is_other = row.name != item.name and row.path not in ("", self.way_to(item))
             if is_other and (self.folder / path).exists() and (self.folder / row.path).exists():
                 return row.source
@@ -202,7 +202,7 @@ class Manifest:
         ours = {row.name for row in rows}
         others = [each[-1] for name, each in self._by_name.items() if name not in ours]
         kept = [row for row in others if self._is_there(row)]
-        write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(as_line, [*rows, *kept])])})
+        write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(format_row, [*rows, *kept])])})
 
     def _is_there(self, row: Row) -> bool:
         names = row.files or ([row.path] if row.path else [])
@@ -213,7 +213,7 @@ class Manifest:
         self._file.close()
 
 
-def below(folder: Path, name: str) -> str:
+def make_path_below(folder: Path, name: str) -> str:
     """Return the path of a file, for the writer of files; its folder is made."""
     path = folder / name
     try:

@@ -13,10 +13,10 @@ from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation import report
 from .. import conversion, outputs
-from ..choices import Choices, checked, options_of, settled
+from ..choices import Choices, apply_drawing_settings, check_choices, make_options
 from ..preparation import preparation
 
-PICTURE_PX = 480
+PICTURE_LONG_SIDE_PX = 480
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class Made:
+class TaskResult:
     """figures: None for what was refused; texts: of the program, by what they add to its name (see writer.in_parts);
     suffix: of all of them; sentence, code: of a refusal."""
 
@@ -84,28 +84,28 @@ def version() -> str:
     return metadata.version("brushsvg")
 
 
-def made(task: Task) -> Made:
+def convert_task(task: Task) -> TaskResult:
     here = version()
     if task.version != here:
-        return Made(None, {}, b"", version=here)
+        return TaskResult(None, {}, b"", version=here)
     try:
-        done = _made(task)
+        done = _convert(task)
     except Error as refusal:
-        done = Made(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
+        done = TaskResult(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
     except Exception as mistake:  # of ours: the others are painted all the same
         said = unexpected(mistake)
-        done = Made(None, {}, b"", sentence=str(said), code=said.code)
+        done = TaskResult(None, {}, b"", sentence=str(said), code=said.code)
     return replace(done, version=here)
 
 
-def _made(task: Task) -> Made:
+def _convert(task: Task) -> TaskResult:
     chosen = replace(task.chosen, input=task.drawing, brush=task.brush.brush() if task.brush else None)
     if task.drawing.extension in (".svg", ".svgz"):
         chosen = replace(chosen, units=None)  # of those among the drawings that do not say theirs
-    chosen = settled(checked(chosen), task.drawing)
-    work = preparation.prepare(task.drawing, options_of(chosen))
-    suffix = task.suffix or conversion.first_format(work.options.cell)
-    one = conversion.tried(work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient)
+    chosen = apply_drawing_settings(check_choices(chosen), task.drawing)
+    work = preparation.prepare(task.drawing, make_options(chosen))
+    suffix = task.suffix or conversion.default_suffix(work.options.cell)
+    one = conversion.simulate_and_check(work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient)
     if one.problems:
         first, *others = one.problems
         more = f", and {len(others)} more of other kinds" if others else ""
@@ -126,7 +126,7 @@ def _made(task: Task) -> Made:
             work.unreached,
         )
     )
-    of_machine = conversion.of_cell(one.cell) if one.is_program else []
+    of_machine = conversion.list_cell_notices(one.cell) if one.is_program else []
     notices = (*one.work.notices, *one.remarks(), *of_machine)
     figures = Figures(
         len(one.work.plan.passes),
@@ -141,8 +141,8 @@ def _made(task: Task) -> Made:
         total.painted_mm,
         len(notices),
     )
-    picture = outputs.overlap_picture(".png", one.work, one.marks, PICTURE_PX)
-    return Made(figures, texts, picture, notices=notices, suffix=suffix)
+    picture = outputs.overlap_picture(".png", one.work, one.marks, PICTURE_LONG_SIDE_PX)
+    return TaskResult(figures, texts, picture, notices=notices, suffix=suffix)
 
 
 def sha256(data: bytes) -> str:

@@ -24,17 +24,17 @@ from ...model import library
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
 from ..cancelling import Cancel
-from ..choices import Choices, Given, cell_of
-from ..conversion import ORDERS, chosen_of
+from ..choices import ChoiceKeywords, Choices, load_cell
+from ..conversion import ORDERS, make_choices
 from . import executors, one, tables
-from .items import Item, as_one_file, given
-from .manifest import Manifest, Row, below
-from .one import Made, SentBrush, Task, made, sha256
+from .items import Item, file_name_key, make_items
+from .manifest import Manifest, Row, make_path_below
+from .one import SentBrush, Task, TaskResult, convert_task, sha256
 
 PROGRAMS, PICTURES = "programs", "pictures"
-LOOKS_S = 0.1
-AT_ONCE = 256  # drawings an executor is given ahead: a cluster's workers are not left waiting, and memory is bounded
-BYTES_AT_ONCE = 64 * 2**20
+POLL_INTERVAL_S = 0.1
+MAX_PENDING_DRAWINGS = 256  # drawings an executor is given ahead: a cluster's workers are not left waiting, and memory is bounded
+MAX_PENDING_BYTES = 64 * 2**20
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def batch(
     parquet: bool = False,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> Batch:
     """Convert many drawings, each as `convert` does. What an earlier run into the same folder has done with the same
     drawing, choices, brush, cell and version, and whose files are there as written, is not done again.
@@ -109,10 +109,10 @@ def batch(
         tables.need_parquet()
     need(items, Iterable, "an iterable of drawings")
     need(items, object if not isinstance(items, str | bytes) else tuple, "a list of drawings")
-    listed = given(items)
+    listed = make_items(items)
     need_truth(lenient, "lenient")
     need_truth(parquet, "parquet")
-    way = _way(chosen_of(None, choices), format, order, bool(lenient))
+    way = _make_batch_settings(make_choices(None, choices), format, order, bool(lenient))
     folder = Path(out)
     manifest = Manifest(folder)
     try:
@@ -124,29 +124,33 @@ def batch(
         left = [index for index, row in enumerate(rows) if row is None]
         for index in left:
             manifest.refuse_other_drawing(listed[index])
-        places = _Places(listed, manifest)
+        places = _TakenPlaces(listed, manifest)
         removed = [path for row in rows if row for path in manifest.remove_outdated(row)]
         report_row = _make_reporter(len(listed), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
             is_ours = executor is None and cluster is None
             if left and executor is None:
-                place = executors.cluster(cluster) if cluster else executors.processes(min(count, len(left)))
+                place = (
+                    executors.connect_cluster(cluster)
+                    if cluster
+                    else executors.start_processes(min(count, len(left)))
+                )
                 executor = stack.enter_context(place)
-            for index, done in _each_made(executor, is_ours, left, listed, way, is_over):
-                row = _kept(folder, listed[index], keys[index], done, places)
+            for index, done in _convert_remaining(executor, is_ours, left, listed, way, is_over):
+                row = _write_result(folder, listed[index], keys[index], done, places)
                 row = rows[index] = replace(row, path=manifest.way_to(listed[index]))
                 removed += manifest.remove_outdated(row)
                 manifest.add(row)
                 report_row(row)
         manifest.finish(rows)
-        files = _summary(folder, rows, parquet)
+        files = _write_summary(folder, rows, parquet)
     finally:
         manifest.close()
     return Batch(tuple(rows), resumed, tuple(files), tuple(removed))
 
 
 @dataclass(frozen=True)
-class _Way:
+class _BatchSettings:
     """How all are converted; said: all of it in one text, with what comes along."""
 
     chosen: Choices
@@ -164,10 +168,10 @@ class _Way:
         return Task(item.read(), self.chosen, self.brush, self.format, self.order, self.lenient, self.version)
 
 
-def _way(chosen: Choices, format: str, order: str, lenient: bool) -> _Way:
+def _make_batch_settings(chosen: Choices, format: str, order: str, lenient: bool) -> _BatchSettings:
     version = one.version()
-    cell = cell_of(chosen.cell) if chosen.cell is not None else None
-    brush = _sent(chosen.brush) if chosen.brush is not None else None
+    cell = load_cell(chosen.cell) if chosen.cell is not None else None
+    brush = _read_brush_to_send(chosen.brush) if chosen.brush is not None else None
     shipped = [library.SHIPPED.glob("*.json"), cell_file.SHIPPED.glob("*.toml")]
     along = [sha256(read_bytes(path)) for paths in shipped for path in sorted(paths)]
     chosen = replace(chosen, z_offset=chosen.z_offset or 0.0, join=bool(chosen.join))  # as flags have them
@@ -176,10 +180,10 @@ def _way(chosen: Choices, format: str, order: str, lenient: bool) -> _Way:
     known = [brush and (brush.sha256, sha256(brush.data)), cell and write_cell(cell), post, along]
     said = json.dumps([typed, format, order, lenient, version, known])
     chosen = replace(chosen, brush=None, cell=cell)
-    return _Way(chosen, brush, format, order, lenient, version, said)
+    return _BatchSettings(chosen, brush, format, order, lenient, version, said)
 
 
-def _sent(brush) -> SentBrush:
+def _read_brush_to_send(brush) -> SentBrush:
     if isinstance(brush, _core.Brush):
         return SentBrush(_core.write_brush(brush).encode(), brush.sha256)
     try:
@@ -191,23 +195,28 @@ def _sent(brush) -> SentBrush:
     return SentBrush(data, sha256(data))
 
 
-def _each_made(executor, is_ours: bool, left: list[int], items: list[Item], way: _Way, is_over):
+def _convert_remaining(
+    executor, is_ours: bool, left: list[int], items: list[Item], way: _BatchSettings, is_over
+):
     """(Number, Made) of each that is left, as they come. is_ours: the work ends by itself, and is not polled."""
     done: queue.SimpleQueue = queue.SimpleQueue()
     waiting: dict[Future, tuple[int, int]] = {}
     numbers = iter(left)
     try:
         while True:
-            while len(waiting) < AT_ONCE and sum(size for _, size in waiting.values()) < BYTES_AT_ONCE:
+            while (
+                len(waiting) < MAX_PENDING_DRAWINGS
+                and sum(size for _, size in waiting.values()) < MAX_PENDING_BYTES
+            ):
                 index = next(numbers, None)
                 if index is None:
                     break
                 try:
                     task = way.task(items[index])
                 except Error as refusal:
-                    yield index, Made(None, {}, b"", refusal.where, str(refusal), refusal.code)
+                    yield index, TaskResult(None, {}, b"", refusal.where, str(refusal), refusal.code)
                     continue
-                future = executor.submit(made, task)
+                future = executor.submit(convert_task, task)
                 waiting[future] = index, len(task.drawing.data)
                 future.add_done_callback(done.put)
             if not waiting:
@@ -215,17 +224,17 @@ def _each_made(executor, is_ours: bool, left: list[int], items: list[Item], way:
             if is_over():
                 raise CancelledError("cancelled")
             try:
-                future = done.get(timeout=LOOKS_S)
+                future = done.get(timeout=POLL_INTERVAL_S)
             except queue.Empty:
                 continue
             index, _ = waiting.pop(future)
-            yield index, _result(future, items[index], way.version)
+            yield index, _get_result(future, items[index], way.version)
     finally:
         for future in () if is_ours else waiting:
             future.cancel()
 
 
-def _result(future: Future, item: Item, version: str) -> Made:
+def _get_result(future: Future, item: Item, version: str) -> TaskResult:
     try:
         found = future.result()
     except BrokenExecutor as broken:
@@ -237,7 +246,7 @@ def _result(future: Future, item: Item, version: str) -> Made:
     return found
 
 
-class _Places:
+class _TakenPlaces:
     """Where the files of each drawing may be written, with no regard to case, as on Windows and macOS.
 
     A program in several files is a folder: that of `a` may contain the file that `a/a` is written to.
@@ -245,9 +254,9 @@ class _Places:
 
     def __init__(self, items: list[Item], manifest: Manifest):
         self.manifest = manifest
-        self.sources = {as_one_file(item.name): item.source for item in items}
+        self.sources = {file_name_key(item.name): item.source for item in items}
         self.folders = {
-            as_one_file(folder.as_posix()): item.source
+            file_name_key(folder.as_posix()): item.source
             for item in items
             for folder in Path(item.name).parents
         }
@@ -256,16 +265,16 @@ class _Places:
         """Error where a file of this drawing would be one of another drawing, or a folder that contains one."""
         for path in paths:
             place = Path(path).relative_to(Path(path).parts[0])
-            stem, own = as_one_file(place.with_suffix("").as_posix()), as_one_file(item.name)
+            stem, own = file_name_key(place.with_suffix("").as_posix()), file_name_key(item.name)
             other = self.sources.get(stem) if stem != own else None
-            other = other or self.folders.get(as_one_file(place.as_posix()))
+            other = other or self.folders.get(file_name_key(place.as_posix()))
             other = other or self.manifest.other_source(item, path)
             if other:
                 sentence = f"{path} belongs to {other}: {item.source} would be written over it"
                 raise Error(sentence, code="name-taken", advice="rename one of the two drawings")
 
 
-def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Row:
+def _write_result(folder: Path, item: Item, key: str, done: TaskResult, places: _TakenPlaces) -> Row:
     """Its row, once its files are written, all or none."""
     if done.figures is None:
         return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
@@ -277,7 +286,7 @@ def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Ro
         places.refuse_taken(item, data)
     except Error as refusal:
         return Row(item.name, item.source, key, None, refusal.code, refusal.where, str(refusal), done.notices)
-    write_files({below(folder, name): text for name, text in data.items()})
+    write_files({make_path_below(folder, name): text for name, text in data.items()})
     sums = {name: sha256(text) for name, text in data.items()}
     return Row(item.name, item.source, key, done.figures, notices=done.notices, files=sums)
 
@@ -299,12 +308,12 @@ def _make_reporter(count: int, resumed: int, progress):
     return report_row
 
 
-def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
+def _write_summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
     """The tables and the contact sheets of all rows, and nothing that an earlier, larger batch left of the latter."""
-    files = {folder / "table.csv": tables.as_csv(rows)}
+    files = {folder / "table.csv": tables.format_csv(rows)}
     if parquet:
-        files[folder / "table.parquet"] = tables.as_parquet(rows)
-    cards = [_card(folder, row) for row in rows]
+        files[folder / "table.parquet"] = tables.format_parquet(rows)
+    cards = [_make_card(folder, row) for row in rows]
     sheets = contact_sheets(cards)
     for number, data in enumerate(sheets, 1):
         write_files({folder / f"contact-{number}.png": data})
@@ -317,7 +326,7 @@ def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
     return [os.fspath(path) for path in files]
 
 
-def _card(folder: Path, row: Row) -> Card:
+def _make_card(folder: Path, row: Row) -> Card:
     if row.figures is None:
         return Card(row.name, row.code, row.text, None)
     figures = row.figures

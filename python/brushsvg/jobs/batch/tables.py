@@ -11,23 +11,23 @@ from ...errors import lacking
 from .manifest import Row
 from .one import Figures
 
-FIGURES = tuple(field.name for field in fields(Figures))
-WORDS = ("name", "source", "code", "where", "sentence")
+FIGURE_COLUMNS = tuple(field.name for field in fields(Figures))
+TEXT_COLUMNS = ("name", "source", "code", "where", "sentence")
 
 
-def columns(rows: Iterable[Row]) -> dict[str, list]:
+def make_columns(rows: Iterable[Row]) -> dict[str, list]:
     """Values by the names of columns; None where a drawing was refused. Lengths and times to 1e-6."""
     rows = list(rows)
-    found: dict[str, list] = {name: [getattr(row, name) for row in rows] for name in WORDS[:2]}
+    found: dict[str, list] = {name: [getattr(row, name) for row in rows] for name in TEXT_COLUMNS[:2]}
     said = [asdict(row.figures) if row.figures else {} for row in rows]
-    for name in FIGURES:
+    for name in FIGURE_COLUMNS:
         values = [each.get(name) for each in said]
         found[name] = [round(value, 6) if isinstance(value, float) else value for value in values]
-    return found | {name: [getattr(row, name) for row in rows] for name in WORDS[2:]}
+    return found | {name: [getattr(row, name) for row in rows] for name in TEXT_COLUMNS[2:]}
 
 
-def as_csv(rows: Iterable[Row]) -> str:
-    found = columns(rows)
+def format_csv(rows: Iterable[Row]) -> str:
+    found = make_columns(rows)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(found)
@@ -43,13 +43,13 @@ def need_parquet() -> None:
         raise lacking("Parquet needs", "pyarrow") from None
 
 
-def as_parquet(rows: Iterable[Row]) -> bytes:
+def format_parquet(rows: Iterable[Row]) -> bytes:
     import pyarrow
     from pyarrow import parquet
 
     whole = ("strokes", "poses", "widths_out_of_reach", "warnings")
-    kinds = {name: pyarrow.int64() if name in whole else pyarrow.float64() for name in FIGURES}
-    schema = pyarrow.schema((name, kinds.get(name, pyarrow.string())) for name in columns([]))
+    kinds = {name: pyarrow.int64() if name in whole else pyarrow.float64() for name in FIGURE_COLUMNS}
+    schema = pyarrow.schema((name, kinds.get(name, pyarrow.string())) for name in make_columns([]))
     stream = pyarrow.BufferOutputStream()
-    parquet.write_table(pyarrow.table(columns(rows), schema=schema), stream)
+    parquet.write_table(pyarrow.table(make_columns(rows), schema=schema), stream)
     return stream.getvalue().to_pybytes()

@@ -9,10 +9,10 @@ from ...machine.paint_reload import in_loads
 from ...machine.preflight import within_limits
 from ...machine.program import POSES_KEPT, Job
 from ..options import Options
-from ..work import Known
+from ..work import KnownSimulation
 
 
-def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
+def make_compensation(brush, sheet_mm, options: Options, stage=lambda text: None):
     """What compensates strokes, by default as the options ask for, or in closed form where that is to be refined."""
     first = "closed" if options.compensation == "refined" else options.compensation
 
@@ -33,9 +33,9 @@ def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
     return compensated
 
 
-def begun_within_reach(
+def fit_ends_to_machine(
     painted: list, brush, plan, compensated, options: Options, stage, added: frozenset[str] = frozenset()
-) -> tuple[list, Known | None]:
+) -> tuple[list, KnownSimulation | None]:
     """The strokes, with plainer terminals where "auto" chose some that the machine cannot run. A round start is landed
     on the far side, where the tool may not be allowed, and its front may be wider than the drawing; at a butt terminal
     the tool moves sideways. Added strokes, given by their ids, are left out where they cannot be run: their areas stay
@@ -43,18 +43,18 @@ def begun_within_reach(
     small enough to keep.
     """
 
-    def tried(of) -> Known:
+    def tried(of) -> KnownSimulation:
         loads = in_loads(of, brush, options.cell)
         marks = _core.simulate(
             of, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
         )
         walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
-        return Known(copy(of), marks, walk)
+        return KnownSimulation(copy(of), marks, walk)
 
-    def astray(of: Known) -> set[str]:
+    def astray(of: KnownSimulation) -> set[str]:
         return {problem.where for problem in of.walk.problems}
 
-    choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
+    choosing = [stroke for stroke in painted if "auto" in _get_requested_ends(stroke, options)]
     if not choosing and not added:
         return painted, None
     whole = tried(plan)
@@ -66,7 +66,9 @@ def begun_within_reach(
         {"start": "round", "end": "round"},
         {"start": "pointed", "end": "round"},
     ):
-        some = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
+        some = {
+            stroke.id: _replace_auto_ends(stroke, options, plain) for stroke in choosing if stroke.id in left
+        }
         fits = some.keys() - astray(tried(compensated(list(some.values())).plan)) if some else set()
         found |= {name: some[name] for name in fits}
         left -= fits
@@ -77,11 +79,11 @@ def begun_within_reach(
     return [found.get(stroke.id, stroke) for stroke in painted if stroke.id not in no_room], None
 
 
-def _ends(stroke, options: Options) -> tuple[str, str]:
+def _get_requested_ends(stroke, options: Options) -> tuple[str, str]:
     return stroke.settings.start or options.start, stroke.settings.end or options.end
 
 
-def _plain(stroke, options: Options, plain: dict[str, str]):
+def _replace_auto_ends(stroke, options: Options, plain: dict[str, str]):
     """The stroke with these terminals, where it would choose."""
     said = {name: getattr(stroke.settings, name) or getattr(options, name) for name in plain}
     chosen = {name: plain[name] for name, value in said.items() if value == "auto"}

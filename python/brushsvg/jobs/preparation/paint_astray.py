@@ -8,13 +8,13 @@ from ... import _core
 from ...model.confidence import unseen_mm
 from ...read.design import Notice
 
-MIN_OVERSPILL = (
+MIN_OVERSPILL_RATIO = (
     0.5  # of half the width: paint further outside of what was drawn is seen as a bulge or a thorn
 )
-_SWEPT_MM = 0.05
+_OUTLINE_TOLERANCE_MM = 0.05
 
 
-def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> list[Notice]:
+def find_off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> list[Notice]:
     """Tracking errors above the tolerance that are not lost in what nobody knows of the brush.
 
     painted: strokes, None for those that leave their middle lines on purpose.
@@ -23,10 +23,10 @@ def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> lis
     for stroke, error in zip(painted, tracking_errors, strict=True):
         if stroke is None or error.within_tolerance:
             continue
-        if error.largest_mm <= unseen_mm(brush, _depth(stroke, brush)):
+        if error.largest_mm <= unseen_mm(brush, _find_mean_depth_mm(stroke, brush)):
             continue
         sentence = (
-            f"tracking error {error.largest_mm:.3g} mm near {_place(error.at_mm)}, above the tolerance of "
+            f"tracking error {error.largest_mm:.3g} mm near {_format_place(error.at_mm)}, above the tolerance of "
             f"{tolerance_mm:g} mm"
         )
         turns = ": it turns too sharply there for the brush"
@@ -34,7 +34,7 @@ def off_middle_line(painted, tracking_errors, brush, tolerance_mm: float) -> lis
     return found
 
 
-def outside(targets, passes, brush) -> list[Notice]:
+def find_paint_outside(targets, passes, brush) -> list[Notice]:
     """Of passes that leave their middle lines on purpose: where their paint is outside of all that was drawn.
 
     targets: what strokes should become; passes: one each, None for those that are not looked at.
@@ -48,29 +48,29 @@ def outside(targets, passes, brush) -> list[Notice]:
 
     marks = _core.simulate(_core.Plan(sheet_mm=(1.0, 1.0), passes=[run for _, run in looked_at]), brush)
     _core.trace_outlines(marks, brush)
-    shapes = [region(_core.unite(_core.wanted_outline(stroke, _SWEPT_MM))) for stroke in targets]
+    shapes = [region(_core.unite(_core.wanted_outline(stroke, _OUTLINE_TOLERANCE_MM))) for stroke in targets]
     near = shapely.STRtree(shapes)
     found = []
     for (stroke, _), trace in zip(looked_at, marks.passes, strict=True):
         paint = region(_core.unite(list(trace.outline_mm)))
         drawn = shapely.union_all([shapes[k] for k in near.query(paint)])
         half_mm = max(half for _, half in stroke.half_width)
-        seen_mm = max(MIN_OVERSPILL * half_mm, unseen_mm(brush, _depth(stroke, brush)))
+        seen_mm = max(MIN_OVERSPILL_RATIO * half_mm, unseen_mm(brush, _find_mean_depth_mm(stroke, brush)))
         corners = shapely.points(shapely.get_coordinates(shapely.difference(paint, drawn)))
         away_mm = shapely.distance(corners, drawn) if len(corners) else np.zeros(1)
         if away_mm.max() > seen_mm:
-            place = _place(shapely.get_coordinates(corners[away_mm.argmax()])[0])
+            place = _format_place(shapely.get_coordinates(corners[away_mm.argmax()])[0])
             sentence = f"its paint is up to {away_mm.max():.2g} mm outside of what was drawn, near {place}"
             found.append(Notice(stroke.id, sentence, code="paint-outside"))
     return found
 
 
-def _depth(stroke, brush) -> float:
+def _find_mean_depth_mm(stroke, brush) -> float:
     if not brush.width_follows_depth():
         return brush.paint_depth_mm
     half_mm = float(np.mean([half for _, half in stroke.half_width]))
     return brush.depth_for_half_width(float(np.clip(half_mm, *brush.half_width_range_mm())), stroke.id)
 
 
-def _place(at_mm) -> str:
+def _format_place(at_mm) -> str:
     return f"x {at_mm[0]:.1f}, y {at_mm[1]:.1f} mm"

@@ -31,12 +31,12 @@ from ...strokes.uncovered_areas import uncovered_areas
 from ...strokes.wide_shapes import is_within_reach, within_reach
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
-from ..work import Known, Work, of_colour
-from .compensated import begun_within_reach, compensation_by
-from .margin_strokes import with_margin_strokes
-from .paint_astray import off_middle_line, outside
-from .thin_outlines import without_thin_outlines
-from .width_advice import warnings_with_advice
+from ..work import KnownSimulation, Work, select_colour
+from .compensated import fit_ends_to_machine, make_compensation
+from .margin_strokes import add_margin_strokes
+from .paint_astray import find_off_middle_line, find_paint_outside
+from .thin_outlines import remove_thin_outlines
+from .width_advice import add_width_advice
 
 if TYPE_CHECKING:
     Source = read.Source | Design | _core.Plan
@@ -51,11 +51,11 @@ def prepare(
     """Read a drawing or plan.json and plan the TCP's path. source: the path of one, a Plan, a Design, or an open
     drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
     out."""
-    work = _prepared(source, options, stage, partly)
-    return work if options.colour is None else of_colour(work, options.colour)
+    work = _prepare_source(source, options, stage, partly)
+    return work if options.colour is None else select_colour(work, options.colour)
 
 
-def _prepared(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
+def _prepare_source(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
     if isinstance(source, _core.Plan):
         _core.write_plan(source)  # refuses what no file may hold
         return _prepare_plan(source, options)
@@ -64,40 +64,40 @@ def _prepared(source: Source, options: Options, stage: Callable[[str], object], 
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     _check_speed(brush, options)
-    design = layout.arrange(_design(source, options.reading), options.layout)
+    design = layout.arrange(_read_design(source, options.reading), options.layout)
     notices = [*mistyped_keys(brush), *design.notices]
     try:
-        return _planned(design, brush, options, stage, partly, notices)
+        return _plan_design(design, brush, options, stage, partly, notices)
     except Error as refusal:
         refusal.notices = tuple(notices)
         raise
 
 
-def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
+def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
     """The work of a drawing that was read. notices: its warnings; further ones are added."""
     stage("finding strokes")
-    found, of_strokes = _found(design, brush, options)
+    found, of_strokes = _find_strokes(design, brush, options)
     notices += of_strokes
     if not partly:
         _refuse_wide_lines(found, brush)
-    lines = _within_reach(found, brush, options, partly)
-    compensated = compensation_by(brush, design.sheet_mm, options, stage)
-    lines, done = _compensated(lines, compensated, partly)
-    if _leads(options):
-        lines, done = _searched(lines, done, brush, compensated, options)
+    lines = _limit_widths(found, brush, options, partly)
+    compensated = make_compensation(brush, design.sheet_mm, options, stage)
+    lines, done = _compensate(lines, compensated, partly)
+    if _leads_paint(options):
+        lines, done = _search_strokes(lines, done, brush, compensated, options)
     notices += lines.notices
-    way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
-    lines = _without_left_out(lines, way)
-    way.plan = _at_speed(_with_speeds(way.plan, lines.targets), options)
+    way = _refine(_plan_strokes(lines, done, brush, compensated, options, stage), brush, compensated, options)
+    lines = _drop_left_out(lines, way)
+    way.plan = _set_requested_speed(_set_drawn_speeds(way.plan, lines.targets), options)
     advised = compensated if options.layout.width_mm is None else None
     bare, blank, astray = _find_stray_paint(lines, way, brush, options)
     notices += (
         *way.notices,
-        *warnings_with_advice(way.painted, way.done, brush, advised),
-        *_other_brushes(lines.targets, brush),
+        *add_width_advice(way.painted, way.done, brush, advised),
+        *_report_other_brushes(lines.targets, brush),
         *blank_notices(bare),
         *blank_notices(blank),
-        *(astray if _leads(options) else []),
+        *(astray if _leads_paint(options) else []),
     )
     work = Work(
         design.title,
@@ -115,17 +115,17 @@ def _planned(design: Design, brush, options: Options, stage, partly: bool, notic
         tuple(notice.where for notice in astray),
         way.known,
     )
-    work = with_margin_strokes(work)
+    work = add_margin_strokes(work)
     return replace(work, plan=corrected(work.plan, options.corrections, brush))
 
 
-def _leads(options: Options) -> bool:
+def _leads_paint(options: Options) -> bool:
     """Whether the tool leads the paint, or goes where the lines are."""
     return options.compensation in ("closed", "refined")
 
 
 @dataclass(frozen=True)
-class _Lines:
+class _StrokeSet:
     """Strokes as they were found, as the brush will paint them, and what each of these should become; notices on
     them, why some were refused, what those should have become, and which the search added."""
 
@@ -139,7 +139,7 @@ class _Lines:
 
 
 @dataclass
-class _Way:
+class _PlannedStrokes:
     """How lines are painted. painted, targets: as in _Lines, pressed deeper where paint runs out; done: what
     compensation said; moved: which strokes refinement moved."""
 
@@ -150,20 +150,20 @@ class _Way:
     tracking_errors: list
     moved: list[bool]
     notices: list[Notice]
-    known: Known | None
+    known: KnownSimulation | None
 
 
-def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
+def _find_strokes(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
     """Return a design's strokes, joined, lifted and cut at their corners as requested."""
     thin: list[Notice] = []
     if options.paths_as is None:
-        design, thin = without_thin_outlines(design, brush)
+        design, thin = remove_thin_outlines(design, brush)
     strokes, notices = strokes_of(design, options.paths_as, options.script)
     notices += thin
     if options.join:
         strokes, joints = joined(strokes)
         notices += joints
-    if options.corners == "auto" and _leads(options):
+    if options.corners == "auto" and _leads_paint(options):
         strokes = lifted_at_corners(strokes, brush)
     return strokes, notices
 
@@ -173,18 +173,20 @@ def _fills_corners(options: Options) -> bool:
     return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
 
 
-def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
+def _limit_widths(found: list, brush, options: Options, partly: bool) -> _StrokeSet:
     """No wider than the brush."""
     strokes, refused, left_out = found, [], []
     if partly and options.wide == "refuse":
-        strokes, _, refused, left_out = _sorted_out(
+        strokes, _, refused, left_out = _separate_refused(
             strokes, strokes, lambda some: within_reach(some, brush, options.wide)
         )
-    painted, targets, notices = within_reach(strokes, brush, options.wide, _leads(options))
-    return _Lines(list(found), painted, targets, notices, refused, left_out)
+    painted, targets, notices = within_reach(strokes, brush, options.wide, _leads_paint(options))
+    return _StrokeSet(list(found), painted, targets, notices, refused, left_out)
 
 
-def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tuple[_Lines, _core.Compensated]:
+def _search_strokes(
+    lines: _StrokeSet, done, brush, compensated, options: Options
+) -> tuple[_StrokeSet, _core.Compensated]:
     """The lines as a search leads them, and those that it adds."""
     found = searched(
         lines.drawn,
@@ -201,13 +203,13 @@ def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tupl
     return lines, found.done
 
 
-def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:
+def _compensate(lines: _StrokeSet, compensated, partly: bool) -> tuple[_StrokeSet, _core.Compensated]:
     try:
         return lines, compensated(lines.painted)
     except Error:
         if not partly:
             raise
-    painted, targets, refused, left_out = _sorted_out(lines.painted, lines.targets, compensated)
+    painted, targets, refused, left_out = _separate_refused(lines.painted, lines.targets, compensated)
     lines = replace(
         lines,
         painted=painted,
@@ -218,18 +220,18 @@ def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _cor
     return lines, compensated(lines.painted)
 
 
-def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _Way:
+def _plan_strokes(lines: _StrokeSet, done, brush, compensated, options: Options, stage) -> _PlannedStrokes:
     """Begun where the tool may be, and pressed deeper as paint runs out."""
     painted, targets, notices, known, cell = lines.painted, lines.targets, [], None, options.cell
-    if cell is not None and _leads(options):
-        fitting, known = begun_within_reach(
+    if cell is not None and _leads_paint(options):
+        fitting, known = fit_ends_to_machine(
             painted, brush, done.plan, compensated, options, stage, lines.added
         )
         if fitting is not painted:
             kept = {stroke.id for stroke in fitting}
             targets = [target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept]
             painted, done = fitting, compensated(fitting)
-    if brush.paint and brush.width_follows_depth() and _leads(options):
+    if brush.paint and brush.width_follows_depth() and _leads_paint(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
 
         def fetched(plan):
@@ -238,12 +240,12 @@ def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _W
         pressed = pressed_deeper(painted, targets, brush, done, compensated, fetched, lowest_mm)
         painted, targets, done = pressed.painted, pressed.targets, pressed.done
         notices = pressed.notices
-    return _Way(
+    return _PlannedStrokes(
         painted, targets, done, done.plan, done.tracking_errors, [False] * len(painted), notices, known
     )
 
 
-def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
+def _drop_left_out(lines: _StrokeSet, way: _PlannedStrokes) -> _StrokeSet:
     """The lines without the added strokes for which the cell has no room."""
     left_out = lines.added - {stroke.id for stroke in way.painted}
     drawn, targets = (
@@ -252,11 +254,11 @@ def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
     return replace(lines, drawn=drawn, targets=targets)
 
 
-def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
+def _refine(way: _PlannedStrokes, brush, compensated, options: Options) -> _PlannedStrokes:
     """Return the way, or a refined one whose marks are nearer to the target, if requested."""
     if options.compensation != "refined":
         return way
-    forbidden = _forbidden(brush, options)
+    forbidden = _make_limit_check(brush, options)
     better = refined(way.painted, way.targets, brush, way.done, compensated, forbidden)
     way.plan.passes = better.passes
     unmoved = better.nothing_moved()
@@ -268,15 +270,17 @@ def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
     )
 
 
-def _find_stray_paint(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
+def _find_stray_paint(
+    lines: _StrokeSet, way: _PlannedStrokes, brush, options: Options
+) -> tuple[list, list, list[Notice]]:
     """Return pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and the strokes
     whose paint is outside of the drawing."""
     refused = {notice.where for notice in lines.refused}
     planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
     areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
     bare = [each for each in areas if not each.is_reached]
-    blank = [each for each in areas if each.is_reached and _leads(options)]
-    return bare, blank, _astray(way, brush, options)
+    blank = [each for each in areas if each.is_reached and _leads_paint(options)]
+    return bare, blank, _find_paint_outside(way, brush, options)
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
@@ -287,7 +291,7 @@ def _refuse_wide_lines(strokes: list, brush) -> None:
             brush.depth_for_half_width(widest, stroke.id)
 
 
-def _design(source, reading: read.ReadOptions) -> Design:
+def _read_design(source, reading: read.ReadOptions) -> Design:
     if not isinstance(source, Design):
         return read.read_drawing(source, reading)
     if reading.units or reading.select:
@@ -296,7 +300,7 @@ def _design(source, reading: read.ReadOptions) -> Design:
     return source if reading.sheet_mm is None else replace(source, sheet_mm=reading.sheet_mm)
 
 
-def _forbidden(brush, options: Options):
+def _make_limit_check(brush, options: Options):
     """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
     if options.cell is None:
         return None
@@ -309,7 +313,7 @@ def _forbidden(brush, options: Options):
     return sentences
 
 
-def _sorted_out(painted, targets, step):
+def _separate_refused(painted, targets, step):
     """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
     each is tried alone."""
     sound, refused, left_out = [], [], []
@@ -324,7 +328,7 @@ def _sorted_out(painted, targets, step):
     return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
 
 
-def _with_speeds(plan, strokes):
+def _set_drawn_speeds(plan, strokes):
     """The plan with the speeds that the drawing's settings ask for."""
     speeds = [stroke.settings.speed_mm_s for stroke in strokes]
     if any(speeds):
@@ -346,7 +350,7 @@ def _check_speed(brush, options: Options) -> None:
         raise Error(sentence, code="speed-out-of-range")
 
 
-def _at_speed(plan, options: Options):
+def _set_requested_speed(plan, options: Options):
     """Return the plan with the one speed that was requested for all."""
     if options.speed_of_all_mm_s is not None:
         for a_pass in plan.passes:
@@ -354,7 +358,7 @@ def _at_speed(plan, options: Options):
     return plan
 
 
-def _other_brushes(strokes, brush) -> list[Notice]:
+def _report_other_brushes(strokes, brush) -> list[Notice]:
     brushes = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
     return [
         Notice(
@@ -367,7 +371,7 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _astray(way: _Way, brush, options: Options) -> list[Notice]:
+def _find_paint_outside(way: _PlannedStrokes, brush, options: Options) -> list[Notice]:
     """Return notices on strokes outside of the drawing. A shape has no drawn middle line, and refinement leaves it on
     purpose: there the paint is judged."""
     shapes = {stroke.origin.element for stroke in way.targets if stroke.wanted_mm}
@@ -379,8 +383,8 @@ def _astray(way: _Way, brush, options: Options) -> list[Notice]:
     off = [by and not error.within_tolerance for by, error in zip(by_paint, way.tracking_errors, strict=True)]
     runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
     return [
-        *off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
-        *outside(way.targets, runs, brush),
+        *find_off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
+        *find_paint_outside(way.targets, runs, brush),
     ]
 
 
@@ -404,5 +408,5 @@ def _prepare_plan(plan, options: Options) -> Work:
             )
         )
     _check_speed(brush, options)
-    plan = _at_speed(plan, options)
+    plan = _set_requested_speed(plan, options)
     return Work("", brush, corrected(plan, options.corrections, brush), None, (), options, tuple(notices))

@@ -17,7 +17,7 @@ from .values import name_or_path, read_value
 NAME = "brushsvg.toml"
 FORMAT, VERSION = "brushsvg/project", 1
 MAX_BYTES = 1_000_000  # TOML of this size is read within seconds; a project needs some hundred bytes
-TOP_KEYS = {"brush": "brush", "cell": "cell", "paper": "sheet", "layers": "layer"}  # key: choice
+CHOICE_BY_TOP_KEY = {"brush": "brush", "cell": "cell", "paper": "sheet", "layers": "layer"}  # key: choice
 OF_ONE_DRAWING = ("input", "corrections")  # choices that no project can make
 
 
@@ -89,7 +89,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
         if len(data) > MAX_BYTES:
             sentence = f"a project file has at most {MAX_BYTES} bytes, this one has {len(data)}"
             raise Error(sentence, value=len(data), range=(0, MAX_BYTES), code="file-too-large")
-        settings = _settings(toml_document(_text(data), "project"), os.path.dirname(path))
+        settings = _read_settings(toml_document(_decode_text(data), "project"), os.path.dirname(path))
     except Error as refusal:
         refusal.file = path
         raise
@@ -100,10 +100,10 @@ def read_project(path: str | os.PathLike[str]) -> Project:
 
 def options() -> dict[str, str]:
     """Return the keys of [defaults], each with the name of its choice."""
-    from ..choices import CHOICES, NAMED_OTHERWISE
+    from ..choices import CHOICE_BY_FLAG, CHOICES
 
-    flags = {choice: flag for flag, choice in NAMED_OTHERWISE.items()}
-    top = {*TOP_KEYS.values(), *OF_ONE_DRAWING}
+    flags = {choice: flag for flag, choice in CHOICE_BY_FLAG.items()}
+    top = {*CHOICE_BY_TOP_KEY.values(), *OF_ONE_DRAWING}
     return {flags.get(name, name.replace("_", "-")): name for name in CHOICES if name not in top}
 
 
@@ -142,7 +142,7 @@ def write_project(
     return "\n".join([*lines, ""])
 
 
-def _text(data: bytes) -> str:
+def _decode_text(data: bytes) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
@@ -150,8 +150,8 @@ def _text(data: bytes) -> str:
         raise Error(sentence, code="not-toml") from None
 
 
-def _settings(document: dict, folder: str) -> dict[str, object]:
-    from ..choices import Choices, checked
+def _read_settings(document: dict, folder: str) -> dict[str, object]:
+    from ..choices import Choices, check_choices
 
     if document.pop("format", None) != FORMAT:
         sentence = f'the file is not a project: it lacks the line format = "{FORMAT}"'
@@ -165,14 +165,17 @@ def _settings(document: dict, folder: str) -> dict[str, object]:
         raise Error("defaults is written as a table, [defaults]", where="defaults", code="wrong-type")
     known = options()
     for key in document:
-        _refuse_unknown(key, TOP_KEYS, known, "write it below [defaults]")
-    settings = {TOP_KEYS[key]: read_value(TOP_KEYS[key], value, key) for key, value in document.items()}
+        _refuse_unknown(key, CHOICE_BY_TOP_KEY, known, "write it below [defaults]")
+    settings = {
+        CHOICE_BY_TOP_KEY[key]: read_value(CHOICE_BY_TOP_KEY[key], value, key)
+        for key, value in document.items()
+    }
     for key, value in defaults.items():
-        _refuse_unknown(key, known, TOP_KEYS, "write it above [defaults]", "defaults.")
+        _refuse_unknown(key, known, CHOICE_BY_TOP_KEY, "write it above [defaults]", "defaults.")
         settings[known[key]] = read_value(known[key], value, f"defaults.{key}")
     for kind in {"brush", "cell"} & {*settings}:
         settings[kind] = name_or_path(kind, settings[kind], folder)
-    checked(Choices(**settings))
+    check_choices(Choices(**settings))
     return settings
 
 

@@ -4,36 +4,36 @@ from __future__ import annotations
 
 from ....errors import Error, Notice
 from ....machine.cells.cell_file import parse_cell, write_cell
-from ...console import RefusedError, about, print_text, stage, warn
-from ...steps.options import typed
-from ...steps.output_places import check_places, suffix_of, write
+from ...console import RefusedError, print_text, refuse_errors, stage, warn
+from ...steps.options import make_choices
+from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 
 def compare_files(args) -> None:
-    from ....jobs.comparing import compared, painted_sheet
+    from ....jobs.comparing import compare_sheet, prepare_painted_sheet
 
-    sources = _sources(args)
-    check_places(args, args.output, args.picture, args.corrected_cell, sources=sources)
-    with about(args.input):
-        sheet = painted_sheet(typed(args), stage, warn)
+    sources = _list_source_files(args)
+    check_outputs(args, args.output, args.picture, args.corrected_cell, sources=sources)
+    with refuse_errors(args.input):
+        sheet = prepare_painted_sheet(make_choices(args), stage, warn)
     if args.sheets:
-        _repeats(args, sheet)
+        _report_repeats(args, sheet)
         return
-    with about(args.photos[0]):
-        job = compared(sheet, args.photos, stage, warn)
+    with refuse_errors(args.photos[0]):
+        job = compare_sheet(sheet, args.photos, stage, warn)
     files, details = {}, args.details
     if args.output:
         files[args.output] = job.json if suffix_of(args.output) == ".json" else job.report.text(details)
     if args.picture:
         files[args.picture] = job.picture()
     if args.corrected_cell:
-        with about(args.corrected_cell):
-            files[args.corrected_cell] = _cell_text(job.cell)
+        with refuse_errors(args.corrected_cell):
+            files[args.corrected_cell] = _write_checked_cell(job.cell)
         if not job.is_corrected:
             sentence = "no error of the machine or the paper's height is certain: the cell is unchanged"
             warn(args.corrected_cell, [Notice("machine", sentence, code="cell-unchanged")])
     if files:
-        write(args, files, sources=sources)
+        write_outputs(args, files, sources=sources)
     print_text(job.json if args.json else job.report.text(details, args.picture or ""))
     if args.at_least is not None and job.overlap < args.at_least:
         sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
@@ -41,33 +41,35 @@ def compare_files(args) -> None:
         raise RefusedError(args.photos[0], [low.notice()])
 
 
-def _sources(args) -> list[str]:
+def _list_source_files(args) -> list[str]:
     """Corrections, or how well a studio repeats, and a cell: files that later commands read."""
     made = [args.output] if suffix_of(args.output) == ".json" else []
     return [*made, *([args.corrected_cell] if args.corrected_cell else [])]
 
 
-def _cell_text(cell) -> str:
+def _write_checked_cell(cell) -> str:
     """Error where a number of its machine is beyond what a cell may have."""
     text = write_cell(cell)
     parse_cell(text)
     return text
 
 
-def _repeats(args, sheet) -> None:
+def _report_repeats(args, sheet) -> None:
     """Report how well strokes repeat on several sheets, or copies of strokes on one sheet."""
     from ....comparison.photographs import compare_sheets
     from ....comparison.repeats import as_json, repeats, report
     from ....comparison.repeats_picture import repeats_png
-    from ....jobs.comparing import on_its_page, photographs
+    from ....jobs.comparing import read_matching_page, read_photos
 
-    with about(args.photos[0]):
-        photos = photographs(args.photos, stage)
-        sheet, sheets = on_its_page(sheet, lambda one: compare_sheets(one.page, [*one.strokes], photos))
+    with refuse_errors(args.photos[0]):
+        photos = read_photos(args.photos, stage)
+        sheet, sheets = read_matching_page(
+            sheet, lambda one: compare_sheets(one.page, [*one.strokes], photos)
+        )
     title, strokes = sheet.title, list(sheet.strokes)
     for path, each in zip(args.photos, sheets, strict=True):
         warn(path, list(each.notices))
-    with about(args.photos[0]):
+    with refuse_errors(args.photos[0]):
         found = repeats(sheet.plan, sheets)
     files, details, picture = {}, args.details, args.picture or ""
     if args.output:
@@ -76,5 +78,5 @@ def _repeats(args, sheet) -> None:
     if args.picture:
         files[args.picture] = repeats_png(title, found, sheets, strokes)
     if files:
-        write(args, files, sources=_sources(args))
+        write_outputs(args, files, sources=_list_source_files(args))
     print_text(as_json(title, found) if args.json else report(title, found).text(details, picture))

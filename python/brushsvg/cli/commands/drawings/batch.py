@@ -8,25 +8,25 @@ from ....errors import Notice
 from ....jobs.choices import CHOICES
 from ....text_summary import summarized
 from ....units import clock
-from ...console import RefusedError, about, clear_stage, say, stage, warn
-from ...steps.options import typed
-from .text import font_of
+from ...console import RefusedError, clear_stage, refuse_errors, say, stage, warn
+from ...steps.options import make_choices
+from .text import read_font
 
-OF_ONE = ("input", "corrections")  # choices that are of one drawing
+SINGLE_DRAWING_CHOICES = ("input", "corrections")  # choices that are of one drawing
 
 
 def batch_files(args) -> None:
-    from ....jobs.batch.items import drawings, words
+    from ....jobs.batch.items import list_drawings, list_words
     from ....jobs.batch.run import batch
 
-    with about(args.font or ""):  # errors about the words name their file
+    with refuse_errors(args.font or ""):  # errors about the words name their file
         set_in_font = (
-            words(args.words, font_of(args.font), args.size or 20.0, args.sheet) if args.words else []
+            list_words(args.words, read_font(args.font), args.size or 20.0, args.sheet) if args.words else []
         )
-    chosen = typed(args, input=None)
-    with about(args.output):
+    chosen = make_choices(args, input=None)
+    with refuse_errors(args.output):
         done = batch(
-            [*drawings(args.inputs), *set_in_font],
+            [*list_drawings(args.inputs), *set_in_font],
             args.output,
             jobs=args.jobs,
             cluster=args.cluster,
@@ -35,26 +35,28 @@ def batch_files(args) -> None:
             lenient=args.lenient,
             parquet=args.parquet,
             progress=stage,
-            **{name: getattr(chosen, name) for name in CHOICES if name not in OF_ONE},
+            **{name: getattr(chosen, name) for name in CHOICES if name not in SINGLE_DRAWING_CHOICES},
             from_project=chosen.from_project,
         )
     clear_stage()
-    notices = [replace(each, where=_where(row, each.where)) for row in done.rows for each in row.notices]
+    notices = [
+        replace(each, where=_format_place(row, each.where)) for row in done.rows for each in row.notices
+    ]
     outdated = "removed: it was made from an earlier version of the drawing"
     notices += [Notice(path, outdated, code="outdated-removed") for path in done.removed]
     warn(args.output, notices)
     if not args.quiet:
-        say(args.output, _said(done))
+        say(args.output, _summarize(done))
     if done.refused:
-        why = [Notice(_where(row, row.where), row.sentence, code=row.code) for row in done.refused]
+        why = [Notice(_format_place(row, row.where), row.sentence, code=row.code) for row in done.refused]
         raise RefusedError(args.output, summarized(why))
 
 
-def _where(row, element: str) -> str:
+def _format_place(row, element: str) -> str:
     return ": ".join(filter(None, (row.source, element)))
 
 
-def _said(done) -> str:
+def _summarize(done) -> str:
     painted = [row.figures for row in done.rows if row.figures]
     known = [f"{len(done.rows)} drawing{'s' * (len(done.rows) != 1)}"]
     known += [f"{done.resumed} of them done before"] if done.resumed else []

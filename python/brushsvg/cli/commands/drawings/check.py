@@ -6,23 +6,23 @@ import json
 
 from ....errors import Error
 from ....jobs import outputs, prediction
-from ....jobs.checking import Check, checked
+from ....jobs.checking import Check, check_program
 from ....reporting.report_text import AGAINST
 from ....show.evaluation import report
 from ....text_summary import summarized
 from ....units import clock
-from ...console import RefusedError, about, print_text, stage, warn
-from ...steps.options import typed
-from ...steps.output_places import check_places, suffix_of, write
+from ...console import RefusedError, print_text, refuse_errors, stage, warn
+from ...steps.options import make_choices
+from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 RUNNABLE = "OK to run: no problem found"
 
 
 def check_file(args) -> None:
-    check_places(args, args.picture)
-    with about(""):  # errors name their file
-        done = checked(args.program, typed(args), stage, warn)
-    with about(args.program):
+    check_outputs(args, args.picture)
+    with refuse_errors(""):  # errors name their file
+        done = check_program(args.program, make_choices(args), stage, warn)
+    with refuse_errors(args.program):
         if done.is_foreign and args.lenient:
             sentence = "brushsvg did not write it: --lenient would change nothing"
             raise Error(sentence, code="flag-without-effect")
@@ -32,20 +32,20 @@ def check_file(args) -> None:
             outlined = prediction.outlined(done.marks, done.work.brush, stage)
             picture = outputs.picture(suffix_of(args.picture), done.work, outlined)
             overlap = None if done.is_foreign else done.figures.total.overlap
-            write(args, {args.picture: picture}, len(done.plan.passes), done.time_s, overlap)
+            write_outputs(args, {args.picture: picture}, len(done.plan.passes), done.time_s, overlap)
     if done.job == "painting":
         print_text(report.as_text(".json" if args.json else ".txt", done.figures, args.details))
     elif args.json:
-        print_text(json.dumps(_in_json(done)) + "\n")
+        print_text(json.dumps(_make_json(done)) + "\n")
     else:
-        print_text(f"{args.program}: {_does(done)}; takes about {clock(done.time_s)}\n")
+        print_text(f"{args.program}: {_describe_setup_job(done)}; takes about {clock(done.time_s)}\n")
     if done.problems:
         raise RefusedError(args.program, summarized(list(done.problems)))
     if not args.json:
-        print_text(f"{args.program}: {_allowed(done)}\n")
+        print_text(f"{args.program}: {_describe_outcome(done)}\n")
 
 
-def _allowed(done: Check) -> str:
+def _describe_outcome(done: Check) -> str:
     if done.is_foreign:
         return (
             f"brushsvg did not write it; with brush {done.work.brush.name} it keeps the limits that are checked: "
@@ -57,7 +57,7 @@ def _allowed(done: Check) -> str:
     return RUNNABLE + ("; it was not compared with a drawing" if is_alone else "")
 
 
-def _does(done: Check) -> str:
+def _describe_setup_job(done: Check) -> str:
     """What a program before the first stroke does."""
     if done.job == "border":
         left, bottom, right, top = done.border_mm
@@ -71,6 +71,6 @@ def _does(done: Check) -> str:
     return f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
 
 
-def _in_json(done: Check) -> dict:
+def _make_json(done: Check) -> dict:
     made = {"job": done.job, "time_s": round(done.time_s, 3)}
     return made | ({"border_mm": done.border_mm} if done.border_mm else {"heights_mm": done.heights_mm})

@@ -6,31 +6,31 @@ from pathlib import Path
 
 from ....errors import Error
 from ....files import read_bytes
-from ...console import about, stage, warn
-from ...steps.output_places import check_places, write
+from ...console import refuse_errors, stage, warn
+from ...steps.output_places import check_outputs, write_outputs
 
 SINGLE_LINE_FONTS = Path("/usr/share/inkscape/extensions/svg_fonts")
 
 
 def text_file(args) -> None:
-    check_places(args, args.output, sources=[args.output])
+    check_outputs(args, args.output, sources=[args.output])
     from ....read.text import text_svg
 
-    with about(args.font):
+    with refuse_errors(args.font):
         stage("setting the text")
         drawing, notices = text_svg(
             args.input.replace("\\n", "\n"),
-            font_of(args.font),
+            read_font(args.font),
             size_mm=args.size,
             width_mm=args.width,
             sheet_mm=args.sheet,
             script=args.script or "auto",
         )
     warn(args.font, notices)
-    write(args, {args.output: drawing.encode()}, sources=[args.output])
+    write_outputs(args, {args.output: drawing.encode()}, sources=[args.output])
 
 
-def font_of(name: str) -> bytes:
+def read_font(name: str) -> bytes:
     """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
     if not Path(name).exists():
         for known in (SINGLE_LINE_FONTS / name, SINGLE_LINE_FONTS / f"{name}.svg"):

@@ -8,14 +8,14 @@ import sys
 from pathlib import Path
 
 from ...console import print_text, stage
-from ...steps.output_places import check_places, write
+from ...steps.output_places import check_outputs, write_outputs
 
-WORD = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
+DEMO_DRAWING = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
 
 
 def demo_picture(args) -> None:
     """Write the picture of the word, print its path, and open it where there is a display."""
-    check_places(args, args.output)
+    check_outputs(args, args.output)
     from ....jobs import prediction
     from ....jobs.comparison_picture import TITLES, comparison_png
     from ....jobs.options import Options
@@ -23,14 +23,16 @@ def demo_picture(args) -> None:
     from ....show.evaluation import report
 
     stage("painting")
-    works = {how: preparation.prepare(WORD, Options(compensation=how)) for how in TITLES}
+    works = {how: preparation.prepare(DEMO_DRAWING, Options(compensation=how)) for how in TITLES}
     marks = {how: prediction.predict(work) for how, work in works.items()}
     totals = {
         how: report.measure(report.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
         for how, work in works.items()
     }
     made = comparison_png(works, marks, totals)
-    write(args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap)
+    write_outputs(
+        args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap
+    )
     print_text(f"{os.path.abspath(args.output)}\n")
     if not args.no_open:
         open_picture(args.output)
@@ -41,12 +43,12 @@ def open_picture(path: str) -> None:
     if sys.platform == "win32":
         os.startfile(path)
     elif sys.platform == "darwin":
-        _start("open", path)
+        _start_viewer("open", path)
     elif os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        _start("xdg-open", path)
+        _start_viewer("xdg-open", path)
 
 
-def _start(program: str, path: str) -> None:
+def _start_viewer(program: str, path: str) -> None:
     nothing = subprocess.DEVNULL
     try:
         subprocess.Popen(

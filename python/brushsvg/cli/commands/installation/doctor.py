@@ -25,20 +25,20 @@ PURPOSE = {  # of each extra that a user may want
     "parquet": "the table of batch as Parquet",
     "completion": "commands completed by the shell",
 }
-_WAIT_S = 20  # for Inkscape's version: a Snap starts slowly the first time
+_MAX_INKSCAPE_WAIT_S = 20  # for Inkscape's version: a Snap starts slowly the first time
 
 
 def list_installation(args) -> None:
     """Print the list. RefusedError where a library is missing that brushsvg cannot work without."""
-    needed, extras = _requirements()
-    problems = {package: _problem(package, least) for package, least in needed.items()}
+    needed, extras = _read_requirements()
+    problems = {package: _find_version_problem(package, least) for package, least in needed.items()}
     unusable = {package: problem for package, problem in problems.items() if problem}
     sections = {
-        "Program": _program(),
+        "Program": _list_program(),
         "Libraries": ((package, problems[package] or metadata.version(package)) for package in needed),
-        "Extras": _extras(extras),
-        "Fonts": _fonts(),
-        "Inkscape": _inkscape(),
+        "Extras": _list_extras(extras),
+        "Fonts": _list_fonts(),
+        "Inkscape": _list_inkscape(),
     }
     for title, rows in sections.items():
         print_text(f"{title}\n" + "".join(f"  {name:<23} {what}\n" for name, what in rows))
@@ -48,13 +48,13 @@ def list_installation(args) -> None:
         raise RefusedError("", [why])
 
 
-def _program() -> Iterator[tuple[str, str]]:
+def _list_program() -> Iterator[tuple[str, str]]:
     yield "brushsvg", f"{metadata.version('brushsvg')}  {own_program() or Path(__file__).parents[3]}"
     yield "Python", f"{platform.python_version()}  {sys.executable}"
     yield "System", f"{platform.platform()}, {os.cpu_count()} processors"
 
 
-def _requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
+def _read_requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
     """Packages with their least versions: those always needed, and those of each extra in PURPOSE."""
     needed: dict[str, str] = {}
     extras: dict[str, dict[str, str]] = {name: {} for name in PURPOSE}
@@ -67,21 +67,21 @@ def _requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
     return needed, extras
 
 
-def _problem(package: str, least: str) -> str:
+def _find_version_problem(package: str, least: str) -> str:
     try:
         found = metadata.version(package)
     except metadata.PackageNotFoundError:
         return "is missing"
-    return f"{found} is older than {least}" if _numbers(found) < _numbers(least) else ""
+    return f"{found} is older than {least}" if _parse_version(found) < _parse_version(least) else ""
 
 
-def _numbers(version: str) -> list[int]:
+def _parse_version(version: str) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", version.partition("+")[0])[:3]]
 
 
-def _extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
+def _list_extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
     for name, packages in extras.items():
-        lacking = [package for package, least in packages.items() if _problem(package, least)]
+        lacking = [package for package, least in packages.items() if _find_version_problem(package, least)]
         if lacking:
             yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*lacking)}"
         else:
@@ -89,7 +89,7 @@ def _extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
             yield name, f"{versions}  ({PURPOSE[name]})"
 
 
-def _fonts() -> Iterator[tuple[str, str]]:
+def _list_fonts() -> Iterator[tuple[str, str]]:
     found = sorted(path.stem for path in SINGLE_LINE_FONTS.glob("*.svg"))
     if found:
         yield "single-line fonts", f"{len(found)} in {SINGLE_LINE_FONTS}, such as {found[0]}"
@@ -100,13 +100,13 @@ def _fonts() -> Iterator[tuple[str, str]]:
         )
 
 
-def _inkscape() -> Iterator[tuple[str, str]]:
+def _list_inkscape() -> Iterator[tuple[str, str]]:
     program = shutil.which("inkscape")
     if program is None:
         yield "program", "not on PATH; only the live preview and *Save as robot program* need it"
     else:
-        yield "program", f"{_version(program)}  {program}"
-        if kind := sandbox(program):
+        yield "program", f"{_read_inkscape_version(program)}  {program}"
+        if kind := find_sandbox(program):
             yield "sandbox", f"{kind} Inkscape cannot start programs outside: see docs/howto/inkscape.md"
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
@@ -121,7 +121,7 @@ def _inkscape() -> Iterator[tuple[str, str]]:
     yield "extension", f"{folder}" + (f", runs {runs}{state}" if runs else "")
 
 
-def sandbox(program: str) -> str:
+def find_sandbox(program: str) -> str:
     """ "a Snap's" or "a Flatpak's" by where the program is, empty for any other."""
     real = os.path.realpath(program)
     if program.startswith("/snap/") or real.startswith("/snap/") or os.path.basename(real) == "snap":
@@ -129,10 +129,14 @@ def sandbox(program: str) -> str:
     return "a Flatpak's" if "/flatpak/" in real else ""
 
 
-def _version(program: str) -> str:
+def _read_inkscape_version(program: str) -> str:
     try:
         done = subprocess.run(
-            [program, "--version"], capture_output=True, text=True, timeout=_WAIT_S, stdin=subprocess.DEVNULL
+            [program, "--version"],
+            capture_output=True,
+            text=True,
+            timeout=_MAX_INKSCAPE_WAIT_S,
+            stdin=subprocess.DEVNULL,
         )
     except (OSError, subprocess.TimeoutExpired, UnicodeDecodeError):
         return "does not start"
