@@ -1,4 +1,7 @@
-"""What may be chosen for a drawing, as it was typed or given, completed by what the drawing says, as options."""
+"""The choices for a drawing, and the options that they make.
+
+Choices come from flags, from keywords, and from the drawing itself.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,7 @@ LAYOUT_FLAGS = (
 )
 CHOICE_BY_FLAG = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
     name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
-}  # flag: choice
+}  # by flag: the name of its choice, where the two differ
 PLANNING_FLAGS = (
     "wide",
     "corners",
@@ -53,7 +56,7 @@ PLANNING_FLAGS = (
     "margin-strokes",
 )
 TERMINALS = ("auto", "round", "butt", "pointed")
-CHOICE_RANGES = {  # the same as a flag's
+CHOICE_RANGES = {  # equal to the range of the flag; lengths in mm, speed in mm/s
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
     "lag": (0.0, 1000.0),
@@ -81,10 +84,14 @@ CHOICE_VALUES = {
 
 @dataclass(frozen=True)
 class Choices:
-    """What a drawing or plan is read and painted with; None where nobody says it. Lengths in mm, the speed in mm/s.
+    """The choices that a drawing or plan is read and painted with.
 
-    input: a path or another kind of drawing; brush, cell: a name, a path or a value. from_project: names
-    of those that a project file makes; the drawing, a plan and a program count more, see `without_overruled`.
+    A choice that nobody makes is None. Lengths are in mm, the speed is in mm/s.
+
+    input: a path, or a drawing of another kind that read_drawing accepts.
+    brush, cell: a name, a path, or the Brush or Cell itself.
+    from_project: the names of the choices that a project file makes. The drawing, a plan and a program take
+        precedence over these, see `drop_overruled`.
     """
 
     input: object = None
@@ -124,7 +131,7 @@ class Choices:
 
 
 class ChoiceKeywords(TypedDict, total=False):
-    """The same as keywords, for editors and type checkers; see `convert`."""
+    """Keyword arguments for Choices, for editors and type checkers; see `convert`."""
 
     brush: str | os.PathLike[str] | _core.Brush | None
     cell: str | os.PathLike[str] | Cell | None
@@ -161,7 +168,10 @@ class ChoiceKeywords(TypedDict, total=False):
 
 
 def check_choices(chosen: Choices) -> Choices:
-    """The choices themselves. Error for what no flag would take."""
+    """Return the choices, validated and with values in their final types.
+
+    Raises Error for a value that the flag of the command line would refuse as well.
+    """
     need(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
     for name in chosen.from_project:
         need_one_of(name, CHOICES, "a name of from_project")
@@ -179,7 +189,8 @@ def check_choices(chosen: Choices) -> Choices:
             if len(pair) != 2:
                 raise Error(f"{name} has {len(pair)} numbers, not two", name, code="wrong-type")
             chosen = replace(
-                chosen, **{name: tuple(need_number(each, f"a number of {name}", *limits) for each in pair)}
+                chosen,
+                **{name: tuple(need_number(number, f"a number of {name}", *limits) for number in pair)},
             )
     if chosen.skip_region is not None:
         need(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
@@ -205,7 +216,7 @@ def check_choices(chosen: Choices) -> Choices:
             need(getattr(chosen, name), (str, os.PathLike, *kinds), f"the name or the path of {name}")
     if isinstance(chosen.brush, _core.Brush):
         _core.check(chosen.brush)
-    if isinstance(chosen.cell, Cell):  # one made by hand must be one that a file may hold
+    if isinstance(chosen.cell, Cell):  # a cell made in Python must also be valid as a file
         chosen = replace(chosen, cell=parse_cell(write_cell(chosen.cell)))
     if chosen.fit is not None and chosen.scale is not None:
         raise Error("fit and scale exclude each other", code="options-contradict")
@@ -222,21 +233,24 @@ def check_choices(chosen: Choices) -> Choices:
 
 
 def read_colour(text: str) -> str:
-    """A colour as SVG writes it, as "#rrggbb". Error for anything else."""
+    """Return a colour, written as in SVG, as "#rrggbb". Error for any other text."""
     from ..read.svg.colour import parse_colour
 
-    found = parse_colour(text.strip())
-    if found is None or not found.startswith("#"):
+    colour = parse_colour(text.strip())
+    if colour is None or not colour.startswith("#"):
         raise Error(
             f"{text[:24]!r} is not a colour; write for example #1a237e or red",
             "colour",
             code="colour-invalid",
         )
-    return found[:7]
+    return colour[:7]
 
 
 def suffix_of(source) -> str:
-    """The extension of a path or of a Document; ".json" for a plan, "" for other things."""
+    """Return the extension of a path or of a Document.
+
+    Returns ".json" for a Plan and "" for anything else.
+    """
     if isinstance(source, _core.Plan):
         return ".json"
     if isinstance(source, str | os.PathLike):
@@ -245,13 +259,13 @@ def suffix_of(source) -> str:
 
 
 def path_of(source) -> str:
-    """What a person calls it: its path, or nothing."""
+    """Return the path of a source, or "" if the source is not a path."""
     return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
 
 
 @contextmanager
 def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
-    """Lets an error inside be one of this file, unless it names another."""
+    """Let errors inside name this file, unless they name another one."""
     try:
         yield
     except Error as problem:
@@ -260,8 +274,12 @@ def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def apply_drawing_settings(chosen: Choices, drawing, alone: bool = False) -> Choices:
-    """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
-    nothing else of the drawing is read."""
+    """Fill choices that nobody made with the settings in the drawing.
+
+    A drawing can only name shipped brushes and cells, because its settings read no other file.
+
+    alone: read nothing of the drawing except its settings.
+    """
     said = settings_in(drawing, alone)
     chosen = drop_overruled(chosen, said)
     if chosen.terminals is not None and "terminals" not in chosen.from_project:
@@ -279,28 +297,28 @@ def apply_drawing_settings(chosen: Choices, drawing, alone: bool = False) -> Cho
 
 
 def drop_overruled(chosen: Choices, said: Mapping[str, object] | None = None) -> Choices:
-    """Drop what a project file chose where something more specific says otherwise, or where it has no effect.
+    """Drop project choices that are overruled or have no effect.
 
-    More specific are the choices of this call, the settings `said` in the drawing, and the brush that a plan names. A
-    project file serves many drawings: a choice that does not suit one of them is no mistake.
+    The choices of this call, the settings `said` in the drawing, and the brush that a plan names are more specific.
+    A project file serves many drawings, so a choice that does not suit one of them is no mistake.
     """
     if not chosen.from_project:
         return chosen
     said = said or {}
-    mine = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
+    made_here = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
     dropped = {*said} - {"brush", "cell"} | _find_ineffective_choices(chosen)
-    if "terminals" in mine:
+    if "terminals" in made_here:
         dropped |= {"start", "end"}
-    for one, other in (("fit", "scale"), ("scale", "fit")):
-        if other in mine:
-            dropped.add(one)
+    for option, excluded_by in (("fit", "scale"), ("scale", "fit")):
+        if excluded_by in made_here:
+            dropped.add(option)
     compensation = chosen.compensation
-    if "compensation" not in mine:
+    if "compensation" not in made_here:
         compensation = said.get("compensation", compensation)
     if compensation != "constant":
         dropped.add("lag")
-    named = said if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
-    return drop_from_project(chosen, dropped | find_overruled_names(chosen, named))
+    names = said if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
+    return drop_from_project(chosen, dropped | find_overruled_names(chosen, names))
 
 
 def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
@@ -311,22 +329,24 @@ def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
 
 
 def find_overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool = True) -> set[str]:
-    """Return "brush" and "cell" where a drawing, plan or program names another one than the project file.
+    """Return "brush" and "cell" where a source names another one than the project.
 
-    unknown: a name that does not come along overrules the project file, too.
+    The source is a drawing, a plan or a program.
+
+    unknown: also count a name that is not shipped with brushsvg.
     """
-    found = set()
+    overruled = set()
     for kind, names, read in (("brush", brush_names(), load_brush), ("cell", cell_names(), load_cell)):
         name = named.get(kind)
         if name is None or kind not in chosen.from_project or not (unknown or name in names):
             continue
         if read(getattr(chosen, kind)).name != name:
-            found.add(kind)
-    return found
+            overruled.add(kind)
+    return overruled
 
 
 def _find_plan_brush(chosen: Choices) -> str | None:
-    """The shipped brush that a plan names, if a project file names one too."""
+    """Return the shipped brush that a plan names, if a project file names a brush too."""
     plan = chosen.input
     if "brush" in chosen.from_project and isinstance(plan, str | os.PathLike):
         with suppress(Error):  # preparation reports what is wrong with the plan
@@ -336,7 +356,7 @@ def _find_plan_brush(chosen: Choices) -> str | None:
 
 
 def _find_ineffective_choices(chosen: Choices) -> set[str]:
-    """Return names of choices that have no effect on this kind of drawing."""
+    """Return the names of choices that have no effect on this kind of drawing."""
     suffix, flags = suffix_of(chosen.input), ()
     if suffix == ".json":
         flags = (*LAYOUT_FLAGS, *PLANNING_FLAGS)
@@ -349,7 +369,10 @@ def _find_ineffective_choices(chosen: Choices) -> set[str]:
 
 
 def report_ineffective_flags(chosen: Choices) -> list[Notice]:
-    """What was chosen for a plan, whose poses are fixed, and for G-code where the drawing is none."""
+    """Return notices on the flags that have no effect on this input.
+
+    The poses of a plan are fixed, and some flags only apply to G-code.
+    """
     suffix = suffix_of(chosen.input)
     flags, on = GCODE_FLAGS, "a drawing that is not G-code"
     if suffix == ".json":
@@ -364,14 +387,17 @@ def report_ineffective_flags(chosen: Choices) -> list[Notice]:
 
 
 def choose_margin_strokes(chosen: Choices) -> Choices:
-    """The same for a page that is painted and photographed: strokes in its margin where the brush is not calibrated."""
+    """Choose margin strokes for a page that will be painted and photographed.
+
+    They are painted where the brush is not calibrated, unless the choices say otherwise.
+    """
     if chosen.margin_strokes or suffix_of(chosen.input) == ".json":
         return chosen
     return replace(chosen, margin_strokes="auto")
 
 
 def load_brush(given):
-    """The brush of a name or path, itself, or None."""
+    """Return the brush with this name or path. Return a Brush or None as it is."""
     if given is None or isinstance(given, _core.Brush):
         return given
     with name_file_in_errors(given):
@@ -379,7 +405,10 @@ def load_brush(given):
 
 
 def load_cell(given) -> Cell:
-    """The cell of a name or path, itself, or the default one."""
+    """Return the cell with this name or path.
+
+    A Cell is returned as it is. None stands for the default cell.
+    """
     if given is None or isinstance(given, Cell):
         return given or find_cell()
     with name_file_in_errors(given):
@@ -403,7 +432,7 @@ def make_read_options(chosen: Choices) -> ReadOptions:
         chosen.paper_z,
         tuple(map(tuple, chosen.skip_region or ())),
         tuple(chosen.skip_comment or ()),
-        lenient=True,  # damage is reported with all the rest
+        lenient=True,  # damaged geometry is reported together with the other notices
     )
 
 
@@ -412,7 +441,10 @@ def make_layout(chosen: Choices) -> Layout:
 
 
 def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
-    """cell, brush: where they are known already."""
+    """Return the options for these choices.
+
+    cell, brush: the loaded cell and brush, if they are known already.
+    """
     cell = cell or load_cell(chosen.cell)
     return Options(
         brush=brush or load_brush(chosen.brush),

@@ -1,4 +1,7 @@
-"""What a batch paints: drawings in files, folders and lists, words in a font; each with a name of its own."""
+"""The drawings of a batch, from files, folders, lists and texts.
+
+Each drawing has a name of its own.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +19,26 @@ from ...files import read_bytes
 from ...read import READERS, InMemory
 from ...read.text import text_svg
 
-FOLDER_SUFFIXES = (".svg", ".svgz", ".dxf")  # G-code is read only by its path: programs are in folders, too
+FOLDER_SUFFIXES = (
+    ".svg",
+    ".svgz",
+    ".dxf",
+)  # G-code is read only by its path, because folders hold programs as well
 LIST_SUFFIX = ".txt"
-MAX_NAME_LETTERS = 60  # of a word, in the name of its files
+MAX_NAME_LETTERS = 60  # letters of a word that are used in the names of its files
 
 
 @dataclass(frozen=True)
 class Item:
-    """One drawing. name: of its files, without extension, below the batch's folder; source: what a person calls it;
-    read: reads it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read`
-    raises; path: its path, absolute; "" where it is no file."""
+    """One drawing.
+
+    name: the name of its files, without extension, below the folder of the batch.
+    source: the name that a person gave to the drawing, such as a path.
+    digest: hash of everything that the drawing depends on; "" if it cannot be read, in which case `read` raises the
+        error.
+    read: reads the drawing when it is converted.
+    path: the absolute path, "" if the drawing is no file.
+    """
 
     name: str
     source: str
@@ -35,8 +48,11 @@ class Item:
 
 
 def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
-    """Of files, folders (all SVG and DXF below them), patterns with * ? [], and lists (.txt: a path on each line, from
-    the folder of the list), in that order. Error where one names nothing, or two would have the same name."""
+    """List the drawings of files, folders, patterns and lists, in that order.
+
+    Of a folder, all SVG and DXF files below it are listed. A pattern has * ? or []. A list (.txt) has a path on
+    each line, from the folder of the list. Error if an operand matches nothing.
+    """
     items = []
     for operand in map(os.fspath, operands):
         if os.path.isdir(operand):
@@ -49,24 +65,24 @@ def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
         elif os.path.exists(operand) or not glob.has_magic(operand):
             items.append(_make_drawing_item(Path(operand), Path(Path(operand).name)))
         else:
-            found = [
+            matches = [
                 Path(path) for path in sorted(glob.glob(operand, recursive=True)) if os.path.isfile(path)
             ]
-            drawn = [path for path in found if path.suffix.lower() in READERS]
-            items += [_make_drawing_item(path, Path(path.name)) for path in drawn]
-            if not drawn:
+            matching_drawings = [path for path in matches if path.suffix.lower() in READERS]
+            items += [_make_drawing_item(path, Path(path.name)) for path in matching_drawings]
+            if not matching_drawings:
                 raise Error("no drawing has such a name", file=operand, code="file-unreadable")
     return items
 
 
 def _find_drawings_below(folder: Path) -> list[Path]:
-    found = sorted(
+    paths = sorted(
         path for path in folder.rglob("*") if path.suffix.lower() in FOLDER_SUFFIXES and path.is_file()
     )
-    if not found:
+    if not paths:
         sentence = f"no drawing is in this folder; looked for {', '.join(FOLDER_SUFFIXES)}"
         raise Error(sentence, file=str(folder), code="file-unreadable")
-    return found
+    return paths
 
 
 def _read_list(path: str) -> list[str]:
@@ -75,7 +91,7 @@ def _read_list(path: str) -> list[str]:
 
 
 def _read_lines(path: str | os.PathLike[str]) -> list[str]:
-    """Lines of a text that are not blank, without blanks around them."""
+    """Read the lines of a text file that are not blank, without surrounding blanks."""
     try:
         lines = [line.strip() for line in read_bytes(path).decode("utf-8-sig").splitlines()]
     except UnicodeDecodeError:
@@ -106,7 +122,7 @@ def _make_drawing_item(path: Path, name: Path) -> Item:
 
 
 def _make_refused_item(name: str, source: str) -> Item:
-    """A drawing that is refused when it is its turn, since its files cannot have its name."""
+    """Make an item that is refused when it is read, as no file can have its name."""
 
     def read() -> InMemory:
         sentence = (
@@ -118,7 +134,7 @@ def _make_refused_item(name: str, source: str) -> Item:
 
 
 def _escape_unprintable(text: str) -> str:
-    """With what is not printed, as the end of a line, written as in Python."""
+    """Escape characters that cannot be printed, such as line ends, as Python does."""
     return "".join(
         each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode()
         for each in text
@@ -131,25 +147,27 @@ def list_words(
     size_mm: float = 20.0,
     sheet_mm: tuple[float, float] | None = None,
 ) -> list[Item]:
-    """A drawing of each line of a text file (\\n in it starts a line), as `brushsvg text` makes it, named by its
-    letters."""
+    """Make a drawing of each line of a text file, as `brushsvg text` does.
+
+    Each drawing is named after its letters. In a line, \\n starts a new line of text.
+    """
     lines = _read_lines(path)
     _check_font(lines[0], font, size_mm, sheet_mm)
-    setting = [hashlib.sha256(font).hexdigest(), size_mm, sheet_mm]
+    settings = [hashlib.sha256(font).hexdigest(), size_mm, sheet_mm]
 
     def item(line: str, name: str) -> Item:
         text = line.replace("\\n", "\n")
 
         def read() -> InMemory:
             document, notices = text_svg(text, font, size_mm=size_mm, sheet_mm=sheet_mm)
-            for notice in notices:  # nobody looks at each word: one that would lack a letter is not painted
-                if notice.where == "font":  # of what kind it is
+            for notice in notices:  # nobody inspects each word, so a word with a missing letter is refused
+                if notice.where == "font":  # only says what kind of font it is
                     continue
                 raise Error(notice.sentence, notice.where, code=notice.code)
             return InMemory(".svg", document.encode())
 
-        said = json.dumps([text, *setting]).encode()
-        return Item(name, line, hashlib.sha256(said).hexdigest(), read)
+        content = json.dumps([text, *settings]).encode()
+        return Item(name, line, hashlib.sha256(content).hexdigest(), read)
 
     names: dict[str, int] = {}
     items = []
@@ -161,7 +179,7 @@ def list_words(
 
 
 def _check_font(line: str, font: bytes, size_mm: float, sheet_mm) -> None:
-    """Error for what concerns all words."""
+    """Raise Error for a problem that concerns all words, not only this line."""
     try:
         text_svg(line, font, size_mm=size_mm, sheet_mm=sheet_mm)
     except Error as refusal:
@@ -174,20 +192,23 @@ def _is_name_letter(letter: str) -> bool:
 
 
 def make_items(items: Iterable) -> list[Item]:
-    """Paths, pairs of a name and an SVG document (text or bytes), and Items as they are."""
-    found = []
+    """Make items of paths, of pairs of a name and an SVG document, and of Items.
+
+    The document is text or bytes. An Item is returned as it is.
+    """
+    result = []
     for each in items:
         if isinstance(each, Item):
-            found.append(each)
+            result.append(each)
         elif isinstance(each, str | os.PathLike):
-            found += list_drawings([each])
+            result += list_drawings([each])
         else:
             need(each, tuple, "a path, or a pair of a name and an SVG document")
             if len(each) != 2 or not isinstance(each[0], str) or not isinstance(each[1], str | bytes):
                 raise Error("a pair is a name and an SVG document as text or bytes", code="wrong-type")
-            found.append(_make_memory_item(*each))
-    _check_names(found)
-    return found
+            result.append(_make_memory_item(*each))
+    _check_names(result)
+    return result
 
 
 def _make_memory_item(name: str, document: str | bytes) -> Item:
@@ -196,7 +217,7 @@ def _make_memory_item(name: str, document: str | bytes) -> Item:
 
 
 def _check_names(items: list[Item]) -> None:
-    """Error where two would be written to the same place, or one outside of the folder."""
+    """Raise Error if two items have one place, or one is outside of the folder."""
     by_name: dict[str, Item] = {}
     for item in items:
         parts = Path(item.name).parts
@@ -209,18 +230,21 @@ def _check_names(items: list[Item]) -> None:
 
 
 def file_name_key(name: str) -> str:
-    """Equal for names that are one file on Windows or macOS, which ignore case and how accents are composed."""
+    """Return a key that is equal for names of the same file on Windows or macOS.
+
+    These systems ignore case, and how accents are composed.
+    """
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
 
 
-def _suggest_remedy(one: Item, other: Item, items: list[Item]) -> str:
-    """What helps where two drawings have one name."""
-    if one.path and one.path == other.path:
+def _suggest_remedy(first: Item, second: Item, items: list[Item]) -> str:
+    """Return advice for two drawings that have one name."""
+    if first.path and first.path == second.path:
         return "it is one drawing: give it once"
-    for each in (other, one):
-        names = [item.name for item in items if each.path and item.path == each.path]
+    for drawing in (second, first):
+        names = [item.name for item in items if drawing.path and item.path == drawing.path]
         if len(names) > 1:
-            return f"{each.source} is given twice, as {' and '.join(names)}: leave its folder out"
-    if one.path and os.path.dirname(one.path) == os.path.dirname(other.path):
+            return f"{drawing.source} is given twice, as {' and '.join(names)}: leave its folder out"
+    if first.path and os.path.dirname(first.path) == os.path.dirname(second.path):
         return "rename one of them"
     return "give one of them to a batch of its own, with another folder (-o)"

@@ -1,4 +1,4 @@
-"""A file to its plan: read, strokes found, brought within reach, compensated."""
+"""Plan a drawing: read it, find its strokes, limit their widths, compensate them."""
 
 from __future__ import annotations
 
@@ -48,16 +48,21 @@ def prepare(
     stage: Callable[[str], object] = lambda text: None,
     partly: bool = False,
 ) -> Work:
-    """Read a drawing or plan.json and plan the TCP's path. source: the path of one, a Plan, a Design, or an open
-    drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
-    out."""
+    """Read a drawing or plan.json and plan the path of the TCP.
+
+    source: a path, a Plan, a Design, or an open drawing as read_drawing accepts it.
+    stage: called with words on the progress.
+    partly: leave out strokes that are refused, instead of raising an error.
+
+    Raises Error if the source cannot be read or painted.
+    """
     work = _prepare_source(source, options, stage, partly)
     return work if options.colour is None else select_colour(work, options.colour)
 
 
 def _prepare_source(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
     if isinstance(source, _core.Plan):
-        _core.write_plan(source)  # refuses what no file may hold
+        _core.write_plan(source)  # raises Error for a plan that is not valid as a file
         return _prepare_plan(source, options)
     if isinstance(source, str | os.PathLike) and Path(source).suffix.lower() == ".json":
         return _prepare_plan(read_plan(source), options)
@@ -74,60 +79,72 @@ def _prepare_source(source: Source, options: Options, stage: Callable[[str], obj
 
 
 def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
-    """The work of a drawing that was read. notices: its warnings; further ones are added."""
+    """Plan the strokes of a drawing that was read.
+
+    notices: the warnings of the drawing; further warnings are added to this list.
+    """
     stage("finding strokes")
-    found, of_strokes = _find_strokes(design, brush, options)
-    notices += of_strokes
+    found_strokes, stroke_notices = _find_strokes(design, brush, options)
+    notices += stroke_notices
     if not partly:
-        _refuse_wide_lines(found, brush)
-    lines = _limit_widths(found, brush, options, partly)
+        _refuse_wide_lines(found_strokes, brush)
+    strokes = _limit_widths(found_strokes, brush, options, partly)
     compensated = make_compensation(brush, design.sheet_mm, options, stage)
-    lines, done = _compensate(lines, compensated, partly)
+    strokes, compensation = _compensate(strokes, compensated, partly)
     if _leads_paint(options):
-        lines, done = _search_strokes(lines, done, brush, compensated, options)
-    notices += lines.notices
-    way = _refine(_plan_strokes(lines, done, brush, compensated, options, stage), brush, compensated, options)
-    lines = _drop_left_out(lines, way)
-    way.plan = _set_requested_speed(_set_drawn_speeds(way.plan, lines.targets), options)
-    advised = compensated if options.layout.width_mm is None else None
-    bare, blank, astray = _find_stray_paint(lines, way, brush, options)
+        strokes, compensation = _search_strokes(strokes, compensation, brush, compensated, options)
+    notices += strokes.notices
+    planned = _refine(
+        _plan_strokes(strokes, compensation, brush, compensated, options, stage), brush, compensated, options
+    )
+    strokes = _drop_left_out(strokes, planned)
+    planned.plan = _set_requested_speed(_set_drawn_speeds(planned.plan, strokes.targets), options)
+    tried_compensation = compensated if options.layout.width_mm is None else None
+    unreached, missed, outside = _find_stray_paint(strokes, planned, brush, options)
     notices += (
-        *way.notices,
-        *add_width_advice(way.painted, way.done, brush, advised),
-        *_report_other_brushes(lines.targets, brush),
-        *blank_notices(bare),
-        *blank_notices(blank),
-        *(astray if _leads_paint(options) else []),
+        *planned.notices,
+        *add_width_advice(planned.painted, planned.done, brush, tried_compensation),
+        *_report_other_brushes(strokes.targets, brush),
+        *blank_notices(unreached),
+        *blank_notices(missed),
+        *(outside if _leads_paint(options) else []),
     )
     work = Work(
         design.title,
         brush,
-        way.plan,
-        lines.targets,
-        tuple(way.tracking_errors),
+        planned.plan,
+        strokes.targets,
+        tuple(planned.tracking_errors),
         options,
         tuple(notices),
-        tuple(lines.refused),
-        tuple(lines.left_out),
-        tuple(lines.drawn),
-        tuple(bare),
-        tuple(blank),
-        tuple(notice.where for notice in astray),
-        way.known,
+        tuple(strokes.refused),
+        tuple(strokes.left_out),
+        tuple(strokes.drawn),
+        tuple(unreached),
+        tuple(missed),
+        tuple(notice.where for notice in outside),
+        planned.known,
     )
     work = add_margin_strokes(work)
     return replace(work, plan=corrected(work.plan, options.corrections, brush))
 
 
 def _leads_paint(options: Options) -> bool:
-    """Whether the tool leads the paint, or goes where the lines are."""
+    """Return whether the tool leads the paint, instead of following the drawn lines."""
     return options.compensation in ("closed", "refined")
 
 
 @dataclass(frozen=True)
 class _StrokeSet:
-    """Strokes as they were found, as the brush will paint them, and what each of these should become; notices on
-    them, why some were refused, what those should have become, and which the search added."""
+    """The strokes of a drawing at three stages, and what was refused or added.
+
+    drawn: as found in the drawing.
+    painted: as the brush will paint them.
+    targets: the target of each painted stroke.
+    notices: warnings on the strokes.
+    refused, left_out: notices on the refused strokes, and the targets of these.
+    added: ids of the strokes that the search added.
+    """
 
     drawn: list
     painted: list
@@ -140,8 +157,12 @@ class _StrokeSet:
 
 @dataclass
 class _PlannedStrokes:
-    """How lines are painted. painted, targets: as in _Lines, pressed deeper where paint runs out; done: what
-    compensation said; moved: which strokes refinement moved."""
+    """Strokes with their plan.
+
+    painted, targets: as in _StrokeSet, but pressed deeper where paint runs out.
+    done: the result of the compensation.
+    moved: for each stroke whether refinement moved it.
+    """
 
     painted: list
     targets: list
@@ -154,31 +175,34 @@ class _PlannedStrokes:
 
 
 def _find_strokes(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
-    """Return a design's strokes, joined, lifted and cut at their corners as requested."""
-    thin: list[Notice] = []
+    """Return the strokes of a design and warnings.
+
+    The strokes are joined, and lifted at their corners, as requested.
+    """
+    outline_notices: list[Notice] = []
     if options.paths_as is None:
-        design, thin = remove_thin_outlines(design, brush)
+        design, outline_notices = remove_thin_outlines(design, brush)
     strokes, notices = strokes_of(design, options.paths_as, options.script)
-    notices += thin
+    notices += outline_notices
     if options.join:
-        strokes, joints = joined(strokes)
-        notices += joints
+        strokes, joint_notices = joined(strokes)
+        notices += joint_notices
     if options.corners == "auto" and _leads_paint(options):
         strokes = lifted_at_corners(strokes, brush)
     return strokes, notices
 
 
 def _fills_corners(options: Options) -> bool:
-    """Whether strokes may begin, end and turn as fills the corners of a shape."""
+    """Return whether ends and turns may be chosen to fill the corners of a shape."""
     return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
 
 
 def _limit_widths(found: list, brush, options: Options, partly: bool) -> _StrokeSet:
-    """No wider than the brush."""
+    """Make strokes no wider than the brush."""
     strokes, refused, left_out = found, [], []
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _separate_refused(
-            strokes, strokes, lambda some: within_reach(some, brush, options.wide)
+            strokes, strokes, lambda pairs: within_reach(pairs, brush, options.wide)
         )
     painted, targets, notices = within_reach(strokes, brush, options.wide, _leads_paint(options))
     return _StrokeSet(list(found), painted, targets, notices, refused, left_out)
@@ -187,8 +211,8 @@ def _limit_widths(found: list, brush, options: Options, partly: bool) -> _Stroke
 def _search_strokes(
     lines: _StrokeSet, done, brush, compensated, options: Options
 ) -> tuple[_StrokeSet, _core.Compensated]:
-    """The lines as a search leads them, and those that it adds."""
-    found = searched(
+    """Improve the strokes by a search, which also adds strokes."""
+    search = searched(
         lines.drawn,
         lines.painted,
         lines.targets,
@@ -199,8 +223,10 @@ def _search_strokes(
         options.wide != "clamp",
         done,
     )
-    lines = replace(lines, drawn=found.drawn, painted=found.painted, targets=found.targets, added=found.added)
-    return lines, found.done
+    lines = replace(
+        lines, drawn=search.drawn, painted=search.painted, targets=search.targets, added=search.added
+    )
+    return lines, search.done
 
 
 def _compensate(lines: _StrokeSet, compensated, partly: bool) -> tuple[_StrokeSet, _core.Compensated]:
@@ -221,7 +247,7 @@ def _compensate(lines: _StrokeSet, compensated, partly: bool) -> tuple[_StrokeSe
 
 
 def _plan_strokes(lines: _StrokeSet, done, brush, compensated, options: Options, stage) -> _PlannedStrokes:
-    """Begun where the tool may be, and pressed deeper as paint runs out."""
+    """Choose ends that the machine can run, and press deeper as paint runs out."""
     painted, targets, notices, known, cell = lines.painted, lines.targets, [], None, options.cell
     if cell is not None and _leads_paint(options):
         fitting, known = fit_ends_to_machine(
@@ -245,46 +271,52 @@ def _plan_strokes(lines: _StrokeSet, done, brush, compensated, options: Options,
     )
 
 
-def _drop_left_out(lines: _StrokeSet, way: _PlannedStrokes) -> _StrokeSet:
-    """The lines without the added strokes for which the cell has no room."""
-    left_out = lines.added - {stroke.id for stroke in way.painted}
+def _drop_left_out(lines: _StrokeSet, planned: _PlannedStrokes) -> _StrokeSet:
+    """Remove added strokes for which the cell has no room."""
+    left_out = lines.added - {stroke.id for stroke in planned.painted}
     drawn, targets = (
-        [each for each in some if each.id not in left_out] for some in (lines.drawn, lines.targets)
+        [each for each in selected if each.id not in left_out] for selected in (lines.drawn, lines.targets)
     )
     return replace(lines, drawn=drawn, targets=targets)
 
 
-def _refine(way: _PlannedStrokes, brush, compensated, options: Options) -> _PlannedStrokes:
-    """Return the way, or a refined one whose marks are nearer to the target, if requested."""
+def _refine(planned: _PlannedStrokes, brush, compensated, options: Options) -> _PlannedStrokes:
+    """Refine the planned strokes if requested, so that marks are closer to targets."""
     if options.compensation != "refined":
-        return way
+        return planned
     forbidden = _make_limit_check(brush, options)
-    better = refined(way.painted, way.targets, brush, way.done, compensated, forbidden)
-    way.plan.passes = better.passes
-    unmoved = better.nothing_moved()
+    refinement = refined(planned.painted, planned.targets, brush, planned.done, compensated, forbidden)
+    planned.plan.passes = refinement.passes
+    unmoved = refinement.nothing_moved()
     return replace(
-        way,
-        tracking_errors=better.tracking_errors,
-        moved=better.moved,
-        notices=[*way.notices, *([unmoved] if unmoved else [])],
+        planned,
+        tracking_errors=refinement.tracking_errors,
+        moved=refinement.moved,
+        notices=[*planned.notices, *([unmoved] if unmoved else [])],
     )
 
 
 def _find_stray_paint(
-    lines: _StrokeSet, way: _PlannedStrokes, brush, options: Options
+    lines: _StrokeSet, planned: _PlannedStrokes, brush, options: Options
 ) -> tuple[list, list, list[Notice]]:
-    """Return pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and the strokes
-    whose paint is outside of the drawing."""
+    """Find unpainted parts of shapes, and strokes with paint outside of the drawing.
+
+    Returns the parts of shapes that no stroke reaches, the parts that strokes reach and their marks do not, and
+    notices on strokes whose paint is outside of the drawing.
+    """
     refused = {notice.where for notice in lines.refused}
-    planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
-    areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
-    bare = [each for each in areas if not each.is_reached]
-    blank = [each for each in areas if each.is_reached and _leads_paint(options)]
-    return bare, blank, _find_paint_outside(way, brush, options)
+    accepted = [stroke for stroke in lines.drawn if stroke.id not in refused]
+    areas = uncovered_areas(accepted, planned.painted, list(planned.plan.passes), brush)
+    unreached = [each for each in areas if not each.is_reached]
+    missed = [each for each in areas if each.is_reached and _leads_paint(options)]
+    return unreached, missed, _find_paint_outside(planned, brush, options)
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
-    """Error for the first line that is wider than the brush, before the time is taken that shapes do."""
+    """Raise Error for the first line that is wider than the brush.
+
+    Lines are checked before filled shapes, which need much more time.
+    """
     for stroke in strokes if brush.width_follows_depth() else ():
         widest = max(half for _, half in stroke.half_width)
         if not stroke.wanted_mm and not is_within_reach(widest, brush.half_width_range_mm()[1]):
@@ -301,7 +333,10 @@ def _read_design(source, reading: read.ReadOptions) -> Design:
 
 
 def _make_limit_check(brush, options: Options):
-    """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
+    """Return a function that lists why the cell cannot run a plan.
+
+    The function returns a notice for each problem. It is None without a cell.
+    """
     if options.cell is None:
         return None
     cell, job = options.cell, Job(options.z_offset_mm)
@@ -314,9 +349,11 @@ def _make_limit_check(brush, options: Options):
 
 
 def _separate_refused(painted, targets, step):
-    """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
-    each is tried alone."""
-    sound, refused, left_out = [], [], []
+    """Try a step on each stroke alone, and separate the strokes that it refuses.
+
+    Returns the accepted strokes, their targets, notices on the refused strokes, and the targets of these.
+    """
+    accepted, refused, left_out = [], [], []
     for pair in zip(painted, targets, strict=True):
         try:
             step(pair[:1])
@@ -324,12 +361,12 @@ def _separate_refused(painted, targets, step):
             refused.append(error.notice(pair[0].id))
             left_out.append(pair[1])
         else:
-            sound.append(pair)
-    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
+            accepted.append(pair)
+    return [stroke for stroke, _ in accepted], [stroke for _, stroke in accepted], refused, left_out
 
 
 def _set_drawn_speeds(plan, strokes):
-    """The plan with the speeds that the drawing's settings ask for."""
+    """Set the speeds of a plan that the settings of the drawing request."""
     speeds = [stroke.settings.speed_mm_s for stroke in strokes]
     if any(speeds):
         for a_pass, speed in zip(plan.passes, speeds, strict=True):
@@ -338,7 +375,7 @@ def _set_drawn_speeds(plan, strokes):
 
 
 def _check_speed(brush, options: Options) -> None:
-    """Error where all is to be painted at a speed that is not the brush's, or not the cell's."""
+    """Raise Error if the requested speed is outside the limits of the brush or cell."""
     speed, cell = options.speed_of_all_mm_s, options.cell
     if speed is None:
         return
@@ -351,7 +388,7 @@ def _check_speed(brush, options: Options) -> None:
 
 
 def _set_requested_speed(plan, options: Options):
-    """Return the plan with the one speed that was requested for all."""
+    """Set the speed of all passes of a plan, if one was requested."""
     if options.speed_of_all_mm_s is not None:
         for a_pass in plan.passes:
             a_pass.speed_mm_s = options.speed_of_all_mm_s
@@ -371,20 +408,30 @@ def _report_other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _find_paint_outside(way: _PlannedStrokes, brush, options: Options) -> list[Notice]:
-    """Return notices on strokes outside of the drawing. A shape has no drawn middle line, and refinement leaves it on
-    purpose: there the paint is judged."""
-    shapes = {stroke.origin.element for stroke in way.targets if stroke.wanted_mm}
+def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> list[Notice]:
+    """Report strokes whose paint is outside of the drawing.
+
+    The paint is judged where a stroke has no drawn middle line, as in a shape, and where refinement leaves the
+    middle line on purpose. Other strokes are judged by their tracking errors.
+    """
+    shapes = {stroke.origin.element for stroke in planned.targets if stroke.wanted_mm}
     by_paint = [
         is_moved or stroke.origin.element in shapes
-        for stroke, is_moved in zip(way.targets, way.moved, strict=True)
+        for stroke, is_moved in zip(planned.targets, planned.moved, strict=True)
     ]
-    lines = [None if by else stroke for stroke, by in zip(way.painted, by_paint, strict=True)]
-    off = [by and not error.within_tolerance for by, error in zip(by_paint, way.tracking_errors, strict=True)]
-    runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
+    lines = [
+        None if is_by_paint else stroke for stroke, is_by_paint in zip(planned.painted, by_paint, strict=True)
+    ]
+    is_off_tolerance = [
+        is_by_paint and not error.within_tolerance
+        for is_by_paint, error in zip(by_paint, planned.tracking_errors, strict=True)
+    ]
+    runs = [
+        run if is_off else None for run, is_off in zip(planned.plan.passes, is_off_tolerance, strict=True)
+    ]
     return [
-        *find_off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
-        *find_paint_outside(way.targets, runs, brush),
+        *find_off_middle_line(lines, planned.tracking_errors, brush, options.tolerance_mm),
+        *find_paint_outside(planned.targets, runs, brush),
     ]
 
 

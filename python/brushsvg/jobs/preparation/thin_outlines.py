@@ -1,4 +1,7 @@
-"""Outlines in a colour of their own that are finer than the brush paints: the filled shape is painted without them."""
+"""Leave out outlines that are finer than the brush can paint.
+
+This concerns outlines in another colour than their fill. The filled shape is painted without them.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,11 @@ from ...strokes.uncovered_areas import finest
 
 
 def remove_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:
-    """The drawing without outlines that have another colour than their fill and are finer than the brush's finest line,
-    each with a notice: painted, they would be wider, and hide what they go around."""
+    """Remove outlines that are finer than the finest line of the brush.
+
+    Only outlines in another colour than their fill are removed, each with a notice. If they were painted, they
+    would be wider and would hide the shape that they go around.
+    """
     least_mm = 2 * finest(brush)
     elements, notices = [], []
     for element in design.elements:
