@@ -195,10 +195,12 @@ class Manifest:
         return ""
 
     def remove_outdated(self, row: Row) -> list[str]:
-        """Remove unchanged files of an earlier program of this drawing. Return their paths.
+        """Remove unchanged files of an earlier program of this drawing.
 
         All files under the name of a refused drawing are removed. For a converted drawing, files of the same
         language that were not written now are removed, such as parts of a longer job.
+
+        Returns the paths of the removed files.
         """
         removed: list[str] = []
         endings = {Path(name).suffix for name in row.files}
@@ -224,7 +226,7 @@ class Manifest:
     def finish(self, rows: Sequence[Row]) -> None:
         """Rewrite the manifest: the rows of this batch, then rows of other drawings.
 
-        The rows of this batch are in the order of the batch. Of each other name, the last row is kept if its files
+        The rows of this batch are in the order of the batch. The last row of each other name is kept if its files
         or its drawing still exist. Another batch into this folder can then continue, and no other drawing takes its
         names.
         """

@@ -1,4 +1,7 @@
-"""The project file, brushsvg.toml: brush, cell, paper, layers and options of all drawings in a folder."""
+"""The project file, brushsvg.toml: settings for all drawings in a folder.
+
+It has a brush, a cell, the paper, layers and options.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +19,23 @@ from .values import name_or_path, read_value
 
 NAME = "brushsvg.toml"
 FORMAT, VERSION = "brushsvg/project", 1
-MAX_BYTES = 1_000_000  # TOML of this size is read within seconds; a project needs some hundred bytes
-CHOICE_BY_TOP_KEY = {"brush": "brush", "cell": "cell", "paper": "sheet", "layers": "layer"}  # key: choice
-OF_ONE_DRAWING = ("input", "corrections")  # choices that no project can make
+MAX_BYTES = 1_000_000  # TOML of this size is read within seconds; a project file needs some hundred bytes
+CHOICE_BY_TOP_KEY = {
+    "brush": "brush",
+    "cell": "cell",
+    "paper": "sheet",
+    "layers": "layer",
+}  # the choice of each key
+OF_ONE_DRAWING = ("input", "corrections")  # choices that a project file cannot make
 
 
 @dataclass(frozen=True)
 class Project:
-    """Settings that the drawings of a folder share, as a project file has them.
+    """Settings that the drawings of a folder share, as in a project file.
 
-    path: of the file. settings: values by the names of the keywords of `convert`; lengths in mm. A brush or cell is a
-    shipped name or a path, relative paths joined to the folder of the file.
+    path: the path of the file.
+    settings: values by the names of the keywords of `convert`; lengths in mm. A brush or cell is a shipped name or
+        a path, and relative paths are joined to the folder of the file.
     """
 
     path: str
@@ -40,15 +49,20 @@ class Project:
 
     @property
     def choices(self) -> dict[str, Any]:
-        """Keywords for `convert`, `check`, `compare` and `batch`; settings in a drawing take precedence over them."""
+        """Keywords for `convert`, `check`, `compare` and `batch`.
+
+        Settings in a drawing take precedence over them.
+        """
         return {**self.settings, "from_project": tuple(self.settings)}
 
 
 def find_project(drawing: str | os.PathLike[str]) -> Project | None:
     """Find and read the project file of a drawing, or return None if there is none.
 
-    drawing: its path, which need not exist, or a folder. The file is `brushsvg.toml` in the folder of the drawing, or
-    in the nearest folder above it. The search ends after your home folder, and after a folder that contains `.git`.
+    drawing: the path of the drawing, which need not exist, or of a folder.
+
+    The file is `brushsvg.toml` in the folder of the drawing, or in the nearest folder above it. The search ends
+    after your home folder, and after a folder that contains `.git`.
 
     Raises Error, as read_project does, for a file that is not valid.
     """
@@ -57,7 +71,7 @@ def find_project(drawing: str | os.PathLike[str]) -> Project | None:
 
 
 def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
-    """Find the path of the project file of a drawing, see find_project."""
+    """Find the path of the project file of a drawing, or None; see find_project."""
     need(drawing, (str, os.PathLike), "a path, which the drawing of a project is")
     try:
         folder = os.path.abspath(drawing)
@@ -93,7 +107,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
     except Error as refusal:
         refusal.file = path
         raise
-    except ValueError:  # of a hexadecimal number, which Python reads but does not print
+    except ValueError:  # raised for a long hexadecimal number, which Python reads but does not print
         raise Error("a number has thousands of digits", file=path, code="not-toml") from None
     return Project(path, settings)
 

@@ -1,4 +1,4 @@
-"""Values of a project file, read as the options of the command line read them."""
+"""Read values of a project file as the command line reads its options."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from ...units import length_mm, number, paper_mm, size_mm
 
 
 def read_value(choice: str, value: object, key: str) -> object:
-    """Read a value as the option of the command line does. Error with the key."""
+    """Read a value as the option of the command line does.
+
+    Raises Error with the key.
+    """
     from ..choices import CHOICE_VALUES
 
     try:
@@ -56,10 +59,10 @@ def _read_typed(choice: str, text: str, key: str) -> object:
         "scale": _read_factor,
         "paint_speed": number,
     } | dict.fromkeys(("width", "lag", "tolerance", "z_offset", "paper_z"), length_mm)
-    found = readers.get(choice, _read_words)(text)
+    value = readers.get(choice, _read_words)(text)
     if choice in CHOICE_RANGES:
-        return need_number(found, key, *CHOICE_RANGES[choice])
-    return found
+        return need_number(value, key, *CHOICE_RANGES[choice])
+    return value
 
 
 def _read_words(text: str) -> str:
@@ -85,7 +88,10 @@ def _read_region(text: str) -> tuple[float, ...]:
 
 
 def name_or_path(kind: str, text: str, folder: str) -> str:
-    """Return a shipped name as it is, and a file with the folder of the project. Error if there is neither."""
+    """Return a shipped name as it is, and a file joined to the folder of the project.
+
+    Raises Error if there is neither.
+    """
     from ...machine.cells.cell_file import cell_names
     from ...model.library import brush_names
 
@@ -102,9 +108,11 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
             code="file-unreadable",
             advice="correct the path, which counts from the folder of the project file",
         )
-    own = f"{text}{suffix}"
+    file_name = f"{text}{suffix}"
     advice = (
-        f"{own} is in this folder: write it with its ending" if _is_file(os.path.join(folder, own)) else ""
+        f"{file_name} is in this folder: write it with its ending"
+        if _is_file(os.path.join(folder, file_name))
+        else ""
     )
     raise Error(
         f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "
