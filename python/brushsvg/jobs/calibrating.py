@@ -52,7 +52,10 @@ Rows = Sequence[Mapping[str, object]]
 
 
 class MeasuredNumbers(TypedDict, total=False):
-    """Measured numbers, as in a file. Type checkers compare a dict in a call with this."""
+    """Measured numbers, as in a file.
+
+    Type checkers compare a dict in a call with this class.
+    """
 
     name: str
     about: str

@@ -17,10 +17,8 @@ if TYPE_CHECKING:
     from ..machine.cells.cell import Cell
 
 AIMS = ("edges", "overlap")
-MIN_DPI, MAX_DPI = (
-    102.0,
-    20000.0,
-)  # resolution of a scan; with less than 4 pixels per mm (102 dpi) a scan cannot be measured
+# Limits of the resolution in which a scan can be measured. The lower limit is 4 pixels per mm.
+MIN_DPI, MAX_DPI = 102.0, 20000.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,9 +13,8 @@ from typing import Protocol
 from ..errors import need
 
 POLL_INTERVAL_S = 0.05
-MAX_CANCEL_WAIT_S = (
-    0.8  # how long to wait for code that holds the interpreter, such as an encoder of pictures
-)
+# How long to wait for code that holds the interpreter, such as an encoder of pictures, in seconds.
+MAX_CANCEL_WAIT_S = 0.8
 
 
 class CancelFlag(Protocol):

@@ -38,9 +38,10 @@ LAYOUT_FLAGS = (
     "origin",
     "as",
 )
+# The name of the choice that a flag makes, where both names differ.
 CHOICE_BY_FLAG = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
     name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
-}  # by flag: the name of its choice, where the two differ
+}
 PLANNING_FLAGS = (
     "wide",
     "corners",

@@ -26,29 +26,24 @@ class Options:
     compensation: str = "closed"
     lag_mm: float | None = None
     tolerance_mm: float = DEFAULT_TOLERANCE_MM
-    speed_mm_s: float = (
-        20.0  # painting speed where the drawing sets none; at most the speed limit of the brush
-    )
-    speed_of_all_mm_s: float | None = (
-        None  # painting speed of all strokes; overrides the drawing and the plan
-    )
+    # The painting speed where the drawing sets none. It is at most the speed limit of the brush.
+    speed_mm_s: float = 20.0
+    # The painting speed of all strokes. It overrides the drawing and the plan.
+    speed_of_all_mm_s: float | None = None
     start: str = "auto"  # start of strokes where the drawing sets none: "auto", "round", "butt", "pointed"
     end: str = "auto"  # end of strokes; values as for start
-    paths_as: str | None = (
-        None  # "stroke" or "outline": how to read every path, in place of the drawing's choice
-    )
+    # How to read every path, in place of the drawing's choice: "stroke" or "outline".
+    paths_as: str | None = None
     wide: str = "auto"  # how to paint outlines wider than the brush: "auto", "clamp", "passes", "refuse"
-    corners: str = (
-        "auto"  # "auto": lift the brush at sharp corners where the mark is better; "turn": never lift
-    )
+    # "auto" lifts the brush at sharp corners where the mark is better. "turn" never lifts it.
+    corners: str = "auto"
     detail: str = "normal"  # how small an area gets a stroke of its own: "draft", "normal", "fine"
     script: str = "auto"  # how shapes are written: "auto", "latin", "arabic", "devanagari", "cjk"
     margin_strokes: str = "off"  # "on", "off", or "auto": only where the brush is not calibrated
     colour: str | None = None  # "#rrggbb": paint only the strokes of this colour
     join: bool = False  # paint lines that meet end to end as one stroke
-    cell: Cell | None = (
-        None  # its limits are kept by refined strokes, unless the closed form already breaks them
-    )
+    # Refined strokes keep the limits of this cell, unless the closed form already breaks them.
+    cell: Cell | None = None
     z_offset_mm: float = 0.0  # height of the paper above the paper of the cell
     corrections: tuple[Correction, ...] = ()  # displacements for the errors that a painted sheet showed
 

@@ -10,12 +10,13 @@ from pathlib import Path
 
 SHIPPED = Path(__file__).parents[2] / "data"
 SUFFIXES = {"brush": ".json", "cell": ".toml"}
+# The kind of thing that an option with this dest names.
 KIND_BY_DEST = {
     "brush": "brush",
     "true_brush": "brush",
     "prior": "brush",
     "cell": "cell",
-}  # dest: what it names
+}
 
 
 def complete(parser: argparse.ArgumentParser) -> None:

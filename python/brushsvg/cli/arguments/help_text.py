@@ -28,6 +28,7 @@ RARE_OPTIONS = {
         "spread height dpi mirrored prior noise aim paint playback editable at-least explain"
     ).split()
 }
+# Options that are common in convert and rare in other commands.
 COMMON_IN_CONVERT = {
     "--explain",
     "--wide",
@@ -35,7 +36,7 @@ COMMON_IN_CONVERT = {
     "--terminals",
     "--scale",
     "--speed",
-}  # common there, rare in other commands
+}
 MAX_UNGROUPED_OPTIONS = 12  # options of a command from which on its rare ones are left to --help-all
 
 

@@ -19,11 +19,8 @@ from ...files import read_bytes
 from ...read import READERS, InMemory
 from ...read.text import text_svg
 
-FOLDER_SUFFIXES = (
-    ".svg",
-    ".svgz",
-    ".dxf",
-)  # G-code is read only by its path, because folders hold programs as well
+# G-code is read only by its path, because folders hold programs as well.
+FOLDER_SUFFIXES = (".svg", ".svgz", ".dxf")
 LIST_SUFFIX = ".txt"
 MAX_NAME_LETTERS = 60  # letters of a word that are used in the names of its files
 

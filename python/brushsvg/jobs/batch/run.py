@@ -198,9 +198,8 @@ def _make_batch_settings(chosen: Choices, format: str, order: str, lenient: bool
     brush = _read_brush_to_send(chosen.brush) if chosen.brush is not None else None
     shipped = [library.SHIPPED.glob("*.json"), cell_file.SHIPPED.glob("*.toml")]
     shipped_hashes = [sha256(read_bytes(path)) for paths in shipped for path in sorted(paths)]
-    chosen = replace(
-        chosen, z_offset=chosen.z_offset or 0.0, join=bool(chosen.join)
-    )  # as the command line sets these choices
+    # The command line sets these two choices in the same way, so both give the same keys.
+    chosen = replace(chosen, z_offset=chosen.z_offset or 0.0, join=bool(chosen.join))
     plain_choices = asdict(replace(chosen, brush=None, cell=None))
     post_hashes = [sha256(read_bytes(path)) for path in sources_of_post(cell)] if cell else []
     hashes = [

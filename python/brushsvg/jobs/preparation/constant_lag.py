@@ -18,9 +18,8 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     in options.lag_mm. The notices are those of the given work.
     """
     window = (0.0, 0.0, *work.plan.sheet_mm)
-    px_per_mm = min(
-        4.0, 4000.0 / max(work.plan.sheet_mm)
-    )  # gives overlaps to 2e-4, in a twentieth of the time that outlines need
+    # This resolution gives overlaps to 2e-4, in a twentieth of the time that outlines need.
+    px_per_mm = min(4.0, 4000.0 / max(work.plan.sheet_mm))
     target = _core.wanted_coverage(work.strokes, window, px_per_mm)
     best_work, best_overlap = work, -1.0
     greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))

@@ -25,9 +25,8 @@ DEPTH_COUNT = 3  # a straight stroke at the smallest depth, and a corner at each
 # Room for a brush that was not measured: its lag and its width may be larger or smaller by half.
 LAG_FACTORS, WIDTH_FACTOR = (0.5, 1.0, 1.5), 1.5
 EDGE_NOISE_MM = 0.1  # standard deviation of an edge in a photograph, for example of a chart
-MIN_STROKE_WIDTH_MM = (
-    0.02  # width of a stroke where the brush just touches and paints nothing: it must not be 0
-)
+# The width of a target stroke where the brush just touches and paints nothing: a stroke has a width everywhere.
+MIN_STROKE_WIDTH_MM = 0.02
 
 
 def is_margin(stroke) -> bool:
@@ -153,9 +152,8 @@ def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, flo
     from ...calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight  # brings OpenCV
 
     brush, (width, height) = work.brush, work.plan.sheet_mm
-    _, shallowest, *deeper = chart_depths(
-        brush, 1 + DEPTH_COUNT, deepest_mm
-    )  # the shallowest mark is too thin to be visible in a photograph
+    # The shallowest mark is too thin to be visible in a photograph.
+    _, shallowest, *deeper = chart_depths(brush, 1 + DEPTH_COUNT, deepest_mm)
     charted = [straight(brush, shallowest), *(angular(brush, depth) for depth in deeper)]
     left, bottom, top, passes = 0.0, height + GAP_MM, height, []
     names, last = {each.stroke for each in work.plan.passes}, work.plan.passes[-1]

@@ -25,9 +25,8 @@ def advise_on_size(work: Work) -> str:
     }
     are_filled = options.wide == "passes" or not outline_elements.isdisjoint(lane_elements)
     if options.wide == "auto" and not are_filled:
-        options = replace(
-            options, wide="clamp"
-        )  # strokes are tried one at a time, but a shape is only filled as a whole
+        # Strokes are tried one at a time, but a shape is only filled as a whole.
+        options = replace(options, wide="clamp")
     trial = _make_trial(work.brush, options)
     if are_filled:
         size = size_advice.best_letter_size(work.drawn, work.brush, trial)

@@ -11,9 +11,8 @@ from ... import _core
 from ...model.confidence import unseen_mm
 from ...read.design import Notice
 
-MIN_OVERSPILL_RATIO = (
-    0.5  # of half the width: paint further outside of what was drawn is seen as a bulge or a thorn
-)
+# As a fraction of half the width. Paint further outside of the drawing is visible as a bulge or a thorn.
+MIN_OVERSPILL_RATIO = 0.5
 _OUTLINE_TOLERANCE_MM = 0.05
 
 

@@ -20,12 +20,8 @@ from .values import name_or_path, read_value
 NAME = "brushsvg.toml"
 FORMAT, VERSION = "brushsvg/project", 1
 MAX_BYTES = 1_000_000  # TOML of this size is read within seconds; a project file needs some hundred bytes
-CHOICE_BY_TOP_KEY = {
-    "brush": "brush",
-    "cell": "cell",
-    "paper": "sheet",
-    "layers": "layer",
-}  # the choice of each key
+# The choice that each top-level key makes.
+CHOICE_BY_TOP_KEY = {"brush": "brush", "cell": "cell", "paper": "sheet", "layers": "layer"}
 OF_ONE_DRAWING = ("input", "corrections")  # choices that a project file cannot make
 
 
