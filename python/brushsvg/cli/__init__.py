@@ -9,10 +9,13 @@ import sys
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run one command; the exit status: 0 done, 1 refused, 2 wrong usage, 130 interrupted."""
+    """Run one command and return its exit status.
+
+    The status is 0 if the command is done, 1 if it is refused, 2 for wrong usage, and 130 if it is interrupted.
+    """
     interrupts = _Interrupts()
     try:
-        interrupts.count()
+        interrupts.start()
         return _run_with_streams(argv, interrupts)
     except KeyboardInterrupt:
         pass
@@ -20,7 +23,7 @@ def main(argv: list[str] | None = None) -> int:
         if not interrupts.seen:
             raise
     finally:
-        interrupts.count_no_more()
+        interrupts.stop()
     from .console import say
 
     say("interrupted")
@@ -28,24 +31,28 @@ def main(argv: list[str] | None = None) -> int:
 
 
 class _Interrupts:
-    """Ctrl-C while a module is being imported can come out as another error: seen says that there was one."""
+    """Counts interrupts by Ctrl-C.
+
+    Ctrl-C during the import of a module can appear as another error, so `seen` records that there was an interrupt.
+    """
 
     seen = 0
-    before = None
+    previous_handler = None
 
-    def count(self) -> None:
+    def start(self) -> None:
         import signal
         from contextlib import suppress
 
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            with suppress(ValueError):  # only the main thread may, and only it is interrupted
-                self.before = signal.signal(signal.SIGINT, self._raise)
+            # Only the main thread may set a handler, and only the main thread is interrupted.
+            with suppress(ValueError):
+                self.previous_handler = signal.signal(signal.SIGINT, self._raise)
 
-    def count_no_more(self) -> None:
-        if self.before is not None:
+    def stop(self) -> None:
+        if self.previous_handler is not None:
             import signal
 
-            signal.signal(signal.SIGINT, self.before)
+            signal.signal(signal.SIGINT, self.previous_handler)
 
     def _raise(self, *_) -> None:
         self.seen += 1
@@ -53,7 +60,10 @@ class _Interrupts:
 
 
 def _run_with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
-    """Run the command with any terminal encoding, and with a reader that may stop reading."""
+    """Run the command with any terminal encoding.
+
+    The reader of the output may stop reading at any time.
+    """
     from ..errors import Notice
     from .console import discard_output, say_notice
 
@@ -94,17 +104,17 @@ def _run_command(argv: list[str] | None, interrupts: _Interrupts) -> int:
         run = getattr(commands, args.run)
         use_project(args, argv)
         run(args)
-    except SystemExit as leaving:
-        return leaving.code
+    except SystemExit as exit_request:
+        return exit_request.code
     except RefusedError as refused:
         for notice in refused.why:
             say_notice(refused.file, replace(notice, refused=True))
         return 1
     except OSError:
         raise
-    except Exception as mistake:
+    except Exception as bug:
         if interrupts.seen:
             raise
-        say_notice(file, replace(unexpected(mistake).notice(), refused=True))
+        say_notice(file, replace(unexpected(bug).notice(), refused=True))
         return 1
     return 0

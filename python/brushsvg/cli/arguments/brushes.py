@@ -1,4 +1,4 @@
-"""The commands for brushes: chart, calibrate, brush."""
+"""Arguments of the commands for brushes: chart, calibrate, brush."""
 
 from __future__ import annotations
 
@@ -82,47 +82,47 @@ def _check_chart(args) -> None:
 
 
 def add_calibrate(commands) -> None:
-    fit = commands.add_parser("calibrate", help="turn measurements or photographs into a brush")
-    fit.add_argument(
+    calibrate = commands.add_parser("calibrate", help="turn measurements or photographs into a brush")
+    calibrate.add_argument(
         "inputs",
         metavar="IN",
         nargs="+",
         help=f"what was measured (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
     )
-    add_output(fit, "a brush (.json); with --scan, outlines in mm (.json)")
-    fit.add_argument(
+    add_output(calibrate, "a brush (.json); with --scan, outlines in mm (.json)")
+    calibrate.add_argument(
         "--scan",
         action="store_true",
         help="only read the outlines of one photograph: calibrate takes them later",
     )
-    _add_photo_options(fit)
-    fit.add_argument(
+    _add_photo_options(calibrate)
+    calibrate.add_argument(
         "--plan",
         metavar="FILE",
         help="for photographs of a painted job (convert --page): the plan.json that was painted; needs --prior",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--prior",
         metavar="NAME|FILE",
         help="with --plan: the brush that painted it, as it is known up to now",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--aim",
         choices=("edges", "overlap"),
         default="edges",
         help="of painted marks: fit the edges of the usual mark, or go on from there to the largest overlap, if that "
         "predicts marks left out better; it has no intervals; default: edges",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--norm",
         choices=("squares", "absolute"),
         default="squares",
         help="what the fit minimizes: squared or absolute residuals; default: squares",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--total", action="store_true", help="total least squares for series of angles; default: ordinary"
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--machine",
         metavar="PARTS",
         type=values.machine_parts,
@@ -130,38 +130,38 @@ def add_calibrate(commands) -> None:
         help="also estimate these errors of the machine from painted marks: any of "
         "lean,axes,tilt,backlash,field",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--cell",
         metavar="NAME|FILE",
         help="the machine that painted: with --machine, find only what its cell can undo",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--paint",
         action="store_true",
         help="from marks painted in the order of their plan with one load of paint: also find how they narrow",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--brush",
         metavar="NAME|FILE",
         help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines; for one "
         "of strokes: the brush whose outlines are known, which gets the lag",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--spread",
         metavar="FILE",
         help="for photographs: how well the studio repeats, as compare --sheets found it (.json)",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--height",
         metavar="MM",
         type=values.noise,
         help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
         "brushsvg setup height; default: 0.3, as by eye",
     )
-    add_picture(fit, "the brush laws, data and residuals")
-    fit.add_argument("--details", action="store_true", help="print all tables of the report")
-    add_write_options(fit)
-    fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
+    add_picture(calibrate, "the brush laws, data and residuals")
+    calibrate.add_argument("--details", action="store_true", help="print all tables of the report")
+    add_write_options(calibrate)
+    calibrate.set_defaults(run="calibrate_file", parser=calibrate, check=_check_calibrate)
 
 
 def _add_photo_options(command) -> None:
@@ -234,7 +234,7 @@ def _make_options(args):
     )
 
 
-SCAN_OPTIONS = ("chart", "bar_mm", "dpi", "mirrored")  # options that reading a photograph needs
+SCAN_OPTIONS = ("chart", "bar_mm", "dpi", "mirrored")  # options for reading a photograph
 
 
 def _check_scan(args) -> None:
@@ -268,10 +268,10 @@ def _refuse_heic(args, photos: list[str]) -> None:
 
 
 def add_brush(commands) -> None:
-    whats = add_list_show_check(
+    subcommands = add_list_show_check(
         commands, "brush", "list, show, check, draw and create brushes", "laws and ranges", "brush.json"
     )
-    new = whats.add_parser(
+    new = subcommands.add_parser(
         "new", help="write a brush file from a few numbers; asks for them if you give none"
     )
     add_output(new, "the brush file (.json); its name becomes the brush's name")
@@ -309,7 +309,9 @@ def add_brush(commands) -> None:
     )
     add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
-    plot = whats.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
+    plot = subcommands.add_parser(
+        "plot", help="draw the brush laws with confidence bands, and the footprints"
+    )
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     add_output(plot, "a picture (.svg .png)")
     add_write_options(plot)

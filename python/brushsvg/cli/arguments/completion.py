@@ -1,4 +1,7 @@
-"""Completion of commands in the shell, by argcomplete. It is imported only when a shell asks."""
+"""Complete commands in the shell, with argcomplete.
+
+This module is imported only when a shell requests completions.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,10 @@ KIND_BY_DEST = {
 
 
 def complete(parser: argparse.ArgumentParser) -> None:
-    """Print the completions for the shell, and exit. Exit silently where argcomplete is not installed."""
+    """Print the completions for the shell, and exit.
+
+    Exit silently if argcomplete is not installed.
+    """
     try:
         import argcomplete
     except ImportError:
@@ -56,8 +62,10 @@ def _make_completer(kind: str, files) -> Callable[..., list[str]]:
     def completer(prefix: str, **others) -> list[str]:
         folder = SHIPPED / ("brushes" if kind == "brush" else "cells")
         names = sorted(path.stem for path in folder.glob(f"*{SUFFIXES[kind]}"))
-        found = [name for name in names if name.startswith(prefix)]
-        fits = (path for path in files(prefix, **others) if path.endswith((SUFFIXES[kind], os.sep, "/")))
-        return found + sorted(fits)
+        matching_names = [name for name in names if name.startswith(prefix)]
+        matching_paths = (
+            path for path in files(prefix, **others) if path.endswith((SUFFIXES[kind], os.sep, "/"))
+        )
+        return matching_names + sorted(matching_paths)
 
     return completer

@@ -1,4 +1,7 @@
-"""The commands that start from a drawing: text, preview, convert, batch, compare, simulate-photo."""
+"""Arguments of the commands for drawings.
+
+These are text, preview, convert, batch, compare and simulate-photo.
+"""
 
 from __future__ import annotations
 

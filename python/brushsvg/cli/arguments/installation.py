@@ -1,4 +1,4 @@
-"""The commands for a start: demo, doctor."""
+"""Arguments of the commands for a start: demo, doctor."""
 
 from __future__ import annotations
 

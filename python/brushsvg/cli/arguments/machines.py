@@ -1,4 +1,4 @@
-"""The commands for a machine: setup, check, cell."""
+"""Arguments of the commands for machines: setup, check, cell."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_ext
 
 def add_setup(commands) -> None:
     about = "write programs to set up a machine, and install the Inkscape extension"
-    whats = commands.add_parser("setup", help=about).add_subparsers(metavar="WHAT", required=True)
-    _add_first_run(whats)
-    _add_height(whats)
-    _add_border(whats)
-    _add_inkscape(whats)
+    subcommands = commands.add_parser("setup", help=about).add_subparsers(metavar="WHAT", required=True)
+    _add_first_run(subcommands)
+    _add_height(subcommands)
+    _add_border(subcommands)
+    _add_inkscape(subcommands)
 
 
 def _add_first_run(commands) -> None:
@@ -175,8 +175,8 @@ def _check_check(args) -> None:
 
 def add_cell(commands) -> None:
     about = "list, show, check and create cells: machines with their limits"
-    whats = add_list_show_check(commands, "cell", about, "heights, speeds and limits", "cell.toml")
-    new = whats.add_parser("new", help="write a cell file for you to edit")
+    subcommands = add_list_show_check(commands, "cell", about, "heights, speeds and limits", "cell.toml")
+    new = subcommands.add_parser("new", help="write a cell file for you to edit")
     add_output(new, "a cell file (.toml); its name becomes the cell's name")
     new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
     new.add_argument(
@@ -189,11 +189,13 @@ def add_cell(commands) -> None:
     )
     add_write_options(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
-    _add_cell_place(whats)
+    _add_cell_place(subcommands)
 
 
-def _add_cell_place(whats) -> None:
-    place = whats.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
+def _add_cell_place(subcommands) -> None:
+    place = subcommands.add_parser(
+        "place", help="find where the paper can be for an arm to reach the drawing"
+    )
     place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
     add_output(place, "a picture of the table (.png .svg)", False)

@@ -1,4 +1,7 @@
-"""Parse and check the command line. Imports nothing heavy, so a typing error is reported at once."""
+"""Parse and check the command line.
+
+Nothing heavy is imported here, so that a typing error is reported at once.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,10 @@ from . import brushes, drawings, help_text, installation, machines, project
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
-    """The choices; `run` names a function of `commands`. SystemExit on --help, --version and wrong usage."""
+    """Parse the command line; `run` of the result names a function of `commands`.
+
+    Raises SystemExit on --help, --version and wrong usage.
+    """
     parser = command_parser()
     if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
         from .completion import complete
@@ -28,13 +34,13 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
 
 class _Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
-        # A prefix of a flag is no flag: it would change its meaning as flags are added.
+        # A prefix of a flag is not accepted, because its meaning would change when flags are added.
         super().__init__(allow_abbrev=False, **settings)
-        # argparse knows -5 for a value, and takes -5,-5 and -5mm for flags
+        # argparse accepts -5 as a value, but reads -5,-5 and -5mm as flags
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def _get_values(self, action, arg_strings):
-        # argparse drops "--" at any place: --width=-- would become an empty list
+        # argparse drops "--" anywhere, so that --width=-- would become an empty list
         if action.option_strings and "--" in arg_strings:
             raise argparse.ArgumentError(action, "'--' is no value")
         return super()._get_values(action, arg_strings)
@@ -87,7 +93,7 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-@functools.cache  # the flags of all commands take longer than what a short one does
+@functools.cache  # adding the flags of all commands needs more time than a short command
 def command_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="brushsvg", description="Turn vector lettering into brush strokes that a robot can paint."
@@ -123,7 +129,7 @@ def command_parser() -> argparse.ArgumentParser:
 
 
 def _iterate_parsers(commands: argparse._SubParsersAction) -> Iterator[argparse.ArgumentParser]:
-    """Yield the parsers of commands and of their commands, such as `cell place`."""
+    """Yield the parsers of commands and of their subcommands, such as `cell place`."""
     for command in commands.choices.values():
         yield command
         for action in command._actions:

@@ -1,4 +1,4 @@
-"""The command about the project file: init."""
+"""Arguments of the command for the project file: init."""
 
 from __future__ import annotations
 

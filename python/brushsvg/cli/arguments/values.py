@@ -1,4 +1,4 @@
-"""What may be typed behind a flag, as a value within its range: types for argparse."""
+"""Types for argparse: read a typed value and check its range."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def size(text: str) -> tuple[float, float]:
     return _parse(size_mm, text)
 
 
-EDGE_NOISE_MM = 0.1  # of digitized edges, by default
+EDGE_NOISE_MM = 0.1  # default standard deviation of a digitized edge
 
 
 def noise(text: str) -> float:
@@ -35,7 +35,8 @@ def lag(text: str) -> float:
 
 
 def tolerance(text: str) -> float:
-    return _parse_length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
+    # A program is written to 1e-4 mm: a smaller tolerance would only add poses.
+    return _parse_length(text, 1e-5, 10.0)
 
 
 def paint_speed(text: str) -> float:
@@ -82,21 +83,21 @@ def jobs(text: str) -> int:
 
 
 def share(text: str) -> float:
-    outside = f"{text[:24]!r} is outside the range [0, 1]"
-    value = _parse_number(text, outside)
+    error = f"{text[:24]!r} is outside the range [0, 1]"
+    value = _parse_number(text, error)
     if not 0.0 <= value <= 1.0:
-        raise argparse.ArgumentTypeError(outside)
+        raise argparse.ArgumentTypeError(error)
     return value
 
 
 def lag_at(text: str) -> tuple[float, float]:
-    depth, its_lag = _split_at_depth(text, "lag", "3=7.4")
-    return lag(depth), width(its_lag)
+    depth, lag_text = _split_at_depth(text, "lag", "3=7.4")
+    return lag(depth), width(lag_text)
 
 
 def width_at(text: str) -> tuple[float, float]:
-    depth, its_width = _split_at_depth(text, "width", "3=2.5")
-    return width(depth), width(its_width)
+    depth, width_text = _split_at_depth(text, "width", "3=2.5")
+    return width(depth), width(width_text)
 
 
 def _split_at_depth(text: str, what: str, example: str) -> tuple[str, str]:
@@ -113,8 +114,8 @@ def width(text: str) -> float:
 
 
 def scale(text: str) -> float:
-    or_else = f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
-    value = _parse_number(text.removesuffix("%"), or_else) / (100 if text.endswith("%") else 1)
+    error = f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
+    value = _parse_number(text.removesuffix("%"), error) / (100 if text.endswith("%") else 1)
     if not 1e-4 <= value <= 1e4:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.0001, 10000]")
     return value
@@ -179,13 +180,13 @@ def point3(text: str) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _parse_number(text: str, or_else: str) -> float:
+def _parse_number(text: str, error: str) -> float:
     from ...units import number
 
     try:
         return number(text)
     except Error:
-        raise argparse.ArgumentTypeError(or_else) from None
+        raise argparse.ArgumentTypeError(error) from None
 
 
 def _parse_length(text: str, least: float, greatest: float) -> float:

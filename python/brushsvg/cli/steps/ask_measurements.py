@@ -1,4 +1,7 @@
-"""Ask on a terminal for what a ruler measured of a brush, and explain how to measure it."""
+"""Ask on a terminal for measurements of a brush with a ruler.
+
+The questions come with an explanation of how to measure.
+"""
 
 from __future__ import annotations
 
@@ -28,14 +31,20 @@ MEASUREMENT_FLAGS = "--lag-at DEPTH=LAG --width-at DEPTH=WIDTH, once for each de
 
 
 def can_answer(args) -> bool:
-    """Check whether somebody can answer: a terminal on both sides, and messages for people."""
+    """Return whether a person can answer questions.
+
+    This needs a terminal for input and for messages, and messages as text.
+    """
     return args.messages == "text" and all(
         stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr)
     )
 
 
 def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-    """Return lags and widths, each (depth, length) in mm. Refuse where the answers end."""
+    """Ask for lags and widths, and return both as lists of (depth, length) in mm.
+
+    Raises RefusedError if the answers end too early.
+    """
     for line in HOW_TO_MEASURE:
         say(line)
     lags, widths = [], []
@@ -54,7 +63,7 @@ def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[f
 
 
 def _ask_length(question: str, read=values.width) -> float:
-    """Ask until the answer is a length."""
+    """Ask until the answer is a length, in mm."""
     while True:
         sys.stderr.write(question)
         sys.stderr.flush()
@@ -73,7 +82,10 @@ def _ask_length(question: str, read=values.width) -> float:
 
 
 def warn_of_few_depths(args, widths) -> list[Notice]:
-    """Warn about what lag and width at fewer depths than three cost; not for pens and copies."""
+    """Warn if lag or width is known at fewer depths than three.
+
+    There is no warning for pens and for copies of another brush.
+    """
     if args.like is not None or args.lag == 0:
         return []
     fewest = min(len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths))

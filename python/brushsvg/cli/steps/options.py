@@ -1,4 +1,4 @@
-"""What was typed and what the drawing says, as the options of the steps."""
+"""Turn the command line and the settings of a drawing into options."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from .output_places import suffix_of
 
 
 def make_choices(args, **instead) -> Choices:
-    """What was typed or comes from a project file, but for what is known better."""
+    """Return the choices from the command line and a project file.
+
+    instead: choices that replace those of the command line.
+    """
     given = {name: getattr(args, name, None) for name in CHOICES} | instead
-    if isinstance(given["brush"], list):  # of an option that may be given more than once
+    if isinstance(given["brush"], list):  # an option that may be given more than once
         given["brush"] = given["brush"][0] if given["brush"] else None
     return choices.drop_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
 
@@ -36,16 +39,22 @@ def load_cell(name: str | None) -> Cell:
 
 
 def load_exact_cell(name: str | None) -> Cell:
-    """The machine for what is prepared with no Options, which would make it as exact."""
+    """Return the cell for work without Options, with the default tolerance.
+
+    Options would set how exact the cell is.
+    """
     return as_exact_as(load_cell(name), DEFAULT_TOLERANCE_MM)
 
 
 def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
-    with refuse_errors(""):  # errors name the brush, cell or file
+    with refuse_errors(""):  # errors name the brush, cell or file themselves
         return choices.make_options(chosen, cell, brush)
 
 
 def warn_about_cell(args, cell: Cell) -> None:
-    """Of what makes a program less sure than it looks: a paper that nobody taught, an arm that is not followed."""
+    """Warn of what makes a program less certain than it looks.
+
+    These are a paper position that nobody taught, and an arm whose joints were not checked.
+    """
     if suffix_of(args.output) != ".json":
         warn(cell.name, list_cell_notices(cell))

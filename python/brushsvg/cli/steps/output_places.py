@@ -17,8 +17,10 @@ def suffix_of(path: str | None) -> str:
 
 
 def check_outputs(args, *paths: str | None, sources: Collection[str | None] = ()) -> None:
-    """Whether the outputs can be written, as far as that can be said before any work is done. sources: those of them
-    that are brushes, cells, corrections or drawings, see refuse_replacing."""
+    """Refuse outputs that cannot be written, as far as that is known before any work.
+
+    sources: the outputs that are brushes, cells, corrections or drawings, see refuse_replacing.
+    """
     for path in filter(None, paths):
         folder = os.path.dirname(os.path.realpath(path))
         reason = None
@@ -43,20 +45,23 @@ def write_outputs(
     more: str = "",
     sources: Collection[str | None] = (),
 ) -> None:
-    """Write all files, and say so with what is known of them, unless --quiet. sources: as for check_places."""
+    """Write all files, and report them with their figures unless --quiet.
+
+    sources: as for check_outputs.
+    """
     stage("writing")
     refuse_replacing(files, sources, args.force)
-    with refuse_errors(""):  # the error names the file
+    with refuse_errors(""):  # the error names the file itself
         write_files(files)
     record_written(path for path in files if path not in sources)
     clear_stage()
     if args.quiet:
         return
-    known = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
-    known += [] if seconds is None else [f"takes about {clock(seconds)}"]
-    known += [] if overlap is None else [f"overlap {overlap:.3f}"]
-    known += [more] if more else []
-    say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(known)])]))
+    facts = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
+    facts += [] if seconds is None else [f"takes about {clock(seconds)}"]
+    facts += [] if overlap is None else [f"overlap {overlap:.3f}"]
+    facts += [more] if more else []
+    say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(facts)])]))
 
 
 def print_list(names: list[str], describe) -> None:

@@ -26,8 +26,8 @@ def brush_show(args) -> None:
 def brush_check(args) -> None:
     with refuse_errors(args.input):
         brush = find_brush(args.input)
-        odd = [*unknown_keys(brush), *remarks(brush)]
-    warn(args.input, odd)
+        notices = [*unknown_keys(brush), *remarks(brush)]
+    warn(args.input, notices)
     print_text(f"{args.input}: brush {brush.name} can be used\n")
 
 
@@ -62,15 +62,15 @@ def brush_new(args) -> None:
         print_text(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
         return
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
-    deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
-    if deepest > measured and "half_width" not in assumed:
+    deepest_mm, measured_mm = brush.depth_range_mm[1], max(depth for depth, _ in widths)
+    if deepest_mm > measured_mm and "half_width" not in assumed:
         assumed.append(
-            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest):.1f} mm at {deepest:g} mm)"
+            f"widths beyond {measured_mm:g} mm of depth ({2 * brush.half_width(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
         )
-    farthest = max((depth for depth, _ in args.lag_at), default=deepest)
-    if deepest > farthest and "lag" not in assumed:
+    lag_measured_mm = max((depth for depth, _ in args.lag_at), default=deepest_mm)
+    if deepest_mm > lag_measured_mm and "lag" not in assumed:
         assumed.append(
-            f"lags beyond {farthest:g} mm of depth ({brush.lag(deepest):.1f} mm at {deepest:g} mm)"
+            f"lags beyond {lag_measured_mm:g} mm of depth ({brush.lag(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
         )
     print_text(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
 

@@ -1,4 +1,4 @@
-"""brushsvg calibrate: measurements or photographs to a brush."""
+"""brushsvg calibrate: calibrate a brush from measurements or photographs."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ def calibrate_file(args) -> None:
     check_outputs(args, args.output, args.picture, args.marks_picture, sources=[args.output])
     name = os.path.splitext(os.path.basename(args.output))[0]
     source = args.photos or args.input
-    with refuse_errors(""):  # errors name their file
-        made = run_calibration(source, name, args.options, stage, warn)
-        files = {args.output: write_brush(made.brush)}
+    with refuse_errors(""):  # errors name their file themselves
+        calibration = run_calibration(source, name, args.options, stage, warn)
+        files = {args.output: write_brush(calibration.brush)}
         if args.picture:
-            files[args.picture] = made.plot(suffix_of(args.picture))
+            files[args.picture] = calibration.plot(suffix_of(args.picture))
         if args.marks_picture:
-            files[args.marks_picture] = made.picture()
-    warn(args.output, remarks(made.brush))
-    write_outputs(args, files, more=made.reading, sources=[args.output])
-    print_text(made.report.text(args.details, args.marks_picture or args.picture or ""))
+            files[args.marks_picture] = calibration.picture()
+    warn(args.output, remarks(calibration.brush))
+    write_outputs(args, files, more=calibration.reading, sources=[args.output])
+    print_text(calibration.report.text(args.details, args.marks_picture or args.picture or ""))

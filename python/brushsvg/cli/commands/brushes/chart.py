@@ -1,4 +1,4 @@
-"""brushsvg chart: the strokes that a brush is calibrated from."""
+"""brushsvg chart: write the strokes that a brush is calibrated from."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def chart_file(args) -> None:
         if suffix != ".json":
             writer.post_for(suffix, cell)
         stage("laying out the chart")
-        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
-        loads, marks = in_loads(made.plan, brush, cell), _core.simulate(made.plan, brush)
+        laid_out = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
+        loads, marks = in_loads(laid_out.plan, brush, cell), _core.simulate(laid_out.plan, brush)
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.look(loads, brush, marks, cell, tolerance_mm, Job(args.z_offset))
         if walk.problems:
@@ -56,15 +56,19 @@ def chart_file(args) -> None:
                 args.output, summarized([_advise_smaller_sheet(each) for each in walk.problems])
             )
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
-        files = writer.in_files(args.output, writer.encoded(suffix, made.plan, walk, brush, title))
+        files = writer.in_files(args.output, writer.encoded(suffix, laid_out.plan, walk, brush, title))
     if args.page:
-        pdf = suffix_of(args.page) == ".pdf"
+        is_pdf = suffix_of(args.page) == ".pdf"
         with refuse_errors(args.page):
-            files[args.page] = chart_pdf(made) if pdf else chart_page(made).encode()
+            files[args.page] = chart_pdf(laid_out) if is_pdf else chart_page(laid_out).encode()
     if args.chart:
-        files[args.chart] = write_chart(made).encode()
+        files[args.chart] = write_chart(laid_out).encode()
     warn_about_cell(args, cell)
-    write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, made.plan, walk, brush, cell))
+    write_outputs(
+        args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell)
+    )
     print_text(
-        dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise or EDGE_NOISE_MM)
+        dab_chart_report(laid_out, brush)
+        if args.dabs
+        else chart_report(laid_out, brush, args.noise or EDGE_NOISE_MM)
     )

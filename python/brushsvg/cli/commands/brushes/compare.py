@@ -37,25 +37,31 @@ def compare_files(args) -> None:
     print_text(job.json if args.json else job.report.text(details, args.picture or ""))
     if args.at_least is not None and job.overlap < args.at_least:
         sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
-        low = Error(sentence, value=job.overlap, code="overlap-low")
-        raise RefusedError(args.photos[0], [low.notice()])
+        error = Error(sentence, value=job.overlap, code="overlap-low")
+        raise RefusedError(args.photos[0], [error.notice()])
 
 
 def _list_source_files(args) -> list[str]:
-    """Corrections, or how well a studio repeats, and a cell: files that later commands read."""
-    made = [args.output] if suffix_of(args.output) == ".json" else []
-    return [*made, *([args.corrected_cell] if args.corrected_cell else [])]
+    """List the outputs that later commands read.
+
+    These are corrections, the repeatability of a studio, and a cell.
+    """
+    outputs = [args.output] if suffix_of(args.output) == ".json" else []
+    return [*outputs, *([args.corrected_cell] if args.corrected_cell else [])]
 
 
 def _write_checked_cell(cell) -> str:
-    """Error where a number of its machine is beyond what a cell may have."""
+    """Return the text of a cell file.
+
+    Raises Error if a number of its machine is outside the range of a cell.
+    """
     text = write_cell(cell)
     parse_cell(text)
     return text
 
 
 def _report_repeats(args, sheet) -> None:
-    """Report how well strokes repeat on several sheets, or copies of strokes on one sheet."""
+    """Report how well strokes repeat on several sheets, or as copies on one sheet."""
     from ....comparison.photographs import compare_sheets
     from ....comparison.repeats import as_json, repeats, report
     from ....comparison.repeats_picture import repeats_png
@@ -64,19 +70,23 @@ def _report_repeats(args, sheet) -> None:
     with refuse_errors(args.photos[0]):
         photos = read_photos(args.photos, stage)
         sheet, sheets = read_matching_page(
-            sheet, lambda one: compare_sheets(one.page, [*one.strokes], photos)
+            sheet, lambda candidate: compare_sheets(candidate.page, [*candidate.strokes], photos)
         )
     title, strokes = sheet.title, list(sheet.strokes)
-    for path, each in zip(args.photos, sheets, strict=True):
-        warn(path, list(each.notices))
+    for path, comparison in zip(args.photos, sheets, strict=True):
+        warn(path, list(comparison.notices))
     with refuse_errors(args.photos[0]):
-        found = repeats(sheet.plan, sheets)
+        repeatability = repeats(sheet.plan, sheets)
     files, details, picture = {}, args.details, args.picture or ""
     if args.output:
         is_json = suffix_of(args.output) == ".json"
-        files[args.output] = as_json(title, found) if is_json else report(title, found).text(details)
+        files[args.output] = (
+            as_json(title, repeatability) if is_json else report(title, repeatability).text(details)
+        )
     if args.picture:
-        files[args.picture] = repeats_png(title, found, sheets, strokes)
+        files[args.picture] = repeats_png(title, repeatability, sheets, strokes)
     if files:
         write_outputs(args, files, sources=_list_source_files(args))
-    print_text(as_json(title, found) if args.json else report(title, found).text(details, picture))
+    print_text(
+        as_json(title, repeatability) if args.json else report(title, repeatability).text(details, picture)
+    )

@@ -12,7 +12,7 @@ def scan_file(args) -> None:
     from ....jobs.calibrating import read_chart_photographs
 
     check_outputs(args, args.output, args.marks_picture)
-    with refuse_errors(""):  # errors name their file
+    with refuse_errors(""):  # errors name their file themselves
         read = read_chart_photographs([args.input], args.options, stage, warn)
     files = {args.output: write_marks(read)}
     if args.marks_picture:

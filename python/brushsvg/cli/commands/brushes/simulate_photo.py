@@ -1,4 +1,4 @@
-"""brushsvg simulate-photo: the photograph of a job that nobody painted."""
+"""brushsvg simulate-photo: render the photograph of a painted job."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def simulate_photo_file(args) -> None:
         )
         stage("photographing")
         page = JobPage(chart, 0.0, ()) if chart else job_page(work.plan, work.title)
-        made = simulated_photo(page, strokes, studio, args.seed)
-    write_outputs(args, {args.output: made}, len(strokes), more="simulated")
+        photograph = simulated_photo(page, strokes, studio, args.seed)
+    write_outputs(args, {args.output: photograph}, len(strokes), more="simulated")
     if args.studio is None:
         print_text(write_studio(studio))
 
 
 def _read_chart_if_any(path: str):
-    """The chart that chart --chart wrote; None for a drawing or a plan."""
+    """Return the chart that chart --chart wrote, or None for a drawing or a plan."""
     from ....calibration.chart.file import is_chart, read_chart
 
     if suffix_of(path) != ".json":

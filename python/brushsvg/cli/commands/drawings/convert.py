@@ -1,4 +1,7 @@
-"""brushsvg convert: a drawing to the program of a machine, with its picture and its figures."""
+"""brushsvg convert: convert a drawing into the program of a machine.
+
+A picture and figures can be written as well.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
-import numpy  # noqa: F401  # before the core: where memory is short, numpy then fails with an exception and not by exit
+import numpy  # noqa: F401  # before the core: if memory is short, numpy then raises an exception instead of exiting
 
 from ....errors import Notice
 from ....jobs import conversion, outputs, prediction
@@ -26,7 +29,7 @@ from ...steps.prepared import prepare
 def convert_file(args) -> None:
     check_outputs(args, args.output, args.picture, args.report, args.page)
     chosen = apply_drawing_settings(make_choices(args), args.input)
-    # check knows strokes in the margin by the program that paints them: of several, only one would
+    # `check` finds margin strokes in the program that paints them. With --per-colour, only one program would.
     work = prepare(choose_margin_strokes(chosen) if args.page and not args.per_colour else chosen)
     warn(args.input, [notice for notice in work.notices if args.lenient or not notice.damaged])
     parts = _split_by_colour(args.output, work) if args.per_colour else [(args.output, work)]
@@ -36,25 +39,25 @@ def convert_file(args) -> None:
         with refuse_errors(args.page):
             files[args.page] = outputs.page(suffix_of(args.page), work)
     with refuse_errors(args.input):
-        tries = [_simulate_or_refuse(args, path, part) for path, part in parts]
-        for (path, _), one in reversed([*zip(parts, tries, strict=True)]):
-            files = {path_next_to(path, name): text for name, text in one.encoded().items()} | files
-        shown = tries[0] if len(tries) == 1 else None
+        simulations = [_simulate_or_refuse(args, path, part) for path, part in parts]
+        for (path, _), simulated in reversed([*zip(parts, simulations, strict=True)]):
+            files = {path_next_to(path, name): text for name, text in simulated.encoded().items()} | files
+        single = simulations[0] if len(simulations) == 1 else None
         if args.picture or args.report:
             marks = (
-                shown.marks if shown else prediction.predict(work, suffix_of(args.picture) == ".svg", stage)
+                single.marks if single else prediction.predict(work, suffix_of(args.picture) == ".svg", stage)
             )
-            of_all = shown.work if shown else work
+            whole_work = single.work if single else work
         if args.picture:
-            files[args.picture] = outputs.picture(suffix_of(args.picture), of_all, marks)
+            files[args.picture] = outputs.picture(suffix_of(args.picture), whole_work, marks)
         if args.report:
-            figures = outputs.reported(of_all, marks, work.options.cell)
+            figures = outputs.reported(whole_work, marks, work.options.cell)
             files[args.report] = report.as_text(suffix_of(args.report), figures)
-    warn(args.input, dict.fromkeys(notice for one in tries for notice in one.remarks()))
-    warn_about_cell(args, tries[0].cell)
+    warn(args.input, dict.fromkeys(notice for simulated in simulations for notice in simulated.remarks()))
+    warn_about_cell(args, simulations[0].cell)
     warn(args.output, _report_leftover_programs(args.output, files, _list_called_before(args.output)))
-    strokes = sum(len(one.loads.loads) for one in tries) - args.from_stroke + 1
-    times_s = [one.time_s() for one in tries]
+    strokes = sum(len(simulated.loads.loads) for simulated in simulations) - args.from_stroke + 1
+    times_s = [simulated.time_s() for simulated in simulations]
     seconds = None if None in times_s else sum(times_s)
     write_outputs(
         args,
@@ -62,7 +65,7 @@ def convert_file(args) -> None:
         strokes,
         seconds,
         figures and figures.total.overlap,
-        "" if args.per_colour else _describe_pen_changes(tries[0], args.from_stroke),
+        "" if args.per_colour else _describe_pen_changes(simulations[0], args.from_stroke),
     )
     if figures and not args.quiet:
         print_text(f"{figures.verdict}\n")
@@ -71,7 +74,7 @@ def convert_file(args) -> None:
 
 
 def _split_by_colour(output: str, work: Work) -> list[tuple[str, Work]]:
-    """A file and the strokes of one colour each, the lightest first."""
+    """Return a file name and the work for each colour, the lightest colour first."""
     path = Path(output)
     return [
         (str(path.with_name(f"{path.stem}-{number}-{colour[1:]}{path.suffix}")), select_colour(work, colour))
@@ -80,12 +83,15 @@ def _split_by_colour(output: str, work: Work) -> list[tuple[str, Work]]:
 
 
 def _make_sort_key(name: str) -> list:
-    """A key that sorts part2 before part10."""
+    """Return a key that sorts part2 before part10."""
     return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
 
 
 def _list_called_before(output: str) -> list[str]:
-    """Names of the files that the program calls which is now at the output, if it is one of several files."""
+    """List the files that the program now at the output path calls.
+
+    A program in several files calls its other files.
+    """
     return [
         Path(file).name
         for file in called_programs(output, _read_earlier_program(output), _read_earlier_program)
@@ -93,7 +99,10 @@ def _list_called_before(output: str) -> list[str]:
 
 
 def _read_earlier_program(path: str) -> str:
-    """A program of an earlier run, as far as it can be read; names in it are ASCII. Devices and pipes hold none."""
+    """Read a program of an earlier run as far as possible.
+
+    Names in it are ASCII. Devices and pipes hold no program.
+    """
     try:
         return Path(path).read_bytes().decode("ascii", "replace") if Path(path).is_file() else ""
     except OSError:
@@ -101,35 +110,44 @@ def _read_earlier_program(path: str) -> str:
 
 
 def _report_leftover_programs(output: str, files: Collection[str], called_before: list[str]) -> list[Notice]:
-    """A notice of programs for a colour, or of parts, that an earlier run wrote and this one does not: nobody should
-    run them."""
+    """Return a notice on programs that an earlier run left at the output path.
+
+    These are programs for a colour, or parts of a program, that this run does not write. Nobody should run them.
+    """
     path = Path(output)
     name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
-    there = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
-    there += [each for each in called_before if path.with_name(each).exists()]
-    left = sorted({each for each in there if str(path.with_name(each)) not in files}, key=_make_sort_key)
-    if not left:
+    existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
+    existing += [each for each in called_before if path.with_name(each).exists()]
+    leftover = sorted(
+        {each for each in existing if str(path.with_name(each)) not in files}, key=_make_sort_key
+    )
+    if not leftover:
         return []
-    sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(left)}"
+    sentence = (
+        f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
+    )
     return [Notice("", sentence, code="programs-of-before", advice="delete them")]
 
 
 def _simulate_or_refuse(args, path: str, work: Work) -> conversion.SimulatedWork:
-    """A program that may be written. RefusedError with all that forbids it."""
+    """Return a program that may be written.
+
+    Raises RefusedError with all problems that forbid writing it.
+    """
     rings, job = suffix_of(args.picture) == ".svg", Job(args.z_offset, args.from_stroke)
-    one = conversion.simulate_and_check(
+    simulated = conversion.simulate_and_check(
         work, suffix_of(path), job, args.order, args.lenient, rings, stage, path=path
     )
-    if one.problems:
-        raise RefusedError(args.input, one.problems)
-    return one
+    if simulated.problems:
+        raise RefusedError(args.input, simulated.problems)
+    return simulated
 
 
-def _describe_pen_changes(one: conversion.SimulatedWork, from_stroke: int) -> str:
-    """How often somebody has to change the pen, in words."""
-    if not (one.is_program and may_pause(one.cell)):
+def _describe_pen_changes(simulated: conversion.SimulatedWork, from_stroke: int) -> str:
+    """Describe how often a person has to change the pen."""
+    if not (simulated.is_program and may_pause(simulated.cell)):
         return ""
-    stops = pens_changed(one.loads, one.cell, from_stroke)
+    stops = pens_changed(simulated.loads, simulated.cell, from_stroke)
     times = "once" if stops == 1 else f"{stops} times"
-    more = f"takes another pen {times}" if has_pens(one.cell) else f"stops {times} for another pen"
-    return more if stops else ""
+    sentence = f"takes another pen {times}" if has_pens(simulated.cell) else f"stops {times} for another pen"
+    return sentence if stops else ""

@@ -1,4 +1,4 @@
-"""brushsvg text: words in a font, as a drawing."""
+"""brushsvg text: write words in a font as a drawing."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def text_file(args) -> None:
 
 
 def read_font(name: str) -> bytes:
-    """Of a file, or by the name of a file among Inkscape's fonts of single lines."""
+    """Read a font file, or one of Inkscape's single-line fonts by its name."""
     if not Path(name).exists():
-        for known in (SINGLE_LINE_FONTS / name, SINGLE_LINE_FONTS / f"{name}.svg"):
-            if Path(name).name == name and known.is_file():
-                return read_bytes(known)
+        for font_path in (SINGLE_LINE_FONTS / name, SINGLE_LINE_FONTS / f"{name}.svg"):
+            if Path(name).name == name and font_path.is_file():
+                return read_bytes(font_path)
         sentence = "there is no such file"
         if Path(name).suffix.lower() in ("", ".svg"):
             sentence += f"; the names of Inkscape's single-line fonts are looked up in {SINGLE_LINE_FONTS}"

@@ -1,4 +1,4 @@
-"""brushsvg demo: a first picture, from a word that comes with the package."""
+"""brushsvg demo: draw a first picture from a word that is part of the package."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def demo_picture(args) -> None:
         how: report.measure(report.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
         for how, work in works.items()
     }
-    made = comparison_png(works, marks, totals)
+    picture = comparison_png(works, marks, totals)
     write_outputs(
-        args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap
+        args, {args.output: picture}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap
     )
     print_text(f"{os.path.abspath(args.output)}\n")
     if not args.no_open:
@@ -39,7 +39,7 @@ def demo_picture(args) -> None:
 
 
 def open_picture(path: str) -> None:
-    """Show a picture in the viewer of the desktop. Nothing happens where there is no desktop."""
+    """Show a picture in the viewer of the desktop, if there is a desktop."""
     if sys.platform == "win32":
         os.startfile(path)
     elif sys.platform == "darwin":
@@ -54,5 +54,5 @@ def _start_viewer(program: str, path: str) -> None:
         subprocess.Popen(
             [program, path], stdin=nothing, stdout=nothing, stderr=nothing, start_new_session=True
         )
-    except OSError:  # the path was printed
+    except OSError:  # the path of the picture was printed already
         return

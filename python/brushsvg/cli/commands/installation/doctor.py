@@ -1,4 +1,4 @@
-"""brushsvg doctor: what is installed, and what is missing for what."""
+"""brushsvg doctor: list what is installed, and what is missing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ...console import RefusedError, print_text
 from ...install_plugin import FOLDER, NOTE, SOURCE, extensions_folder, own_program
 from ..drawings.text import SINGLE_LINE_FONTS
 
-PURPOSE = {  # of each extra that a user may want
+PURPOSE = {  # the purpose of each extra that a user may want
     "text": "text in TrueType and OpenType fonts",
     "plot": "pictures of brush laws, pages as PDF",
     "arm": "the joints of robot arms",
@@ -25,11 +25,14 @@ PURPOSE = {  # of each extra that a user may want
     "parquet": "the table of batch as Parquet",
     "completion": "commands completed by the shell",
 }
-_MAX_INKSCAPE_WAIT_S = 20  # for Inkscape's version: a Snap starts slowly the first time
+_MAX_INKSCAPE_WAIT_S = 20  # seconds to wait for the version of Inkscape: a Snap starts slowly the first time
 
 
 def list_installation(args) -> None:
-    """Print the list. RefusedError where a library is missing that brushsvg cannot work without."""
+    """Print the list of installed and missing parts.
+
+    Raises RefusedError if a library is missing that brushsvg needs.
+    """
     needed, extras = _read_requirements()
     problems = {package: _find_version_problem(package, least) for package, least in needed.items()}
     unusable = {package: problem for package, problem in problems.items() if problem}
@@ -55,7 +58,10 @@ def _list_program() -> Iterator[tuple[str, str]]:
 
 
 def _read_requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Packages with their least versions: those always needed, and those of each extra in PURPOSE."""
+    """Return packages with their minimum versions.
+
+    The first dict has the packages that are always needed, the second one those of each extra in PURPOSE.
+    """
     needed: dict[str, str] = {}
     extras: dict[str, dict[str, str]] = {name: {} for name in PURPOSE}
     for line in metadata.requires("brushsvg") or []:
@@ -81,9 +87,9 @@ def _parse_version(version: str) -> list[int]:
 
 def _list_extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
     for name, packages in extras.items():
-        lacking = [package for package, least in packages.items() if _find_version_problem(package, least)]
-        if lacking:
-            yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*lacking)}"
+        missing = [package for package, least in packages.items() if _find_version_problem(package, least)]
+        if missing:
+            yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*missing)}"
         else:
             versions = ", ".join(f"{package} {metadata.version(package)}" for package in packages)
             yield name, f"{versions}  ({PURPOSE[name]})"
@@ -110,19 +116,22 @@ def _list_inkscape() -> Iterator[tuple[str, str]]:
             yield "sandbox", f"{kind} Inkscape cannot start programs outside: see docs/howto/inkscape.md"
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
-        zipped = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"  # a wheel does not hold it
-        yield "extension", f"not installed. Add it with  brushsvg setup inkscape{zipped}"
+        # A wheel does not contain the extension.
+        zip_argument = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"
+        yield "extension", f"not installed. Add it with  brushsvg setup inkscape{zip_argument}"
         return
     note = folder / NOTE
-    runs = os.fsdecode(note.read_bytes()).strip() if note.is_file() else ""
+    noted_program = os.fsdecode(note.read_bytes()).strip() if note.is_file() else ""
     state = (
-        "" if not runs or shutil.which(runs) else ", which is no longer there: install the extension again"
+        ""
+        if not noted_program or shutil.which(noted_program)
+        else ", which is no longer there: install the extension again"
     )
-    yield "extension", f"{folder}" + (f", runs {runs}{state}" if runs else "")
+    yield "extension", f"{folder}" + (f", runs {noted_program}{state}" if noted_program else "")
 
 
 def find_sandbox(program: str) -> str:
-    """ "a Snap's" or "a Flatpak's" by where the program is, empty for any other."""
+    """Return "a Snap's" or "a Flatpak's" by the location of the program, otherwise ""."""
     real = os.path.realpath(program)
     if program.startswith("/snap/") or real.startswith("/snap/") or os.path.basename(real) == "snap":
         return "a Snap's"
@@ -131,7 +140,7 @@ def find_sandbox(program: str) -> str:
 
 def _read_inkscape_version(program: str) -> str:
     try:
-        done = subprocess.run(
+        process = subprocess.run(
             [program, "--version"],
             capture_output=True,
             text=True,
@@ -140,5 +149,5 @@ def _read_inkscape_version(program: str) -> str:
         )
     except (OSError, subprocess.TimeoutExpired, UnicodeDecodeError):
         return "does not start"
-    found = re.search(r"Inkscape \S+", done.stdout)
+    found = re.search(r"Inkscape \S+", process.stdout)
     return found[0] if found else "does not say its version"

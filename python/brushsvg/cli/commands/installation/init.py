@@ -1,4 +1,4 @@
-"""brushsvg init: four questions, and the project file with their answers."""
+"""brushsvg init: ask four questions, and write the project file."""
 
 from __future__ import annotations
 
@@ -23,10 +23,13 @@ DEFAULT_PAPER = "a4"
 
 
 def init_project(args) -> None:
-    """Ask for what no flag gives, and write the file. Without a terminal, what no flag gives has its default."""
+    """Ask for settings without a flag, and write the project file.
+
+    Without a terminal, settings without a flag have their defaults.
+    """
     check_outputs(args, args.output, sources=[args.output])
     folder = os.path.dirname(os.path.abspath(args.output))
-    with refuse_errors(""):  # errors name the brush or cell
+    with refuse_errors(""):  # errors name the brush or cell themselves
         cell = _read_cell(args.cell, folder) if args.cell else None
         brush = _read_brush(args.brush, folder) if args.brush else None
     paper, speed = args.sheet, args.paint_speed
@@ -57,7 +60,7 @@ def init_project(args) -> None:
 
 
 def _list_machines() -> list[str]:
-    """Return a line of shipped cells for each robot language."""
+    """Return a line with the shipped cells of each robot language."""
     by_title: dict[str, list[str]] = {}
     for name in cell_names():
         by_title.setdefault(POSTS[find_cell(name).language].title, []).append(name)
@@ -65,7 +68,10 @@ def _list_machines() -> list[str]:
 
 
 def _ask(question: str, default: str, folder: str, read: Callable[[str, str], object]):
-    """Ask until the answer can be read; an empty answer is the default. Refuse where the answers end."""
+    """Ask until the answer can be read. An empty answer is the default.
+
+    Raises RefusedError if the answers end too early.
+    """
     while True:
         sys.stderr.write(question)
         sys.stderr.flush()
@@ -85,7 +91,7 @@ def _read_cell(text: str, folder: str) -> str:
 
 
 def _read_brush(text: str, folder: str) -> str:
-    """Return "" for a brush that is not measured yet."""
+    """Return the brush as in a project file, or "" if it is not measured yet."""
     if text == NOT_MEASURED:
         return ""
     find_brush(text)
@@ -102,7 +108,7 @@ def _read_speed(text: str, _folder: str) -> float | None:
 
 
 def _make_relative_path(folder: str, path: str) -> str:
-    """Return the path as a file in this folder has to write it."""
+    """Return a path as a file in this folder has to write it."""
     try:
         relative = os.path.relpath(os.path.abspath(path), folder)
     except ValueError:  # on another drive of Windows
@@ -111,7 +117,7 @@ def _make_relative_path(folder: str, path: str) -> str:
 
 
 def _list_next_steps(brush: str | None) -> list[str]:
-    """Return what to do next."""
+    """Return lines on what to do next."""
     lines = [f"Commands use {NAME} for every drawing in this folder; edit it as you like."]
     if not brush:
         lines += [

@@ -73,32 +73,41 @@ def cell_place(args) -> None:
     if args.drawing:
         work = prepare(make_choices(args, input=args.drawing, cell=args.input), cell)
         sheet_mm = work.plan.sheet_mm
-        made = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
+        program = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
     else:
         sheet_mm = args.sheet or DEFAULT_SHEET_MM
-        made = over_sheet(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
+        program = over_sheet(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
     stage("following the joints")
-    followed = follow(made, joints)
-    problems = [*followed.problems, *astray_in(made, sheet_mm)]
-    found = place.nearest(made, joints, lambda there: not astray_in(there, sheet_mm)) if problems else None
-    there = followed if found is None else follow(place.at(made, found.frame), joints)
+    followed = follow(program, joints)
+    problems = [*followed.problems, *astray_in(program, sheet_mm)]
+    nearest_place = (
+        place.nearest(program, joints, lambda moved: not astray_in(moved, sheet_mm)) if problems else None
+    )
+    followed_there = (
+        followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)
+    )
     if args.output:
         stage("looking at the table")
-        table = place.table_of(cell, made.robot_from_frame, joints)
+        table = place.table_of(cell, program.robot_from_frame, joints)
         drawn = table_picture(
-            suffix_of(args.output), table, cell, sheet_mm, made.robot_from_frame, found and found.frame
+            suffix_of(args.output),
+            table,
+            cell,
+            sheet_mm,
+            program.robot_from_frame,
+            nearest_place and nearest_place.frame,
         )
         write_outputs(args, {args.output: drawn})
     if not problems:
         print_text(f"{args.input}: arm {cell.arm.name} reaches all of it with the paper where it is\n")
-    elif found:
-        pose = place.cell_at(cell, found.frame).paper
-        print_text(f"{args.input}: the sheet {found.text} would do: {_format_pose(pose)}\n")
-    if there.start_rad is not None:
-        angles = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
+    elif nearest_place:
+        pose = place.cell_at(cell, nearest_place.frame).paper
+        print_text(f"{args.input}: the sheet {nearest_place.text} would do: {_format_pose(pose)}\n")
+    if followed_there.start_rad is not None:
+        angles = ", ".join(f"{math.degrees(angle):.0f}" for angle in followed_there.start_rad)
         print_text(f"{args.input}: it begins with its joints at {angles} degrees, or turned by whole turns\n")
     if problems:
-        if not found:
+        if not nearest_place:
             problems[0] = replace(problems[0], advice=place.NOWHERE)
         raise RefusedError(args.drawing or args.input, problems)
 
@@ -129,6 +138,6 @@ def cell_new(args) -> None:
             else cell.paper
         )
         text = write_cell(replace(cell, name=own_name(name), paper=paper))
-        made = parse_cell(text)
-    warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
+        new_cell = parse_cell(text)
+    warn(args.output, cell_checks.out_of_reach(new_cell) or cell_checks.remarks(new_cell))
     write_outputs(args, {args.output: text}, sources=[args.output])

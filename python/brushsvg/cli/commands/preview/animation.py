@@ -1,4 +1,4 @@
-"""brushsvg preview -o FILE.html: a page that plays the job in a browser."""
+"""brushsvg preview -o FILE.html: write a page that plays the job in a browser."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from ...steps.prepared import prepare_and_simulate
 
 def preview_animation(args) -> None:
     check_outputs(args, args.output)
-    looked = prepare_and_simulate(
+    prepared = prepare_and_simulate(
         apply_drawing_settings(make_choices(args), args.input), outlines=True, at_loads=True
     )
-    work, loads, cell = looked.work, looked.loads, looked.work.options.cell
+    work, loads, cell = prepared.work, prepared.loads, prepared.work.options.cell
     with refuse_errors(args.input):
-        page = outputs.played(work, loads, looked.marks, cell, args.playback or 1.0)
-    write_outputs(args, {args.output: page}, len(loads.loads), looked.seconds())
+        page = outputs.played(work, loads, prepared.marks, cell, args.playback or 1.0)
+    write_outputs(args, {args.output: page}, len(loads.loads), prepared.seconds())

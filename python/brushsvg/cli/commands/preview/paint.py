@@ -13,13 +13,13 @@ def preview_paint(args) -> None:
     check_outputs(args, args.output)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
-    looked = prepare_and_simulate(
+    prepared = prepare_and_simulate(
         apply_drawing_settings(make_choices(args), args.input),
         outlines=outlines,
         whole=suffix == ".json",
         tilted=True,
     )
-    work, marks = looked.work, looked.marks
+    work, marks = prepared.work, prepared.marks
     with refuse_errors(args.input):
         band = None
         if args.band:
@@ -30,4 +30,4 @@ def preview_paint(args) -> None:
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = outputs.picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")
-    write_outputs(args, {args.output: picture}, len(work.plan.passes), looked.seconds())
+    write_outputs(args, {args.output: picture}, len(work.plan.passes), prepared.seconds())

@@ -1,4 +1,7 @@
-"""brushsvg preview without -o, and --show errors: report how close the paint comes to the drawing."""
+"""brushsvg preview without -o, and --show errors: report on the paint.
+
+The report says how close the paint comes to the drawing.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +25,8 @@ def preview_report(args) -> None:
     if args.all_brushes:
         return _report_all_brushes(args)
     chosen = apply_drawing_settings(make_choices(args), args.input)
-    looked = prepare_and_simulate(chosen, outlines=suffix_of(args.output) == ".svg", partly=True)
-    work, marks = looked.work, looked.marks
+    prepared = prepare_and_simulate(chosen, outlines=suffix_of(args.output) == ".svg", partly=True)
+    work, marks = prepared.work, prepared.marks
     with refuse_errors(args.input):
         stage("trying other sizes")
         advice = other_sizes.advise_on_size(work)
@@ -31,9 +34,9 @@ def preview_report(args) -> None:
             work,
             marks,
             work.options.cell,
-            looked.warnings,
-            looked.forbidden,
-            seconds=looked.seconds(),
+            prepared.warnings,
+            prepared.forbidden,
+            seconds=prepared.seconds(),
             advice=advice,
         )
         text = report.as_text(".json" if args.json else ".txt", figures, args.details, args.output or "")
@@ -51,7 +54,7 @@ def preview_report(args) -> None:
 
 
 def _report_all_brushes(args) -> None:
-    # in place of the brush that the drawing names
+    # The default brush takes the place of the brush that the drawing names.
     chosen = apply_drawing_settings(make_choices(args, brush=DEFAULT_BRUSH), args.input)
     names = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
     brushes = []

@@ -21,7 +21,7 @@ def preview_strokes(args) -> None:
         design = arrange(read_drawing(args.input, make_read_options(chosen)), make_layout(chosen))
         try:
             strokes, notices = strokes_of(design, args.paths_as, args.script or "auto")
-        except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+        except Error as nothing:  # a drawing with nothing to paint can be drawn as well
             if args.editable:
                 raise
             strokes, notices = [], [nothing.notice()]

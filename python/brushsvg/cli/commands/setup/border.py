@@ -1,4 +1,7 @@
-"""brushsvg setup border: move the tool around all paint and the path of the tool, at safe height."""
+"""brushsvg setup border: move the tool around the job at safe height.
+
+The border goes around all paint and the path of the tool.
+"""
 
 from __future__ import annotations
 
@@ -18,18 +21,18 @@ def border_file(args) -> None:
     from ....machine.setup_programs import around, border
 
     check_outputs(args, args.output)
-    looked = prepare_and_simulate(apply_drawing_settings(make_choices(args), args.input), outlines=False)
-    work, cell = looked.work, looked.work.options.cell
+    prepared = prepare_and_simulate(apply_drawing_settings(make_choices(args), args.input), outlines=False)
+    work, cell = prepared.work, prepared.work.options.cell
     with refuse_errors(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
     with refuse_errors(args.input):
-        around_mm = around(preflight.job_bounds_mm(work.plan, looked.marks, work.brush))
-        made = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
+        around_mm = around(preflight.job_bounds_mm(work.plan, prepared.marks, work.brush))
+        program = border(around_mm, work.brush, cell, work.plan.sheet_mm, args.z_offset)
         title, count = f"border of {work.title or 'untitled'}", len(work.plan.passes)
         job = Job(args.z_offset)
         header = header_lines.border_header(
-            title, work.brush.name, count, work.plan.sheet_mm, outputs.notes(work), around_mm, made, job
+            title, work.brush.name, count, work.plan.sheet_mm, outputs.notes(work), around_mm, program, job
         )
-        text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
+        text = writer.text_of(post, replace(program, header=header), suffix_of(args.output))
     warn_about_cell(args, cell)
-    write_outputs(args, {args.output: text}, seconds=duration_s(made))
+    write_outputs(args, {args.output: text}, seconds=duration_s(program))

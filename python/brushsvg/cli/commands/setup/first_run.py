@@ -12,7 +12,7 @@ from ...console import refuse_errors
 from ...steps.options import load_brush, load_exact_cell, warn_about_cell
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
-HEIGHTS_MM = (1.0, -1.0, 0.1)  # the defaults of the command height
+HEIGHTS_MM = (1.0, -1.0, 0.1)  # first, last, step: the defaults of the command height
 
 
 def first_run_file(args) -> None:
@@ -24,8 +24,8 @@ def first_run_file(args) -> None:
     with refuse_errors(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
     with refuse_errors(cell.name):
-        made = first_run(brush, cell, args.sheet, *HEIGHTS_MM)
-        header = header_lines.first_header(brush.name, args.sheet, HEIGHTS_MM, made)
-        text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
+        program = first_run(brush, cell, args.sheet, *HEIGHTS_MM)
+        header = header_lines.first_header(brush.name, args.sheet, HEIGHTS_MM, program)
+        text = writer.text_of(post, replace(program, header=header), suffix_of(args.output))
     warn_about_cell(args, cell)
-    write_outputs(args, {args.output: text}, seconds=duration_s(made))
+    write_outputs(args, {args.output: text}, seconds=duration_s(program))

@@ -22,9 +22,9 @@ def height_file(args) -> None:
     with refuse_errors(args.output):
         post = writer.post_for(suffix_of(args.output), cell)
     with refuse_errors(cell.name):
-        made = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
+        program = paper_height(brush, cell, args.sheet, args.highest, args.lowest, args.step)
         heights_mm = (args.highest, args.lowest, args.step)
-        header = header_lines.height_header(brush.name, args.sheet, heights_mm, made)
-        text = writer.text_of(post, replace(made, header=header), suffix_of(args.output))
+        header = header_lines.height_header(brush.name, args.sheet, heights_mm, program)
+        text = writer.text_of(post, replace(program, header=header), suffix_of(args.output))
     warn_about_cell(args, cell)
-    write_outputs(args, {args.output: text}, sum(1 for _ in made.sections()), duration_s(made))
+    write_outputs(args, {args.output: text}, sum(1 for _ in program.sections()), duration_s(program))
