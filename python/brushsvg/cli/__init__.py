@@ -1,6 +1,6 @@
-"""Run the typed command and turn its result into lines on stderr and an exit status.
+"""Run the typed command, print its messages on stderr, and return its status.
 
-Nothing is imported before main runs, so that from its first moment on Ctrl-C leaves no traceback.
+Nothing is imported before main runs, so that Ctrl-C never leaves a traceback.
 """
 
 from __future__ import annotations

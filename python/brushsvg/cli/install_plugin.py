@@ -77,9 +77,9 @@ def own_program() -> str:
     If another program is running, the brushsvg next to the running Python is returned, if there is one.
     """
     scripts = sysconfig.get_path("scripts")
-    for found in (shutil.which(sys.argv[0]), shutil.which("brushsvg", path=scripts)):
-        if found and Path(found).stem == "brushsvg":
-            return os.path.abspath(found)
+    for candidate in (shutil.which(sys.argv[0]), shutil.which("brushsvg", path=scripts)):
+        if candidate and Path(candidate).stem == "brushsvg":
+            return os.path.abspath(candidate)
     return ""
 
 
@@ -98,14 +98,14 @@ def extensions_folder() -> Path:
 
 
 def _read_tree(source: Path) -> dict[str, bytes]:
-    found = sorted(path for path in source.glob("*") if path.suffix in _SUFFIXES or path.name == "LICENSE")
-    if not found:
+    paths = sorted(path for path in source.glob("*") if path.suffix in _SUFFIXES or path.name == "LICENSE")
+    if not paths:
         raise Error(
             "the extension is not part of this package, its licence being another: give its zip, "
             "brushsvg-inkscape.zip, which `make plugins` makes of the source",
             code="plugin-missing",
         )
-    return {path.name: path.read_bytes() for path in found}
+    return {path.name: path.read_bytes() for path in paths}
 
 
 def _read_zip(path: str) -> dict[str, bytes]:

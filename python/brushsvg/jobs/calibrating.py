@@ -218,14 +218,14 @@ def calibrate(
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")
     notices: list[Notice] = []
-    made = run_calibration(
+    calibration = run_calibration(
         given,
         name,
         make_checked_options(options),
         progress or (lambda text: None),
-        lambda _, found: notices.extend(found),
+        lambda _, warnings: notices.extend(warnings),
     )
-    return replace(made, notices=tuple(notices))
+    return replace(calibration, notices=tuple(notices))
 
 
 def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
@@ -245,13 +245,13 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     refuse_unknown_parts(options.get("machine", ()))
     for name in ("absolute", "total", "paint", "mirrored"):
         need_truth(options.get(name, False), name)
-    for name, least, most in (
+    for name, minimum, maximum in (
         ("bar_mm", 0.001, 1e3),
         ("dpi", MIN_DPI, MAX_DPI),
         ("height_mm", 0.001, 10.0),
     ):
         if name in options:
-            options[name] = need_number(options[name], name, least, most)
+            options[name] = need_number(options[name], name, minimum, maximum)
     for name in ("chart", "spread", "plan"):
         if name in options:
             need(options[name], (str, os.PathLike), f"a path, which {name} is")

@@ -33,7 +33,7 @@ from ..show.evaluation.report import Report
 from ..verify import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
-from ..verify.readback.header import made as made_of
+from ..verify.readback.header import made as read_header
 from ..verify.readback.ros2 import as_table
 from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
@@ -136,15 +136,15 @@ def check(
             raise Error(sentence, name, code="flag-without-effect")
     if drawing is None and chosen.corrections is not None:
         raise Error("corrections need the drawing that they are of", "corrections", code="options-contradict")
-    found: list[Notice] = []
+    notices: list[Notice] = []
     result = cancelling.run(
         lambda stage: check_program(
-            os.fspath(program), chosen, stage, lambda _, notices: found.extend(notices)
+            os.fspath(program), chosen, stage, lambda _, warnings: notices.extend(warnings)
         ),
         progress,
         cancel,
     )
-    return replace(result, notices=tuple(found))
+    return replace(result, notices=tuple(notices))
 
 
 def check_program(
@@ -161,22 +161,25 @@ def check_program(
         if suffix in GCODE and not is_ours(text):
             return _check_foreign_program(path, text, chosen, warn)
         text = _read_with_called_files(path, suffix, text)
-        made = made_of(text)
-        chosen = _drop_project_choices(chosen, made)
-        for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
+        header = read_header(text)
+        chosen = _drop_project_choices(chosen, header)
+        for kind, name, names in (
+            ("cell", header.cell, cell_names()),
+            ("brush", header.brush, brush_names()),
+        ):
             if getattr(chosen, kind) is None and name not in names:
                 raise Error(
                     f"the program names {kind} {name!r}, which does not come along",
                     code=f"{kind}-unknown",
                     advice=f"give --{kind} FILE",
                 )
-        tolerance_mm = made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
-        cell = preflight.as_exact_as(load_cell(chosen.cell or made.cell), tolerance_mm)
-        brush = load_brush(chosen.brush) or find_brush(made.brush)
+        tolerance_mm = header.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
+        cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
+        brush = load_brush(chosen.brush) or find_brush(header.brush)
         read = read_program(text, suffix, cell)
     warn(cell.name, list_arm_notices(cell))
-    program = _OwnProgram(path, text, made, read, cell, brush)
-    if made.border_mm or made.heights_mm or made.first_mm:
+    program = _OwnProgram(path, text, header, read, cell, brush)
+    if header.border_mm or header.heights_mm or header.first_mm:
         return _check_setup_program(program, chosen, stage, warn)
     return _check_painting(program, chosen, stage, warn)
 
@@ -185,20 +188,20 @@ def check_program(
 class _OwnProgram:
     """A program that brushsvg wrote.
 
-    made: the contents of its header.
+    header: the contents of its header.
     read: its moves.
     cell, brush: the cell and brush that it is for.
     """
 
     path: str
     text: str
-    made: object
+    header: object
     read: object
     cell: Cell
     brush: _core.Brush
 
     def z_offset_mm(self, chosen: Choices) -> float:
-        return self.made.z_offset_mm if chosen.z_offset is None else chosen.z_offset
+        return self.header.z_offset_mm if chosen.z_offset is None else chosen.z_offset
 
 
 def _read_with_called_files(path: str, suffix: str, text: str) -> str:
@@ -228,7 +231,7 @@ def _read_with_called_files(path: str, suffix: str, text: str) -> str:
     return "".join([text, *called.values()])
 
 
-def _drop_project_choices(chosen: Choices, made) -> Choices:
+def _drop_project_choices(chosen: Choices, header) -> Choices:
     """Drop project choices that the header of the program defines."""
     if not chosen.from_project:
         return chosen
@@ -236,19 +239,19 @@ def _drop_project_choices(chosen: Choices, made) -> Choices:
     chosen = drop_overruled(
         chosen, {name: drawing_settings[name] for name in drawing_settings if name not in ("brush", "cell")}
     )
-    names = {"brush": made.brush, "cell": made.cell}
+    names = {"brush": header.brush, "cell": header.cell}
     dropped = {"z_offset"} | find_overruled_names(chosen, names, unknown=False)
-    if made.sheet_mm and chosen.input is None:
+    if header.sheet_mm and chosen.input is None:
         dropped.add("sheet")
     return drop_from_project(chosen, dropped)
 
 
 def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
-    made, read, cell, brush = program.made, program.read, program.cell, program.brush
+    header, read, cell, brush = program.header, program.read, program.cell, program.brush
     work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
     z_offset_mm = program.z_offset_mm(chosen)
     with name_file_in_errors(program.path):
-        sheet_mm = work.plan.sheet_mm if work else chosen.sheet or made.sheet_mm
+        sheet_mm = work.plan.sheet_mm if work else chosen.sheet or header.sheet_mm
         if sheet_mm is None:
             raise Error(
                 "its header does not say how large the sheet is: give --sheet or the drawing",
@@ -257,25 +260,27 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         simulated = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
     warn(program.path, _report_offset(z_offset_mm))
     with name_file_in_errors(program.path):
-        problems = simulated.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
+        problems = simulated.problems + simulate_program.misnumbered(
+            read, header.first_stroke, header.strokes
+        )
         strokes, drawn, speeds = None, None, None
         if work:
             loads = in_loads(work.plan, brush, cell)
-            stroke_rows, differences = against_plan.with_plan(simulated, loads, cell, made.first_stroke)
-            if made.is_of_plan and work.strokes is not None:
+            stroke_rows, differences = against_plan.with_plan(simulated, loads, cell, header.first_stroke)
+            if header.is_of_plan and work.strokes is not None:
                 differences = _merge_style_differences(differences)
             problems = problems + differences
             speeds = None if None in stroke_rows else [loads.loads[k].speed_mm_s for k in stroke_rows]
             if work.strokes is not None:
                 target_strokes = match_whole_strokes(work, loads)
                 strokes = None if None in stroke_rows else [target_strokes[k] for k in stroke_rows]
-                whole_job = made.first_stroke == 1
+                whole_job = header.first_stroke == 1
                 drawn = [each for each in work.strokes if not is_margin(each)] if whole_job else None
         rewritten, rewrite_notices = _compare_with_rewritten(program, simulated, work, speeds, z_offset_mm)
         problems = problems + rewrite_notices
         if rewritten and not problems:
             problems = out_of_arm(rewritten, sheet_mm)
-        painted_work = Work(made.title, brush, simulated.plan, strokes, (), Options(), ())
+        painted_work = Work(header.title, brush, simulated.plan, strokes, (), Options(), ())
         seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered in the program
             seconds = as_run_s
@@ -337,10 +342,10 @@ def _compare_with_rewritten(
 
     Returns the program that brushsvg would write, and notices on where the given program differs.
     """
-    made, cell, brush = program.made, program.cell, program.brush
-    header_notes = against_regenerated.HeaderNotes(*_make_expected_header(made, work))
+    header, cell, brush = program.header, program.cell, program.brush
+    header_notes = against_regenerated.HeaderNotes(*_make_expected_header(header, work))
     rewritten = against_regenerated.again(
-        simulated, brush, cell, z_offset_mm, made.first_stroke, header_notes, speeds
+        simulated, brush, cell, z_offset_mm, header.first_stroke, header_notes, speeds
     )
     if not rewritten:
         return rewritten, []
@@ -349,7 +354,7 @@ def _compare_with_rewritten(
         usual_mm_s = min(Options.speed_mm_s, rewritten.touching_mm_s)
         fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in simulated.plan.passes]
         fastest_program = against_regenerated.again(
-            simulated, brush, cell, z_offset_mm, made.first_stroke, None, fastest
+            simulated, brush, cell, z_offset_mm, header.first_stroke, None, fastest
         )
         least_s = duration_s(fastest_program)
     changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s)
@@ -361,7 +366,7 @@ def _compare_with_rewritten(
     return rewritten, notices
 
 
-def _make_expected_header(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
+def _make_expected_header(header, work: Work | None) -> tuple[str, tuple[str, ...]]:
     """Return the title and notes that the header of a program should have.
 
     They come from the drawing, or from the header itself where nothing else is known, as for a program that was
@@ -370,11 +375,11 @@ def _make_expected_header(made, work: Work | None) -> tuple[str, tuple[str, ...]
     if (
         work is None
         or work.strokes is None
-        or not made.notes[:1]
-        or not made.notes[0].startswith("compensation")
+        or not header.notes[:1]
+        or not header.notes[0].startswith("compensation")
     ):
-        return made.title, made.notes
-    order = [note for note in made.notes if note.startswith("order")]
+        return header.title, header.notes
+    order = [note for note in header.notes if note.startswith("order")]
     return work.title or "untitled", (*outputs.notes(work), *order)
 
 
@@ -407,50 +412,53 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
 
     Such a program paints no drawing, and its header says all that it does.
     """
-    made, read, text = program.made, program.read, program.text
+    header, read, text = program.header, program.read, program.text
     cell, brush = program.cell, program.brush
     with name_file_in_errors(program.path):
-        if (made.heights_mm or made.first_mm) and chosen.input is not None:
+        if (header.heights_mm or header.first_mm) and chosen.input is not None:
             raise Error(
                 "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
             )
-        if made.sheet_mm is None:
+        if header.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
     work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
     with name_file_in_errors(program.path):
-        if made.border_mm:
-            sheet_mm, z_offset_mm = work.plan.sheet_mm if work else made.sheet_mm, program.z_offset_mm(chosen)
-            outcome = setup_programs.look_at_border(text, read, made, brush, cell, sheet_mm, z_offset_mm)
-            problems = [*outcome.problems, *(_compare_border(made, work, stage) if work else [])]
+        if header.border_mm:
+            sheet_mm, z_offset_mm = (
+                work.plan.sheet_mm if work else header.sheet_mm,
+                program.z_offset_mm(chosen),
+            )
+            outcome = setup_programs.look_at_border(text, read, header, brush, cell, sheet_mm, z_offset_mm)
+            problems = [*outcome.problems, *(_compare_border(header, work, stage) if work else [])]
             return Check(
                 "border",
                 tuple(problems),
                 outcome.time_s,
                 is_compared=work is not None,
-                border_mm=tuple(made.border_mm),
+                border_mm=tuple(header.border_mm),
             )
-        if made.first_mm:
-            outcome = setup_programs.look_at_first_run(text, read, made, brush, cell)
+        if header.first_mm:
+            outcome = setup_programs.look_at_first_run(text, read, header, brush, cell)
             return Check(
-                "first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(made.first_mm)
+                "first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.first_mm)
             )
-        outcome = setup_programs.look_at_heights(text, read, made, brush, cell)
-        return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(made.heights_mm))
+        outcome = setup_programs.look_at_heights(text, read, header, brush, cell)
+        return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.heights_mm))
 
 
-def _compare_border(made, work: Work, stage) -> list[Notice]:
-    """Return a notice if a run in the air does not go around the paint of the drawing."""
+def _compare_border(header, work: Work, stage) -> list[Notice]:
+    """Return a notice if a run in the air does not go around the paint."""
     marks = prediction.predict(work, outlines=False, stage=stage)
-    needed_mm, commanded_mm = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), made.border_mm
+    needed_mm, commanded_mm = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
     if (
-        max(abs(ours - theirs) for ours, theirs in zip(commanded_mm, needed_mm, strict=True))
+        max(abs(commanded - needed) for commanded, needed in zip(commanded_mm, needed_mm, strict=True))
         <= MAX_BORDER_DIFFERENCE_MM
     ):
         return []
-    place = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
+    template = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
     sentence = (
-        f"the program goes round {place.format(*commanded_mm)}, paint and tool of the drawing stay within "
-        f"{place.format(*needed_mm)}: it was changed, or made with other flags or of another drawing"
+        f"the program goes round {template.format(*commanded_mm)}, paint and tool of the drawing stay within "
+        f"{template.format(*needed_mm)}: it was changed, or made with other flags or of another drawing"
     )
     return [Notice("", sentence, code="border-elsewhere")]
 
@@ -467,8 +475,8 @@ def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -
 
     Notices on parts that are left out or painted differently are repeated, because this is the last check.
     """
-    made, source = program.made, chosen.input
-    if made.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
+    header, source = program.header, chosen.input
+    if header.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with name_file_in_errors(program.path):
             raise Error(
                 "its strokes were moved by corrections, which are not known here",
@@ -480,18 +488,18 @@ def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -
             wide = chosen.wide or settings_in(source).get("wide")
         chosen = replace(
             chosen,
-            compensation=made.compensation,
-            tolerance=made.tolerance_mm,
-            lag=made.lag_mm,
-            start=made.start,
-            end=made.end,
-            z_offset=made.z_offset_mm,
+            compensation=header.compensation,
+            tolerance=header.tolerance_mm,
+            lag=header.lag_mm,
+            start=header.start,
+            end=header.end,
+            z_offset=header.z_offset_mm,
             wide=wide,
-            margin_strokes="on" if made.has_margin else "off",
+            margin_strokes="on" if header.has_margin else "off",
         )
     warn(path_of(source), report_ineffective_flags(chosen))
     options = make_options(chosen, program.cell, program.brush)
     with name_file_in_errors(path_of(source)):
         work = preparation.prepare(source, options, stage)
     warn(path_of(source), work.notices)
-    return order_nearest_first(work) if made.nearest_first else work
+    return order_nearest_first(work) if header.nearest_first else work

@@ -281,33 +281,35 @@ def apply_drawing_settings(chosen: Choices, drawing, alone: bool = False) -> Cho
 
     alone: read nothing of the drawing except its settings.
     """
-    said = settings_in(drawing, alone)
-    chosen = drop_overruled(chosen, said)
+    settings = settings_in(drawing, alone)
+    chosen = drop_overruled(chosen, settings)
     if chosen.terminals is not None and "terminals" not in chosen.from_project:
-        said = {name: value for name, value in said.items() if name not in ("start", "end")}
+        settings = {name: value for name, value in settings.items() if name not in ("start", "end")}
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
-        if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
+        if getattr(chosen, kind) is None and settings.get(kind, names[0]) not in names:
             raise Error(
-                f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along"
-                f"{did_you_mean(said[kind], names)} Known are {', '.join(names)}",
+                f"data-brushsvg-{kind} asks for {kind} {settings[kind]!r}, which does not come along"
+                f"{did_you_mean(settings[kind], names)} Known are {', '.join(names)}",
                 where="svg",
                 code=f"{kind}-unknown",
                 advice=f"give --{kind}",
             )
-    return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
+    return replace(
+        chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None}
+    )
 
 
-def drop_overruled(chosen: Choices, said: Mapping[str, object] | None = None) -> Choices:
+def drop_overruled(chosen: Choices, settings: Mapping[str, object] | None = None) -> Choices:
     """Drop project choices that are overruled or have no effect.
 
-    The choices of this call, the settings `said` in the drawing, and the brush that a plan names are more specific.
+    The choices of this call, the settings of the drawing, and the brush that a plan names are more specific.
     A project file serves many drawings, so a choice that does not suit one of them is no mistake.
     """
     if not chosen.from_project:
         return chosen
-    said = said or {}
+    settings = settings or {}
     made_here = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
-    dropped = {*said} - {"brush", "cell"} | _find_ineffective_choices(chosen)
+    dropped = {*settings} - {"brush", "cell"} | _find_ineffective_choices(chosen)
     if "terminals" in made_here:
         dropped |= {"start", "end"}
     for option, excluded_by in (("fit", "scale"), ("scale", "fit")):
@@ -315,15 +317,18 @@ def drop_overruled(chosen: Choices, said: Mapping[str, object] | None = None) ->
             dropped.add(option)
     compensation = chosen.compensation
     if "compensation" not in made_here:
-        compensation = said.get("compensation", compensation)
+        compensation = settings.get("compensation", compensation)
     if compensation != "constant":
         dropped.add("lag")
-    names = said if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
+    names = settings if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
     return drop_from_project(chosen, dropped | find_overruled_names(chosen, names))
 
 
 def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
-    """Return the choices without those of these names that a project file made."""
+    """Return the choices without project choices of these names.
+
+    Choices of these names that were made elsewhere stay.
+    """
     dropped = {*names} & {*chosen.from_project}
     kept = tuple(name for name in chosen.from_project if name not in dropped)
     return replace(chosen, from_project=kept, **dict.fromkeys(dropped))
@@ -347,7 +352,7 @@ def find_overruled_names(chosen: Choices, named: Mapping[str, object], unknown: 
 
 
 def _find_plan_brush(chosen: Choices) -> str | None:
-    """Return the shipped brush that a plan names, if a project file names a brush too."""
+    """Return the shipped brush of a plan, if a project file names a brush too."""
     plan = chosen.input
     if "brush" in chosen.from_project and isinstance(plan, str | os.PathLike):
         with suppress(Error):  # preparation reports what is wrong with the plan
@@ -375,13 +380,13 @@ def report_ineffective_flags(chosen: Choices) -> list[Notice]:
     The poses of a plan are fixed, and some flags only apply to G-code.
     """
     suffix = suffix_of(chosen.input)
-    flags, on = GCODE_FLAGS, "a drawing that is not G-code"
+    flags, subject = GCODE_FLAGS, "a drawing that is not G-code"
     if suffix == ".json":
-        flags, on = (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
+        flags, subject = (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
     elif suffix in GCODE:
         flags = ()
     return [
-        Notice("", f"--{flag} has no effect on {on}", code="flag-without-effect", about=flag)
+        Notice("", f"--{flag} has no effect on {subject}", code="flag-without-effect", about=flag)
         for flag in flags
         if getattr(chosen, CHOICE_BY_FLAG.get(flag, flag)) is not None
     ]

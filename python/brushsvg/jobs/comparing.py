@@ -94,7 +94,7 @@ class Sheet:
 class PaintedJob:
     """What photographs of a painted sheet show.
 
-    overlap: overlap of all paint with the target, or with the prediction if there is no drawing.
+    overlap: overlap of all paint, as painted, with the target, or with the prediction if there is no drawing.
     strokes: for each stroke its overlaps and its place.
     ends: by stroke, how much later than the target it begins and ends.
     faults: the causes of the errors; None if there are too few data.
@@ -161,13 +161,13 @@ def compare(
     paths = [photos] if single else list(photos)
     if not paths:
         raise Error("there is no photograph", "photos", code="wrong-type")
-    for each in paths:
-        need(each, (str, os.PathLike), "a path, which each of photos is")
+    for path in paths:
+        need(path, (str, os.PathLike), "a path, which each of photos is")
     chosen, notices = make_choices(drawing, choices), []
 
     def work(stage) -> PaintedJob:
-        def warn(_, found):
-            notices.extend(found)
+        def warn(_, warnings):
+            notices.extend(warnings)
 
         return compare_sheet(
             prepare_painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn

@@ -24,14 +24,14 @@ def read_marks(path: str | os.PathLike[str]) -> _core.Marks:
     return _read_json_file(_core.read_marks, "marks", path)
 
 
-def _read_json_file(parse, what: str, path: str | os.PathLike[str]):
+def _read_json_file(parse, contents_name: str, path: str | os.PathLike[str]):
     if isinstance(path, str) and path.lstrip().startswith("{"):
         return parse(path)
     try:
         return parse(read_bytes(path).decode("utf-8"))
     except UnicodeDecodeError:
         raise Error(
-            f"the file is not {what}: it is not text in UTF-8", file=os.fspath(path), code="not-json"
+            f"the file is not {contents_name}: it is not text in UTF-8", file=os.fspath(path), code="not-json"
         ) from None
     except Error as refusal:
         refusal.file = os.fspath(path)

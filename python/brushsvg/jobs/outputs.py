@@ -172,7 +172,7 @@ def reported(
     """Return the figures of a work.
 
     warnings: None for the warnings of the work.
-    forbidden: those of the warnings for which no program would be written.
+    forbidden: the warnings for which no program would be written.
     drawn: see report.measure.
     seconds: the duration, if it is known better than from the plan.
     advice: advice on the size.

@@ -19,9 +19,9 @@ def predict(
     outlines: also trace the outlines of the marks.
     whole: with outlines, also trace the outlines of all paint together.
     """
-    known = None if outlines else work.marks()
-    if known is not None:
-        return known
+    known_marks = None if outlines else work.marks()
+    if known_marks is not None:
+        return known_marks
     return marks_of(work.plan, work.brush, outlines, stage, whole, work.options.cell)
 
 

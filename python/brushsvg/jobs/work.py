@@ -58,9 +58,16 @@ class Work:
         return self.known.marks if self._is_known() else None
 
     def walk(self, cell: Cell, job: Job = WHOLE_JOB) -> Walked | None:
-        """Return the program of the plan with the limits it breaks, if known for this job."""
-        known = self.known.walk if self._is_known() else None
-        return known if known and cell == self.options.cell and replace(known.job, visits=()) == job else None
+        """Return the program of the plan with the limits it breaks, if known.
+
+        It is known only for the cell of the options and for the job that was simulated.
+        """
+        known_walk = self.known.walk if self._is_known() else None
+        return (
+            known_walk
+            if known_walk and cell == self.options.cell and replace(known_walk.job, visits=()) == job
+            else None
+        )
 
     def _is_known(self) -> bool:
         return self.known is not None and not self.brush.paint and self.known.plan == self.plan
@@ -68,13 +75,13 @@ class Work:
 
 def match_whole_strokes(work: Work, loads: PlanInLoads) -> list:
     """Return the stroke that each load paints whole, None for a part of a stroke."""
-    whole, left = [], iter(work.strokes)
+    matched, remaining = [], iter(work.strokes)
     for a_pass in loads.loads:
         if is_later_part(a_pass):
-            whole[-1:] = [None, None]
+            matched[-1:] = [None, None]
         else:
-            whole.append(next(left))
-    return whole
+            matched.append(next(remaining))
+    return matched
 
 
 def list_colours(work: Work) -> list[str]:
@@ -98,11 +105,13 @@ def select_colour(work: Work, colour: str) -> Work:
     """
     all_colours = list_colours(work)
     if colour not in all_colours:
-        known = ", ".join(all_colours) or "none"
-        sentence = f"nothing is painted in {colour}; colours of this drawing: {known}"
+        known_colours = ", ".join(all_colours) or "none"
+        sentence = f"nothing is painted in {colour}; colours of this drawing: {known_colours}"
         raise Error(sentence, "colour", code="nothing-to-paint")
-    without = {"", colour} if colour == all_colours[0] else {colour}
-    return _select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in without])
+    painted_colours = {"", colour} if colour == all_colours[0] else {colour}
+    return _select_rows(
+        work, [k for k, each in enumerate(work.plan.passes) if each.colour in painted_colours]
+    )
 
 
 def _select_rows(work: Work, rows: list[int]) -> Work:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 SHIPPED = Path(__file__).parents[2] / "data"
 SUFFIXES = {"brush": ".json", "cell": ".toml"}
-# The kind of thing that an option with this dest names.
+# What an option with this dest names.
 KIND_BY_DEST = {
     "brush": "brush",
     "true_brush": "brush",

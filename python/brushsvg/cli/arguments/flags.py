@@ -19,7 +19,7 @@ def list_program_formats() -> str:
     titles: dict[str, str] = {}
     for post in POSTS.values():
         name = " ".join(post.extensions)
-        # for languages that share an extension, use the common part of their titles, such as G-code for grbl
+        # Languages that share an extension get the common part of their titles, as in: G-code for grbl.
         titles[name] = post.title.partition(" for ")[0] if name in titles else post.title
     return " or ".join(f"{title} ({name})" for name, title in titles.items())
 

@@ -36,32 +36,34 @@ class _Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
         # A prefix of a flag is not accepted, because its meaning would change when flags are added.
         super().__init__(allow_abbrev=False, **settings)
-        # argparse accepts -5 as a value, but reads -5,-5 and -5mm as flags
+        # argparse accepts -5 as a value, but reads -5,-5 and -5mm as flags.
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def _get_values(self, action, arg_strings):
-        # argparse drops "--" anywhere, so that --width=-- would become an empty list
+        # argparse drops "--" anywhere, so that --width=-- would become an empty list.
         if action.option_strings and "--" in arg_strings:
             raise argparse.ArgumentError(action, "'--' is no value")
         return super()._get_values(action, arg_strings)
 
     def _check_value(self, action, value):
         if action.choices is not None and value not in action.choices:
-            known = [str(choice) for choice in action.choices]
-            sentence = f"{value!r} is not known{did_you_mean(str(value), known)} Known are {', '.join(known)}"
+            choices = [str(choice) for choice in action.choices]
+            sentence = (
+                f"{value!r} is not known{did_you_mean(str(value), choices)} Known are {', '.join(choices)}"
+            )
             raise argparse.ArgumentError(action, sentence)
 
     def parse_known_args(self, args=None, namespace=None):
         """Refuse unknown arguments, and suggest a similar flag of this parser."""
-        found, others = super().parse_known_args(args, namespace)
-        if others:
-            flag = others[0].partition("=")[0]
+        parsed, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            flag = unknown[0].partition("=")[0]
             flags = [name for action in self._actions for name in action.option_strings]
             hint = did_you_mean(flag, flags) if flag.startswith("-") else "."
             if flag == "--messages":
                 hint = ": it stands before the command, as in brushsvg --messages json convert"
-            self.error(f"unrecognized arguments: {' '.join(others)}{hint.removesuffix('.')}")
-        return found, others
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{hint.removesuffix('.')}")
+        return parsed, unknown
 
     def format_help(self) -> str:
         commands = next(

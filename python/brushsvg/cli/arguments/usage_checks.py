@@ -47,14 +47,14 @@ def check_files(args, read, written) -> None:
     for path, suffixes in (*read, *written):
         if path is not None and suffixes:
             check_extension(args, path, suffixes)
-    taken = {os.path.realpath(path) for path, _ in read if path is not None}
+    named_paths = {os.path.realpath(path) for path, _ in read if path is not None}
     for path in (path for path, _ in written if path is not None):
-        if os.path.realpath(path) in taken:
+        if os.path.realpath(path) in named_paths:
             args.parser.error(f"{path} cannot be two files at once")
-        taken.add(os.path.realpath(path))
+        named_paths.add(os.path.realpath(path))
 
 
 def check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
     if suffix_of(path) not in suffixes:
-        what = "is a folder, and no file that ends in" if os.path.isdir(path) else "does not end in"
-        args.parser.error(f"{path} {what} {' or '.join(suffixes)}")
+        problem = "is a folder, and no file that ends in" if os.path.isdir(path) else "does not end in"
+        args.parser.error(f"{path} {problem} {' or '.join(suffixes)}")

@@ -100,11 +100,11 @@ def width_at(text: str) -> tuple[float, float]:
     return width(depth), width(width_text)
 
 
-def _split_at_depth(text: str, what: str, example: str) -> tuple[str, str]:
+def _split_at_depth(text: str, quantity: str, example: str) -> tuple[str, str]:
     depth, equals, value = text.partition("=")
     if not equals:
         raise argparse.ArgumentTypeError(
-            f"{text[:24]!r} is not a depth and its {what}; write for example {example}"
+            f"{text[:24]!r} is not a depth and its {quantity}; write for example {example}"
         )
     return depth, value
 
@@ -189,12 +189,12 @@ def _parse_number(text: str, error: str) -> float:
         raise argparse.ArgumentTypeError(error) from None
 
 
-def _parse_length(text: str, least: float, greatest: float) -> float:
+def _parse_length(text: str, minimum: float, maximum: float) -> float:
     from ...units import length_mm
 
     value = _parse(length_mm, text)
-    if not least <= value <= greatest:
-        raise argparse.ArgumentTypeError(f"{value:g} mm is outside the range [{least:g}, {greatest:g}] mm")
+    if not minimum <= value <= maximum:
+        raise argparse.ArgumentTypeError(f"{value:g} mm is outside the range [{minimum:g}, {maximum:g}] mm")
     return value
 
 

@@ -14,7 +14,7 @@ from ...errors import Notice
 from ..arguments import values
 from ..console import RefusedError, say
 
-# Medians of 12 hidden brushes: benchmarks/typed_brushes.py
+# Medians over 12 hidden brushes, see benchmarks/typed_brushes.py.
 ACCURACY_GAIN = (
     "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
 )
@@ -48,8 +48,8 @@ def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[f
     for line in HOW_TO_MEASURE:
         say(line)
     lags, widths = [], []
-    for place in DEPTH_NAMES:
-        depth = _ask_length(f"{place} depth [mm]: ")
+    for depth_name in DEPTH_NAMES:
+        depth = _ask_length(f"{depth_name} depth [mm]: ")
         width = _ask_length("  width of the mark [mm]: ")
         turn = _ask_length("  turn, before the second line [mm]: ", values.lag)
         widths.append((depth, width))
@@ -88,8 +88,12 @@ def warn_of_few_depths(args, widths) -> list[Notice]:
     """
     if args.like is not None or args.lag == 0:
         return []
-    fewest = min(len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths))
-    if fewest >= len(DEPTH_NAMES):
+    depth_count = min(
+        len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths)
+    )
+    if depth_count >= len(DEPTH_NAMES):
         return []
-    sentence = f"lag or width is known at {fewest} depth{'s' * (fewest > 1)}. Typically {ACCURACY_GAIN}"
+    sentence = (
+        f"lag or width is known at {depth_count} depth{'s' * (depth_count > 1)}. Typically {ACCURACY_GAIN}"
+    )
     return [Notice("", sentence, code="few-depths", advice=f"measure at three depths: {MEASUREMENT_FLAGS}")]

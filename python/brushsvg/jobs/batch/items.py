@@ -106,8 +106,10 @@ def _make_drawing_item(path: Path, name: Path) -> Item:
     def read() -> InMemory:
         extension = path.suffix.lower()
         if extension not in READERS and (extension or path.exists()):
-            known = ", ".join(READERS)
-            sentence = f"{extension or 'no extension'} is not a drawing format that is read; known: {known}"
+            known_formats = ", ".join(READERS)
+            sentence = (
+                f"{extension or 'no extension'} is not a drawing format that is read; known: {known_formats}"
+            )
             raise Error(sentence, file=str(path), code="drawing-format")
         return InMemory(extension, read_bytes(path))
 

@@ -237,7 +237,7 @@ class Manifest:
 
     def _is_there(self, row: Row) -> bool:
         names = row.files or ([row.path] if row.path else [])
-        # Path.exists would raise for a name in a damaged manifest that is too long for a file
+        # Path.exists would raise for a name in a damaged manifest that is too long for a file.
         return any(os.path.exists(self.folder / name) for name in names)
 
     def close(self) -> None:

@@ -100,7 +100,7 @@ def version() -> str:
 
 
 def convert_task(task: Task) -> TaskResult:
-    """Convert the drawing of a task. A refusal or a bug is a result, not an exception."""
+    """Convert the drawing of a task. A refusal or a bug becomes a result."""
     installed_version = version()
     if task.version != installed_version:
         return TaskResult(None, {}, b"", version=installed_version)

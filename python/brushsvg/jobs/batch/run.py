@@ -302,8 +302,8 @@ class _TakenPlaces:
         """
         for path in paths:
             place = Path(path).relative_to(Path(path).parts[0])
-            stem, own = file_name_key(place.with_suffix("").as_posix()), file_name_key(item.name)
-            other = self.sources.get(stem) if stem != own else None
+            stem_key, own_key = file_name_key(place.with_suffix("").as_posix()), file_name_key(item.name)
+            other = self.sources.get(stem_key) if stem_key != own_key else None
             other = other or self.folders.get(file_name_key(place.as_posix()))
             other = other or self.manifest.other_source(item, path)
             if other:

@@ -149,14 +149,15 @@ def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, flo
 
     Returns the passes and the size of the sheet with their strip, or None if a pass is wider than the sheet.
     """
-    from ...calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight  # brings OpenCV
+    # The chart layout imports OpenCV, which is not needed without margin strokes.
+    from ...calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight
 
     brush, (width, height) = work.brush, work.plan.sheet_mm
     # The shallowest mark is too thin to be visible in a photograph.
     _, shallowest, *deeper = chart_depths(brush, 1 + DEPTH_COUNT, deepest_mm)
     charted = [straight(brush, shallowest), *(angular(brush, depth) for depth in deeper)]
     left, bottom, top, passes = 0.0, height + GAP_MM, height, []
-    names, last = {each.stroke for each in work.plan.passes}, work.plan.passes[-1]
+    names, last_pass = {each.stroke for each in work.plan.passes}, work.plan.passes[-1]
     free_names = (
         name for k in range(1, len(names) + DEPTH_COUNT + 1) if (name := f"{MARGIN_KIND}-{k}") not in names
     )
@@ -170,7 +171,7 @@ def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, flo
             left, bottom = 0.0, top + GAP_MM
         poses = a_pass.poses_mm + np.array([left - x0, bottom - y0, 0.0])
         settings = _core.Settings(kind=MARGIN_KIND)
-        passes.append(_core.Pass(next(free_names), poses, speed, last.layer, last.colour, settings))
+        passes.append(_core.Pass(next(free_names), poses, speed, last_pass.layer, last_pass.colour, settings))
         left, top = left + x1 - x0 + GAP_MM, max(top, bottom + y1 - y0)
     return passes, (width, float(np.ceil(top)))
 

@@ -1,4 +1,4 @@
-"""How well other brushes would paint the same drawing."""
+"""Rank other brushes by how well they would paint the same drawing."""
 
 from __future__ import annotations
 

@@ -197,19 +197,19 @@ def _fills_corners(options: Options) -> bool:
     return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
 
 
-def _limit_widths(found: list, brush, options: Options, partly: bool) -> _StrokeSet:
+def _limit_widths(drawn: list, brush, options: Options, partly: bool) -> _StrokeSet:
     """Make strokes no wider than the brush."""
-    strokes, refused, left_out = found, [], []
+    strokes, refused, left_out = drawn, [], []
     if partly and options.wide == "refuse":
         strokes, _, refused, left_out = _separate_refused(
             strokes, strokes, lambda pairs: within_reach(pairs, brush, options.wide)
         )
     painted, targets, notices = within_reach(strokes, brush, options.wide, _leads_paint(options))
-    return _StrokeSet(list(found), painted, targets, notices, refused, left_out)
+    return _StrokeSet(list(drawn), painted, targets, notices, refused, left_out)
 
 
 def _search_strokes(
-    lines: _StrokeSet, done, brush, compensated, options: Options
+    lines: _StrokeSet, compensation, brush, compensated, options: Options
 ) -> tuple[_StrokeSet, _core.Compensated]:
     """Improve the strokes by a search, which also adds strokes."""
     search = searched(
@@ -221,7 +221,7 @@ def _search_strokes(
         options.detail,
         _fills_corners(options),
         options.wide != "clamp",
-        done,
+        compensation,
     )
     lines = replace(
         lines, drawn=search.drawn, painted=search.painted, targets=search.targets, added=search.added
@@ -246,28 +246,39 @@ def _compensate(lines: _StrokeSet, compensated, partly: bool) -> tuple[_StrokeSe
     return lines, compensated(lines.painted)
 
 
-def _plan_strokes(lines: _StrokeSet, done, brush, compensated, options: Options, stage) -> _PlannedStrokes:
+def _plan_strokes(
+    lines: _StrokeSet, compensation, brush, compensated, options: Options, stage
+) -> _PlannedStrokes:
     """Choose ends that the machine can run, and press deeper as paint runs out."""
-    painted, targets, notices, known, cell = lines.painted, lines.targets, [], None, options.cell
+    painted, targets, notices, simulation, cell = lines.painted, lines.targets, [], None, options.cell
     if cell is not None and _leads_paint(options):
-        fitting, known = fit_ends_to_machine(
-            painted, brush, done.plan, compensated, options, stage, lines.added
+        fitting, simulation = fit_ends_to_machine(
+            painted, brush, compensation.plan, compensated, options, stage, lines.added
         )
         if fitting is not painted:
-            kept = {stroke.id for stroke in fitting}
-            targets = [target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept]
-            painted, done = fitting, compensated(fitting)
+            kept_ids = {stroke.id for stroke in fitting}
+            targets = [
+                target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept_ids
+            ]
+            painted, compensation = fitting, compensated(fitting)
     if brush.paint and brush.width_follows_depth() and _leads_paint(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
 
         def fetched(plan):
             return fetched_mm(plan, brush, cell)
 
-        pressed = pressed_deeper(painted, targets, brush, done, compensated, fetched, lowest_mm)
-        painted, targets, done = pressed.painted, pressed.targets, pressed.done
+        pressed = pressed_deeper(painted, targets, brush, compensation, compensated, fetched, lowest_mm)
+        painted, targets, compensation = pressed.painted, pressed.targets, pressed.done
         notices = pressed.notices
     return _PlannedStrokes(
-        painted, targets, done, done.plan, done.tracking_errors, [False] * len(painted), notices, known
+        painted,
+        targets,
+        compensation,
+        compensation.plan,
+        compensation.tracking_errors,
+        [False] * len(painted),
+        notices,
+        simulation,
     )
 
 
@@ -379,11 +390,11 @@ def _check_speed(brush, options: Options) -> None:
     speed, cell = options.speed_of_all_mm_s, options.cell
     if speed is None:
         return
-    least = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
-    most = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
-    whose = f"brush {brush.name}" if most == brush.max_speed_mm_s else f"cell {cell.name}"
-    if not least <= speed <= most:
-        sentence = f"speed {speed:.4g} mm/s is outside the range [{least:g}, {most:g}] mm/s of {whose}"
+    min_mm_s = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
+    max_mm_s = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
+    whose = f"brush {brush.name}" if max_mm_s == brush.max_speed_mm_s else f"cell {cell.name}"
+    if not min_mm_s <= speed <= max_mm_s:
+        sentence = f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:g}, {max_mm_s:g}] mm/s of {whose}"
         raise Error(sentence, code="speed-out-of-range")
 
 

@@ -11,7 +11,7 @@ from ...errors import Error
 from ...read.design import Notice
 
 
-def add_width_advice(painted, done, brush, compensated) -> list[Notice]:
+def add_width_advice(painted, compensation, brush, compensated) -> list[Notice]:
     """Return the warnings of the compensation, with advice on widths.
 
     The warning on depths that were not measured names a stroke. It is dropped where only the ends of the stroke
@@ -23,13 +23,15 @@ def add_width_advice(painted, done, brush, compensated) -> list[Notice]:
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
-    strokes_and_passes = zip(painted, done.plan.passes, strict=True)
+    strokes_and_passes = zip(painted, compensation.plan.passes, strict=True)
     shallow_at_ends = {
         stroke.id
         for stroke, run in strokes_and_passes
         if measured and _is_shallow_only_at_ends(stroke, run, brush, *measured)
     }
-    unmeasured = {each.where for each in done.warnings if each.code == "depth-not-measured"} - shallow_at_ends
+    unmeasured = {
+        each.where for each in compensation.warnings if each.code == "depth-not-measured"
+    } - shallow_at_ends
     advice, advisable = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
         advisable = [stroke for stroke in painted if stroke.id in unmeasured and not stroke.wanted_mm]
@@ -39,7 +41,7 @@ def add_width_advice(painted, done, brush, compensated) -> list[Notice]:
         replace(each, advice=advice if each.where in advised else "")
         if each.code == "depth-not-measured"
         else each
-        for each in done.warnings
+        for each in compensation.warnings
         if each.code != "depth-not-measured" or each.where not in shallow_at_ends
     ]
 
@@ -59,8 +61,8 @@ def _make_width_advice(lines: list, brush, measured: tuple[float, float], compen
         helps = False
     if not helps:
         return ""
-    least, greatest = (2 * half for half in halves)
-    return f"--width MM, from {least:.2g} to {greatest:.2g}, gives all strokes one width that was measured"
+    min_width_mm, max_width_mm = (2 * half for half in halves)
+    return f"--width MM, from {min_width_mm:.2g} to {max_width_mm:.2g}, gives all strokes one width that was measured"
 
 
 def _is_shallow_only_at_ends(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:

@@ -120,9 +120,13 @@ def options() -> dict[str, str]:
 def write_project(
     brush: str | None = None, cell: str | None = None, paper: str | None = None, speed: float | None = None
 ) -> str:
-    """Write a project file with a comment on each key. A key without a value is written as a comment.
+    """Write a project file with a comment on each key.
 
-    brush, cell: a shipped name, or a path relative to the file; paper: as `--sheet`; speed: mm/s.
+    A key without a value is written as a comment.
+
+    brush, cell: a shipped name, or a path relative to the file.
+    paper: as `--sheet`.
+    speed: mm/s.
     """
 
     def line(key: str, value, example) -> str:
@@ -173,16 +177,16 @@ def _read_settings(document: dict, folder: str) -> dict[str, object]:
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):
         raise Error("defaults is written as a table, [defaults]", where="defaults", code="wrong-type")
-    known = options()
+    choice_by_key = options()
     for key in document:
-        _refuse_unknown(key, CHOICE_BY_TOP_KEY, known, "write it below [defaults]")
+        _refuse_unknown(key, CHOICE_BY_TOP_KEY, choice_by_key, "write it below [defaults]")
     settings = {
         CHOICE_BY_TOP_KEY[key]: read_value(CHOICE_BY_TOP_KEY[key], value, key)
         for key, value in document.items()
     }
     for key, value in defaults.items():
-        _refuse_unknown(key, known, CHOICE_BY_TOP_KEY, "write it above [defaults]", "defaults.")
-        settings[known[key]] = read_value(known[key], value, f"defaults.{key}")
+        _refuse_unknown(key, choice_by_key, CHOICE_BY_TOP_KEY, "write it above [defaults]", "defaults.")
+        settings[choice_by_key[key]] = read_value(choice_by_key[key], value, f"defaults.{key}")
     for kind in {"brush", "cell"} & {*settings}:
         settings[kind] = name_or_path(kind, settings[kind], folder)
     check_choices(Choices(**settings))

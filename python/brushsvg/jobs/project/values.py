@@ -26,10 +26,8 @@ def read_value(choice: str, value: object, key: str) -> object:
             return [_read_typed(choice, _format_as_typed(each, key), key) for each in value]
         text = _format_as_typed(value, key)
         if choice in CHOICE_VALUES and text not in CHOICE_VALUES[choice]:
-            known = CHOICE_VALUES[choice]
-            sentence = (
-                f"{key} {text[:40]!r} is not known{did_you_mean(text, known)} Known are {', '.join(known)}"
-            )
+            allowed = CHOICE_VALUES[choice]
+            sentence = f"{key} {text[:40]!r} is not known{did_you_mean(text, allowed)} Known are {', '.join(allowed)}"
             raise Error(sentence, code="choice-unknown")
         return _read_typed(choice, text, key)
     except Error as refusal:

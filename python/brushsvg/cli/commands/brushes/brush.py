@@ -62,10 +62,10 @@ def brush_new(args) -> None:
         print_text(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
         return
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
-    deepest_mm, measured_mm = brush.depth_range_mm[1], max(depth for depth, _ in widths)
-    if deepest_mm > measured_mm and "half_width" not in assumed:
+    deepest_mm, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
+    if deepest_mm > measured and "half_width" not in assumed:
         assumed.append(
-            f"widths beyond {measured_mm:g} mm of depth ({2 * brush.half_width(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
+            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
         )
     lag_measured_mm = max((depth for depth, _ in args.lag_at), default=deepest_mm)
     if deepest_mm > lag_measured_mm and "lag" not in assumed:

@@ -1,4 +1,7 @@
-"""brushsvg compare: compare photographs of a painted job with the drawing and the prediction."""
+"""brushsvg compare: compare photographs of a painted job with its target.
+
+The target is the drawing; the paint is also compared with the prediction.
+"""
 
 from __future__ import annotations
 

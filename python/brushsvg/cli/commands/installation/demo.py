@@ -14,7 +14,10 @@ DEMO_DRAWING = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
 
 
 def demo_picture(args) -> None:
-    """Write the picture of the word, print its path, and open it where there is a display."""
+    """Write the picture of the word, print its path, and open it.
+
+    The picture is opened only if there is a display.
+    """
     check_outputs(args, args.output)
     from ....jobs import prediction
     from ....jobs.comparison_picture import TITLES, comparison_png

@@ -34,7 +34,7 @@ def list_installation(args) -> None:
     Raises RefusedError if a library is missing that brushsvg needs.
     """
     needed, extras = _read_requirements()
-    problems = {package: _find_version_problem(package, least) for package, least in needed.items()}
+    problems = {package: _find_version_problem(package, minimum) for package, minimum in needed.items()}
     unusable = {package: problem for package, problem in problems.items() if problem}
     sections = {
         "Program": _list_program(),
@@ -44,10 +44,10 @@ def list_installation(args) -> None:
         "Inkscape": _list_inkscape(),
     }
     for title, rows in sections.items():
-        print_text(f"{title}\n" + "".join(f"  {name:<23} {what}\n" for name, what in rows))
+        print_text(f"{title}\n" + "".join(f"  {name:<23} {description}\n" for name, description in rows))
     if unusable:
-        what = ", ".join(f"{package} {problem}" for package, problem in unusable.items())
-        why = Notice("", f"{what}: install with  {command_to_add(*unusable)}", code="package-missing")
+        description = ", ".join(f"{package} {problem}" for package, problem in unusable.items())
+        why = Notice("", f"{description}: install with  {command_to_add(*unusable)}", code="package-missing")
         raise RefusedError("", [why])
 
 
@@ -65,20 +65,22 @@ def _read_requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
     needed: dict[str, str] = {}
     extras: dict[str, dict[str, str]] = {name: {} for name in PURPOSE}
     for line in metadata.requires("brushsvg") or []:
-        found = re.match(r"([\w.-]+)\s*>=([\d.]+)(?:\s*;.*extra == [\"'](\w+)[\"'])?", line)
-        if found and found[3] in extras:
-            extras[found[3]][found[1]] = found[2]
-        elif found and not found[3]:
-            needed[found[1]] = found[2]
+        match = re.match(r"([\w.-]+)\s*>=([\d.]+)(?:\s*;.*extra == [\"'](\w+)[\"'])?", line)
+        if match and match[3] in extras:
+            extras[match[3]][match[1]] = match[2]
+        elif match and not match[3]:
+            needed[match[1]] = match[2]
     return needed, extras
 
 
-def _find_version_problem(package: str, least: str) -> str:
+def _find_version_problem(package: str, minimum: str) -> str:
     try:
-        found = metadata.version(package)
+        installed = metadata.version(package)
     except metadata.PackageNotFoundError:
         return "is missing"
-    return f"{found} is older than {least}" if _parse_version(found) < _parse_version(least) else ""
+    return (
+        f"{installed} is older than {minimum}" if _parse_version(installed) < _parse_version(minimum) else ""
+    )
 
 
 def _parse_version(version: str) -> list[int]:
@@ -87,7 +89,9 @@ def _parse_version(version: str) -> list[int]:
 
 def _list_extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
     for name, packages in extras.items():
-        missing = [package for package, least in packages.items() if _find_version_problem(package, least)]
+        missing = [
+            package for package, minimum in packages.items() if _find_version_problem(package, minimum)
+        ]
         if missing:
             yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*missing)}"
         else:
@@ -96,9 +100,9 @@ def _list_extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]
 
 
 def _list_fonts() -> Iterator[tuple[str, str]]:
-    found = sorted(path.stem for path in SINGLE_LINE_FONTS.glob("*.svg"))
-    if found:
-        yield "single-line fonts", f"{len(found)} in {SINGLE_LINE_FONTS}, such as {found[0]}"
+    font_names = sorted(path.stem for path in SINGLE_LINE_FONTS.glob("*.svg"))
+    if font_names:
+        yield "single-line fonts", f"{len(font_names)} in {SINGLE_LINE_FONTS}, such as {font_names[0]}"
     else:
         yield (
             "single-line fonts",
@@ -131,7 +135,7 @@ def _list_inkscape() -> Iterator[tuple[str, str]]:
 
 
 def find_sandbox(program: str) -> str:
-    """Return "a Snap's" or "a Flatpak's" by the location of the program, otherwise ""."""
+    """Return "a Snap's" or "a Flatpak's" by the path of the program, otherwise ""."""
     real = os.path.realpath(program)
     if program.startswith("/snap/") or real.startswith("/snap/") or os.path.basename(real) == "snap":
         return "a Snap's"
@@ -149,5 +153,5 @@ def _read_inkscape_version(program: str) -> str:
         )
     except (OSError, subprocess.TimeoutExpired, UnicodeDecodeError):
         return "does not start"
-    found = re.search(r"Inkscape \S+", process.stdout)
-    return found[0] if found else "does not say its version"
+    match = re.search(r"Inkscape \S+", process.stdout)
+    return match[0] if match else "does not say its version"

@@ -111,7 +111,7 @@ def _make_relative_path(folder: str, path: str) -> str:
     """Return a path as a file in this folder has to write it."""
     try:
         relative = os.path.relpath(os.path.abspath(path), folder)
-    except ValueError:  # on another drive of Windows
+    except ValueError:  # on Windows, the file is on another drive
         return os.path.abspath(path)
     return relative.replace(os.sep, "/")
 

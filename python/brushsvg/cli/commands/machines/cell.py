@@ -43,8 +43,8 @@ def cell_check(args) -> None:
     with refuse_errors(args.input):
         cell = find_cell(args.input)
     if cell.language not in POSTS:
-        known = ", ".join(POSTS)
-        sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known}"
+        known_languages = ", ".join(POSTS)
+        sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known_languages}"
         warn(args.input, [Notice("language", sentence, code="language-unknown")])
     frame = robot_from_paper(cell)
     if problems := cell_checks.out_of_reach(cell) or stations_astray(find_brush(DEFAULT_BRUSH), cell, frame):

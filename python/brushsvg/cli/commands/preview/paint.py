@@ -1,4 +1,4 @@
-"""brushsvg preview: draw what will be painted."""
+"""brushsvg preview: draw the paint of a drawing or plan."""
 
 from __future__ import annotations
 

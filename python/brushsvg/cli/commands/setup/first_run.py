@@ -1,4 +1,4 @@
-"""brushsvg setup first-run: write a slow, careful first program for a new machine."""
+"""brushsvg setup first-run: write a slow, careful program for a new machine."""
 
 from __future__ import annotations
 
