@@ -218,7 +218,7 @@ def calibrate(
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")
     notices: list[Notice] = []
-    calibration = run_calibration(
+    calibration = calibrated(
         given,
         name,
         make_checked_options(options),
@@ -260,7 +260,7 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     return CalibrationOptions(**options)
 
 
-def run_calibration(
+def calibrated(
     source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Warn
 ) -> BrushCalibration:
     """Return a brush with its report; see calibrate.

@@ -274,7 +274,7 @@ def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
         raise
 
 
-def apply_drawing_settings(chosen: Choices, drawing, alone: bool = False) -> Choices:
+def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
     """Fill choices that nobody made with the settings in the drawing.
 
     A drawing can only name shipped brushes and cells, because its settings read no other file.

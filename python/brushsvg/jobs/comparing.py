@@ -46,13 +46,13 @@ from .checking import Warn
 from .choices import (
     ChoiceKeywords,
     Choices,
-    apply_drawing_settings,
     choose_margin_strokes,
     load_sheet_before,
     make_options,
     name_file_in_errors,
     path_of,
     report_ineffective_flags,
+    settled,
 )
 from .conversion import make_choices
 from .preparation import preparation
@@ -188,7 +188,7 @@ def prepare_painted_sheet(chosen: Choices, stage: Callable[[str], object], warn:
 def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
     name = path_of(given.input)
     with name_file_in_errors(name):
-        chosen = apply_drawing_settings(given, given.input)
+        chosen = settled(given, given.input)
         warn(name, report_ineffective_flags(chosen))
         chosen = choose_margin_strokes(chosen)
         work = preparation.prepare(chosen.input, make_options(chosen), stage)

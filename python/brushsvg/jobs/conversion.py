@@ -31,13 +31,13 @@ from .cancelling import Cancel
 from .choices import (
     ChoiceKeywords,
     Choices,
-    apply_drawing_settings,
     check_choices,
     choose_margin_strokes,
     make_options,
     name_file_in_errors,
     path_of,
     report_ineffective_flags,
+    settled,
     suffix_of,
 )
 from .preparation import preparation
@@ -206,7 +206,7 @@ def _make_conversion(
 ) -> tuple[Conversion, dict]:
     source = chosen.input
     with name_file_in_errors(path_of(source)):
-        chosen = apply_drawing_settings(chosen, source)
+        chosen = settled(chosen, source)
         ignored = report_ineffective_flags(chosen)
         chosen = choose_margin_strokes(chosen) if "page" in paths else chosen
         work = preparation.prepare(source, make_options(chosen), stage)

@@ -16,7 +16,7 @@ from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation import report
 from .. import conversion, outputs
-from ..choices import Choices, apply_drawing_settings, check_choices, make_options
+from ..choices import Choices, check_choices, make_options, settled
 from ..preparation import preparation
 
 PICTURE_LONG_SIDE_PX = 480
@@ -118,7 +118,7 @@ def _convert(task: Task) -> TaskResult:
     chosen = replace(task.chosen, input=task.drawing, brush=task.brush.brush() if task.brush else None)
     if task.drawing.extension in (".svg", ".svgz"):
         chosen = replace(chosen, units=None)  # units are for the drawings of a batch that do not define them
-    chosen = apply_drawing_settings(check_choices(chosen), task.drawing)
+    chosen = settled(check_choices(chosen), task.drawing)
     work = preparation.prepare(task.drawing, make_options(chosen))
     suffix = task.suffix or conversion.default_suffix(work.options.cell)
     simulated = conversion.simulate_and_check(
