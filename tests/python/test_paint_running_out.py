@@ -14,7 +14,7 @@ from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.jobs.conversion import simulate_and_check
 from brushsvg.jobs.options import Options
-from brushsvg.jobs.prediction import marks_of
+from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
@@ -62,7 +62,7 @@ def prepared(tmp_path, rate, cell=ONE_LOAD, compensation="closed", drawn=None, *
 
 def mean_overlap(work, rate):
     """With the drawn strokes, each stroke alone."""
-    marks = marks_of(work.plan, brush_of(rate), cell=work.options.cell)
+    marks = predict_plan_marks(work.plan, brush_of(rate), cell=work.options.cell)
     found = []
     for trace, stroke in zip(marks.passes, work.strokes, strict=True):
         mark, drawn = (
@@ -88,7 +88,7 @@ def test_next_to_the_middle_marks_are_as_wide_as_drawn(tmp_path):
     """Half way along each stroke, by a cut through the mark; the last ones were half as wide else."""
     # ways round caps reach the middle of lines so short
     work = prepared(tmp_path, 0.22, start="pointed", end="round")
-    marks = marks_of(work.plan, brush_of(0.22), cell=ONE_LOAD)
+    marks = predict_plan_marks(work.plan, brush_of(0.22), cell=ONE_LOAD)
     assert marks.passes[-1].width_share[-1] < 0.6
     for trace, stroke in zip(marks.passes[::3], work.strokes[::3], strict=True):  # the lines
         ends = np.asarray(stroke.middle_mm).reshape(-1, 2)[[0, -1]]
@@ -126,7 +126,7 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
     assert 9.9 < deepest <= 10
     assert is_reported(work.notices, "paint-runs-out round-6 '10 mm'")
     assert len(work.notices) == 1
-    share = marks_of(work.plan, brush_of(0.4), False, cell=ONE_LOAD).passes[-1].width_share[-1]
+    share = predict_plan_marks(work.plan, brush_of(0.4), False, cell=ONE_LOAD).passes[-1].width_share[-1]
     assert share < 0.3, "far beyond what depth could make up for"
     heights = replace(find_cell().heights, lowest_mm=-7.0)
     shallow = prepared(tmp_path, 0.4, replace(ONE_LOAD, heights=heights))

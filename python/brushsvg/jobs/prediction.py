@@ -22,10 +22,10 @@ def predict(
     known_marks = None if outlines else work.marks()
     if known_marks is not None:
         return known_marks
-    return marks_of(work.plan, work.brush, outlines, stage, whole, work.options.cell)
+    return predict_plan_marks(work.plan, work.brush, outlines, stage, whole, work.options.cell)
 
 
-def marks_of(
+def predict_plan_marks(
     plan: _core.Plan,
     brush: _core.Brush,
     outlines: bool = True,
@@ -43,10 +43,10 @@ def marks_of(
         _core.narrow(marks, brush.paint, fetched_mm(plan, brush, cell))
     if not outlines:
         return marks
-    return outlined(marks, brush, stage) if whole else _trace_each_pass(marks, brush, stage)
+    return trace_mark_outlines(marks, brush, stage) if whole else _trace_each_pass(marks, brush, stage)
 
 
-def outlined(
+def trace_mark_outlines(
     marks: _core.Marks, brush: _core.Brush, stage: Callable[[str], object] = lambda text: None
 ) -> _core.Marks:
     """Trace the outlines of the marks, and return the marks."""

@@ -87,7 +87,7 @@ def prepare_and_simulate(
                 PlanInLoads(tuple(work.plan.sheet_mm), ()),
             )
         if at_loads:
-            marks = prediction.marks_of(loads.as_plan(), brush, outlines, stage, whole, cell)
+            marks = prediction.predict_plan_marks(loads.as_plan(), brush, outlines, stage, whole, cell)
         else:
             marks = prediction.predict(work, outlines, stage, whole)
         walk = None

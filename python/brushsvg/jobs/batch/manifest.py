@@ -148,7 +148,7 @@ class Manifest:
         """Add the row of a drawing whose files are written."""
         self._add(format_row(row))
 
-    def done(self, key: str, item: Item) -> Row | None:
+    def find_finished(self, key: str, item: Item) -> Row | None:
         """Return the row of a finished drawing, or None.
 
         A drawing is finished if its files are unchanged since they were written. A refused drawing is not finished,
@@ -156,10 +156,10 @@ class Manifest:
         """
         for row in self._by_name.get(item.name, []):
             if row.figures and row.key == key and all(map(self._has_file, row.files.items())):
-                return replace(row, source=item.source, path=self.way_to(item))
+                return replace(row, source=item.source, path=self.make_relative_path(item))
         return None
 
-    def way_to(self, item: Item) -> str:
+    def make_relative_path(self, item: Item) -> str:
         """Return the path of a drawing from this folder.
 
         The path does not depend on the current folder.
@@ -174,7 +174,7 @@ class Manifest:
 
         Only drawings that still exist count.
         """
-        path = self.way_to(item)
+        path = self.make_relative_path(item)
         for row in self._by_name.get(item.name, []):
             unchanged = [file for file in row.files.items() if self._has_file(file)]
             if unchanged and row.path not in ("", path) and (self.folder / row.path).exists():
@@ -183,13 +183,13 @@ class Manifest:
                     sentence, file=str(self.folder), code="name-taken", advice="give another folder (-o)"
                 )
 
-    def other_source(self, item: Item, path: str) -> str:
+    def find_other_source(self, item: Item, path: str) -> str:
         """Return the other drawing that an earlier run made this file from.
 
         Returns "" if there is none, or if that drawing no longer exists.
         """
         for row in self._by_file.get(file_name_key(path), []):
-            is_other = row.name != item.name and row.path not in ("", self.way_to(item))
+            is_other = row.name != item.name and row.path not in ("", self.make_relative_path(item))
             if is_other and (self.folder / path).exists() and (self.folder / row.path).exists():
                 return row.source
         return ""
@@ -232,10 +232,10 @@ class Manifest:
         """
         own_names = {row.name for row in rows}
         others = [rows_of_name[-1] for name, rows_of_name in self._by_name.items() if name not in own_names]
-        kept = [row for row in others if self._is_there(row)]
+        kept = [row for row in others if self._still_exists(row)]
         write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(format_row, [*rows, *kept])])})
 
-    def _is_there(self, row: Row) -> bool:
+    def _still_exists(self, row: Row) -> bool:
         names = row.files or ([row.path] if row.path else [])
         # Path.exists would raise for a name in a damaged manifest that is too long for a file.
         return any(os.path.exists(self.folder / name) for name in names)

@@ -136,7 +136,7 @@ def batch(
     try:
         keys = [settings.key(item) for item in drawings]
         rows: list[Row | None] = [
-            manifest.done(key, item) if item.digest else None
+            manifest.find_finished(key, item) if item.digest else None
             for key, item in zip(keys, drawings, strict=True)
         ]
         resumed = len(drawings) - rows.count(None)
@@ -159,7 +159,7 @@ def batch(
                 executor, is_ours, remaining, drawings, settings, is_cancelled
             ):
                 row = _write_result(folder, drawings[index], keys[index], result, places)
-                row = rows[index] = replace(row, path=manifest.way_to(drawings[index]))
+                row = rows[index] = replace(row, path=manifest.make_relative_path(drawings[index]))
                 removed += manifest.remove_outdated(row)
                 manifest.add(row)
                 report_row(row)
@@ -305,7 +305,7 @@ class _TakenPlaces:
             stem_key, own_key = file_name_key(place.with_suffix("").as_posix()), file_name_key(item.name)
             other = self.sources.get(stem_key) if stem_key != own_key else None
             other = other or self.folders.get(file_name_key(place.as_posix()))
-            other = other or self.manifest.other_source(item, path)
+            other = other or self.manifest.find_other_source(item, path)
             if other:
                 sentence = f"{path} belongs to {other}: {item.source} would be written over it"
                 raise Error(sentence, code="name-taken", advice="rename one of the two drawings")

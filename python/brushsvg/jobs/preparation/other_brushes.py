@@ -30,7 +30,9 @@ class Suit:
     why: str = ""  # the first refused stroke, and the reason
 
 
-def suits(path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None) -> list[Suit]:
+def rank_brushes(
+    path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None
+) -> list[Suit]:
     """Return how well each brush paints a drawing, the best brush first."""
     results = []
     for brush in brushes:
@@ -42,11 +44,11 @@ def suits(path: str | os.PathLike[str], options: Options, brushes, stage=lambda 
                 work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
             )
         )
-        results.append(suit(brush.name, rows, total.overlap if rows else 0.0, work.refused))
-    return best_first(results)
+        results.append(rate_brush(brush.name, rows, total.overlap if rows else 0.0, work.refused))
+    return sort_best_first(results)
 
 
-def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
+def rate_brush(brush: str, rows, overlap: float | None, refused) -> Suit:
     """Return how well a brush paints a drawing, from the rows of a report.
 
     refused: notices on the strokes that the brush cannot paint.
@@ -64,5 +66,5 @@ def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
     )
 
 
-def best_first(suits: list[Suit]) -> list[Suit]:
-    return sorted(suits, key=lambda each: (-(each.overlap or 0.0), each.brush))
+def sort_best_first(ratings: list[Suit]) -> list[Suit]:
+    return sorted(ratings, key=lambda each: (-(each.overlap or 0.0), each.brush))

@@ -29,7 +29,7 @@ def check_file(args) -> None:
         if result.work is None and args.picture:
             raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
         if args.picture:
-            outlined = prediction.outlined(result.marks, result.work.brush, stage)
+            outlined = prediction.trace_mark_outlines(result.marks, result.work.brush, stage)
             picture = outputs.picture(suffix_of(args.picture), result.work, outlined)
             overlap = None if result.is_foreign else result.figures.total.overlap
             write_outputs(args, {args.picture: picture}, len(result.plan.passes), result.time_s, overlap)

@@ -63,6 +63,6 @@ def _report_all_brushes(args) -> None:
             brushes.append(find_brush(name))
     options = make_options(chosen)
     with refuse_errors(args.input):
-        suits = other_brushes.suits(args.input, options, brushes, stage)
+        suits = other_brushes.rank_brushes(args.input, options, brushes, stage)
         title = arrange(read_drawing(args.input, make_read_options(chosen)), make_layout(chosen)).title
         print_text(report.brushes_json(title, suits) if args.json else report.brushes_text(title, suits))
