@@ -194,15 +194,15 @@ def calibrate(
 ) -> BrushCalibration[Any]:
     """Calibrate a brush, as `brushsvg calibrate` does.
 
-    source: the path of measurements (.csv .json), or the contents of such a .json as a dict, with a Plan and Marks
-        for their files and arrays for lists. Or the path, or a list of paths, of photographs of one painted chart
-        or job.
+    source: the path of measurements (.csv .json), or the contents of such a .json as a dict. In the dict, a Plan
+        and Marks replace their files, and arrays replace lists. Or the path, or a list of paths, of photographs of
+        one painted chart or job.
     name: the name of the brush, by default the name in the measurements or of the first file.
     progress: called with words on the progress.
     options: see CalibrationOptions.
 
-    Raises Error for a file that cannot be read, for options that contradict each other, and for measurements that
-    leave a law undetermined or that no brush can have.
+    Raises Error for a file that cannot be read, and for options that contradict each other. Measurements that leave
+    a law undetermined, or that no brush can have, also raise Error.
     """
     if isinstance(source, (tuple, list)):
         need(source, (tuple, list), "a list of paths")

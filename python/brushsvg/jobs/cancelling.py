@@ -40,9 +40,8 @@ def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=
     progress: called with these words.
     cancel: None, a callable, or an object with is_set(). Once it returns true, CancelledError is raised.
 
-    Work that can be cancelled runs in a thread of its own, so that an exception can be raised in it at any line of
-    Python. Loops in C++ also run lines of Python (bindings.hpp). Both callables are called in the thread of the
-    caller.
+    Work that can be cancelled runs in a thread of its own. An exception can be raised in it at any line of Python,
+    and loops in C++ also run lines of Python (bindings.hpp). Both callables are called in the thread of the caller.
     """
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")

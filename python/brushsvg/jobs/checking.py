@@ -123,9 +123,9 @@ def check(
     choices: as for `convert`, by default as the program says. How strokes were compensated is always taken from the
         program.
 
-    Raises Error, with a code of docs/reference/diagnostics.md, for a program that cannot be read or followed, such
-    as one that presses deeper than the laws of the brush reach, and for a drawing that cannot be painted. All other
-    reasons not to run the program are in `problems`.
+    Raises Error, with a code of docs/reference/diagnostics.md, for a drawing that cannot be painted, and for a
+    program that cannot be read or followed. Such a program may press deeper than the laws of the brush reach. All
+    other reasons not to run the program are in `problems`.
     """
     need(program, (str, os.PathLike), "a path, which program is")
     chosen = make_choices(drawing, choices)

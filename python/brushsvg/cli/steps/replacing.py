@@ -3,8 +3,8 @@
 Programs and pictures may be replaced if brushsvg wrote them and nobody changed them since.
 
 Written files are recorded in a file of the user, with a line of two hashes for each path. A mark inside the outputs
-would change the bytes of programs, which must be the same for the same input, and most picture formats have no
-place for a mark. A file next to each output would litter folders. A file without a record, such as one copied from
+would change the bytes of programs, which must be the same for the same input. Most picture formats have no place
+for a mark, and a file next to each output would litter folders. A file without a record, such as one copied from
 another machine, counts as a file of somebody else.
 """
 

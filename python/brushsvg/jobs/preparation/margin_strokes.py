@@ -1,8 +1,8 @@
 """Strokes in the margin of a job's page, from which the brush is calibrated.
 
 Each painted sheet thus serves as a small chart. The strokes are in a strip that is added to the sheet above the
-drawing, so that every later step treats them as strokes of the plan. Their tool path is set, not compensated. They
-are no part of the drawing: figures and corrections leave them out.
+drawing. Every later step therefore treats them as strokes of the plan. Their tool path is set, not compensated.
+They are no part of the drawing: figures and corrections leave them out.
 """
 
 from __future__ import annotations

@@ -312,8 +312,8 @@ def _find_stray_paint(
 ) -> tuple[list, list, list[Notice]]:
     """Find unpainted parts of shapes, and strokes with paint outside of the drawing.
 
-    Returns the parts of shapes that no stroke reaches, the parts that strokes reach and their marks do not, and
-    notices on strokes whose paint is outside of the drawing.
+    Returns the parts that no stroke reaches, and the parts that strokes reach and their marks do not. The third
+    value has notices on strokes whose paint is outside of the drawing.
     """
     refused = {notice.where for notice in lines.refused}
     accepted = [stroke for stroke in lines.drawn if stroke.id not in refused]

@@ -89,8 +89,9 @@ def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
 def read_project(path: str | os.PathLike[str]) -> Project:
     """Read a project file.
 
-    Raises Error, with the path in `file` and the key in `where`, for a file that cannot be read, a key that is not
-    known, a value that the same option of the command line does not accept, and a brush or cell that does not exist.
+    Raises Error, with the path in `file` and the key in `where`, if the file cannot be read or a key is unknown. A
+    value that the same option of the command line refuses, and a brush or cell that does not exist, also raise
+    Error.
     """
     need(path, (str, os.PathLike), "the path of a project file")
     path = os.fspath(path)
