@@ -22,7 +22,7 @@ from brushsvg.cli import main
 from brushsvg.comparison.job_page import job_page
 from brushsvg.errors import Error
 from brushsvg.jobs.preparation.preparation import prepare
-from brushsvg.jobs.work import nearest_first
+from brushsvg.jobs.work import order_nearest_first
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
 <title>four</title><g fill="none" stroke="#000" stroke-linecap="round">
@@ -319,7 +319,7 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
     )
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
     work = prepare(folder / "four.svg")
-    assert job_page(nearest_first(work).plan).printed.id == page.printed.id, "in any order"
+    assert job_page(order_nearest_first(work).plan).printed.id == page.printed.id, "in any order"
 
 
 def test_python_reports_what_the_command_shows(job, capsys, tmp_path):

@@ -24,8 +24,8 @@ from test_conversion import LINE, PAGE
 import brushsvg
 from brushsvg.cli import main
 from brushsvg.jobs.batch import executors, one, run
-from brushsvg.jobs.batch.items import words
-from brushsvg.jobs.batch.manifest import FORMAT, as_line
+from brushsvg.jobs.batch.items import list_words
+from brushsvg.jobs.batch.manifest import FORMAT, format_row
 from brushsvg.machine.cells.cell import MOST_LINES, MOST_POINTS, RoboDK
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.show.contact_sheet import ACROSS, CARD_W, DOWN, GAP, PICTURE_H, WORDS_H, Card, contact_sheets
@@ -60,13 +60,13 @@ def contents(folder="out"):
 def done_again(monkeypatch):
     """The names of drawings that are converted from now on."""
     names = []
-    kept = run._kept
+    kept = run._write_result
 
     def noted(folder, item, *others):
         names.append(item.name)
         return kept(folder, item, *others)
 
-    monkeypatch.setattr(run, "_kept", noted)
+    monkeypatch.setattr(run, "_write_result", noted)
     return names
 
 
@@ -125,7 +125,7 @@ def test_a_cluster_makes_the_same_and_outlives_a_worker(desk, monkeypatch):
         os.kill(pids[0], signal.SIGKILL)
         done = brushsvg.batch(["in"], "by cluster", cluster=cluster.scheduler_address)
     assert done.rows == known and contents("by cluster") == contents("by threads")
-    monkeypatch.setattr(executors, "PATIENCE_S", 0.5)
+    monkeypatch.setattr(executors, "MAX_SCHEDULER_WAIT_S", 0.5)
     with refused("cluster-unreachable"):
         brushsvg.batch(["in"], "out", cluster="tcp://127.0.0.1:9")
 
@@ -164,7 +164,7 @@ def test_another_version_does_all_again(desk, monkeypatch):
         monkeypatch.setattr(one, "version", lambda: "9.9")
         brushsvg.batch(["in"], "out", executor=executor)
         assert len(names) == 4
-        monkeypatch.setattr(run, "made", lambda task: one.Made(None, {}, b"", version="0.0.9"))
+        monkeypatch.setattr(run, "convert_task", lambda task: one.TaskResult(None, {}, b"", version="0.0.9"))
         with refused("version-unknown 0.0.9 9.9"):
             brushsvg.batch(["in"], "out", executor=executor, tolerance=0.2)
 
@@ -282,7 +282,7 @@ def test_equal_drawings_are_each_done_once(desk, monkeypatch):
     Path("words.txt").write_text("T\nT\nTT\n")
     with threads() as executor:
         for _ in range(2):
-            done = brushsvg.batch(words("words.txt", FONT.encode()), "set", executor=executor)
+            done = brushsvg.batch(list_words("words.txt", FONT.encode()), "set", executor=executor)
     assert done.resumed == 3 and not done.refused
 
 
@@ -351,7 +351,7 @@ def test_nonsense_is_a_row(desk, data):
     Path("x.dxf").write_bytes(data)
     Path("words.txt").write_bytes(b"T\n" + data.replace(b"\xc3", b"").decode("latin-1").encode())
     with threads() as executor:
-        items = [*words("words.txt", FONT.encode()), "in/1.svg", "x.svg", ("d", data)]
+        items = [*list_words("words.txt", FONT.encode()), "in/1.svg", "x.svg", ("d", data)]
         done = brushsvg.batch(items, "out", executor=executor)
         assert brushsvg.batch(["x.dxf"], "out", executor=executor).refused
     assert [row.code for row in done.rows if row.name in ("T", "1")] == ["", ""]
@@ -484,7 +484,7 @@ def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
     Path("out/link").symlink_to(desk)
     files = {way.format(desk): one.sha256(b"mine")}
     row = run.Row("wide", "in/below/wide.svg", "", None, "not-xml", files=files)
-    Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + as_line(row))
+    Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + format_row(row))
     with refused("path-outside wide"), threads() as executor:
         brushsvg.batch(["in/below"], "out", executor=executor)
     assert Path("victim.txt").read_text() == "mine"
@@ -494,11 +494,11 @@ def test_a_damaged_manifest_may_name_a_file_that_no_folder_can_hold(desk):
     Path("out").mkdir()
     row = run.Row("other", "in/other.svg", "", None, "", files={"a" * 300 + ".ngc": "0", "kept.ngc": "0"})
     Path("out/kept.ngc").write_text("")
-    Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + as_line(row))
+    Path("out/manifest.jsonl").write_text(json.dumps(FORMAT) + "\n" + format_row(row))
     with threads() as executor:
         done = brushsvg.batch(["in/1.svg"], "out", executor=executor, tolerance=0.1)
     assert [each.name for each in done.rows] == ["1"] and not done.refused
-    assert as_line(row) in Path("out/manifest.jsonl").read_text(), "its other file exists"
+    assert format_row(row) in Path("out/manifest.jsonl").read_text(), "its other file exists"
 
 
 def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):
@@ -511,7 +511,7 @@ def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):
 def test_a_worker_that_dies_is_said_and_what_is_done_is_kept(desk, monkeypatch):
     with threads() as executor:
         brushsvg.batch(["in/1.svg"], "out", executor=executor)
-    monkeypatch.setattr(run, "made", dies)
+    monkeypatch.setattr(run, "convert_task", dies)
     with refused("worker-lost"):
         brushsvg.batch(["in/1.svg", "in/2.svg"], "out", jobs=1)
     assert Path("out/programs/1.ngc").exists()

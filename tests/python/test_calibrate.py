@@ -18,7 +18,7 @@ from brushsvg.calibration.numbers.from_measurements import calibrate
 from brushsvg.calibration.numbers.measurements import Row, read_measurements
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.jobs.machine_parts import undoable_parts
+from brushsvg.jobs.machine_parts import select_correctable_parts
 from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.model.confidence import law_band
@@ -629,7 +629,7 @@ def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
 def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
     """16 of 21 cells refused the table that --machine printed for them."""
     cell = find_cell(name)
-    parts, reported = undoable_parts(tuple(PARTS), cell)
+    parts, reported = select_correctable_parts(tuple(PARTS), cell)
     values = {
         "lean": {"lean_mm_per_mm": (-0.03, 0.04)},
         "axes": {"scale": (1.01, 0.99), "skew": 0.002},

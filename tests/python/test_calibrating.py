@@ -6,7 +6,7 @@ from diagnostics import refused
 import brushsvg
 from brushsvg.cli import main
 from brushsvg.jobs.calibrating import GivenOptions
-from brushsvg.jobs.calibration_options import CalibrationOptions, contradiction
+from brushsvg.jobs.calibration_options import CalibrationOptions, find_contradiction
 
 NUMBERS = "kind,depth_mm,value_mm\nlag,1,1.9\nlag,2,2.4\nlag,3,3.1\nwidth,1,2.2\nwidth,2,4.1\nwidth,3,6.2\n"
 
@@ -54,14 +54,14 @@ CONTRADICTIONS = [
 
 @pytest.mark.parametrize(("source", "options"), CONTRADICTIONS)
 def test_options_that_contradict_are_refused_before_any_file_is_read(source, options):
-    assert contradiction(source, CalibrationOptions(**options))
+    assert find_contradiction(source, CalibrationOptions(**options))
     with refused("options-contradict"):
         brushsvg.calibrate(source, **options)
 
 
 def test_the_command_refuses_the_same_as_wrong_usage(table, capsys):
     assert main(["calibrate", str(table), "-o", "b.json", "--chart", "chart.json"]) == 2
-    assert contradiction(str(table), CalibrationOptions(chart="chart.json")) in capsys.readouterr().err
+    assert find_contradiction(str(table), CalibrationOptions(chart="chart.json")) in capsys.readouterr().err
 
 
 def test_an_unknown_option_is_a_type_error(table):

@@ -23,8 +23,8 @@ import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments import values
 from brushsvg.cli.arguments.parser import command_parser
-from brushsvg.jobs.choices import CHOICES, ONE_OF, RANGES, Given
-from brushsvg.jobs.conversion import tried
+from brushsvg.jobs.choices import CHOICE_RANGES, CHOICE_VALUES, CHOICES, ChoiceKeywords
+from brushsvg.jobs.conversion import simulate_and_check
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell_file import find_cell
@@ -226,7 +226,7 @@ def test_the_page_has_a_row_for_every_choice():
 
 
 def test_type_checkers_know_every_choice():
-    assert [*Given.__annotations__] == [name for name in CHOICES if name != "input"]
+    assert [*ChoiceKeywords.__annotations__] == [name for name in CHOICES if name != "input"]
 
 
 def test_a_choice_that_there_is_not_is_a_type_error(desk):
@@ -241,12 +241,12 @@ def test_ranges_are_those_of_the_flags():
         for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions
     }
     assert set(CHOICES) <= set(flags)
-    for name, limits in RANGES.items():
+    for name, limits in CHOICE_RANGES.items():
         assert [flags[name].type(str(limit)) for limit in limits] == list(limits), name
         for beyond in (limits[0] - 0.001 - abs(limits[0]) / 2, limits[1] * 1.01):
             with pytest.raises(values.argparse.ArgumentTypeError):
                 flags[name].type(f"{beyond:.6f}")
-    for name, choices in ONE_OF.items():
+    for name, choices in CHOICE_VALUES.items():
         assert tuple(flags[name].choices) == choices, name
 
 
@@ -258,7 +258,7 @@ def test_what_is_known_of_a_plan_is_forgotten_when_it_changes(desk):
     assert work.walk(replace(cell, name="another")) is None and work.walk(cell, Job(0.1)) is None
     slow.speed_mm_s = 1000.0
     assert work.marks() is None and work.walk(cell) is None
-    assert [each.code for each in tried(work, ".ngc").problems] == ["speed-out-of-range"]
+    assert [each.code for each in simulate_and_check(work, ".ngc").problems] == ["speed-out-of-range"]
 
 
 def waves(rows, columns=20):

@@ -12,7 +12,7 @@ from brushsvg.cli import main
 from brushsvg.jobs import prediction
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import constant_lag, preparation
-from brushsvg.jobs.work import nearest_first
+from brushsvg.jobs.work import order_nearest_first
 from brushsvg.machine import motion, program, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.model.library import find_brush
@@ -100,7 +100,7 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
         + "</svg>"
     )
     work = preparation.prepare(path)
-    moved = nearest_first(work)
+    moved = order_nearest_first(work)
     assert [p.stroke for p in moved.plan.passes] == [s.id for s in moved.strokes] == ["a", "near", "far"]
     assert [p.stroke for p in work.plan.passes] == [s.id for s in work.strokes] == ["a", "far", "near"]
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256

@@ -15,7 +15,7 @@ from brushsvg.comparison.attribution.corrected_cell import as_table, certain_of,
 from brushsvg.comparison.attribution.model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
 from brushsvg.comparison.next_corrections import next_corrections  # noqa: E402
 from brushsvg.comparison.placing import Placed  # noqa: E402
-from brushsvg.jobs.comparing import _not_undone, _undoable  # noqa: E402
+from brushsvg.jobs.comparing import _find_correctable_machine, _report_uncorrectable  # noqa: E402
 from brushsvg.machine.cells.cell import Machine, Paper, axes_along_paper  # noqa: E402
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell  # noqa: E402
 from brushsvg.machine.realised.distortion import commanded_mm, true_mm  # noqa: E402
@@ -101,7 +101,7 @@ def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
     """A servo refused lean, and the whole comparison was lost."""
     cell = find_cell(name)
     along = axes_along_paper(cell)
-    machine, left_out = _undoable(found(TRUE), MIDDLE, cell, along)
+    machine, left_out = _find_correctable_machine(found(TRUE), MIDDLE, cell, along)
     assert parse_cell(write_cell(replace(cell, machine=machine))).machine.scale == TRUE.scale
     leans, has_backlash = not (cell.servo or cell.pen), along is not None
     assert machine.lean_mm_per_mm == (TRUE.lean_mm_per_mm if leans else (0.0, 0.0))
@@ -109,7 +109,7 @@ def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
     if not cell.pen:
         middle_mm = machine.height_mm + np.dot(machine.tilt_mm_per_mm, MIDDLE)
         assert middle_mm == pytest.approx(TRUE.height_mm + np.dot(TRUE.tilt_mm_per_mm, MIDDLE), abs=1e-3)
-    notices = _not_undone(found(TRUE), cell, left_out)
+    notices = _report_uncorrectable(found(TRUE), cell, left_out)
     assert len(notices) == (not (leans and has_backlash))
     for notice in notices:
         assert agrees(notice, "machine-not-undone")
@@ -118,21 +118,21 @@ def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
 
 def test_a_number_that_no_cell_may_have_is_left_out():
     far = replace(TRUE, scale=(1.2, 1.0))
-    machine, left_out = _undoable(found(far), MIDDLE, find_cell("linuxcnc-3axis"), (0, 1))
+    machine, left_out = _find_correctable_machine(found(far), MIDDLE, find_cell("linuxcnc-3axis"), (0, 1))
     assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
     assert are_reported(
-        _not_undone(found(far), find_cell("linuxcnc-3axis"), left_out), "machine-not-undone 1.2"
+        _report_uncorrectable(found(far), find_cell("linuxcnc-3axis"), left_out), "machine-not-undone 1.2"
     )
 
 
 def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
     """The scale went into the cell without a word, and each program after that was 3 % too small."""
     printed, cell = replace(TRUE, scale=(1 / 0.97, 1 / 0.9702)), find_cell("linuxcnc-3axis")
-    machine, left_out = _undoable(found(printed), MIDDLE, cell, (0, 1))
+    machine, left_out = _find_correctable_machine(found(printed), MIDDLE, cell, (0, 1))
     assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
-    assert are_reported(_not_undone(found(printed), cell, left_out), "page-scale 97.0")
+    assert are_reported(_report_uncorrectable(found(printed), cell, left_out), "page-scale 97.0")
     for scale in ((1.031, 1.0), (1.012, 1.012)):  # one axis; as little as a machine may be off
-        machine, left_out = _undoable(found(replace(TRUE, scale=scale)), MIDDLE, cell, (0, 1))
+        machine, left_out = _find_correctable_machine(found(replace(TRUE, scale=scale)), MIDDLE, cell, (0, 1))
         assert machine.scale == scale and not left_out
 
 

@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[2]
 def opened(monkeypatch):
     """The pictures that a viewer is started with."""
     shown = []
-    monkeypatch.setattr(demo, "_start", lambda program, path: shown.append(path))
+    monkeypatch.setattr(demo, "_start_viewer", lambda program, path: shown.append(path))
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     monkeypatch.delenv("DISPLAY", raising=False)
@@ -59,7 +59,7 @@ def test_demo_refuses_other_pictures_and_folders(tmp_path, capsys, opened):
 
 
 def test_the_word_is_that_of_the_examples():
-    assert demo.WORD.read_bytes() == (ROOT / "examples" / "vincent.svg").read_bytes()
+    assert demo.DEMO_DRAWING.read_bytes() == (ROOT / "examples" / "vincent.svg").read_bytes()
 
 
 def rows(text: str) -> dict[str, str]:
@@ -122,9 +122,9 @@ def test_the_extras_of_users_have_a_purpose():
 def test_doctor_knows_a_snap_and_a_flatpak(tmp_path):
     (tmp_path / "snap").write_text("")
     (tmp_path / "inkscape").symlink_to(tmp_path / "snap")
-    assert doctor.sandbox(str(tmp_path / "inkscape")) == "a Snap's"
-    assert doctor.sandbox("/var/lib/flatpak/exports/bin/org.inkscape.Inkscape") == "a Flatpak's"
-    assert doctor.sandbox("/usr/bin/inkscape") == ""
+    assert doctor.find_sandbox(str(tmp_path / "inkscape")) == "a Snap's"
+    assert doctor.find_sandbox("/var/lib/flatpak/exports/bin/org.inkscape.Inkscape") == "a Flatpak's"
+    assert doctor.find_sandbox("/usr/bin/inkscape") == ""
 
 
 def test_doctor_asks_for_the_zip_where_there_is_no_source(tmp_path, monkeypatch, capsys):
@@ -175,4 +175,4 @@ def test_a_viewer_that_is_missing_is_no_error(monkeypatch):
         raise FileNotFoundError("xdg-open")
 
     monkeypatch.setattr(demo, "subprocess", types.SimpleNamespace(Popen=fails, DEVNULL=os.devnull))
-    demo._start("xdg-open", "a.png")
+    demo._start_viewer("xdg-open", "a.png")

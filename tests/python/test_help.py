@@ -6,7 +6,7 @@ import re
 import pytest
 
 from brushsvg.cli import main
-from brushsvg.cli.arguments.help_text import COMMANDS, RARE, TOPICS, command_text
+from brushsvg.cli.arguments.help_text import COMMANDS, RARE_OPTIONS, TOPICS, command_text
 from brushsvg.cli.arguments.parser import command_parser
 
 MAX_LINES = {"convert": 60}  # 40 for the others
@@ -56,5 +56,5 @@ def test_groups_name_options_that_exist():
     flags = {
         flag for each in commands().values() for action in each._actions for flag in action.option_strings
     }
-    assert flags >= RARE
+    assert flags >= RARE_OPTIONS
     assert {f"--{name}" for names in TOPICS.values() for name in names.split()} <= flags

@@ -12,7 +12,7 @@ from judge.gcode import run_gcode
 from programs import RUNNABLE, call, forbidden, whole
 
 from brushsvg import _core
-from brushsvg.jobs.prediction import marks_of
+from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
@@ -373,16 +373,17 @@ def test_prediction_narrows_whole_strokes_as_their_loads():
     parts = _core.simulate(loads.as_plan(), brush)
     _core.narrow(parts, brush.paint, [[0.0] if each else [] for each in fetched])
     _core.trace_outlines(parts, brush)
-    whole = marks_of(plan, brush, cell=cell)
+    whole = predict_plan_marks(plan, brush, cell=cell)
     assert _core.overlap(whole.outline_mm, parts.outline_mm) > 0.98
     assert np.allclose(
-        marks_of(loads.as_plan(), brush, cell=cell).passes[2].width_share, parts.passes[2].width_share
+        predict_plan_marks(loads.as_plan(), brush, cell=cell).passes[2].width_share,
+        parts.passes[2].width_share,
     )
-    alone = marks_of(plan, brush)
+    alone = predict_plan_marks(plan, brush)
     assert [each.width_share[0] for each in alone.passes] == [1.0, 1.0, 1.0], "each freshly dipped"
     assert _core.overlap(alone.outline_mm, parts.outline_mm) < 0.9
     brush.paint = None
-    assert all(each.width_share.size == 0 for each in marks_of(plan, brush, cell=cell).passes)
+    assert all(each.width_share.size == 0 for each in predict_plan_marks(plan, brush, cell=cell).passes)
 
 
 def test_parts_begin_where_they_were_cut():

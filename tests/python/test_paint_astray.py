@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brushsvg import _core, find_brush
-from brushsvg.jobs.preparation.paint_astray import off_middle_line, outside
+from brushsvg.jobs.preparation.paint_astray import find_off_middle_line, find_paint_outside
 
 HALF_MM = 2.0
 
@@ -28,7 +28,7 @@ def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_repo
     """A straight mark that was shifted sideways is outside by the shift. Kaushan's B, as good as it can be painted,
     was reported with a tracking error of 4.9 mm; Lobster's A had no notice of a thorn of 2.3 mm."""
     run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
-    reported = outside([bar("a", 30.0)], [run], brush)
+    reported = find_paint_outside([bar("a", 30.0)], [run], brush)
     assert bool(reported) == is_reported
     if reported:
         away = re.search(r"([0-9.]+) mm", reported[0].sentence)[1]
@@ -38,8 +38,8 @@ def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_repo
 
 def test_paint_on_a_neighbour_is_in_the_target(brush):
     run = _core.compensate([bar("a", 32.5)], brush, (100.0, 60.0)).plan.passes[0]
-    assert outside([bar("a", 30.0), bar("b", 33.0)], [run, None], brush) == []
-    assert len(outside([bar("a", 30.0), bar("b", 43.0)], [run, None], brush)) == 1
+    assert find_paint_outside([bar("a", 30.0), bar("b", 33.0)], [run, None], brush) == []
+    assert len(find_paint_outside([bar("a", 30.0), bar("b", 43.0)], [run, None], brush)) == 1
 
 
 def test_a_tracking_error_is_reported_where_the_brush_is_known_better(brush):
@@ -48,4 +48,4 @@ def test_a_tracking_error_is_reported_where_the_brush_is_known_better(brush):
         run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
         error = _core.tracking_error_of(run, bar("a", 30.0), brush, 0.05)
         assert error.largest_mm == pytest.approx(displaced_mm, abs=0.045) and not error.within_tolerance
-        assert bool(off_middle_line([bar("a", 30.0)], [error], brush, 0.05)) == is_reported
+        assert bool(find_off_middle_line([bar("a", 30.0)], [error], brush, 0.05)) == is_reported

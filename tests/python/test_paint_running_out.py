@@ -12,9 +12,9 @@ from sampling import sample
 
 from brushsvg import _core
 from brushsvg.cli import main
-from brushsvg.jobs.conversion import tried
+from brushsvg.jobs.conversion import simulate_and_check
 from brushsvg.jobs.options import Options
-from brushsvg.jobs.prediction import marks_of
+from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
@@ -62,7 +62,7 @@ def prepared(tmp_path, rate, cell=ONE_LOAD, compensation="closed", drawn=None, *
 
 def mean_overlap(work, rate):
     """With the drawn strokes, each stroke alone."""
-    marks = marks_of(work.plan, brush_of(rate), cell=work.options.cell)
+    marks = predict_plan_marks(work.plan, brush_of(rate), cell=work.options.cell)
     found = []
     for trace, stroke in zip(marks.passes, work.strokes, strict=True):
         mark, drawn = (
@@ -88,7 +88,7 @@ def test_next_to_the_middle_marks_are_as_wide_as_drawn(tmp_path):
     """Half way along each stroke, by a cut through the mark; the last ones were half as wide else."""
     # ways round caps reach the middle of lines so short
     work = prepared(tmp_path, 0.22, start="pointed", end="round")
-    marks = marks_of(work.plan, brush_of(0.22), cell=ONE_LOAD)
+    marks = predict_plan_marks(work.plan, brush_of(0.22), cell=ONE_LOAD)
     assert marks.passes[-1].width_share[-1] < 0.6
     for trace, stroke in zip(marks.passes[::3], work.strokes[::3], strict=True):  # the lines
         ends = np.asarray(stroke.middle_mm).reshape(-1, 2)[[0, -1]]
@@ -126,7 +126,7 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
     assert 9.9 < deepest <= 10
     assert is_reported(work.notices, "paint-runs-out round-6 '10 mm'")
     assert len(work.notices) == 1
-    share = marks_of(work.plan, brush_of(0.4), False, cell=ONE_LOAD).passes[-1].width_share[-1]
+    share = predict_plan_marks(work.plan, brush_of(0.4), False, cell=ONE_LOAD).passes[-1].width_share[-1]
     assert share < 0.3, "far beyond what depth could make up for"
     heights = replace(find_cell().heights, lowest_mm=-7.0)
     shallow = prepared(tmp_path, 0.4, replace(ONE_LOAD, heights=heights))
@@ -137,11 +137,11 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
 @pytest.mark.parametrize(("order", "first"), [("nearest", 1), ("drawn", 31)])
 def test_another_order_and_a_job_that_is_resumed_are_reported(tmp_path, order, first):
     work = prepared(tmp_path, 0.2)
-    reported = tried(work, ".ngc", Job(first_stroke=first), order).remarks()
+    reported = simulate_and_check(work, ".ngc", Job(first_stroke=first), order).remarks()
     assert is_reported(reported, "paint-out-of-turn" + (" 31" if first > 1 else ""))
-    assert not tried(work, ".ngc").remarks()
+    assert not simulate_and_check(work, ".ngc").remarks()
     often = prepared(tmp_path, 0.2, cell_with(Reload("stroke")))
-    assert not tried(often, ".ngc", Job(first_stroke=first), order).remarks()
+    assert not simulate_and_check(often, ".ngc", Job(first_stroke=first), order).remarks()
 
 
 def test_shapes_and_dabs_and_closed_paths_are_pressed_deeper_too(tmp_path):

@@ -13,8 +13,15 @@ from diagnostics import agrees, gives, in_json, is_reported, refused
 import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import command_parser, parse
-from brushsvg.jobs.choices import CHOICES, ONE_OF
-from brushsvg.jobs.project import MAX_BYTES, NAME, TOP_KEYS, find_project_file, options, write_project
+from brushsvg.jobs.choices import CHOICE_VALUES, CHOICES
+from brushsvg.jobs.project import (
+    CHOICE_BY_TOP_KEY,
+    MAX_BYTES,
+    NAME,
+    find_project_file,
+    options,
+    write_project,
+)
 
 BEGIN = 'format = "brushsvg/project"\nversion = 1\n'
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"
@@ -134,21 +141,25 @@ TYPED = {  # option: valid values, and values that are refused
 
 
 def test_every_option_is_in_the_table():
-    flags = {flag for flag, choice in options().items() if choice not in ONE_OF}
+    flags = {flag for flag, choice in options().items() if choice not in CHOICE_VALUES}
     assert flags - {"join"} | {"sheet", "layer"} == set(TYPED)
 
 
-@pytest.mark.parametrize("flag", [*TYPED, *(flag for flag, choice in options().items() if choice in ONE_OF)])
+@pytest.mark.parametrize(
+    "flag", [*TYPED, *(flag for flag, choice in options().items() if choice in CHOICE_VALUES)]
+)
 def test_values_are_those_of_the_command_line(desk, flag):
     choice = options().get(flag, flag)
-    good, bad = TYPED.get(flag) or (" ".join(ONE_OF.get(choice, ())), "nonsense")
+    good, bad = TYPED.get(flag) or (" ".join(CHOICE_VALUES.get(choice, ())), "nonsense")
     more = ["--compensation", "constant"] if flag == "lag" else []
     key = {"sheet": "paper", "layer": "layers"}.get(flag, flag)
 
     def in_file(text):
         listed = choice in ("layer", "skip_region", "skip_comment")
         line = f"{key} = ['{text}']" if listed else f"{key} = '{text}'"
-        table = "" if key in TOP_KEYS else "[defaults]\n" + ("compensation='constant'\n" if more else "")
+        table = (
+            "" if key in CHOICE_BY_TOP_KEY else "[defaults]\n" + ("compensation='constant'\n" if more else "")
+        )
         project(table + line)
         return brushsvg.read_project(NAME).settings[choice]
 
@@ -594,7 +605,7 @@ def test_what_init_writes_can_be_filled_in(desk):
     (desk / "machine.toml").write_text("")
     text = write_project()
     (desk / NAME).write_text(re.sub(r"(?m)^# (?=[a-z]+ = )", "", text))
-    assert set(brushsvg.read_project(NAME).settings) == {*TOP_KEYS.values(), "paint_speed", "detail"}
+    assert set(brushsvg.read_project(NAME).settings) == {*CHOICE_BY_TOP_KEY.values(), "paint_speed", "detail"}
 
 
 # --- names

@@ -10,7 +10,7 @@ from programs import problems
 from brushsvg import _core, cli, compensate, find_brush, find_cell
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
-from brushsvg.jobs.preparation.paint_astray import off_middle_line, outside
+from brushsvg.jobs.preparation.paint_astray import find_off_middle_line, find_paint_outside
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.preflight import as_exact_as
 from brushsvg.planning.refinement import FORBIDDEN, NO_GAIN, towards_reach
@@ -72,8 +72,8 @@ def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
     miss = _core.tracking_error_of(a_pass, stroke, BRUSH)
-    in_closed_form = off_middle_line([stroke], [miss], BRUSH, 0.05)
-    assert [bool(in_closed_form), bool(outside([stroke], [a_pass], BRUSH))] == is_reported
+    in_closed_form = find_off_middle_line([stroke], [miss], BRUSH, 0.05)
+    assert [bool(in_closed_form), bool(find_paint_outside([stroke], [a_pass], BRUSH))] == is_reported
 
 
 def test_a_refined_plan_reports_strokes_left_in_closed_form(tmp_path):

@@ -120,9 +120,9 @@ def test_a_device_is_written_through(desk, capsys):
 
 def test_what_is_remembered_stays_small(desk, monkeypatch):
     Path("x").write_text("x")
-    monkeypatch.setattr(replacing, "MOST_BYTES", 1000)
+    monkeypatch.setattr(replacing, "MAX_RECORD_BYTES", 1000)
     for _ in range(20):
-        replacing.remember(["x"])
+        replacing.record_written(["x"])
     replacing.refuse_replacing(["x"])
     (written,) = Path("state").rglob("*.txt")
     assert written.stat().st_size <= 1000

@@ -80,7 +80,7 @@ def said(tmp_path, text, **options):
     path.write_text(text)
     work = preparation.prepare(path, Options(**options), partly=True)
     marks = prediction.predict(work, outlines=False)
-    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, other_sizes.advice(work)
+    return _core.common_area(marks.passes, work.strokes, work.brush).overlap, other_sizes.advise_on_size(work)
 
 
 DABS = "".join(f'<path d="M{20 * k} 50h0" stroke-width="{w}"/>' for k, w in enumerate((1, 2, 3, 4, 6, 8), 1))

@@ -1,6 +1,6 @@
-"""Run the typed command and turn its result into lines on stderr and an exit status.
+"""Run the typed command, print its messages on stderr, and return its status.
 
-Nothing is imported before main runs, so that from its first moment on Ctrl-C leaves no traceback.
+Nothing is imported before main runs, so that Ctrl-C never leaves a traceback.
 """
 
 from __future__ import annotations
@@ -9,18 +9,21 @@ import sys
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run one command; the exit status: 0 done, 1 refused, 2 wrong usage, 130 interrupted."""
+    """Run one command and return its exit status.
+
+    The status is 0 if the command is done, 1 if it is refused, 2 for wrong usage, and 130 if it is interrupted.
+    """
     interrupts = _Interrupts()
     try:
-        interrupts.count()
-        return _with_streams(argv, interrupts)
+        interrupts.start()
+        return _run_with_streams(argv, interrupts)
     except KeyboardInterrupt:
         pass
     except Exception:
         if not interrupts.seen:
             raise
     finally:
-        interrupts.count_no_more()
+        interrupts.stop()
     from .console import say
 
     say("interrupted")
@@ -28,46 +31,53 @@ def main(argv: list[str] | None = None) -> int:
 
 
 class _Interrupts:
-    """Ctrl-C while a module is being imported can come out as another error: seen says that there was one."""
+    """Counts interrupts by Ctrl-C.
+
+    Ctrl-C during the import of a module can appear as another error, so `seen` records that there was an interrupt.
+    """
 
     seen = 0
-    before = None
+    previous_handler = None
 
-    def count(self) -> None:
+    def start(self) -> None:
         import signal
         from contextlib import suppress
 
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            with suppress(ValueError):  # only the main thread may, and only it is interrupted
-                self.before = signal.signal(signal.SIGINT, self._raise)
+            # Only the main thread may set a handler, and only the main thread is interrupted.
+            with suppress(ValueError):
+                self.previous_handler = signal.signal(signal.SIGINT, self._raise)
 
-    def count_no_more(self) -> None:
-        if self.before is not None:
+    def stop(self) -> None:
+        if self.previous_handler is not None:
             import signal
 
-            signal.signal(signal.SIGINT, self.before)
+            signal.signal(signal.SIGINT, self.previous_handler)
 
     def _raise(self, *_) -> None:
         self.seen += 1
         raise KeyboardInterrupt
 
 
-def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
-    """Run the command with any terminal encoding, and with a reader that may stop reading."""
+def _run_with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
+    """Run the command with any terminal encoding.
+
+    The reader of the output may stop reading at any time.
+    """
     from ..errors import Notice
-    from .console import let_go, say_notice
+    from .console import discard_output, say_notice
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     try:
-        status = _run(argv, interrupts)
+        status = _run_command(argv, interrupts)
         if sys.stdout is not None:
             sys.stdout.flush()
         return status
     except OSError as problem:
         if sys.stdout is not None:
-            let_go(sys.stdout)
+            discard_output(sys.stdout)
         if isinstance(problem, BrokenPipeError):
             return 0  # the reader closed the pipe
         reason = (problem.strerror or str(problem)).lower()
@@ -75,7 +85,7 @@ def _with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
         return 1
 
 
-def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
+def _run_command(argv: list[str] | None, interrupts: _Interrupts) -> int:
     from dataclasses import replace
 
     from ..errors import unexpected
@@ -94,17 +104,17 @@ def _run(argv: list[str] | None, interrupts: _Interrupts) -> int:
         run = getattr(commands, args.run)
         use_project(args, argv)
         run(args)
-    except SystemExit as leaving:
-        return leaving.code
+    except SystemExit as exit_request:
+        return exit_request.code
     except RefusedError as refused:
         for notice in refused.why:
             say_notice(refused.file, replace(notice, refused=True))
         return 1
     except OSError:
         raise
-    except Exception as mistake:
+    except Exception as bug:
         if interrupts.seen:
             raise
-        say_notice(file, replace(unexpected(mistake).notice(), refused=True))
+        say_notice(file, replace(unexpected(bug).notice(), refused=True))
         return 1
     return 0

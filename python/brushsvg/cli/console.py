@@ -1,4 +1,4 @@
-"""What a person at a terminal reads: one line per problem, and where the work is."""
+"""Print messages and progress on the terminal: one line for each problem."""
 
 from __future__ import annotations
 
@@ -13,7 +13,11 @@ from ..text_summary import summarized
 
 
 class RefusedError(Exception):
-    """why: one for each thing that forbids to go on; file: the one that they are of."""
+    """A command cannot go on.
+
+    why: one notice for each reason.
+    file: the file that the reasons concern.
+    """
 
     def __init__(self, file: str, why: list[Notice]):
         super().__init__(file, why)
@@ -21,9 +25,11 @@ class RefusedError(Exception):
 
 
 @contextmanager
-def about(file: str):
-    """Lets a user's error inside be reported as one of this file, unless the error names another, behind what is to be
-    warned of."""
+def refuse_errors(file: str):
+    """Turn an Error inside into a RefusedError for this file.
+
+    The file is ignored if the error names another file. Warnings of the error are printed first.
+    """
     try:
         yield
     except Error as problem:
@@ -32,7 +38,11 @@ def about(file: str):
 
 
 def say(*parts: str) -> None:
-    """One line on stderr: what a drawing puts into an id can neither break it nor steer the terminal."""
+    """Print one line on stderr.
+
+    Unprintable characters are replaced, so that an id in a drawing can neither break the line nor control the
+    terminal.
+    """
     if sys.stderr is not None:
         text = ": ".join(part for part in ("brushsvg", *parts) if part)
         _write_line("".join(letter if letter.isprintable() else " " for letter in text))
@@ -43,14 +53,14 @@ def _write_line(text: str) -> None:
     try:
         sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
-    except OSError:  # nobody reads: the command still ends as usual
-        let_go(sys.stderr)
+    except OSError:  # nothing reads stderr: the command still ends as usual
+        discard_output(sys.stderr)
 
 
-def let_go(stream) -> None:
-    """What is still buffered goes nowhere, without another complaint at exit."""
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), stream.fileno())
+def discard_output(stream) -> None:
+    """Discard what a stream still buffers, so that it causes no error at exit."""
+    with open(os.devnull, "wb") as null_device:
+        os.dup2(null_device.fileno(), stream.fileno())
 
 
 def print_text(text: str) -> None:
@@ -62,13 +72,13 @@ def print_text(text: str) -> None:
 
 
 def warn(file: str, warnings: Iterable[Notice]) -> None:
-    """Many warnings of a kind become one line."""
+    """Print warnings, with many warnings of one kind in one line."""
     for notice in summarized(warnings):
         say_notice(file, notice)
 
 
 def say_notice(file: str, notice: Notice) -> None:
-    """Print one line of text, or of JSON with --messages json."""
+    """Print a notice as one line of text, or of JSON with --messages json."""
     if not _in_json:
         say(file, notice.where, notice.text)
     elif sys.stderr is not None:
@@ -85,15 +95,15 @@ _in_json = False
 
 
 def stage(text: str) -> None:
-    """What is being done, for a terminal only, until the next line replaces it."""
-    _to_terminal(f"\r\x1b[K{text} ...")
+    """Show what is being done on a terminal, until the next line replaces it."""
+    _write_to_terminal(f"\r\x1b[K{text} ...")
 
 
 def clear_stage() -> None:
-    _to_terminal("\r\x1b[K")
+    _write_to_terminal("\r\x1b[K")
 
 
-def _to_terminal(text: str) -> None:
+def _write_to_terminal(text: str) -> None:
     if sys.stderr is not None and sys.stderr.isatty():
         sys.stderr.write(text)
         sys.stderr.flush()

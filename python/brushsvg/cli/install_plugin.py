@@ -1,7 +1,7 @@
-"""Puts the extension for Inkscape where Inkscape looks, and removes it.
+"""Install the extension where Inkscape looks for it, and remove it.
 
-The extension is a program of its own under the GPL, so the package does not carry it: it is taken from the source tree
-that this package is run from, or from the zip that `make plugins` makes.
+The extension is a separate program under the GPL, so this package does not contain it. It comes from the source
+tree that this package runs from, or from the zip that `make plugins` makes.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from ..errors import Error
 FOLDER = "brushsvg"
 NOTE = "brushsvg-executable.txt"  # read by the extension
 _SUFFIXES = (".py", ".inx")
-_LARGEST = 10_000_000  # bytes; ours has a hundredth of it
+_MAX_UNZIPPED_BYTES = 10_000_000  # bytes; the extension has about a hundredth of this
 SOURCE = Path(__file__).parents[3] / "plugins" / "inkscape"
 
 
 def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
-    """Replace the extension, note where this brushsvg is, and return the extension's folder.
+    """Replace the extension, note where this brushsvg is, and return its folder.
 
-    Error when there is nothing to copy, or the folder cannot be written.
+    Raises Error if there is nothing to copy, or if the folder cannot be written.
     """
-    files = _from_zip(zipped) if zipped else _from_tree(source)
+    files = _read_zip(zipped) if zipped else _read_tree(source)
     folder = extensions_folder() / FOLDER
     note = own_program()
     try:
@@ -48,9 +48,9 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
 
 
 def remove_inkscape() -> Path:
-    """Delete the extension, with the note of where brushsvg is; the folder that it was in.
+    """Delete the extension and its note on brushsvg, and return its folder.
 
-    Error when it is not there, or cannot be deleted. Files of other names stay.
+    Raises Error if it is not there, or if it cannot be deleted. Other files in the folder stay.
     """
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
@@ -72,16 +72,19 @@ def remove_inkscape() -> Path:
 
 
 def own_program() -> str:
-    """Return the running brushsvg executable, or the one next to the running Python, or an empty text."""
+    """Return the path of the running brushsvg, or "".
+
+    If another program is running, the brushsvg next to the running Python is returned, if there is one.
+    """
     scripts = sysconfig.get_path("scripts")
-    for found in (shutil.which(sys.argv[0]), shutil.which("brushsvg", path=scripts)):
-        if found and Path(found).stem == "brushsvg":
-            return os.path.abspath(found)
+    for candidate in (shutil.which(sys.argv[0]), shutil.which("brushsvg", path=scripts)):
+        if candidate and Path(candidate).stem == "brushsvg":
+            return os.path.abspath(candidate)
     return ""
 
 
 def extensions_folder() -> Path:
-    """Where Inkscape looks for a person's extensions, on this system."""
+    """Return the folder of the user's Inkscape extensions on this system."""
     if profile := os.environ.get("INKSCAPE_PROFILE_DIR"):
         return Path(profile) / "extensions"
     home = Path.home()
@@ -94,28 +97,30 @@ def extensions_folder() -> Path:
     return data / "inkscape" / "extensions"
 
 
-def _from_tree(source: Path) -> dict[str, bytes]:
-    found = sorted(path for path in source.glob("*") if path.suffix in _SUFFIXES or path.name == "LICENSE")
-    if not found:
+def _read_tree(source: Path) -> dict[str, bytes]:
+    paths = sorted(path for path in source.glob("*") if path.suffix in _SUFFIXES or path.name == "LICENSE")
+    if not paths:
         raise Error(
             "the extension is not part of this package, its licence being another: give its zip, "
             "brushsvg-inkscape.zip, which `make plugins` makes of the source",
             code="plugin-missing",
         )
-    return {path.name: path.read_bytes() for path in found}
+    return {path.name: path.read_bytes() for path in paths}
 
 
-def _from_zip(path: str) -> dict[str, bytes]:
+def _read_zip(path: str) -> dict[str, bytes]:
     try:
         with zipfile.ZipFile(path) as file:
-            inside = [each for each in file.infolist() if not each.is_dir()]
-            names = {each.filename: each.filename.rpartition("/")[2] for each in inside}
-            known = all(name.endswith(_SUFFIXES) or name == "LICENSE" for name in names.values())
-            if not known or "brushsvg_program.py" not in names.values():
+            members = [each for each in file.infolist() if not each.is_dir()]
+            names = {each.filename: each.filename.rpartition("/")[2] for each in members}
+            are_known = all(name.endswith(_SUFFIXES) or name == "LICENSE" for name in names.values())
+            if not are_known or "brushsvg_program.py" not in names.values():
                 raise Error("this is not the extension's zip", file=path, code="plugin-zip")
-            if sum(each.file_size for each in inside) > _LARGEST:
-                raise Error(f"it holds more than {_LARGEST} bytes", file=path, code="file-too-large")
-            return {names[each.filename]: file.read(each) for each in inside}
+            if sum(each.file_size for each in members) > _MAX_UNZIPPED_BYTES:
+                raise Error(
+                    f"it holds more than {_MAX_UNZIPPED_BYTES} bytes", file=path, code="file-too-large"
+                )
+            return {names[each.filename]: file.read(each) for each in members}
     except OSError as problem:
         raise Error(
             f"the file cannot be read: {(problem.strerror or str(problem)).lower()}",

@@ -1,1 +1,1 @@
-"""The way from a file to plan, marks and programs, put together once."""
+"""The steps from a file to plans, marks and programs, assembled in one place."""

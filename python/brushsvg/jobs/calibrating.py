@@ -1,4 +1,7 @@
-"""Measurements or photographs to a brush: the steps of `brushsvg calibrate`, also called from Python."""
+"""Calibrate a brush from measurements or photographs.
+
+These are the steps of `brushsvg calibrate`, which Python users can call as well.
+"""
 
 from __future__ import annotations
 
@@ -36,12 +39,12 @@ from ..files import read_bytes
 from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
 from ..reporting.report_text import Report
-from .calibration_options import AIMS, LEAST_DPI, MOST_DPI, CalibrationOptions, contradiction, is_photograph
-from .choices import brush_of, cell_of, concerning
+from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
+from .choices import load_brush, load_cell, name_file_in_errors
 from .json_files import read_plan
-from .machine_parts import undoable_parts
+from .machine_parts import select_correctable_parts
 
-Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about it
+Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about the file
 
 
 Fit = TypeVar("Fit")
@@ -49,7 +52,10 @@ Rows = Sequence[Mapping[str, object]]
 
 
 class MeasuredNumbers(TypedDict, total=False):
-    """Measured numbers, as a file has them; type checkers compare a dict in a call with this."""
+    """Measured numbers, as in a file.
+
+    Type checkers compare a dict in a call with this class.
+    """
 
     name: str
     about: str
@@ -69,7 +75,7 @@ class MeasuredNumbers(TypedDict, total=False):
 
 
 class PaintedMarks(TypedDict, total=False):
-    """Painted marks with their plan, as a file has them."""
+    """Painted marks with their plan, as in a file."""
 
     name: str
     about: str
@@ -102,12 +108,16 @@ class GivenOptions(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class BrushCalibration(Generic[Fit]):
-    """A brush and how it was found.
+    """A calibrated brush, and how it was found.
 
-    brush: a Brush [mm], which save_brush writes. kind: "numbers", "marks", "overlap", "dabs", "lag" or "job". fit: the
-    details of that kind of fit; of numbers its laws and remarks, of marks the predicted marks and the machine's faults.
-    report: its verdict, lines and details, as the command prints them; report.text(details=True) has all tables, and
-    the coefficients last. reading: how well photographs were read, in words. notices: warnings.
+    brush: a Brush, with lengths in mm, which save_brush writes.
+    kind: "numbers", "marks", "overlap", "dabs", "lag" or "job".
+    fit: details of that kind of fit, such as laws and remarks for numbers, or predicted marks and machine faults
+        for marks.
+    report: the verdict, lines and details that the command prints. report.text(details=True) has all tables, and
+        the coefficients last.
+    reading: how well the photographs were read, in words.
+    notices: warnings.
     """
 
     brush: _core.Brush
@@ -124,15 +134,18 @@ class BrushCalibration(Generic[Fit]):
         return self.report.text()
 
     def plot(self, suffix: str = ".png") -> bytes:
-        """Return a picture of the laws with their data and residuals. suffix: ".png" or ".svg"."""
+        """Return a picture of the laws with their data and residuals.
+
+        suffix: ".png" or ".svg".
+        """
         if self.kind == "job":
             raise Error("a brush that a job updated has no picture of its fit", code="nothing-to-show")
         if self.kind == "lag":
             return brush_picture(self.brush, suffix)
-        return _REPORTS[self.kind].report_picture(self.fit, suffix)
+        return _REPORT_MODULES[self.kind].report_picture(self.fit, suffix)
 
     def picture(self) -> bytes:
-        """Return a PNG of the flattened photograph with the outlines that were read and those predicted."""
+        """Return the flattened photograph with the read and predicted outlines, as a PNG."""
         if self._read is None:
             raise Error("it was not made of photographs of a chart", code="nothing-to-show")
         if self.kind == "dabs":
@@ -140,7 +153,12 @@ class BrushCalibration(Generic[Fit]):
         return photo_report.read_picture(self._read, self.fit if self.kind == "marks" else self.fit.made)
 
 
-_REPORTS = {"numbers": law_report, "marks": mark_report, "overlap": by_overlap_report, "dabs": dab_report}
+_REPORT_MODULES = {
+    "numbers": law_report,
+    "marks": mark_report,
+    "overlap": by_overlap_report,
+    "dabs": dab_report,
+}
 
 
 @overload
@@ -174,15 +192,17 @@ def calibrate(
     progress: Callable[[str], object] | None = None,
     **options: Any,
 ) -> BrushCalibration[Any]:
-    """Measured numbers, painted marks or photographs to a brush, as `brushsvg calibrate` does.
+    """Calibrate a brush, as `brushsvg calibrate` does.
 
-    source: the path of measurements (.csv .json) or what such a .json holds as a dict, with a Plan and Marks for their
-    files and arrays for lists; or the path, or a list of paths, of photographs of one painted chart or job. name: of
-    the brush, by default that of the measurements or of the first file. progress: called with words on what is done.
+    source: the path of measurements (.csv .json), or the contents of such a .json as a dict. In the dict, a Plan
+        and Marks replace their files, and arrays replace lists. Or the path, or a list of paths, of photographs of
+        one painted chart or job.
+    name: the name of the brush, by default the name in the measurements or of the first file.
+    progress: called with words on the progress.
     options: see CalibrationOptions.
 
-    Raises Error for a file that cannot be read, options that contradict each other, and measurements that leave a law
-    undetermined or that no brush can have.
+    Raises Error for a file that cannot be read, and for options that contradict each other. Measurements that leave
+    a law undetermined, or that no brush can have, also raise Error.
     """
     if isinstance(source, (tuple, list)):
         need(source, (tuple, list), "a list of paths")
@@ -198,35 +218,40 @@ def calibrate(
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")
     notices: list[Notice] = []
-    made = calibrated(
+    calibration = calibrated(
         given,
         name,
-        checked_options(options),
+        make_checked_options(options),
         progress or (lambda text: None),
-        lambda _, found: notices.extend(found),
+        lambda _, warnings: notices.extend(warnings),
     )
-    return replace(made, notices=tuple(notices))
+    return replace(calibration, notices=tuple(notices))
 
 
-def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
-    """Return options by their names. TypeError for an unknown name, Error for a wrong value."""
-    known = CalibrationOptions.__dataclass_fields__
+def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
+    """Return the options of a calibration, checked.
+
+    Raises TypeError for an unknown name, and Error for a wrong value.
+    """
+    option_fields = CalibrationOptions.__dataclass_fields__
     for name in options:
-        if name not in known:
-            raise TypeError(f"{name!r} is no option of calibrate; known are {', '.join(known)}")
+        if name not in option_fields:
+            raise TypeError(f"{name!r} is no option of calibrate; known are {', '.join(option_fields)}")
     options = {
-        name: value for name, value in options.items() if value is not None or known[name].default is not None
+        name: value
+        for name, value in options.items()
+        if value is not None or option_fields[name].default is not None
     }
     refuse_unknown_parts(options.get("machine", ()))
     for name in ("absolute", "total", "paint", "mirrored"):
         need_truth(options.get(name, False), name)
-    for name, least, most in (
+    for name, minimum, maximum in (
         ("bar_mm", 0.001, 1e3),
-        ("dpi", LEAST_DPI, MOST_DPI),
+        ("dpi", MIN_DPI, MAX_DPI),
         ("height_mm", 0.001, 10.0),
     ):
         if name in options:
-            options[name] = need_number(options[name], name, least, most)
+            options[name] = need_number(options[name], name, minimum, maximum)
     for name in ("chart", "spread", "plan"):
         if name in options:
             need(options[name], (str, os.PathLike), f"a path, which {name} is")
@@ -238,12 +263,15 @@ def checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
 def calibrated(
     source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Warn
 ) -> BrushCalibration:
-    """Return a brush with its report; see calibrate. warn: called with a file and the warnings about it."""
-    if why := contradiction(source, options):
+    """Return a brush with its report; see calibrate.
+
+    warn: called with a file and the warnings about the file.
+    """
+    if why := find_contradiction(source, options):
         raise Error(why, code="options-contradict")
     if options.cell is not None:
-        cell = cell_of(options.cell)
-        machine, left_out = undoable_parts(options.machine, cell)
+        cell = load_cell(options.cell)
+        machine, left_out = select_correctable_parts(options.machine, cell)
         options = replace(options, machine=machine)
         warn(cell.name, left_out)
     if isinstance(source, (tuple, list)) and len(source) == 1:
@@ -251,23 +279,23 @@ def calibrated(
     several = isinstance(source, (tuple, list))
     photos = source if several else [source] if is_photograph(source) else None
     if not photos:
-        return _from_measurements(source, name, options, stage, warn)
+        return _calibrate_from_measurements(source, name, options, stage, warn)
     name = name or os.path.splitext(os.path.basename(photos[0]))[0]
     if options.plan is not None:
-        return _from_job(photos, name, options, stage, warn)
-    read = read_photographs(photos, options, stage, warn)
+        return _update_from_job(photos, name, options, stage, warn)
+    read = read_chart_photographs(photos, options, stage, warn)
     if is_of_dabs(read.chart):
-        return _from_dabs(photos, read, name, options, warn)
+        return _calibrate_from_dabs(photos, read, name, options, warn)
     if options.brush is not None:
-        return _lag_from_strokes(photos, read, name, options, stage, warn)
-    return _from_strokes(photos, read, name, options, stage, warn)
+        return _fit_lag_from_strokes(photos, read, name, options, stage, warn)
+    return _calibrate_from_strokes(photos, read, name, options, stage, warn)
 
 
-def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
-    """Return what photographs of one painted chart show; warns of missing strokes."""
-    with concerning(options.chart):
+def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
+    """Read the photographs of one painted chart, and warn of missing strokes."""
+    with name_file_in_errors(options.chart):
         chart = read_chart(read_bytes(options.chart))
-    with concerning(photos[0]):
+    with name_file_in_errors(photos[0]):
         stage("reading the photographs")
         read = read_chart_photos(
             chart,
@@ -280,10 +308,10 @@ def read_photographs(photos: Sequence[str], options: CalibrationOptions, stage, 
     return read
 
 
-def _from_measurements(source, name, options, stage, warn) -> BrushCalibration:
+def _calibrate_from_measurements(source, name, options, stage, warn) -> BrushCalibration:
     file = "" if isinstance(source, Mapping) else source
-    with concerning(file):
-        made = fit_measurements(
+    with name_file_in_errors(file):
+        calibration = fit_measurements(
             source,
             name,
             absolute=options.absolute,
@@ -293,44 +321,44 @@ def _from_measurements(source, name, options, stage, warn) -> BrushCalibration:
             aim=options.aim,
             progress=stage,
         )
-    if isinstance(made, OverlapCalibration):
-        warn(file, doubts(made.by_edges.painted, made.by_edges.expected))
+    if isinstance(calibration, OverlapCalibration):
+        warn(file, doubts(calibration.by_edges.painted, calibration.by_edges.expected))
         kind = "overlap"
-    elif isinstance(made, MarkCalibration):
-        warn(file, doubts(made.painted, made.expected))
+    elif isinstance(calibration, MarkCalibration):
+        warn(file, doubts(calibration.painted, calibration.expected))
         kind = "marks"
     else:
-        warn(file, made.doubts)
+        warn(file, calibration.doubts)
         kind = "numbers"
-    return BrushCalibration(made.brush, kind, made, _REPORTS[kind].report(made))
+    return BrushCalibration(calibration.brush, kind, calibration, _REPORT_MODULES[kind].report(calibration))
 
 
-def _from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
-    """Return a brush from painted strokes of a chart."""
-    with concerning(photos[0]):
-        by_edges = made = _fit_strokes(read, name, options, stage)
+def _calibrate_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+    """Return a brush from the painted strokes of a chart."""
+    with name_file_in_errors(photos[0]):
+        edge_fit = calibration = _fit_strokes(read, name, options, stage)
         if options.aim == "overlap":
-            made = by_overlap(by_edges, stage)
-    warn(photos[0], mark_report.list_strays(by_edges) + doubts(by_edges.painted, by_edges.expected))
+            calibration = by_overlap(edge_fit, stage)
+    warn(photos[0], mark_report.list_strays(edge_fit) + doubts(edge_fit.painted, edge_fit.expected))
     kind = "overlap" if options.aim == "overlap" else "marks"
-    text = _REPORTS[kind].report(made, of_photo=True)
-    return BrushCalibration(made.brush, kind, made, text, reading_in_words(read), _read=read)
+    report = _REPORT_MODULES[kind].report(calibration, of_photo=True)
+    return BrushCalibration(calibration.brush, kind, calibration, report, reading_in_words(read), _read=read)
 
 
 def _fit_strokes(read: Read, name, options, stage) -> MarkCalibration:
     stage("fitting the brush")
     painted = read_painted(json.loads(_core.write_plan(read.chart.plan)), marks_of(read), read_bytes)
-    known = {"displacement_mm": read_displacement_mm(options.spread)} if options.spread else {}
-    known |= {"height_mm": options.height_mm} if options.height_mm is not None else {}
-    fit_options = options_for(expected(read) | known)
+    uncertainties = {"displacement_mm": read_displacement_mm(options.spread)} if options.spread else {}
+    uncertainties |= {"height_mm": options.height_mm} if options.height_mm is not None else {}
+    fit_options = options_for(expected(read) | uncertainties)
     ask_for(fit_options, options.machine)
-    fit = calibrate_paint if options.paint else calibrate_marks
-    return fit(painted, name, options=fit_options, edge_mm=edge_mm(read), leave_out_strays=True)
+    calibrate_painted = calibrate_paint if options.paint else calibrate_marks
+    return calibrate_painted(painted, name, options=fit_options, edge_mm=edge_mm(read), leave_out_strays=True)
 
 
-def _from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
-    """Return a brush of known lag with outlines from dabs."""
-    for broken, why in (
+def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
+    """Return a brush whose lag is known, with outlines from dabs."""
+    for is_broken, why in (
         (
             options.brush is None,
             f"{options.chart} is a chart of dabs: give the brush whose lag is known, --brush FILE",
@@ -338,45 +366,49 @@ def _from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
         (bool(options.machine), "--machine needs strokes: dabs say nothing about the machine"),
         (options.height_mm is not None, "--height is for strokes: dabs count as deep as they were requested"),
     ):
-        if broken:
+        if is_broken:
             raise Error(why, code="options-contradict")
-    before = brush_of(options.brush)
-    joined = tuple(stroke for pair in read.marks.joined for stroke in pair)
-    with concerning(photos[0]):
-        made = calibrate_dabs(dabs_of(read), before, name, edge_mm(read), joined)
-    warn(photos[0], made.remarks)
-    text = dab_report.report(made)
-    return BrushCalibration(made.brush, "dabs", made, text, reading_in_words(read), _read=read)
+    known_brush = load_brush(options.brush)
+    joined_strokes = tuple(stroke for pair in read.marks.joined for stroke in pair)
+    with name_file_in_errors(photos[0]):
+        calibration = calibrate_dabs(dabs_of(read), known_brush, name, edge_mm(read), joined_strokes)
+    warn(photos[0], calibration.remarks)
+    report = dab_report.report(calibration)
+    return BrushCalibration(
+        calibration.brush, "dabs", calibration, report, reading_in_words(read), _read=read
+    )
 
 
-def _lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
-    """Return a brush of known outlines with the lag of painted strokes."""
-    own = brush_of(options.brush)
-    with concerning("" if isinstance(options.brush, _core.Brush) else options.brush):
-        refuse_assumed(own)
-    with concerning(photos[0]):
-        made = _fit_strokes(read, name, options, stage)
-        found = lag_by_outlines(made, own, name)
-    warn(photos[0], mark_report.list_strays(made))
-    text = lag_by_outlines_report.report(found)
-    return BrushCalibration(found.brush, "lag", found, text, reading_in_words(read), _read=read)
+def _fit_lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+    """Return a brush whose outlines are known, with the lag of painted strokes."""
+    known_brush = load_brush(options.brush)
+    with name_file_in_errors("" if isinstance(options.brush, _core.Brush) else options.brush):
+        refuse_assumed(known_brush)
+    with name_file_in_errors(photos[0]):
+        stroke_fit = _fit_strokes(read, name, options, stage)
+        lag_fit = lag_by_outlines(stroke_fit, known_brush, name)
+    warn(photos[0], mark_report.list_strays(stroke_fit))
+    report = lag_by_outlines_report.report(lag_fit)
+    return BrushCalibration(lag_fit.brush, "lag", lag_fit, report, reading_in_words(read), _read=read)
 
 
-def _from_job(photos, name, options, stage, warn) -> BrushCalibration:
+def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
     """Return a known brush, updated by photographs of a painted job."""
-    before = brush_of(options.prior)
-    with concerning(options.plan):
+    prior_brush = load_brush(options.prior)
+    with name_file_in_errors(options.plan):
         plan = read_plan(options.plan)
-    with concerning(options.spread or ""):
+    with name_file_in_errors(options.spread or ""):
         spread_mm = read_displacement_mm(options.spread) if options.spread else None
     pictures = [(path, read_bytes(path)) for path in photos]
     digests = [hashlib.sha256(data).hexdigest() for _, data in pictures]
-    with concerning("" if isinstance(options.prior, _core.Brush) else options.prior):
-        refuse_learned(before, digests)
-    warn(options.plan, other_brush(plan, before))
-    with concerning(photos[0]):
+    with name_file_in_errors("" if isinstance(options.prior, _core.Brush) else options.prior):
+        refuse_learned(prior_brush, digests)
+    warn(options.plan, other_brush(plan, prior_brush))
+    with name_file_in_errors(photos[0]):
         stage("reading the photographs and fitting the brush")
-        learnt = learn(plan, before, pictures, name, options.machine, spread_mm)
-    with_lineage(learnt.updated.brush, before, digests)
-    warn(photos[0], list(learnt.notices))
-    return BrushCalibration(learnt.updated.brush, "job", learnt.updated, update_report.report(learnt.updated))
+        learned = learn(plan, prior_brush, pictures, name, options.machine, spread_mm)
+    with_lineage(learned.updated.brush, prior_brush, digests)
+    warn(photos[0], list(learned.notices))
+    return BrushCalibration(
+        learned.updated.brush, "job", learned.updated, update_report.report(learned.updated)
+    )

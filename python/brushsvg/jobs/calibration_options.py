@@ -1,4 +1,7 @@
-"""Options of a calibration, and which of them go together. It imports nothing heavy: usage errors are instant."""
+"""Options of a calibration, and which options exclude each other.
+
+Nothing heavy is imported here, so that usage errors are reported at once.
+"""
 
 from __future__ import annotations
 
@@ -14,20 +17,36 @@ if TYPE_CHECKING:
     from ..machine.cells.cell import Cell
 
 AIMS = ("edges", "overlap")
-LEAST_DPI, MOST_DPI = 102.0, 20000.0  # of a scan; the former is 4 pixels per mm
+# Limits of the resolution in which a scan can be measured. The lower limit is 4 pixels per mm.
+MIN_DPI, MAX_DPI = 102.0, 20000.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class CalibrationOptions:
-    """The options of `brushsvg calibrate`. Paths are None where nothing is given.
+    """The options of `brushsvg calibrate`. A path that is not given is None.
 
-    For measured numbers: absolute, least absolute residuals instead of squares; total, total least squares for series
-    of angles. For painted marks and photographs: machine, parts of "lean", "axes", "tilt", "backlash", "field" to
-    estimate as well, of which a cell keeps those that it can undo; paint, estimate how marks narrow along the way; aim,
-    "edges" or "overlap". For photographs of a chart: chart, its chart.json; bar_mm, measured length of the printed bar;
-    dpi, of a flatbed scan without a printed page; mirrored, taken through a clear sheet; height_mm, standard deviation
-    of the paper's height; spread, a .json of `compare --sheets`. brush: whose lag (for dabs) or outlines (for strokes)
-    are known. For photographs of a job: plan, the painted plan.json; prior, the brush that painted it.
+    For measured numbers:
+    absolute: minimize absolute residuals instead of squares.
+    total: use total least squares for series of angles.
+
+    For painted marks and photographs:
+    machine: any of "lean", "axes", "tilt", "backlash", "field", to estimate as well.
+    cell: the machine; only parts that this cell can undo are estimated.
+    paint: estimate how marks narrow along the way.
+    aim: "edges" or "overlap".
+
+    For photographs of a chart:
+    chart: its chart.json.
+    bar_mm: the measured length of the printed bar.
+    dpi: the resolution of a flatbed scan without a printed page.
+    mirrored: the photograph was taken through a clear sheet.
+    height_mm: the standard deviation of the height of the paper.
+    spread: a .json of `compare --sheets`.
+    brush: the brush whose lag (for dabs) or outlines (for strokes) are known.
+
+    For photographs of a job:
+    plan: the painted plan.json.
+    prior: the brush that painted it.
     """
 
     absolute: bool = False
@@ -51,8 +70,11 @@ def is_photograph(path) -> bool:
     return not isinstance(path, Mapping) and os.path.splitext(os.fspath(path))[1].lower() in PHOTOS
 
 
-def contradiction(source, options: CalibrationOptions) -> str:
-    """Return why options do not go together, in a sentence that names the command's flags; "" if they do."""
+def find_contradiction(source, options: CalibrationOptions) -> str:
+    """Return why options exclude each other, or "" if they do not.
+
+    The sentence names the flags of the command.
+    """
     photos = [source] if isinstance(source, (str, Mapping)) else list(source)
     other = next((path for path in photos if not is_photograph(path)), "")
     is_photo = all(map(is_photograph, photos))
@@ -61,23 +83,23 @@ def contradiction(source, options: CalibrationOptions) -> str:
         (len(photos) > 1 and not is_photo, f"only photographs can be several: {other} is not one"),
     ]
     if options.plan is not None or options.prior is not None:
-        one_missing = options.plan is None or options.prior is None
+        is_incomplete = options.plan is None or options.prior is None
         rules.append(
-            (one_missing, "--plan and --prior go together: the painted plan, and the brush that painted it")
+            (is_incomplete, "--plan and --prior go together: the painted plan, and the brush that painted it")
         )
         for flag in ("chart", "bar_mm", "dpi", "mirrored", "total", "brush", "height_mm", "paint"):
-            word = flag.removesuffix("_mm")
-            rules.append((bool(getattr(options, flag)), f"--{word} is not for a job (--plan)"))
+            flag_name = flag.removesuffix("_mm")
+            rules.append((bool(getattr(options, flag)), f"--{flag_name} is not for a job (--plan)"))
         rules.append((options.absolute, "--norm is not for a job (--plan)"))
         rules.append((options.aim != "edges", "--aim is not for a job (--plan): a brush is updated by edges"))
         rules.append((not is_photo, "--plan needs photographs of the painted job"))
-        return next((why for broken, why in rules if broken), "")
+        return next((why for is_broken, why in rules if is_broken), "")
     rules += [
         (options.paint and options.brush is not None, "--paint finds a brush of its own: leave --brush out"),
         (options.paint and options.aim != "edges", "--paint is found by edges: leave --aim overlap out"),
     ]
     if is_photo:
-        several = options.dpi is not None and (len(photos) > 1 or options.bar_mm is not None)
+        is_wrong_scan = options.dpi is not None and (len(photos) > 1 or options.bar_mm is not None)
         rules += [
             (
                 options.aim != "edges" and options.brush is not None,
@@ -87,11 +109,11 @@ def contradiction(source, options: CalibrationOptions) -> str:
                 options.chart is None,
                 "photographs need --chart, the chart.json that was written with the page",
             ),
-            (several, "--dpi is for one scan, and without --bar: it shows no printed page"),
+            (is_wrong_scan, "--dpi is for one scan, and without --bar: it shows no printed page"),
         ]
     else:
         for flag in ("mirrored", "chart", "bar_mm", "dpi", "brush", "spread", "height_mm"):
             given = getattr(options, flag) not in (None, False)
-            word = flag.removesuffix("_mm")
-            rules.append((given, f"--{word} is for photographs ({' '.join(PHOTOS)})"))
-    return next((why for broken, why in rules if broken), "")
+            flag_name = flag.removesuffix("_mm")
+            rules.append((given, f"--{flag_name} is for photographs ({' '.join(PHOTOS)})"))
+    return next((why for is_broken, why in rules if is_broken), "")

@@ -1,4 +1,4 @@
-"""Give up work within a second when its caller cancels it, at any step."""
+"""Run work that its caller can cancel within a second, at any step."""
 
 from __future__ import annotations
 
@@ -12,59 +12,66 @@ from typing import Protocol
 
 from ..errors import need
 
-LOOKS_S = 0.05
-PATIENCE_S = 0.8  # for what holds the interpreter, such as the encoder of a picture
+POLL_INTERVAL_S = 0.05
+# How long to wait for code that holds the interpreter, such as an encoder of pictures, in seconds.
+MAX_CANCEL_WAIT_S = 0.8
 
 
-class Cancelled(Protocol):
-    """What a threading.Event has."""
+class CancelFlag(Protocol):
+    """An object that can be set, such as a threading.Event."""
 
     def is_set(self) -> bool: ...
 
 
-Cancel = Callable[[], object] | Cancelled
+Cancel = Callable[[], object] | CancelFlag
 
 
-class _GivenUp(BaseException):
-    """Raised in the work's thread: no `except Exception` on its way takes it for an error."""
+class _WorkCancelled(BaseException):
+    """Raised in the thread of the work to stop it.
+
+    It is no Exception, so that no `except Exception` in the work catches it.
+    """
 
 
 def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=None):
-    """Return what work(stage) returns; stage receives words about progress. progress: the same; cancel: None, a
-    callable or something with is_set(): once it says yes, CancelledError is raised.
+    """Return the result of work(stage), and cancel the work if requested.
 
-    Work that may be given up runs in a thread of its own, so that an exception can be put into it at any line of
-    Python, which loops of C++ run, too (bindings.hpp). Both callables are called in the thread of the caller.
+    work: called with a function that receives words on the progress.
+    progress: called with these words.
+    cancel: None, a callable, or an object with is_set(). Once it returns true, CancelledError is raised.
+
+    Work that can be cancelled runs in a thread of its own. An exception can be raised in it at any line of Python,
+    and loops in C++ also run lines of Python (bindings.hpp). Both callables are called in the thread of the caller.
     """
     if progress is not None and not callable(progress):
         need(progress, Callable, "a callable, which progress is")
     if cancel is None:
         return work(progress or (lambda text: None))
-    is_over = getattr(cancel, "is_set", cancel)
-    need(is_over, Callable, "a callable or an event, which cancel is")
-    said, outcome = deque(maxlen=1), []
+    is_cancelled = getattr(cancel, "is_set", cancel)
+    need(is_cancelled, Callable, "a callable or an event, which cancel is")
+    messages, outcome = deque(maxlen=1), []
 
-    def worked() -> None:
+    def run_work() -> None:
         try:
-            outcome.append((work(said.append), None))
+            outcome.append((work(messages.append), None))
         except BaseException as problem:
             outcome.append((None, problem))
 
-    def look() -> None:
-        if is_over():
+    def poll() -> None:
+        if is_cancelled():
             raise CancelledError("cancelled")
-        if progress is not None and said:
-            progress(said.pop())
+        if progress is not None and messages:
+            progress(messages.pop())
 
-    look()
-    thread = threading.Thread(target=worked, name="brushsvg", daemon=True)
+    poll()
+    thread = threading.Thread(target=run_work, name="brushsvg", daemon=True)
     thread.start()
     try:
         while thread.is_alive():
-            look()
-            thread.join(LOOKS_S)
+            poll()
+            thread.join(POLL_INTERVAL_S)
     except BaseException:
-        _give_up(thread)
+        _stop_thread(thread)
         raise
     result, problem = outcome[0]
     if problem is not None:
@@ -72,9 +79,15 @@ def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=
     return result
 
 
-def _give_up(thread: threading.Thread) -> None:
-    """What does not hear it within PATIENCE_S ends on its own: it writes nothing."""
-    end = time.monotonic() + PATIENCE_S
+def _stop_thread(thread: threading.Thread) -> None:
+    """Raise an exception in the thread until it ends or MAX_CANCEL_WAIT_S is over.
+
+    A thread that does not end in that time ends on its own later. It writes nothing.
+    """
+    end = time.monotonic() + MAX_CANCEL_WAIT_S
     while thread.is_alive() and time.monotonic() < end:
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(_GivenUp))
-        thread.join(PATIENCE_S / 4)  # raised where Python ignores exceptions, as in a destructor, it is lost
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(thread.ident), ctypes.py_object(_WorkCancelled)
+        )
+        # The exception is lost where Python ignores exceptions, as in a destructor: raise it again.
+        thread.join(MAX_CANCEL_WAIT_S / 4)

@@ -1,5 +1,8 @@
-"""A program read back, simulated, and held against its brush, its machine and what it should paint: what `brushsvg
-check` does, from Python."""
+"""Check a program: read it back, simulate it, and compare it with its target.
+
+These are the steps of `brushsvg check`, which Python users can call as well. A program is compared with its brush,
+its machine and its drawing.
+"""
 
 from __future__ import annotations
 
@@ -30,53 +33,58 @@ from ..show.evaluation.report import Report
 from ..verify import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
-from ..verify.readback.header import made as made_of
+from ..verify.readback.header import made as read_header
 from ..verify.readback.ros2 import as_table
 from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
+    CHOICE_BY_FLAG,
     CHOICES,
     LAYOUT_FLAGS,
-    MADE_FLAGS,
-    NAMED_OTHERWISE,
+    PLANNING_FLAGS,
+    ChoiceKeywords,
     Choices,
-    Given,
-    brush_of,
-    cell_of,
-    concerning,
     drop_from_project,
-    name_of,
-    options_of,
-    overruled_names,
+    drop_overruled,
+    find_overruled_names,
+    load_brush,
+    load_cell,
+    make_options,
+    name_file_in_errors,
+    path_of,
+    report_ineffective_flags,
     suffix_of,
-    without_effect,
-    without_overruled,
 )
-from .conversion import chosen_of, of_arm
+from .conversion import list_arm_notices, make_choices
 from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
-from .work import Work, nearest_first, whole_strokes
+from .work import Work, match_whole_strokes, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
 
 Warn = Callable[[str, Iterable[Notice]], object]
-STRAY_MM = 0.02  # what a plan's rounding makes of where its paint ends
-SAID = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")  # by the program
+MAX_BORDER_DIFFERENCE_MM = 0.02  # how far rounding of a plan can displace the edges of its paint
+# Choices that a program defines itself, in its header.
+SET_BY_PROGRAM = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")
 
 
 @dataclass(frozen=True)
 class Check:
-    """What a program does, and what forbids to run it.
+    """What a program does, and the problems that forbid running it.
 
-    job: "painting", or what is done before the first stroke: "border", "first-run", "height". problems: what forbids to
-    run it, empty where nothing does. time_s: how long the machine takes, None for a program of others. is_foreign:
-    somebody else wrote it, for a pen; is_compared: with a drawing or plan. notices: further warnings, about the drawing
-    or the machine. work, marks, figures: what it paints, None where that is nothing. border_mm: left, bottom, right,
-    top of an air run; heights_mm: from, to, and of a height program the step.
+    job: "painting", or a job before the first stroke: "border", "first-run", "height".
+    problems: what forbids running the program; empty if nothing does.
+    time_s: how long the machine takes; None for a program that brushsvg did not write.
+    is_foreign: the program was written by other software, for a pen.
+    is_compared: the program was compared with a drawing or plan.
+    notices: further warnings, about the drawing or the machine.
+    work, marks, figures: what the program paints; None if it paints nothing.
+    border_mm: left, bottom, right and top of a run in the air.
+    heights_mm: the first and last height; for a height program also the step.
     """
 
     job: str
@@ -93,7 +101,7 @@ class Check:
 
     @property
     def plan(self) -> _core.Plan | None:
-        """TCP poses [mm] of each stroke, as the program has them."""
+        """TCP poses [mm] of each stroke, as in the program."""
         return self.work.plan if self.work else None
 
 
@@ -103,88 +111,101 @@ def check(
     *,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> Check:
-    """A program read back and simulated, as `brushsvg check` does: whether it keeps the limits of its brush and its
-    machine, and whether it paints what it should.
+    """Check a program as `brushsvg check` does: read it back and simulate it.
 
-    program: its path. drawing: what it should paint, as `convert` takes it; None: only its limits are checked.
-    choices: as those of `convert`, by default what the program says; how strokes were compensated it says itself.
+    The program is checked against the limits of its brush and its machine, and compared with its drawing.
+
+    program: the path of the program.
+    drawing: what the program should paint, as `convert` takes it; None to check only the limits.
     progress, cancel: as for `convert`.
+    choices: as for `convert`, by default as the program says. How strokes were compensated is always taken from the
+        program.
 
-    Raises Error, with a code of docs/reference/diagnostics.md, for a program that cannot be read or followed, such as
-    one that presses deeper than the brush's laws reach, and a drawing that cannot be painted. What else forbids
-    to run it stands in `problems`.
+    Raises Error, with a code of docs/reference/diagnostics.md, for a drawing that cannot be painted, and for a
+    program that cannot be read or followed. Such a program may press deeper than the laws of the brush reach. All
+    other reasons not to run the program are in `problems`.
     """
     need(program, (str, os.PathLike), "a path, which program is")
-    chosen = chosen_of(drawing, choices)
-    chosen = drop_from_project(chosen, SAID)
-    for name in SAID:
+    chosen = make_choices(drawing, choices)
+    chosen = drop_from_project(chosen, SET_BY_PROGRAM)
+    for name in SET_BY_PROGRAM:
         if getattr(chosen, name) is not None:
             sentence = f"a program says itself how it was made: {name} would change nothing"
             raise Error(sentence, name, code="flag-without-effect")
     if drawing is None and chosen.corrections is not None:
         raise Error("corrections need the drawing that they are of", "corrections", code="options-contradict")
-    found: list[Notice] = []
-    done = cancelling.run(
-        lambda stage: checked(os.fspath(program), chosen, stage, lambda _, notices: found.extend(notices)),
+    notices: list[Notice] = []
+    result = cancelling.run(
+        lambda stage: check_program(
+            os.fspath(program), chosen, stage, lambda _, warnings: notices.extend(warnings)
+        ),
         progress,
         cancel,
     )
-    return replace(done, notices=tuple(found))
+    return replace(result, notices=tuple(notices))
 
 
-def checked(
+def check_program(
     path: str,
     chosen: Choices,
     stage: Callable[[str], object] = lambda text: None,
     warn: Warn = lambda file, notices: None,
 ) -> Check:
-    """Check a program, and report notices with the file that they are of as soon as they are known."""
+    """Check a program, and report notices with their file as soon as they are known."""
     suffix = suffix_of(path)
-    with concerning(path):
+    with name_file_in_errors(path):
         data = read_bytes(path)
         text = text_of_file(b"" if suffix == ".cdr" else data)
         if suffix in GCODE and not is_ours(text):
-            return _foreign(path, text, chosen, warn)
-        text = _whole_text(path, suffix, text)
-        made = made_of(text)
-        chosen = _as_program_says(chosen, made)
-        for kind, name, names in (("cell", made.cell, cell_names()), ("brush", made.brush, brush_names())):
+            return _check_foreign_program(path, text, chosen, warn)
+        text = _read_with_called_files(path, suffix, text)
+        header = read_header(text)
+        chosen = _drop_project_choices(chosen, header)
+        for kind, name, names in (
+            ("cell", header.cell, cell_names()),
+            ("brush", header.brush, brush_names()),
+        ):
             if getattr(chosen, kind) is None and name not in names:
                 raise Error(
                     f"the program names {kind} {name!r}, which does not come along",
                     code=f"{kind}-unknown",
                     advice=f"give --{kind} FILE",
                 )
-        tolerance_mm = made.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
-        cell = preflight.as_exact_as(cell_of(chosen.cell or made.cell), tolerance_mm)
-        brush = brush_of(chosen.brush) or find_brush(made.brush)
+        tolerance_mm = header.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
+        cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
+        brush = load_brush(chosen.brush) or find_brush(header.brush)
         read = read_program(text, suffix, cell)
-    warn(cell.name, of_arm(cell))
-    program = _Program(path, text, made, read, cell, brush)
-    if made.border_mm or made.heights_mm or made.first_mm:
-        return _setup(program, chosen, stage, warn)
-    return _painting(program, chosen, stage, warn)
+    warn(cell.name, list_arm_notices(cell))
+    program = _OwnProgram(path, text, header, read, cell, brush)
+    if header.border_mm or header.heights_mm or header.first_mm:
+        return _check_setup_program(program, chosen, stage, warn)
+    return _check_painting(program, chosen, stage, warn)
 
 
 @dataclass(frozen=True)
-class _Program:
-    """A program of ours: made, what its header says; read, its moves; cell, brush: those that it is for."""
+class _OwnProgram:
+    """A program that brushsvg wrote.
+
+    header: the contents of its header.
+    read: its moves.
+    cell, brush: the cell and brush that it is for.
+    """
 
     path: str
     text: str
-    made: object
+    header: object
     read: object
     cell: Cell
     brush: _core.Brush
 
     def z_offset_mm(self, chosen: Choices) -> float:
-        return self.made.z_offset_mm if chosen.z_offset is None else chosen.z_offset
+        return self.header.z_offset_mm if chosen.z_offset is None else chosen.z_offset
 
 
-def _whole_text(path: str, suffix: str, text: str) -> str:
-    """Read a program with the files that it calls, next to it."""
+def _read_with_called_files(path: str, suffix: str, text: str) -> str:
+    """Return the text of a program and of the files that it calls, next to it."""
     if suffix == ".robodk":
         raise Error(
             "what a post of RoboDK's kind writes is in a language of its own, which is not read back",
@@ -210,71 +231,81 @@ def _whole_text(path: str, suffix: str, text: str) -> str:
     return "".join([text, *called.values()])
 
 
-def _as_program_says(chosen: Choices, made) -> Choices:
-    """Drop what a project file chose and the program's header says itself."""
+def _drop_project_choices(chosen: Choices, header) -> Choices:
+    """Drop project choices that the header of the program defines."""
     if not chosen.from_project:
         return chosen
-    said = {} if chosen.input is None else settings_in(chosen.input)
-    chosen = without_overruled(chosen, {name: said[name] for name in said if name not in ("brush", "cell")})
-    named = {"brush": made.brush, "cell": made.cell}
-    dropped = {"z_offset"} | overruled_names(chosen, named, unknown=False)
-    if made.sheet_mm and chosen.input is None:
+    drawing_settings = {} if chosen.input is None else settings_in(chosen.input)
+    chosen = drop_overruled(
+        chosen, {name: drawing_settings[name] for name in drawing_settings if name not in ("brush", "cell")}
+    )
+    names = {"brush": header.brush, "cell": header.cell}
+    dropped = {"z_offset"} | find_overruled_names(chosen, names, unknown=False)
+    if header.sheet_mm and chosen.input is None:
         dropped.add("sheet")
     return drop_from_project(chosen, dropped)
 
 
-def _painting(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
-    made, read, cell, brush = program.made, program.read, program.cell, program.brush
-    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
+def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
+    header, read, cell, brush = program.header, program.read, program.cell, program.brush
+    work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
     z_offset_mm = program.z_offset_mm(chosen)
-    with concerning(program.path):
-        sheet_mm = work.plan.sheet_mm if work else chosen.sheet or made.sheet_mm
+    with name_file_in_errors(program.path):
+        sheet_mm = work.plan.sheet_mm if work else chosen.sheet or header.sheet_mm
         if sheet_mm is None:
             raise Error(
                 "its header does not say how large the sheet is: give --sheet or the drawing",
                 code="sheet-unknown",
             )
-        ran = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
-    warn(program.path, _of_offset(z_offset_mm))
-    with concerning(program.path):
-        problems = ran.problems + simulate_program.misnumbered(read, made.first_stroke, made.strokes)
+        simulated = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
+    warn(program.path, _report_offset(z_offset_mm))
+    with name_file_in_errors(program.path):
+        problems = simulated.problems + simulate_program.misnumbered(
+            read, header.first_stroke, header.strokes
+        )
         strokes, drawn, speeds = None, None, None
         if work:
             loads = in_loads(work.plan, brush, cell)
-            which, unlike = against_plan.with_plan(ran, loads, cell, made.first_stroke)
-            if made.is_of_plan and work.strokes is not None:
-                unlike = _unlike_drawing(unlike)
-            problems = problems + unlike
-            speeds = None if None in which else [loads.loads[k].speed_mm_s for k in which]
+            stroke_rows, differences = against_plan.with_plan(simulated, loads, cell, header.first_stroke)
+            if header.is_of_plan and work.strokes is not None:
+                differences = _merge_style_differences(differences)
+            problems = problems + differences
+            speeds = None if None in stroke_rows else [loads.loads[k].speed_mm_s for k in stroke_rows]
             if work.strokes is not None:
-                whole = whole_strokes(work, loads)
-                strokes = None if None in which else [whole[k] for k in which]
-                whole_job = made.first_stroke == 1
+                target_strokes = match_whole_strokes(work, loads)
+                strokes = None if None in stroke_rows else [target_strokes[k] for k in stroke_rows]
+                whole_job = header.first_stroke == 1
                 drawn = [each for each in work.strokes if not is_margin(each)] if whole_job else None
-        again, changed = _written_again(program, ran, work, speeds, z_offset_mm)
-        problems = problems + changed
-        if again and not problems:
-            problems = out_of_arm(again, sheet_mm)
-        shown = Work(made.title, brush, ran.plan, strokes, (), Options(), ())
-        seconds, as_run_s = duration_s(again) if again else 0.0, time_as_run_s(read, cell)
-        if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered
+        rewritten, rewrite_notices = _compare_with_rewritten(program, simulated, work, speeds, z_offset_mm)
+        problems = problems + rewrite_notices
+        if rewritten and not problems:
+            problems = out_of_arm(rewritten, sheet_mm)
+        painted_work = Work(header.title, brush, simulated.plan, strokes, (), Options(), ())
+        seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
+        if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered in the program
             seconds = as_run_s
         figures = outputs.reported(
-            shown, ran.marks, cell, forbidden=problems, drawn=drawn, seconds=seconds, as_run=ran.as_run
+            painted_work,
+            simulated.marks,
+            cell,
+            forbidden=problems,
+            drawn=drawn,
+            seconds=seconds,
+            as_run=simulated.as_run,
         )
     return Check(
         "painting",
         tuple(problems),
         seconds,
         is_compared=work is not None,
-        work=shown,
-        marks=ran.marks,
+        work=painted_work,
+        marks=simulated.marks,
         figures=figures,
     )
 
 
-def _of_offset(z_offset_mm: float) -> list[Notice]:
-    """A notice where the paper is expected at another height than the cell has it."""
+def _report_offset(z_offset_mm: float) -> list[Notice]:
+    """Return a notice if the paper is expected at another height than in the cell."""
     if not z_offset_mm:
         return []
     where = "higher" if z_offset_mm > 0 else "lower"
@@ -285,156 +316,190 @@ def _of_offset(z_offset_mm: float) -> list[Notice]:
     return [Notice("", sentence, code="paper-offset")]
 
 
-def _unlike_drawing(unlike: list[Notice]) -> list[Notice]:
-    """The same, with one notice for all strokes that are painted in another way: neither the program nor its plan.json
-    says how it was planned, so they may be as requested."""
-    otherwise = [
-        each for each in unlike if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")
+def _merge_style_differences(differences: list[Notice]) -> list[Notice]:
+    """Merge the notices on strokes that are painted in another way into one notice.
+
+    Neither the program nor its plan.json says how the strokes were planned, so they may be as requested.
+    """
+    restyled = [
+        each for each in differences if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")
     ]
-    if not otherwise:
-        return unlike
+    if not restyled:
+        return differences
     sentence = (
-        f"stroke {otherwise[0].where!r} differs from the drawing's, and the plan.json that the program was made from "
+        f"stroke {restyled[0].where!r} differs from the drawing's, and the plan.json that the program was made from "
         "does not say how it was planned"
     )
     advice = "check the program against that plan.json"
-    rest = [each for each in unlike if each not in otherwise]
-    return [*rest, Notice("", sentence, code="plan-unlike-drawing", advice=advice)]
+    other_differences = [each for each in differences if each not in restyled]
+    return [*other_differences, Notice("", sentence, code="plan-unlike-drawing", advice=advice)]
 
 
-def _written_again(
-    program: _Program, ran, work: Work | None, speeds, z_offset_mm: float
+def _compare_with_rewritten(
+    program: _OwnProgram, simulated, work: Work | None, speeds, z_offset_mm: float
 ) -> tuple[object, list[Notice]]:
-    """What we would write of the plan that was read, and where the program differs from it."""
-    made, cell, brush = program.made, program.cell, program.brush
-    header_notes = against_regenerated.HeaderNotes(*_header_notes(made, work))
-    again = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, header_notes, speeds)
-    if not again:
-        return again, []
+    """Write the plan that was read as a program again, and compare both programs.
+
+    Returns the program that brushsvg would write, and notices on where the given program differs.
+    """
+    header, cell, brush = program.header, program.cell, program.brush
+    header_notes = against_regenerated.HeaderNotes(*_make_expected_header(header, work))
+    rewritten = against_regenerated.again(
+        simulated, brush, cell, z_offset_mm, header.first_stroke, header_notes, speeds
+    )
+    if not rewritten:
+        return rewritten, []
     least_s = None
-    if speeds is None:  # feeds may have been lowered after its time was written
-        usual_mm_s = min(Options.speed_mm_s, again.touching_mm_s)
-        fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in ran.plan.passes]
-        at_most = against_regenerated.again(ran, brush, cell, z_offset_mm, made.first_stroke, None, fastest)
-        least_s = duration_s(at_most)
-    changed = against_regenerated.differing_line(program.text, program.read, again, cell, least_s)
-    said = [Notice("", changed, code="program-changed")] if changed else pace.stops(program.read, again)
-    return again, said
+    if speeds is None:  # feeds may have been lowered after the time was written into the header
+        usual_mm_s = min(Options.speed_mm_s, rewritten.touching_mm_s)
+        fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in simulated.plan.passes]
+        fastest_program = against_regenerated.again(
+            simulated, brush, cell, z_offset_mm, header.first_stroke, None, fastest
+        )
+        least_s = duration_s(fastest_program)
+    changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s)
+    notices = (
+        [Notice("", changed_line, code="program-changed")]
+        if changed_line
+        else pace.stops(program.read, rewritten)
+    )
+    return rewritten, notices
 
 
-def _header_notes(made, work: Work | None) -> tuple[str, tuple[str, ...]]:
-    """Title and notes that a program's header should have: its drawing's, or its own where nobody knows better, as for
-    a program that was made of a plan."""
+def _make_expected_header(header, work: Work | None) -> tuple[str, tuple[str, ...]]:
+    """Return the title and notes that the header of a program should have.
+
+    They come from the drawing, or from the header itself where nothing else is known, as for a program that was
+    made from a plan.
+    """
     if (
         work is None
         or work.strokes is None
-        or not made.notes[:1]
-        or not made.notes[0].startswith("compensation")
+        or not header.notes[:1]
+        or not header.notes[0].startswith("compensation")
     ):
-        return made.title, made.notes
-    order = [note for note in made.notes if note.startswith("order")]
+        return header.title, header.notes
+    order = [note for note in header.notes if note.startswith("order")]
     return work.title or "untitled", (*outputs.notes(work), *order)
 
 
-def _foreign(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
-    """A program that somebody else wrote for a pen: what a brush paints with it, and which limits it breaks."""
+def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
+    """Check a program that other software wrote for a pen.
+
+    Finds what a brush would paint with it, and which limits it breaks.
+    """
     if chosen.input is not None:
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
     chosen = drop_from_project(chosen, {*CHOICES} - {"brush", "cell", "sheet", "paper_z"})
-    for flag in (*LAYOUT_FLAGS, *MADE_FLAGS, "speed", "z-offset", "corrections"):
-        given = getattr(chosen, NAMED_OTHERWISE.get(flag, flag))
+    for flag in (*LAYOUT_FLAGS, *PLANNING_FLAGS, "speed", "z-offset", "corrections"):
+        given = getattr(chosen, CHOICE_BY_FLAG.get(flag, flag))
         if flag not in ("sheet", "paper-z") and given:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
-    cell, brush = cell_of(chosen.cell), brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
-    found = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
-    warn(path, found.warnings)
-    shown = Work("", brush, found.plan, None, (), Options(cell=cell), ())
-    figures = outputs.reported(shown, found.marks, cell, forbidden=found.problems)
-    return Check("painting", found.problems, is_foreign=True, work=shown, marks=found.marks, figures=figures)
+    cell, brush = load_cell(chosen.cell), load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
+    foreign = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
+    warn(path, foreign.warnings)
+    painted_work = Work("", brush, foreign.plan, None, (), Options(cell=cell), ())
+    figures = outputs.reported(painted_work, foreign.marks, cell, forbidden=foreign.problems)
+    return Check(
+        "painting", foreign.problems, is_foreign=True, work=painted_work, marks=foreign.marks, figures=figures
+    )
 
 
-def _setup(program: _Program, chosen: Choices, stage, warn: Warn) -> Check:
-    """A program before the first stroke: it paints no drawing, and says in its header all that it does."""
-    made, read, text = program.made, program.read, program.text
+def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
+    """Check a program that runs before the first stroke.
+
+    Such a program paints no drawing, and its header says all that it does.
+    """
+    header, read, text = program.header, program.read, program.text
     cell, brush = program.cell, program.brush
-    with concerning(program.path):
-        if (made.heights_mm or made.first_mm) and chosen.input is not None:
+    with name_file_in_errors(program.path):
+        if (header.heights_mm or header.first_mm) and chosen.input is not None:
             raise Error(
                 "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
             )
-        if made.sheet_mm is None:
+        if header.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
-    work = _as_made(program, chosen, stage, warn) if chosen.input is not None else None
-    with concerning(program.path):
-        if made.border_mm:
-            sheet_mm, z_offset_mm = work.plan.sheet_mm if work else made.sheet_mm, program.z_offset_mm(chosen)
-            looked = setup_programs.look_at_border(text, read, made, brush, cell, sheet_mm, z_offset_mm)
-            problems = [*looked.problems, *(_border_notices(made, work, stage) if work else [])]
+    work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
+    with name_file_in_errors(program.path):
+        if header.border_mm:
+            sheet_mm, z_offset_mm = (
+                work.plan.sheet_mm if work else header.sheet_mm,
+                program.z_offset_mm(chosen),
+            )
+            outcome = setup_programs.look_at_border(text, read, header, brush, cell, sheet_mm, z_offset_mm)
+            problems = [*outcome.problems, *(_compare_border(header, work, stage) if work else [])]
             return Check(
                 "border",
                 tuple(problems),
-                looked.time_s,
+                outcome.time_s,
                 is_compared=work is not None,
-                border_mm=tuple(made.border_mm),
+                border_mm=tuple(header.border_mm),
             )
-        if made.first_mm:
-            looked = setup_programs.look_at_first_run(text, read, made, brush, cell)
-            return Check("first-run", tuple(looked.problems), looked.time_s, heights_mm=tuple(made.first_mm))
-        looked = setup_programs.look_at_heights(text, read, made, brush, cell)
-        return Check("height", tuple(looked.problems), looked.time_s, heights_mm=tuple(made.heights_mm))
+        if header.first_mm:
+            outcome = setup_programs.look_at_first_run(text, read, header, brush, cell)
+            return Check(
+                "first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.first_mm)
+            )
+        outcome = setup_programs.look_at_heights(text, read, header, brush, cell)
+        return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.heights_mm))
 
 
-def _border_notices(made, work: Work, stage) -> list[Notice]:
-    """A sentence where an air run does not go round what a drawing's paint needs."""
+def _compare_border(header, work: Work, stage) -> list[Notice]:
+    """Return a notice if a run in the air does not go around the paint."""
     marks = prediction.predict(work, outlines=False, stage=stage)
-    needed, found = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), made.border_mm
-    if max(abs(ours - theirs) for ours, theirs in zip(found, needed, strict=True)) <= STRAY_MM:
+    needed_mm, commanded_mm = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
+    if (
+        max(abs(commanded - needed) for commanded, needed in zip(commanded_mm, needed_mm, strict=True))
+        <= MAX_BORDER_DIFFERENCE_MM
+    ):
         return []
-    place = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
+    template = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
     sentence = (
-        f"the program goes round {place.format(*found)}, paint and tool of the drawing stay within "
-        f"{place.format(*needed)}: it was changed, or made with other flags or of another drawing"
+        f"the program goes round {template.format(*commanded_mm)}, paint and tool of the drawing stay within "
+        f"{template.format(*needed_mm)}: it was changed, or made with other flags or of another drawing"
     )
     return [Notice("", sentence, code="border-elsewhere")]
 
 
 def _is_corrected_plan(source) -> bool:
     if isinstance(source, str | os.PathLike) and suffix_of(source) == ".json":
-        with concerning(name_of(source)):
+        with name_file_in_errors(path_of(source)):
             source = read_plan(source)
     return isinstance(source, _core.Plan) and is_corrected(source)
 
 
-def _as_made(program: _Program, chosen: Choices, stage, warn: Warn) -> Work:
-    """Return the drawing or plan that a program should paint, prepared as its header says; notices on parts that are
-    left out or painted otherwise are repeated: this is the last look."""
-    made, source = program.made, chosen.input
-    if made.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
-        with concerning(program.path):
+def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Work:
+    """Prepare the drawing or plan of a program as the header of the program says.
+
+    Notices on parts that are left out or painted differently are repeated, because this is the last check.
+    """
+    header, source = program.header, chosen.input
+    if header.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
+        with name_file_in_errors(program.path):
             raise Error(
                 "its strokes were moved by corrections, which are not known here",
                 code="corrections-missing",
                 advice="give --corrections FILE",
             )
     if suffix_of(source) != ".json":
-        with concerning(name_of(source)):
+        with name_file_in_errors(path_of(source)):
             wide = chosen.wide or settings_in(source).get("wide")
         chosen = replace(
             chosen,
-            compensation=made.compensation,
-            tolerance=made.tolerance_mm,
-            lag=made.lag_mm,
-            start=made.start,
-            end=made.end,
-            z_offset=made.z_offset_mm,
+            compensation=header.compensation,
+            tolerance=header.tolerance_mm,
+            lag=header.lag_mm,
+            start=header.start,
+            end=header.end,
+            z_offset=header.z_offset_mm,
             wide=wide,
-            margin_strokes="on" if made.has_margin else "off",
+            margin_strokes="on" if header.has_margin else "off",
         )
-    warn(name_of(source), without_effect(chosen))
-    options = options_of(chosen, program.cell, program.brush)
-    with concerning(name_of(source)):
+    warn(path_of(source), report_ineffective_flags(chosen))
+    options = make_options(chosen, program.cell, program.brush)
+    with name_file_in_errors(path_of(source)):
         work = preparation.prepare(source, options, stage)
-    warn(name_of(source), work.notices)
-    return nearest_first(work) if made.nearest_first else work
+    warn(path_of(source), work.notices)
+    return order_nearest_first(work) if header.nearest_first else work

@@ -1,4 +1,7 @@
-"""What may be chosen for a drawing, as it was typed or given, completed by what the drawing says, as options."""
+"""The choices for a drawing, and the options that they make.
+
+Choices come from flags, from keywords, and from the drawing itself.
+"""
 
 from __future__ import annotations
 
@@ -35,10 +38,11 @@ LAYOUT_FLAGS = (
     "origin",
     "as",
 )
-NAMED_OTHERWISE = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
+# The name of the choice that a flag makes, where both names differ.
+CHOICE_BY_FLAG = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
     name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
-}  # flag: choice
-MADE_FLAGS = (
+}
+PLANNING_FLAGS = (
     "wide",
     "corners",
     "detail",
@@ -53,7 +57,7 @@ MADE_FLAGS = (
     "margin-strokes",
 )
 TERMINALS = ("auto", "round", "butt", "pointed")
-RANGES = {  # the same as a flag's
+CHOICE_RANGES = {  # equal to the range of the flag; lengths in mm, speed in mm/s
     "width": (0.001, 1000.0),
     "scale": (1e-4, 1e4),
     "lag": (0.0, 1000.0),
@@ -62,7 +66,7 @@ RANGES = {  # the same as a flag's
     "z_offset": (-20.0, 20.0),
     "paper_z": (-1000.0, 1000.0),
 }
-ONE_OF = {
+CHOICE_VALUES = {
     "units": UNITS,
     "background": BACKGROUNDS,
     "pen": PENS,
@@ -81,10 +85,14 @@ ONE_OF = {
 
 @dataclass(frozen=True)
 class Choices:
-    """What a drawing or plan is read and painted with; None where nobody says it. Lengths in mm, the speed in mm/s.
+    """The choices that a drawing or plan is read and painted with.
 
-    input: a path or another kind of drawing; brush, cell: a name, a path or a value. from_project: names
-    of those that a project file makes; the drawing, a plan and a program count more, see `without_overruled`.
+    A choice that nobody makes is None. Lengths are in mm, the speed is in mm/s.
+
+    input: a path, or a drawing of another kind that read_drawing accepts.
+    brush, cell: a name, a path, or the Brush or Cell itself.
+    from_project: the names of the choices that a project file makes. The drawing, a plan and a program take
+        precedence over these, see `drop_overruled`.
     """
 
     input: object = None
@@ -123,8 +131,8 @@ class Choices:
     from_project: tuple[str, ...] = ()
 
 
-class Given(TypedDict, total=False):
-    """The same as keywords, for editors and type checkers; see `convert`."""
+class ChoiceKeywords(TypedDict, total=False):
+    """Keyword arguments for Choices, for editors and type checkers; see `convert`."""
 
     brush: str | os.PathLike[str] | _core.Brush | None
     cell: str | os.PathLike[str] | Cell | None
@@ -160,16 +168,19 @@ class Given(TypedDict, total=False):
     margin_strokes: str | None
 
 
-def checked(chosen: Choices) -> Choices:
-    """The choices themselves. Error for what no flag would take."""
+def check_choices(chosen: Choices) -> Choices:
+    """Return the choices, validated and with values in their final types.
+
+    Raises Error for a value that the flag of the command line would refuse as well.
+    """
     need(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
     for name in chosen.from_project:
         need_one_of(name, CHOICES, "a name of from_project")
-    chosen = without_overruled(chosen)
-    for name, choices in ONE_OF.items():
+    chosen = drop_overruled(chosen)
+    for name, choices in CHOICE_VALUES.items():
         if getattr(chosen, name) is not None:
             need_one_of(getattr(chosen, name), choices, name)
-    for name, limits in RANGES.items():
+    for name, limits in CHOICE_RANGES.items():
         if getattr(chosen, name) is not None:
             need_number(getattr(chosen, name), name, *limits)
     for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
@@ -179,7 +190,8 @@ def checked(chosen: Choices) -> Choices:
             if len(pair) != 2:
                 raise Error(f"{name} has {len(pair)} numbers, not two", name, code="wrong-type")
             chosen = replace(
-                chosen, **{name: tuple(need_number(each, f"a number of {name}", *limits) for each in pair)}
+                chosen,
+                **{name: tuple(need_number(number, f"a number of {name}", *limits) for number in pair)},
             )
     if chosen.skip_region is not None:
         need(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
@@ -189,7 +201,7 @@ def checked(chosen: Choices) -> Choices:
                 need_number(side, "a number of skip_region", -1e6, 1e6)
     if chosen.colour is not None:
         need(chosen.colour, str, "a colour, as #1a237e")
-        chosen = replace(chosen, colour=colour_of(chosen.colour))
+        chosen = replace(chosen, colour=read_colour(chosen.colour))
     if chosen.join is not None:
         need_truth(chosen.join, "join")
     for name in ("layer", "select", "skip_comment"):
@@ -205,7 +217,7 @@ def checked(chosen: Choices) -> Choices:
             need(getattr(chosen, name), (str, os.PathLike, *kinds), f"the name or the path of {name}")
     if isinstance(chosen.brush, _core.Brush):
         _core.check(chosen.brush)
-    if isinstance(chosen.cell, Cell):  # one made by hand must be one that a file may hold
+    if isinstance(chosen.cell, Cell):  # a cell made in Python must also be valid as a file
         chosen = replace(chosen, cell=parse_cell(write_cell(chosen.cell)))
     if chosen.fit is not None and chosen.scale is not None:
         raise Error("fit and scale exclude each other", code="options-contradict")
@@ -221,22 +233,25 @@ def checked(chosen: Choices) -> Choices:
     return chosen
 
 
-def colour_of(text: str) -> str:
-    """A colour as SVG writes it, as "#rrggbb". Error for anything else."""
+def read_colour(text: str) -> str:
+    """Return a colour, written as in SVG, as "#rrggbb". Error for any other text."""
     from ..read.svg.colour import parse_colour
 
-    found = parse_colour(text.strip())
-    if found is None or not found.startswith("#"):
+    colour = parse_colour(text.strip())
+    if colour is None or not colour.startswith("#"):
         raise Error(
             f"{text[:24]!r} is not a colour; write for example #1a237e or red",
             "colour",
             code="colour-invalid",
         )
-    return found[:7]
+    return colour[:7]
 
 
 def suffix_of(source) -> str:
-    """The extension of a path or of a Document; ".json" for a plan, "" for other things."""
+    """Return the extension of a path or of a Document.
+
+    Returns ".json" for a Plan and "" for anything else.
+    """
     if isinstance(source, _core.Plan):
         return ".json"
     if isinstance(source, str | os.PathLike):
@@ -244,14 +259,14 @@ def suffix_of(source) -> str:
     return getattr(source, "extension", "")
 
 
-def name_of(source) -> str:
-    """What a person calls it: its path, or nothing."""
+def path_of(source) -> str:
+    """Return the path of a source, or "" if the source is not a path."""
     return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
 
 
 @contextmanager
-def concerning(file: str | os.PathLike[str]) -> Iterator[None]:
-    """Lets an error inside be one of this file, unless it names another."""
+def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
+    """Let errors inside name this file, unless they name another one."""
     try:
         yield
     except Error as problem:
@@ -260,73 +275,84 @@ def concerning(file: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
-    """What nobody chose is as the drawing says. It can only name what comes along: it reads no other file. alone:
-    nothing else of the drawing is read."""
-    said = settings_in(drawing, alone)
-    chosen = without_overruled(chosen, said)
+    """Fill choices that nobody made with the settings in the drawing.
+
+    A drawing can only name shipped brushes and cells, because its settings read no other file.
+
+    alone: read nothing of the drawing except its settings.
+    """
+    settings = settings_in(drawing, alone)
+    chosen = drop_overruled(chosen, settings)
     if chosen.terminals is not None and "terminals" not in chosen.from_project:
-        said = {name: value for name, value in said.items() if name not in ("start", "end")}
+        settings = {name: value for name, value in settings.items() if name not in ("start", "end")}
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
-        if getattr(chosen, kind) is None and said.get(kind, names[0]) not in names:
+        if getattr(chosen, kind) is None and settings.get(kind, names[0]) not in names:
             raise Error(
-                f"data-brushsvg-{kind} asks for {kind} {said[kind]!r}, which does not come along"
-                f"{did_you_mean(said[kind], names)} Known are {', '.join(names)}",
+                f"data-brushsvg-{kind} asks for {kind} {settings[kind]!r}, which does not come along"
+                f"{did_you_mean(settings[kind], names)} Known are {', '.join(names)}",
                 where="svg",
                 code=f"{kind}-unknown",
                 advice=f"give --{kind}",
             )
-    return replace(chosen, **{name: value for name, value in said.items() if getattr(chosen, name) is None})
+    return replace(
+        chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None}
+    )
 
 
-def without_overruled(chosen: Choices, said: Mapping[str, object] | None = None) -> Choices:
-    """Drop what a project file chose where something more specific says otherwise, or where it has no effect.
+def drop_overruled(chosen: Choices, settings: Mapping[str, object] | None = None) -> Choices:
+    """Drop project choices that are overruled or have no effect.
 
-    More specific are the choices of this call, the settings `said` in the drawing, and the brush that a plan names. A
-    project file serves many drawings: a choice that does not suit one of them is no mistake.
+    The choices of this call, the settings of the drawing, and the brush that a plan names are more specific.
+    A project file serves many drawings, so a choice that does not suit one of them is no mistake.
     """
     if not chosen.from_project:
         return chosen
-    said = said or {}
-    mine = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
-    dropped = {*said} - {"brush", "cell"} | _idle(chosen)
-    if "terminals" in mine:
+    settings = settings or {}
+    made_here = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
+    dropped = {*settings} - {"brush", "cell"} | _find_ineffective_choices(chosen)
+    if "terminals" in made_here:
         dropped |= {"start", "end"}
-    for one, other in (("fit", "scale"), ("scale", "fit")):
-        if other in mine:
-            dropped.add(one)
+    for option, excluded_by in (("fit", "scale"), ("scale", "fit")):
+        if excluded_by in made_here:
+            dropped.add(option)
     compensation = chosen.compensation
-    if "compensation" not in mine:
-        compensation = said.get("compensation", compensation)
+    if "compensation" not in made_here:
+        compensation = settings.get("compensation", compensation)
     if compensation != "constant":
         dropped.add("lag")
-    named = said if suffix_of(chosen.input) != ".json" else {"brush": _brush_of_plan(chosen)}
-    return drop_from_project(chosen, dropped | overruled_names(chosen, named))
+    names = settings if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
+    return drop_from_project(chosen, dropped | find_overruled_names(chosen, names))
 
 
 def drop_from_project(chosen: Choices, names: Iterable[str]) -> Choices:
-    """Return the choices without those of these names that a project file made."""
+    """Return the choices without project choices of these names.
+
+    Choices of these names that were made elsewhere stay.
+    """
     dropped = {*names} & {*chosen.from_project}
     kept = tuple(name for name in chosen.from_project if name not in dropped)
     return replace(chosen, from_project=kept, **dict.fromkeys(dropped))
 
 
-def overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool = True) -> set[str]:
-    """Return "brush" and "cell" where a drawing, plan or program names another one than the project file.
+def find_overruled_names(chosen: Choices, named: Mapping[str, object], unknown: bool = True) -> set[str]:
+    """Return "brush" and "cell" where a source names another one than the project.
 
-    unknown: a name that does not come along overrules the project file, too.
+    The source is a drawing, a plan or a program.
+
+    unknown: also count a name that is not shipped with brushsvg.
     """
-    found = set()
-    for kind, names, read in (("brush", brush_names(), brush_of), ("cell", cell_names(), cell_of)):
+    overruled = set()
+    for kind, names, read in (("brush", brush_names(), load_brush), ("cell", cell_names(), load_cell)):
         name = named.get(kind)
         if name is None or kind not in chosen.from_project or not (unknown or name in names):
             continue
         if read(getattr(chosen, kind)).name != name:
-            found.add(kind)
-    return found
+            overruled.add(kind)
+    return overruled
 
 
-def _brush_of_plan(chosen: Choices) -> str | None:
-    """The shipped brush that a plan names, if a project file names one too."""
+def _find_plan_brush(chosen: Choices) -> str | None:
+    """Return the shipped brush of a plan, if a project file names a brush too."""
     plan = chosen.input
     if "brush" in chosen.from_project and isinstance(plan, str | os.PathLike):
         with suppress(Error):  # preparation reports what is wrong with the plan
@@ -335,65 +361,74 @@ def _brush_of_plan(chosen: Choices) -> str | None:
     return name if name in brush_names() else None
 
 
-def _idle(chosen: Choices) -> set[str]:
-    """Return names of choices that have no effect on this kind of drawing."""
+def _find_ineffective_choices(chosen: Choices) -> set[str]:
+    """Return the names of choices that have no effect on this kind of drawing."""
     suffix, flags = suffix_of(chosen.input), ()
     if suffix == ".json":
-        flags = (*LAYOUT_FLAGS, *MADE_FLAGS)
+        flags = (*LAYOUT_FLAGS, *PLANNING_FLAGS)
     elif suffix in GCODE:
         flags = ("layer", "select", "units")
     elif chosen.input is not None:
         is_svg, is_dxf = suffix in (".svg", ".svgz"), suffix == ".dxf"
         flags = (*GCODE_FLAGS, *["units"] * is_svg, *["select"] * is_dxf)
-    return {NAMED_OTHERWISE.get(flag, flag) for flag in flags}
+    return {CHOICE_BY_FLAG.get(flag, flag) for flag in flags}
 
 
-def without_effect(chosen: Choices) -> list[Notice]:
-    """What was chosen for a plan, whose poses are fixed, and for G-code where the drawing is none."""
+def report_ineffective_flags(chosen: Choices) -> list[Notice]:
+    """Return notices on the flags that have no effect on this input.
+
+    The poses of a plan are fixed, and some flags only apply to G-code.
+    """
     suffix = suffix_of(chosen.input)
-    flags, on = GCODE_FLAGS, "a drawing that is not G-code"
+    flags, subject = GCODE_FLAGS, "a drawing that is not G-code"
     if suffix == ".json":
-        flags, on = (*LAYOUT_FLAGS, *MADE_FLAGS), "a plan, whose poses are fixed"
+        flags, subject = (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
     elif suffix in GCODE:
         flags = ()
     return [
-        Notice("", f"--{flag} has no effect on {on}", code="flag-without-effect", about=flag)
+        Notice("", f"--{flag} has no effect on {subject}", code="flag-without-effect", about=flag)
         for flag in flags
-        if getattr(chosen, NAMED_OTHERWISE.get(flag, flag)) is not None
+        if getattr(chosen, CHOICE_BY_FLAG.get(flag, flag)) is not None
     ]
 
 
-def on_a_page(chosen: Choices) -> Choices:
-    """The same for a page that is painted and photographed: strokes in its margin where the brush is not calibrated."""
+def choose_margin_strokes(chosen: Choices) -> Choices:
+    """Choose margin strokes for a page that will be painted and photographed.
+
+    They are painted where the brush is not calibrated, unless the choices say otherwise.
+    """
     if chosen.margin_strokes or suffix_of(chosen.input) == ".json":
         return chosen
     return replace(chosen, margin_strokes="auto")
 
 
-def brush_of(given):
-    """The brush of a name or path, itself, or None."""
+def load_brush(given):
+    """Return the brush with this name or path. Return a Brush or None as it is."""
     if given is None or isinstance(given, _core.Brush):
         return given
-    with concerning(given):
+    with name_file_in_errors(given):
         return find_brush(given)
 
 
-def cell_of(given) -> Cell:
-    """The cell of a name or path, itself, or the default one."""
+def load_cell(given) -> Cell:
+    """Return the cell with this name or path.
+
+    A Cell is returned as it is. None stands for the default cell.
+    """
     if given is None or isinstance(given, Cell):
         return given or find_cell()
-    with concerning(given):
+    with name_file_in_errors(given):
         return find_cell(given)
 
 
-def sheet_before_of(path: str | os.PathLike[str] | None) -> SheetBefore:
+def load_sheet_before(path: str | os.PathLike[str] | None) -> SheetBefore:
     if path is None:
         return SheetBefore()
-    with concerning(path):
+    with name_file_in_errors(path):
         return read_sheet_before(path)
 
 
-def reading_of(chosen: Choices) -> ReadOptions:
+def make_read_options(chosen: Choices) -> ReadOptions:
     return ReadOptions(
         chosen.sheet,
         chosen.units,
@@ -403,21 +438,24 @@ def reading_of(chosen: Choices) -> ReadOptions:
         chosen.paper_z,
         tuple(map(tuple, chosen.skip_region or ())),
         tuple(chosen.skip_comment or ()),
-        lenient=True,  # damage is reported with all the rest
+        lenient=True,  # damaged geometry is reported together with the other notices
     )
 
 
-def layout_of(chosen: Choices) -> Layout:
+def make_layout(chosen: Choices) -> Layout:
     return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin)
 
 
-def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
-    """cell, brush: where they are known already."""
-    cell = cell or cell_of(chosen.cell)
+def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
+    """Return the options for these choices.
+
+    cell, brush: the loaded cell and brush, if they are known already.
+    """
+    cell = cell or load_cell(chosen.cell)
     return Options(
-        brush=brush or brush_of(chosen.brush),
-        reading=reading_of(chosen),
-        layout=layout_of(chosen),
+        brush=brush or load_brush(chosen.brush),
+        reading=make_read_options(chosen),
+        layout=make_layout(chosen),
         compensation=chosen.compensation or Options.compensation,
         lag_mm=chosen.lag,
         tolerance_mm=(suffix_of(chosen.input) != ".json" and chosen.tolerance) or Options.tolerance_mm,
@@ -435,7 +473,7 @@ def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options
         speed_of_all_mm_s=chosen.paint_speed,
         cell=cell,
         z_offset_mm=chosen.z_offset or 0.0,
-        corrections=sheet_before_of(chosen.corrections).corrections,
+        corrections=load_sheet_before(chosen.corrections).corrections,
     )
 
 

@@ -1,5 +1,7 @@
-"""Compare photographs of a painted sheet with its targets and predictions: what `brushsvg compare` does, from
-Python."""
+"""Compare photographs of a painted sheet with its targets and predictions.
+
+These are the steps of `brushsvg compare`, which Python users can call as well.
+"""
 
 from __future__ import annotations
 
@@ -42,17 +44,17 @@ from . import cancelling, prediction
 from .cancelling import Cancel
 from .checking import Warn
 from .choices import (
+    ChoiceKeywords,
     Choices,
-    Given,
-    concerning,
-    name_of,
-    on_a_page,
-    options_of,
+    choose_margin_strokes,
+    load_sheet_before,
+    make_options,
+    name_file_in_errors,
+    path_of,
+    report_ineffective_flags,
     settled,
-    sheet_before_of,
-    without_effect,
 )
-from .conversion import chosen_of
+from .conversion import make_choices
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
 from .work import Work
@@ -63,21 +65,25 @@ if TYPE_CHECKING:
 Read = TypeVar("Read")
 
 
-LEAST_PRINT_SCALE, SAME_SCALE = 0.015, 0.006  # shares: print scales begin at 2 %, and both axes share one
+# As fractions. Printers scale a page by at least 2 %, and both axes by the same factor.
+MIN_PRINT_SCALE_ERROR, MAX_AXIS_SCALE_DIFFERENCE = 0.015, 0.006
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What was commanded to the machine, and the page that it painted on: plan, with the corrections of before, as far
-    as they are of its cell; strokes: rings on the sheet of targets and predictions; otherwise: makes the sheet of
-    the other page that this drawing may have been painted on, without strokes in its margin."""
+    """The plan that was commanded to the machine, and the page that it painted on.
+
+    plan: the plan with the corrections of the sheet before, as far as they belong to its cell.
+    strokes: the outlines of targets and predictions, on the sheet.
+    alternative: makes the sheet of the other page that this drawing may have been painted on, without margin strokes.
+    """
 
     work: Work
     plan: _core.Plan
     before: SheetBefore
     page: JobPage
     strokes: tuple[TargetStroke, ...]
-    otherwise: Callable[[], Sheet] | None = None
+    alternative: Callable[[], Sheet] | None = None
 
     @property
     def title(self) -> str:
@@ -88,12 +94,16 @@ class Sheet:
 class PaintedJob:
     """What photographs of a painted sheet show.
 
-    overlap: of all paint with the target, or with the prediction where there is no drawing, as painted. strokes: each
-    with its overlaps and its place; ends: by stroke, how much later than the target it begins and ends. faults: the
-    causes, None where there are too few data. corrections: by stroke, where to move it next time. cell: with a
-    [machine] that also corrects what is certain; is_corrected: whether anything is. notices: the warnings. report: its
-    verdict, lines and details, as the command prints them; report.text(details=True) has all tables.
-    json: what `convert` takes as corrections.
+    overlap: overlap of all paint, as painted, with the target, or with the prediction if there is no drawing.
+    strokes: for each stroke its overlaps and its place.
+    ends: by stroke, how much later than the target it begins and ends.
+    faults: the causes of the errors; None if there are too few data.
+    corrections: by stroke, where to move it on the next sheet.
+    cell: the cell with a [machine] that also corrects all certain errors.
+    is_corrected: whether the cell corrects any error.
+    notices: warnings.
+    report: the verdict, lines and details that the command prints. report.text(details=True) has all tables.
+    json: the text that `convert` takes as corrections.
     """
 
     title: str
@@ -117,8 +127,10 @@ class PaintedJob:
         return self.report.text()
 
     def picture(self) -> bytes:
-        """A PNG: the paint as photographed over the target, in grey, under a red line where it was predicted, with
-        the numbers of the report's worst places."""
+        """Return a picture of the photographed paint over the target, as a PNG.
+
+        The target is grey, a red line shows the prediction, and the worst places have the numbers of the report.
+        """
         if self._shown is None:
             raise Error("it was not made of photographs", code="nothing-to-show")
         return comparison_png(*self._shown, self.faults)
@@ -130,13 +142,16 @@ def compare(
     *,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> PaintedJob:
-    """Compare photographs of one painted sheet with targets and predictions, as `brushsvg compare` does.
+    """Compare photographs of one painted sheet with targets and predictions.
 
-    drawing: what was painted, as `convert` takes it, with the choices that it was converted with; corrections: those
-    that it was painted with. photos: the path of one, or a list of them, which are averaged. progress, cancel: as for
-    `convert`.
+    This is what `brushsvg compare` does.
+
+    drawing: what was painted, as `convert` takes it.
+    photos: the path of a photograph, or a list of paths of photographs, which are averaged.
+    progress, cancel: as for `convert`.
+    choices: the choices that the drawing was converted with, including the corrections that it was painted with.
 
     Raises Error, with a code of docs/reference/diagnostics.md, for a photograph that cannot be read or shows
     another job.
@@ -146,132 +161,154 @@ def compare(
     paths = [photos] if single else list(photos)
     if not paths:
         raise Error("there is no photograph", "photos", code="wrong-type")
-    for each in paths:
-        need(each, (str, os.PathLike), "a path, which each of photos is")
-    chosen, notices = chosen_of(drawing, choices), []
+    for path in paths:
+        need(path, (str, os.PathLike), "a path, which each of photos is")
+    chosen, notices = make_choices(drawing, choices), []
 
     def work(stage) -> PaintedJob:
-        def warn(_, found):
-            notices.extend(found)
+        def warn(_, warnings):
+            notices.extend(warnings)
 
-        return compared(painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn)
+        return compare_sheet(
+            prepare_painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn
+        )
 
     return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
 
 
-def painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
-    """Return the contents of the painted page; notices are reported with the file that they are of."""
-    before = sheet_before_of(chosen.corrections)
-    return _sheet(replace(chosen, corrections=None), before, stage, warn)
+def prepare_painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
+    """Return the contents of the painted page.
+
+    Notices are reported with their file.
+    """
+    before = load_sheet_before(chosen.corrections)
+    return _prepare_sheet(replace(chosen, corrections=None), before, stage, warn)
 
 
-def _sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
-    name = name_of(given.input)
-    with concerning(name):
+def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
+    name = path_of(given.input)
+    with name_file_in_errors(name):
         chosen = settled(given, given.input)
-        warn(name, without_effect(chosen))
-        chosen = on_a_page(chosen)
-        work = preparation.prepare(chosen.input, options_of(chosen), stage)
+        warn(name, report_ineffective_flags(chosen))
+        chosen = choose_margin_strokes(chosen)
+        work = preparation.prepare(chosen.input, make_options(chosen), stage)
         warn(name, work.notices)
-        painted, corrections_before = None, before
-        if is_corrected(work.plan):  # a plan.json, which says itself what it was painted with
-            _refuse_corrections_of_two(before)
-            painted = work.plan
-            planned, known = uncorrected(painted)
-            work, before = replace(work, plan=planned), SheetBefore(known)
+        corrected_plan, given_before = None, before
+        if is_corrected(work.plan):  # a plan.json with corrections says which corrections it was painted with
+            _refuse_second_corrections(before)
+            corrected_plan = work.plan
+            uncorrected_plan, known_corrections = uncorrected(corrected_plan)
+            work, before = replace(work, plan=uncorrected_plan), SheetBefore(known_corrections)
         marks = prediction.predict(work, True, stage)
-        before = replace(before, corrections=select_for_machine(before.corrections, _undone(work)))
-        plan = painted or corrected(work.plan, before.corrections, work.brush)
-        target = {} if work.strokes is None else {one.id: target_rings([one]) for one in work.strokes}
+        before = replace(before, corrections=select_for_machine(before.corrections, _get_cell_machine(work)))
+        plan = corrected_plan or corrected(work.plan, before.corrections, work.brush)
+        target = (
+            {} if work.strokes is None else {stroke.id: target_rings([stroke]) for stroke in work.strokes}
+        )
         strokes = (
             TargetStroke(mark.stroke, target.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
             for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
         )
-        otherwise = None
+        alternative = None
         if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
-            without = replace(given, margin_strokes="off")
-            otherwise = functools.partial(_sheet, without, corrections_before, stage, drop_notices)
-        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), otherwise)
+            without_margin = replace(given, margin_strokes="off")
+            alternative = functools.partial(
+                _prepare_sheet, without_margin, given_before, stage, ignore_notices
+            )
+        return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), alternative)
 
 
-def drop_notices(file: str, notices: Iterable[Notice]) -> None:
-    """Keep warnings from being printed twice when a drawing is prepared again."""
+def ignore_notices(file: str, notices: Iterable[Notice]) -> None:
+    """Ignore warnings that were printed when the drawing was first prepared."""
 
 
-def on_its_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
-    """What photographs show, read with the sheet whose page they show."""
+def read_matching_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
+    """Read photographs with the sheet whose page they show.
+
+    Returns that sheet, and what `read` returned for it.
+    """
     try:
         return sheet, read(sheet)
     except Error as refusal:
-        if refusal.code != "photo-of-another-chart" or sheet.otherwise is None:
+        if refusal.code != "photo-of-another-chart" or sheet.alternative is None:
             raise
-    sheet = sheet.otherwise()
+    sheet = sheet.alternative()
     return sheet, read(sheet)
 
 
-def _refuse_corrections_of_two(given: SheetBefore) -> None:
+def _refuse_second_corrections(given: SheetBefore) -> None:
     if given.corrections:
         sentence = "the plan was written with corrections and holds them: leave --corrections out"
         raise Error(sentence, "corrections", code="corrections-twice")
 
 
-def photographs(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
-    """Names, and what their files hold."""
+def read_photos(paths: Iterable[str], stage: Callable[[str], object]) -> list[tuple[str, bytes]]:
+    """Return the paths of photographs with the contents of the files."""
     stage("reading the photographs")
     return [(path, read_bytes(path)) for path in paths]
 
 
-def compared(sheet: Sheet, paths: list[str], stage: Callable[[str], object], warn: Warn) -> PaintedJob:
-    """paths: photographs of one sheet; notices are reported with the first of them."""
-    with concerning(paths[0]):
-        photos = photographs(paths, stage)
-        sheet, found = on_its_page(sheet, lambda one: compare_photos(one.page, [*one.strokes], photos))
+def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object], warn: Warn) -> PaintedJob:
+    """Compare photographs with a sheet.
+
+    paths: the paths of photographs of one sheet. Notices are reported with the first path.
+    """
+    with name_file_in_errors(paths[0]):
+        photos = read_photos(paths, stage)
+        sheet, comparison = read_matching_page(
+            sheet, lambda candidate: compare_photos(candidate.page, [*candidate.strokes], photos)
+        )
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     stage("estimating faults")
-    every = found, sheet.page, strokes
-    found, strokes = of_drawing(found, strokes)
+    before_selection = comparison, sheet.page, strokes
+    comparison, strokes = of_drawing(comparison, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
-    faults = attribute_errors(sheet.plan, brush, strokes, found, learned)
+    faults = attribute_errors(sheet.plan, brush, strokes, comparison, learned)
     before = sheet.before.corrections
-    corrections, too_far = next_corrections(found, work.plan, before, brush)
-    beyond = farther(found, sheet.before.displacement_mm)
-    warn(paths[0], [*found.notices, *too_far, *beyond])
+    corrections, too_far = next_corrections(comparison, work.plan, before, brush)
+    displacement_notices = farther(comparison, sheet.before.displacement_mm)
+    warn(paths[0], [*comparison.notices, *too_far, *displacement_notices])
     cell, machine, residual = work.options.cell, None, None
     if cell and faults:
-        along = axes_along_paper(cell)
-        machine, left_out = _undoable(faults, found.middle_mm, cell, along)
-        warn(paths[0], _not_undone(faults, cell, left_out))
+        axes = axes_along_paper(cell)
+        machine, left_out = _find_correctable_machine(faults, comparison.middle_mm, cell, axes)
+        warn(paths[0], _report_uncorrectable(faults, cell, left_out))
         if machine:
-            certain = sure(faults, cell.machine, along, left_out)
-            rest = subtract_faults(found, certain, sheet.plan, brush, strokes)
-            residual = machine_sha256(machine), next_corrections(rest, work.plan, before, brush)[0]
-    ends = ends_of(found, strokes, work.strokes or ())
-    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_undone(work)))
-    any_alone = faults is None or faults.first != BRUSH or bool(job_marks(*every).rings)
-    places = report.places_of(found, strokes)
+            certain = sure(faults, cell.machine, axes, left_out)
+            remaining = subtract_faults(comparison, certain, sheet.plan, brush, strokes)
+            residual = machine_sha256(machine), next_corrections(remaining, work.plan, before, brush)[0]
+    ends = ends_of(comparison, strokes, work.strokes or ())
+    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_get_cell_machine(work)))
+    has_isolated_marks = faults is None or faults.first != BRUSH or bool(job_marks(*before_selection).rings)
+    places = report.places_of(comparison, strokes)
     return PaintedJob(
         sheet.title,
-        found.overlap_predicted if found.overlap_target is None else found.overlap_target,
-        found.strokes,
+        comparison.overlap_predicted if comparison.overlap_target is None else comparison.overlap_target,
+        comparison.strokes,
         ends,
         faults,
         corrections,
         replace(cell, name=own_name(cell.name), machine=machine) if machine else cell,
         machine is not None,
         (),
-        report.report(sheet.title, found, faults, ends, places, machine, any_alone),
-        report.as_json(sheet.title, found, corrections, faults, ends, made_with, residual),
-        (sheet.page, strokes, found, sheet.title, places),
+        report.report(sheet.title, comparison, faults, ends, places, machine, has_isolated_marks),
+        report.as_json(sheet.title, comparison, corrections, faults, ends, made_with, residual),
+        (sheet.page, strokes, comparison, sheet.title, places),
     )
 
 
-def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | None, dict[str, str]]:
-    """The machine for the next cell, without the numbers that such a cell refuses; and why, by key."""
+def _find_correctable_machine(
+    faults: Faults, middle_mm, cell: Cell, axes
+) -> tuple[Machine | None, dict[str, str]]:
+    """Return the machine for the next cell, without numbers that the cell refuses.
+
+    Also returns, by key, why a number is left out.
+    """
     left_out = not_undone(cell)
-    if printed := _printed_at(faults):
-        left_out["scale"] = f"the page was probably printed at {100 * printed:.1f} %"
+    if print_scale := _estimate_print_scale(faults):
+        left_out["scale"] = f"the page was probably printed at {100 * print_scale:.1f} %"
     while True:
-        machine = corrected_machine(faults, middle_mm, cell.machine, along, left_out)
+        machine = corrected_machine(faults, middle_mm, cell.machine, axes, left_out)
         try:
             if machine:
                 parse_cell(write_cell(replace(cell, machine=machine)))
@@ -283,34 +320,41 @@ def _undoable(faults: Faults, middle_mm, cell: Cell, along) -> tuple[Machine | N
             left_out[key] = str(problem)
 
 
-def _not_undone(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
-    """One notice on all that is certain of the machine and goes into no cell of its kind."""
-    certain = [name for name, value in certain_of(faults).items() if value]
-    printed = _printed_at(faults)
-    rest = [
-        name for name in certain if key_of(name) in left_out and not (printed and key_of(name) == "scale")
+def _report_uncorrectable(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
+    """Return notices on certain errors of the machine that the cell cannot correct."""
+    certain_errors = [name for name, value in certain_of(faults).items() if value]
+    print_scale = _estimate_print_scale(faults)
+    uncorrectable = [
+        name
+        for name in certain_errors
+        if key_of(name) in left_out and not (print_scale and key_of(name) == "scale")
     ]
     notices = []
-    if printed:
-        sentence = f"the page was probably printed at {100 * printed:.1f} %: both axes seem to be as much off"
+    if print_scale:
+        sentence = (
+            f"the page was probably printed at {100 * print_scale:.1f} %: both axes seem to be as much off"
+        )
         advice = "measure its bar and print it at 100 %; the scale goes into no cell"
         notices.append(Notice("page", sentence, code="page-scale", advice=advice))
-    if not rest:
+    if not uncorrectable:
         return notices
-    why = "; ".join(dict.fromkeys(left_out[key_of(name)] for name in rest))
-    sentence = f"cell {cell.name} cannot undo {', '.join(rest)}: {why}"
+    why = "; ".join(dict.fromkeys(left_out[key_of(name)] for name in uncorrectable))
+    sentence = f"cell {cell.name} cannot undo {', '.join(uncorrectable)}: {why}"
     advice = "repair the machine, or give the corrections to convert"
     return [*notices, Notice("machine", sentence, code="machine-not-undone", advice=advice)]
 
 
-def _printed_at(faults: Faults) -> float | None:
-    """The scale of the page's print, where both axes of the machine seem to be off by as much: printers shrink a page
-    to its printable area, and machines seldom have the same fault in both axes."""
+def _estimate_print_scale(faults: Faults) -> float | None:
+    """Return the probable scale of the printed page, or None if it looks unscaled.
+
+    If both axes of the machine seem to have the same scale error, the print is the probable cause. Printers shrink
+    a page to their printable area, and machines seldom have the same fault in both axes.
+    """
     x, y = (certain_of(faults).get(f"scale in {axis}", 0.0) for axis in "xy")
-    if min(abs(x), abs(y)) < LEAST_PRINT_SCALE or abs(x - y) > SAME_SCALE:
+    if min(abs(x), abs(y)) < MIN_PRINT_SCALE_ERROR or abs(x - y) > MAX_AXIS_SCALE_DIFFERENCE:
         return None
     return 1.0 / (1.0 + (x + y) / 2)
 
 
-def _undone(work: Work):
+def _get_cell_machine(work: Work):
     return work.options.cell.machine if work.options.cell else None

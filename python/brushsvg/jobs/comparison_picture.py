@@ -1,4 +1,4 @@
-"""A picture for a first look: the drawing, and its paint without and with compensation."""
+"""A picture of a drawing, and of its paint without and with compensation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ TITLES = {"none": "Tool follows the drawing", "closed": "With compensation"}
 def comparison_png(
     works: Mapping[str, Work], marks: Mapping[str, _core.Marks], totals: Mapping[str, report.Figures]
 ) -> bytes:
-    """Draw three panels of one drawing. Each argument has the keys of TITLES: ways of compensation."""
+    """Draw a drawing, its paint without compensation and with it, as a PNG.
+
+    Each argument has the keys of TITLES, which are ways of compensation.
+    """
     work = works["closed"]
     strokes = work.strokes or []
     target = report.target_rings(strokes)

@@ -1,4 +1,7 @@
-"""A drawing to the program of a machine in one call: what `brushsvg convert` does, from Python."""
+"""Convert a drawing into the program of a machine.
+
+These are the steps of `brushsvg convert`, which Python users can call as well.
+"""
 
 from __future__ import annotations
 
@@ -26,40 +29,45 @@ from ..text_summary import summarized
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
+    ChoiceKeywords,
     Choices,
-    Given,
-    checked,
-    concerning,
-    name_of,
-    on_a_page,
-    options_of,
+    check_choices,
+    choose_margin_strokes,
+    make_options,
+    name_file_in_errors,
+    path_of,
+    report_ineffective_flags,
     settled,
     suffix_of,
-    without_effect,
 )
 from .preparation import preparation
-from .work import Work, nearest_first
+from .work import Work, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
 
 ORDERS = ("drawn", "nearest")
-MOST_LOWERED_MM = 2.0  # by --z-offset, without a word: the strokes of `brushsvg setup height` try 1 mm
-FORMATS = {
+# How far --z-offset may lower the tool without a notice. The strokes of `brushsvg setup height` try 1 mm.
+MAX_SILENT_LOWERING_MM = 2.0
+# Extensions of the files that are written in addition to a program.
+OUTPUT_SUFFIXES = {
     "picture": (".png", ".svg"),
     "report": (".txt", ".json", ".csv"),
     "page": (".pdf", ".svg"),
-}  # of what is written next to a program
+}
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """A drawing that became a plan, and what a machine runs.
+    """A drawing that was converted into a plan and a program.
 
-    plan: TCP poses [mm] of each stroke; notices: warnings, none of which forbids to run it; time_s: how long a machine
-    takes, None where it cannot paint a plan that was requested alone; texts: by extension (".ngc", ".json"); the
-    others of a program in several files by what they add to its name ("-part2.script") or by their own; figures: how
-    near the paint comes, a report with strokes and total, None unless requested; files: the paths that were written.
+    plan: TCP poses [mm] of each stroke.
+    notices: warnings, none of which forbids running the program.
+    time_s: how long a machine takes; None if only a plan was requested and the machine cannot paint it.
+    texts: the text of each file by its extension (".ngc", ".json"). Further files of a program in several files are
+        named by what they add to its name ("-part2.script") or by their own name.
+    figures: a report with strokes and total on how close the paint comes to the drawing; None unless requested.
+    files: the paths that were written.
     """
 
     title: str
@@ -72,7 +80,7 @@ class Conversion:
 
     @property
     def text(self) -> str:
-        """Of the first format."""
+        """The text of the first format."""
         return next(iter(self.texts.values()))
 
 
@@ -90,75 +98,102 @@ def convert(
     lenient: bool = False,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> Conversion:
-    """A drawing to a plan and a program, as `brushsvg convert` makes them, byte for byte. Nothing is written but to
-    the paths given: all of them or none.
+    """Convert a drawing into a plan and a program, as `brushsvg convert` does.
+
+    The files equal those of the command byte for byte. Only the given paths are written: all of them or none.
 
     drawing: a path, any other input of read_drawing, a Design, or a Plan.
-    out: a program in the cell's language, or a plan (.json); picture: what will be painted (.png .svg); report: the
-    figures (.txt .json .csv); page: to print and paint on (.pdf .svg).
-    formats: extensions of the texts to return, by default that of out, else the first of the cell's language.
-    figures: whether to measure overlap and errors, too. from_stroke: resumes a job there. order: "drawn", "nearest".
-    lenient: paint what is sound of damaged geometry.
-    progress: called with words on what is done. cancel: a callable or something with is_set(), as a threading.Event:
-    polled 20 times a second in the caller's thread; once it says yes, concurrent.futures.CancelledError is raised
-    within a second, and nothing is written.
+    out: the path of a program in the cell's language, or of a plan (.json).
+    picture: the path of a picture of what will be painted (.png .svg).
+    report: the path of the figures (.txt .json .csv).
+    page: the path of a page to print and paint on (.pdf .svg).
+    formats: the extensions of the texts to return, by default that of out, otherwise the first one of the cell's
+        language.
+    figures: also measure overlap and errors.
+    from_stroke: the stroke at which to resume a job.
+    order: "drawn" or "nearest".
+    lenient: paint the sound parts of damaged geometry.
+    progress: called with words on the progress.
+    cancel: a callable or an object with is_set(), such as a threading.Event. It is polled 20 times a second in the
+        thread of the caller. Once it returns true, concurrent.futures.CancelledError is raised within a second, and
+        nothing is written.
 
-    choices, by default what the drawing says: brush, cell: a name, path, Brush or Cell; sheet, fit (w, h),
-    origin (x, y), width, lag, tolerance, z_offset: mm; paint_speed: mm/s; scale: a factor; units: "mm", "in";
-    layer: a list of names; select: CSS; paths_as: "stroke", "outline"; wide: "auto", "clamp", "passes", "refuse";
-    corners: "auto", "turn"; detail: "draft", "normal", "fine"; script: "auto", "latin", "arabic", "devanagari", "cjk";
-    join: bool; compensation: "none", "constant", "closed", "refined"; terminals, start, end: "auto", "round", "butt",
-    "pointed"; corrections: the path of what compare wrote; margin_strokes: "auto", "on", "off".
-    docs/reference/options.md has them in a table.
+    The choices are by default what the drawing says:
+    brush, cell: a name, path, Brush or Cell.
+    sheet, fit, origin: a pair (w, h) or (x, y) in mm.
+    width, lag, tolerance, z_offset: mm.
+    paint_speed: mm/s.
+    scale: a factor.
+    units: "mm", "in".
+    layer: a list of names.
+    select: CSS.
+    paths_as: "stroke", "outline".
+    wide: "auto", "clamp", "passes", "refuse".
+    corners: "auto", "turn".
+    detail: "draft", "normal", "fine".
+    script: "auto", "latin", "arabic", "devanagari", "cjk".
+    join: bool.
+    compensation: "none", "constant", "closed", "refined".
+    terminals, start, end: "auto", "round", "butt", "pointed".
+    corrections: the path of a file that compare wrote.
+    margin_strokes: "auto", "on", "off".
 
-    Raises Error, with a code of docs/reference/diagnostics.md, for what cannot be read, painted or run. Of several
-    reasons it gives the first, its notes the others, its notices what was to be warned of.
+    docs/reference/options.md lists all choices in a table.
+
+    Raises Error, with a code of docs/reference/diagnostics.md, for anything that cannot be read, painted or run. If
+    there are several reasons, the error is the first one, its notes are the others, and its notices are the
+    warnings.
     """
-    chosen = chosen_of(drawing, choices)
+    chosen = make_choices(drawing, choices)
     extras = {"picture": picture, "report": report, "page": page}
-    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path(path, name)}
-    out = os.fspath(out) if _is_path(out, "out") else None
+    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path_given(path, name)}
+    out = os.fspath(out) if _is_path_given(out, "out") else None
     for name, path in paths.items():
-        if suffix_of(path) not in FORMATS[name]:
-            sentence = f"{name} {path[:80]!r} does not end in {' or '.join(FORMATS[name])}"
+        if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
+            sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
             raise Error(sentence, name, code="program-format")
     need(formats, (tuple, list), "a list of extensions, which formats is")
-    for each in formats:
-        need(each, str, "an extension, such as '.ngc'")
+    for extension in formats:
+        need(extension, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
     need_truth(lenient, "lenient")
     need_truth(figures, "figures")
     need(from_stroke, Integral, "a whole number, which from_stroke is")
-    first = int(need_number(from_stroke, "from_stroke", 1, 1e8))
-    job = Job(chosen.z_offset or 0.0, first)
+    first_stroke = int(need_number(from_stroke, "from_stroke", 1, 1e8))
+    job = Job(chosen.z_offset or 0.0, first_stroke)
 
-    def work(stage) -> tuple[Conversion, dict]:
-        return _converted(chosen, out, paths, tuple(formats), bool(figures), job, order, bool(lenient), stage)
+    def run_conversion(stage) -> tuple[Conversion, dict]:
+        return _make_conversion(
+            chosen, out, paths, tuple(formats), bool(figures), job, order, bool(lenient), stage
+        )
 
-    done, files = cancelling.run(work, progress, cancel)
+    conversion, files = cancelling.run(run_conversion, progress, cancel)
     if files:
         write_files(files)
-    return replace(done, files=tuple(files))
+    return replace(conversion, files=tuple(files))
 
 
-def chosen_of(drawing, choices: Mapping) -> Choices:
-    """Choices by their names. Error for a name or value that there is not."""
-    known = {name for name in Choices.__dataclass_fields__ if name != "input"}
+def make_choices(drawing, choices: Mapping) -> Choices:
+    """Return the choices with these names, checked.
+
+    Raises TypeError for an unknown name, and Error for a wrong value.
+    """
+    choice_names = {name for name in Choices.__dataclass_fields__ if name != "input"}
     for name in choices:
-        if name not in known:
-            raise TypeError(f"{name!r} is no choice; known are {', '.join(sorted(known))}")
-    return checked(Choices(input=drawing, **choices))
+        if name not in choice_names:
+            raise TypeError(f"{name!r} is no choice; known are {', '.join(sorted(choice_names))}")
+    return check_choices(Choices(input=drawing, **choices))
 
 
-def _is_path(path, name: str) -> bool:
+def _is_path_given(path, name: str) -> bool:
     if path is not None:
         need(path, (str, os.PathLike), f"a path, which {name} is")
     return path is not None
 
 
-def _converted(
+def _make_conversion(
     chosen: Choices,
     out,
     paths: dict,
@@ -170,26 +205,28 @@ def _converted(
     stage,
 ) -> tuple[Conversion, dict]:
     source = chosen.input
-    with concerning(name_of(source)):
+    with name_file_in_errors(path_of(source)):
         chosen = settled(chosen, source)
-        ignored = without_effect(chosen)
-        chosen = on_a_page(chosen) if "page" in paths else chosen
-        work = preparation.prepare(source, options_of(chosen), stage)
+        ignored = report_ineffective_flags(chosen)
+        chosen = choose_margin_strokes(chosen) if "page" in paths else chosen
+        work = preparation.prepare(source, make_options(chosen), stage)
         cell = work.options.cell
         if out is not None:
             formats = tuple(dict.fromkeys([suffix_of(out), *formats]))
-        formats = formats or (first_format(cell),)
+        formats = formats or (default_suffix(cell),)
         files = {paths["page"]: outputs.page(suffix_of(paths["page"]), work)} if "page" in paths else {}
-        tries = {}
+        simulations = {}
         for suffix in formats:
-            wants_rings = suffix_of(paths.get("picture")) == ".svg"
-            marks = tries[formats[0]].marks if tries else None
-            tries[suffix] = tried(work, suffix, job, order, lenient, wants_rings, stage, marks)
-            _refuse(tries[suffix].problems, work.notices)
-        one = tries[formats[0]]
+            with_outlines = suffix_of(paths.get("picture")) == ".svg"
+            marks = simulations[formats[0]].marks if simulations else None
+            simulations[suffix] = simulate_and_check(
+                work, suffix, job, order, lenient, with_outlines, stage, marks
+            )
+            _raise_first_problem(simulations[suffix].problems, work.notices)
+        first_simulation = simulations[formats[0]]
         stage("writing the program")
         texts: dict[str, str] = {}
-        for suffix, each in tries.items():
+        for suffix, each in simulations.items():
             for name, pieces in each.encoded().items():
                 text = pieces.decode() if isinstance(pieces, bytes) else "".join(pieces)
                 texts[name + suffix] = text
@@ -197,29 +234,36 @@ def _converted(
                     files[writer.path_next_to(out, name)] = text
         if "picture" in paths:
             stage("drawing")
-            files[paths["picture"]] = outputs.picture(suffix_of(paths["picture"]), one.work, one.marks)
-        measured = None
+            files[paths["picture"]] = outputs.picture(
+                suffix_of(paths["picture"]), first_simulation.work, first_simulation.marks
+            )
+        measured_figures = None
         if figures or "report" in paths:
             stage("measuring")
-            measured = outputs.reported(one.work, one.marks, cell)
+            measured_figures = outputs.reported(first_simulation.work, first_simulation.marks, cell)
         if "report" in paths:
-            files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured)
-    of_machine = of_cell(cell) if one.is_program else []
-    notices = (*ignored, *one.work.notices, *one.remarks(), *of_machine)
-    done = Conversion(work.title, one.work.plan, notices, one.time_s(), texts, measured)
-    return done, dict(sorted(files.items(), key=lambda each: each[0] != out))  # the program first
+            files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured_figures)
+    cell_notices = list_cell_notices(cell) if first_simulation.is_program else []
+    notices = (*ignored, *first_simulation.work.notices, *first_simulation.remarks(), *cell_notices)
+    conversion = Conversion(
+        work.title, first_simulation.work.plan, notices, first_simulation.time_s(), texts, measured_figures
+    )
+    return conversion, dict(sorted(files.items(), key=lambda each: each[0] != out))  # put the program first
 
 
-def first_format(cell: Cell) -> str:
+def default_suffix(cell: Cell) -> str:
     post = POSTS.get(cell.language)
     return post.extensions[0] if post else ".json"
 
 
-def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
-    """Error for the first, with the others as notes. notices: what is to be warned of."""
+def _raise_first_problem(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
+    """Raise Error for the first problem, with the other problems as notes.
+
+    notices: the warnings that the error carries.
+    """
     if problems:
-        first, *others = problems
-        error = Error(first.sentence, first.where, code=first.code, advice=first.advice)
+        problem, *others = problems
+        error = Error(problem.sentence, problem.where, code=problem.code, advice=problem.advice)
         for other in others:
             error.add_note(": ".join(filter(None, (other.where, other.text))))
         error.notices = notices
@@ -227,10 +271,15 @@ def _refuse(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
 
 
 @dataclass(frozen=True)
-class Tried:
-    """Work that was simulated and held against all limits of a machine. suffix: of the program, or ".json" for a plan;
-    work: with its strokes in the requested order; cell: as it is for that output; notes: for the header; problems: what
-    forbids to write it, one for each kind."""
+class SimulatedWork:
+    """Work that was simulated and checked against all limits of a machine.
+
+    suffix: the extension of the program, or ".json" for a plan.
+    work: the work with its strokes in the requested order.
+    cell: the cell as it is for this output.
+    notes: notes for the header of the program.
+    problems: what forbids writing the program, one notice for each kind.
+    """
 
     suffix: str
     work: Work
@@ -247,38 +296,45 @@ class Tried:
         return self.suffix != ".json"
 
     def encoded(self) -> dict[str, bytes | str | Iterator[str]]:
-        """What is written, see writer.in_parts. Error where something forbids it."""
+        """Return the files of the program, see writer.in_parts.
+
+        Raises Error if something forbids writing it.
+        """
         work = self.work
-        made = writer.encoded(self.suffix, work.plan, self.walk, work.brush, work.title, self.notes)
-        return writer.in_parts(self.suffix, made)
+        encoded_program = writer.encoded(
+            self.suffix, work.plan, self.walk, work.brush, work.title, self.notes
+        )
+        return writer.in_parts(self.suffix, encoded_program)
 
     def remarks(self) -> list[Notice]:
         """Return the notices of a job that may be run."""
-        first = self.walk.job.first_stroke
-        pens = with_one_pen(self.loads, self.cell, first) if self.is_program else []
+        first_stroke = self.walk.job.first_stroke
+        pen_notices = with_one_pen(self.loads, self.cell, first_stroke) if self.is_program else []
         brush, cell = self.work.brush, self.cell
-        out_of_turn = _out_of_turn(self.work, self.order, first)
-        beyond = beyond_field(self.loads.loads, cell) if self.is_program else []
-        long = beyond_part(self.loads, self.cell) if self.is_program else []
-        low = _lowered(self.walk.job.z_offset_mm) if self.is_program else []
+        order_notices = _check_stroke_order(self.work, self.order, first_stroke)
+        field_notices = beyond_field(self.loads.loads, cell) if self.is_program else []
+        part_notices = beyond_part(self.loads, self.cell) if self.is_program else []
+        lowering_notices = _check_lowering(self.walk.job.z_offset_mm) if self.is_program else []
         return [
             *without_paint(brush, cell),
-            *out_of_turn,
+            *order_notices,
             *too_long(self.loads, brush, cell),
-            *pens,
-            *beyond,
-            *long,
-            *low,
+            *pen_notices,
+            *field_notices,
+            *part_notices,
+            *lowering_notices,
         ]
 
     def time_s(self) -> float | None:
-        """How long the machine takes for the program, or for one of the plan."""
-        return time_written_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
+        """Return how long the machine takes for the program, or for one of the plan."""
+        return estimate_output_time_s(
+            self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell
+        )
 
 
-def _lowered(z_offset_mm: float) -> list[Notice]:
-    """A notice where the tool goes so much further down than the paper was taught that it may be a slip."""
-    if z_offset_mm > -MOST_LOWERED_MM:
+def _check_lowering(z_offset_mm: float) -> list[Notice]:
+    """Return a notice if the tool is lowered so far that it may be a mistake."""
+    if z_offset_mm > -MAX_SILENT_LOWERING_MM:
         return []
     sentence = (
         f"the tool goes {-z_offset_mm:g} mm further down than where the cell has the paper, which the strokes of "
@@ -287,26 +343,30 @@ def _lowered(z_offset_mm: float) -> list[Notice]:
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
 
-def _out_of_turn(work: Work, order: str, first_stroke: int) -> list[Notice]:
-    """A notice where strokes are pressed for paint that is left of others than those that are painted before them."""
+def _check_stroke_order(work: Work, order: str, first_stroke: int) -> list[Notice]:
+    """Return a notice if strokes are painted with less or more paint than planned.
+
+    Strokes are pressed as deep as the remaining paint requires. In another order, other strokes are painted before
+    them.
+    """
     is_pressed = work.brush.paint and work.strokes is not None
     if not is_pressed or work.options.compensation not in ("closed", "refined"):
         return []
-    how = ["in another order"] if order == "nearest" else []
-    how += [f"resumed freshly dipped at stroke {first_stroke}"] if first_stroke > 1 else []
-    dips_mm = fetched_mm(work.plan, work.brush, work.options.cell) if how else []
+    changes = ["in another order"] if order == "nearest" else []
+    changes += [f"resumed freshly dipped at stroke {first_stroke}"] if first_stroke > 1 else []
+    dips_mm = fetched_mm(work.plan, work.brush, work.options.cell) if changes else []
     if all(dips[:1] == [0.0] for dips in dips_mm):
         return []
     sentence = (
         "strokes are pressed as deep as the paint that the drawing's order leaves asks for: "
-        f"{' and '.join(how)} they come out wider or narrower than drawn"
+        f"{' and '.join(changes)} they come out wider or narrower than drawn"
     )
     return [
         Notice("", sentence, code="paint-out-of-turn", advice="fetch paint more often: [reload] of the cell")
     ]
 
 
-def tried(
+def simulate_and_check(
     work: Work,
     suffix: str,
     job: Job = WHOLE_JOB,
@@ -316,49 +376,60 @@ def tried(
     stage=lambda text: None,
     marks=None,
     path: str = "",
-) -> Tried:
-    """rings: trace the marks' outlines; marks: of the same work in the same order, where they are known; path: of the
-    program, for errors about its format."""
+) -> SimulatedWork:
+    """Simulate a work and check it against all limits of its machine.
+
+    suffix: the extension of the program, or ".json" for a plan.
+    rings: also trace the outlines of the marks.
+    marks: the marks of the same work in the same order, if they are known.
+    path: the path of the program, for errors about its format.
+    """
     cell, brush, tolerance_mm = work.options.cell, work.brush, work.options.tolerance_mm
     notes = outputs.notes(work)
     if order == "nearest":
-        work, notes = nearest_first(work), (*notes, "order: nearest first")
+        work, notes = order_nearest_first(work), (*notes, "order: nearest first")
     if suffix != ".json":
-        with concerning(path):
+        with name_file_in_errors(path):
             writer.post_for(suffix, cell)
         preflight.check_rounding(cell, tolerance_mm)
     if marks is None:
         marks = prediction.predict(work, rings, stage)
     loads = in_loads(work.plan, brush, cell)
-    known, of_drawing = work.walk(cell, job), work.strokes is not None
-    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job, known, of_drawing)
+    known_walk, is_drawing = work.walk(cell, job), work.strokes is not None
+    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job, known_walk, is_drawing)
     damaged = [] if lenient else [notice for notice in work.notices if notice.damaged]
     problems = summarized([*walk.problems, *damaged])
     if damaged:
         problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
-    return Tried(suffix, work, cell, notes, marks, loads, walk, problems, order)
+    return SimulatedWork(suffix, work, cell, notes, marks, loads, walk, problems, order)
 
 
-def time_of_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:
-    """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
+def estimate_time_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:
+    """Return how long the machine takes, or None if it cannot paint the plan.
+
+    A picture does not require that the machine can paint the plan.
+    """
     with suppress(Error):
         return writer.time_s(loads, brush, cell)
     return None
 
 
-def time_written_s(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
-    """How long the machine takes for a program that was gone through, or for one of a plan.json."""
+def estimate_output_time_s(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
+    """Return how long the machine takes for a program, or for one of a plan.json."""
     if suffix != ".json":
         return duration_s(walk.made)
-    return time_of_s(in_loads(plan, brush, cell), brush, cell)
+    return estimate_time_s(in_loads(plan, brush, cell), brush, cell)
 
 
-def of_cell(cell: Cell) -> list[Notice]:
-    """What makes a program less sure than it looks: a paper that nobody taught, an arm that is not followed."""
-    return [*([OF_EXAMPLE] if cell.paper.example else []), *of_arm(cell)]
+def list_cell_notices(cell: Cell) -> list[Notice]:
+    """Return notices on what makes a program less certain than it looks.
+
+    These are a paper position that nobody taught, and an arm whose joints were not checked.
+    """
+    return [*([OF_EXAMPLE] if cell.paper.example else []), *list_arm_notices(cell)]
 
 
-def of_arm(cell: Cell) -> list[Notice]:
+def list_arm_notices(cell: Cell) -> list[Notice]:
     if not cell.arm or is_installed():
         return []
     sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"

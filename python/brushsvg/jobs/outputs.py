@@ -1,4 +1,4 @@
-"""What is written of prepared work: header lines, pictures, pages, reports."""
+"""Make the outputs of prepared work: header lines, pictures, pages, reports."""
 
 from __future__ import annotations
 
@@ -21,26 +21,33 @@ from ..show.marks_svg import marks_svg
 from ..show.overlap_svg import overlap_svg
 from ..show.timeline import timeline
 from .options import Options
-from .preparation.margin_strokes import KIND, is_margin, without_margin_strokes
+from .preparation.margin_strokes import MARGIN_KIND, is_margin, remove_margin_strokes
 from .work import Work
 
-SHOWN_MM = 0.02  # how exactly a page shows the target: less cannot be seen
+TARGET_TOLERANCE_MM = 0.02  # how exactly an HTML page shows the target; smaller errors are not visible
 
 
 def notes(work: Work) -> tuple[str, ...]:
-    """Lines for a program's header: how it was made, and how much there is to know about it."""
+    """Return lines for the header of a program.
+
+    They say how the program was made, and how many warnings there were.
+    """
     options = work.options
     lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
     start = f", start {options.start}" if options.start != Options.start else ""
     end = f", end {options.end}" if options.end != Options.end else ""
-    made = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
+    compensation_line = (
+        f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
+    )
     damaged = sum(notice.damaged for notice in work.notices)
-    count = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
-    lines = (made, count) if work.strokes is not None else (count,)
+    warnings_line = f"warnings: {len(work.notices)}" + (
+        f", {damaged} of them damaged geometry" if damaged else ""
+    )
+    lines = (compensation_line, warnings_line) if work.strokes is not None else (warnings_line,)
     if any(map(is_margin, work.strokes or ())):
-        lines += (f"{KIND}: {sum(map(is_margin, work.strokes))} strokes",)
+        lines += (f"{MARGIN_KIND}: {sum(map(is_margin, work.strokes))} strokes",)
     elif any(notice.code == "margin-strokes-left-out" for notice in work.notices):
-        lines += (f"{KIND}: 0 strokes",)
+        lines += (f"{MARGIN_KIND}: 0 strokes",)
     if options.corrections:
         farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
         lines += (
@@ -52,43 +59,51 @@ def notes(work: Work) -> tuple[str, ...]:
 def picture(
     suffix: str, work: Work, marks: _core.Marks, band: Band | None = None, with_toolpath: bool = False
 ) -> bytes:
-    """The marks as the bytes of a .png, .svg or .json (marks.json); the latter two need their outlines. band: an
-    uncertainty.Band to draw around them; with_toolpath: draw the positions of the tool over them."""
+    """Return a picture of the marks as the bytes of a .png or .svg, or a marks.json.
+
+    An .svg and a .json need the outlines of the marks.
+
+    band: an uncertainty.Band to draw around the marks.
+    with_toolpath: also draw the positions of the tool.
+    """
     if suffix == ".json":
         return _core.write_marks(marks).encode()
     colours = [a_pass.colour for a_pass in work.plan.passes]
     toolpath_mm = [with_chords(a_pass).poses_mm for a_pass in work.plan.passes] if with_toolpath else []
-    bare = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
+    unpainted = [ring for piece in (*work.unreached, *work.missed) for ring in piece.rings]
     if suffix == ".svg":
-        how = "" if work.strokes is None else f", {work.options.compensation}"
-        made = f"{work.plan.brush}{how}"
+        compensation = "" if work.strokes is None else f", {work.options.compensation}"
+        description = f"{work.plan.brush}{compensation}"
         text = marks_svg(
             marks,
             work.plan.sheet_mm,
             colours,
             work.title,
             work.tracking_errors,
-            made,
+            description,
             band,
-            bare,
+            unpainted,
             work.astray,
             toolpath_mm,
         )
         return text.encode()
-    from ..show import marks_png  # brings OpenCV, which the others do not need
+    from ..show import marks_png  # imports OpenCV, which the other formats do not need
 
-    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, bare, toolpath_mm)
+    return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, unpainted, toolpath_mm)
 
 
 def page(suffix: str, work: Work) -> bytes:
-    """The page that is printed for a job (.pdf, .svg), of strokes in the order they were drawn in."""
+    """Return the page to print for a job (.pdf, .svg).
+
+    The strokes are in the order in which they were drawn.
+    """
     from ..calibration.chart.page import chart_page, chart_pdf
     from ..comparison.job_page import job_page
 
-    made = job_page(work.plan, work.title)
+    printed_page = job_page(work.plan, work.title)
     if suffix == ".pdf":
-        return chart_pdf(made.printed, made.ticks)
-    return chart_page(made.printed, made.ticks).encode()
+        return chart_pdf(printed_page.printed, printed_page.ticks)
+    return chart_page(printed_page.printed, printed_page.ticks).encode()
 
 
 def overlap_picture(
@@ -98,9 +113,15 @@ def overlap_picture(
     long_side_px: int | None = None,
     places: Iterable[report.Place] = (),
 ) -> bytes:
-    """Where paint is missing and where there is too much of it, as the bytes of a .png or an .svg; the latter needs
-    outlines. long_side_px: of a small .png without legend; places: of the report, which are numbered. Error for a plan,
-    which has no target."""
+    """Return a picture of missing and excess paint as the bytes of a .png or .svg.
+
+    An .svg needs the outlines of the marks.
+
+    long_side_px: the size of a small .png without legend.
+    places: places of the report, which are numbered in the picture.
+
+    Raises Error for a plan, which has no target.
+    """
     if work.strokes is None:
         raise Error("a plan does not hold its target: give the drawing", code="plan-without-target")
     if suffix == ".svg":
@@ -123,12 +144,17 @@ def overlap_picture(
 
 
 def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
-    """An HTML page that plays tool and paint over time, speed times as fast at first. marks: of the work's plan in
-    loads, with outlines."""
+    """Return an HTML page that plays tool and paint over time.
+
+    loads: the plan of the work in loads.
+    marks: the marks of this plan, with outlines.
+    speed: the speed of the playback at its start, relative to the robot.
+    """
     _core.refuse_tilted(work.plan.passes, "the tool is shown upright")
-    runs = replace(cell, machine=None)  # the tool is shown where it goes, not where it is commanded
-    moves = timeline(whole_program(loads, work.brush, runs), marks)
-    target = [_core.wanted_outline(stroke, SHOWN_MM) for stroke in work.strokes or ()]
+    # The machine errors are left out, to show the tool where it goes and not where it is commanded.
+    ideal_cell = replace(cell, machine=None)
+    moves = timeline(whole_program(loads, work.brush, ideal_cell), marks)
+    target = [_core.wanted_outline(stroke, TARGET_TOLERANCE_MM) for stroke in work.strokes or ()]
     return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
 
 
@@ -143,15 +169,20 @@ def reported(
     advice: str = "",
     as_run: _core.Plan | None = None,
 ) -> report.Report:
-    """The figures of a work. warnings: None for those of the work; forbidden:
-    those of them for which no program would be written; drawn: see report.measure; seconds: the duration, where
-    that is known better than from the plan; advice: on the size; as_run: what the marks are of, where a machine cuts
-    corners of the work's plan."""
-    known = warnings if warnings is not None else work.notices
+    """Return the figures of a work.
+
+    warnings: None for the warnings of the work.
+    forbidden: the warnings for which no program would be written.
+    drawn: see report.measure.
+    seconds: the duration, if it is known better than from the plan.
+    advice: advice on the size.
+    as_run: the plan that the marks belong to, if a machine cuts corners of the work's plan.
+    """
+    known_warnings = warnings if warnings is not None else work.notices
     if seconds is None:
         seconds = time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
-    work, marks, as_run = without_margin_strokes(work, marks, as_run)
-    leans = any(map(is_tilted, work.plan.passes))
+    work, marks, as_run = remove_margin_strokes(work, marks, as_run)
+    is_tilted_plan = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
     painted = report.PaintedPlan(
         work.plan,
@@ -172,19 +203,19 @@ def reported(
         strokes=rows,
         total=total,
         time_s=seconds,
-        warnings=tuple(known),
+        warnings=tuple(known_warnings),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
-        confidence=None if leans else uncertainty(as_run or work.plan, work.brush, marks),
-        is_tilted=leans,
+        confidence=None if is_tilted_plan else uncertainty(as_run or work.plan, work.brush, marks),
+        is_tilted=is_tilted_plan,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
-        assumed=assumed(work.brush),
+        assumed=list_assumed_laws(work.brush),
         places=report.worst_places(painted) if is_drawing else (),
     )
 
 
-def assumed(brush: _core.Brush) -> tuple[str, ...]:
+def list_assumed_laws(brush: _core.Brush) -> tuple[str, ...]:
     """Return the names of the laws that were never measured."""
-    names = {"lag": "lag", "half_width": "width"}
-    return tuple(name for law, name in names.items() if getattr(brush, law).assumed)
+    names_by_law = {"lag": "lag", "half_width": "width"}
+    return tuple(name for law, name in names_by_law.items() if getattr(brush, law).assumed)

@@ -1,4 +1,4 @@
-"""A plan to the marks that it will paint."""
+"""Predict the marks that a plan will paint."""
 
 from __future__ import annotations
 
@@ -14,14 +14,18 @@ from .work import Work
 def predict(
     work: Work, outlines: bool = True, stage: Callable[[str], object] = lambda text: None, whole: bool = True
 ) -> _core.Marks:
-    """The marks of the plan; outlines: trace their rings too, whole: those of all paint together as well."""
-    known = None if outlines else work.marks()
-    if known is not None:
-        return known
-    return marks_of(work.plan, work.brush, outlines, stage, whole, work.options.cell)
+    """Return the marks that the plan of a work will paint.
+
+    outlines: also trace the outlines of the marks.
+    whole: with outlines, also trace the outlines of all paint together.
+    """
+    known_marks = None if outlines else work.marks()
+    if known_marks is not None:
+        return known_marks
+    return predict_plan_marks(work.plan, work.brush, outlines, stage, whole, work.options.cell)
 
 
-def marks_of(
+def predict_plan_marks(
     plan: _core.Plan,
     brush: _core.Brush,
     outlines: bool = True,
@@ -29,46 +33,52 @@ def marks_of(
     whole: bool = True,
     cell: Cell | None = None,
 ) -> _core.Marks:
-    """The marks of any plan. cell: where it fetches paint, of a brush whose marks narrow until then; where none does
-    every stroke is taken to begin freshly dipped, but those that are to be painted without (`reload`)."""
-    marks = _core.simulate(plan, brush, progress=_counted(stage, "simulated"))
+    """Return the marks that a plan will paint.
+
+    cell: the cell that fetches paint, for a brush whose marks narrow as paint runs out. Without paint stations,
+        every stroke begins freshly dipped, except strokes that are painted without a fetch (`reload`).
+    """
+    marks = _core.simulate(plan, brush, progress=_make_counter(stage, "simulated"))
     if brush.paint:
         _core.narrow(marks, brush.paint, fetched_mm(plan, brush, cell))
     if not outlines:
         return marks
-    return outlined(marks, brush, stage) if whole else _outlined_apart(marks, brush, stage)
+    return trace_mark_outlines(marks, brush, stage) if whole else _trace_each_pass(marks, brush, stage)
 
 
-def outlined(
+def trace_mark_outlines(
     marks: _core.Marks, brush: _core.Brush, stage: Callable[[str], object] = lambda text: None
 ) -> _core.Marks:
-    """The marks with their rings traced."""
-    _core.trace_outlines(marks, brush, progress=_counted(stage, "outlined"))
+    """Trace the outlines of the marks, and return the marks."""
+    _core.trace_outlines(marks, brush, progress=_make_counter(stage, "outlined"))
     return marks
 
 
-def _outlined_apart(marks, brush, stage):
-    """The marks with the rings of each pass alone, which is all that a picture needs, on all processors."""
+def _trace_each_pass(marks, brush, stage):
+    """Trace the outlines of each pass alone, on all processors.
+
+    A picture needs no outlines of all paint together.
+    """
     from concurrent.futures import ThreadPoolExecutor
 
-    def one(trace):
+    def trace_alone(trace):
         alone = _core.Marks()
         alone.passes = [trace]
         _core.trace_outlines(alone, brush)
         return alone.passes[0]
 
-    count = _counted(stage, "outlined")
+    count = _make_counter(stage, "outlined")
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
-        done = []
-        for trace in pool.map(one, marks.passes):
-            done.append(trace)
-            count(len(done), len(marks.passes))
+        traced = []
+        for trace in pool.map(trace_alone, marks.passes):
+            traced.append(trace)
+            count(len(traced), len(marks.passes))
     finally:
-        pool.shutdown(cancel_futures=True)  # Ctrl-C waits for the strokes at hand, no longer
-    marks.passes = done
+        pool.shutdown(cancel_futures=True)  # Ctrl-C waits only for the strokes that are being traced
+    marks.passes = traced
     return marks
 
 
-def _counted(stage, doing: str):
+def _make_counter(stage, doing: str):
     return lambda now, all_: stage(f"{doing} {now} of {all_} strokes")

@@ -1,4 +1,4 @@
-"""A file understood: the part of it that is painted, how, and the warnings about it."""
+"""A prepared drawing or plan: its strokes, its plan, and the warnings about it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,13 @@ from .options import Options
 
 
 @dataclass(frozen=True)
-class Known:
-    """What was found of a plan as it then was, a copy: its marks, without outlines and freshly dipped, and limits."""
+class KnownSimulation:
+    """A simulation of a plan as it was at that time.
+
+    plan: a copy of the plan.
+    marks: the marks of the plan, without outlines and freshly dipped.
+    walk: the program of the plan with the limits that it breaks.
+    """
 
     plan: _core.Plan
     marks: _core.Marks
@@ -25,10 +30,12 @@ class Known:
 
 @dataclass(frozen=True)
 class Work:
-    """A file understood: strokes is None where IN was a plan, which does not hold its target.
+    """A prepared drawing or plan.
 
-    plan: with corrections. tracking_errors: one per pass of the plan without them, () for a plan read from a file;
-    refused: strokes that were left out.
+    plan: the plan, with corrections.
+    strokes: the target strokes; None for an input plan, which does not hold its target.
+    tracking_errors: one for each pass of the plan without corrections; () for a plan that was read from a file.
+    refused: notices on the strokes that were left out.
     """
 
     title: str
@@ -40,69 +47,91 @@ class Work:
     notices: tuple[Notice, ...]
     refused: tuple[Notice, ...] = ()
     left_out: tuple = ()  # the targets of strokes that were refused
-    drawn: tuple = ()  # all strokes, before they were brought within the brush's reach
+    drawn: tuple = ()  # all strokes, before their widths were limited to the brush
     unreached: tuple = ()  # pieces of filled shapes that no stroke reaches
-    missed: tuple = ()  # pieces that strokes reach and the mark does not
+    missed: tuple = ()  # pieces of filled shapes that strokes reach and the mark does not
     astray: tuple = ()  # names of strokes whose paint is visibly elsewhere
-    known: Known | None = None  # of the plan, or of what it was before something of it changed
+    known: KnownSimulation | None = None  # simulation of the plan, or of the plan before it was changed
 
     def marks(self) -> _core.Marks | None:
-        """Of the plan, where they are known: not to be changed."""
+        """Return the marks of the plan if they are known. Do not change them."""
         return self.known.marks if self._is_known() else None
 
     def walk(self, cell: Cell, job: Job = WHOLE_JOB) -> Walked | None:
-        """The plan with the limits that it breaks, where these are known of such a job."""
-        known = self.known.walk if self._is_known() else None
-        return known if known and cell == self.options.cell and replace(known.job, visits=()) == job else None
+        """Return the program of the plan with the limits it breaks, if known.
+
+        It is known only for the cell of the options and for the job that was simulated.
+        """
+        known_walk = self.known.walk if self._is_known() else None
+        return (
+            known_walk
+            if known_walk and cell == self.options.cell and replace(known_walk.job, visits=()) == job
+            else None
+        )
 
     def _is_known(self) -> bool:
         return self.known is not None and not self.brush.paint and self.known.plan == self.plan
 
 
-def whole_strokes(work: Work, loads: PlanInLoads) -> list:
-    """For each of the work's loads the stroke that it paints whole; None for the parts of one."""
-    whole, left = [], iter(work.strokes)
+def match_whole_strokes(work: Work, loads: PlanInLoads) -> list:
+    """Return the stroke that each load paints whole, None for a part of a stroke."""
+    matched, remaining = [], iter(work.strokes)
     for a_pass in loads.loads:
         if is_later_part(a_pass):
-            whole[-1:] = [None, None]
+            matched[-1:] = [None, None]
         else:
-            whole.append(next(left))
-    return whole
+            matched.append(next(remaining))
+    return matched
 
 
-def colours(work: Work) -> list[str]:
-    """Colours of the work's strokes, the lightest first: dark paint covers light, and rests of it spoil light paint."""
+def list_colours(work: Work) -> list[str]:
+    """Return the colours of the strokes, the lightest first.
+
+    Dark paint covers light paint, and rests of dark paint in the brush spoil light paint.
+    """
 
     def lightness(colour: str) -> float:  # luma of ITU-R BT.601
         red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
         return 0.299 * red + 0.587 * green + 0.114 * blue
 
-    found = dict.fromkeys(each.colour for each in work.plan.passes if each.colour)
-    return sorted(found, key=lightness, reverse=True)
+    distinct = dict.fromkeys(each.colour for each in work.plan.passes if each.colour)
+    return sorted(distinct, key=lightness, reverse=True)
 
 
-def of_colour(work: Work, colour: str) -> Work:
-    """The strokes of one colour; those without one are painted with the first. Error if there are none."""
-    all_colours = colours(work)
+def select_colour(work: Work, colour: str) -> Work:
+    """Return the work with the strokes of one colour.
+
+    Strokes without a colour are painted with the first colour. Error if no stroke has the colour.
+    """
+    all_colours = list_colours(work)
     if colour not in all_colours:
-        known = ", ".join(all_colours) or "none"
-        sentence = f"nothing is painted in {colour}; colours of this drawing: {known}"
+        known_colours = ", ".join(all_colours) or "none"
+        sentence = f"nothing is painted in {colour}; colours of this drawing: {known_colours}"
         raise Error(sentence, "colour", code="nothing-to-paint")
-    without = {"", colour} if colour == all_colours[0] else {colour}
-    return _of_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in without])
+    painted_colours = {"", colour} if colour == all_colours[0] else {colour}
+    return _select_rows(
+        work, [k for k, each in enumerate(work.plan.passes) if each.colour in painted_colours]
+    )
 
 
-def _of_rows(work: Work, rows: list[int]) -> Work:
-    was = work.plan
-    plan = _core.Plan(was.brush, was.brush_sha256, was.sheet_mm, [was.passes[k] for k in rows], was.extra)
+def _select_rows(work: Work, rows: list[int]) -> Work:
+    old_plan = work.plan
+    plan = _core.Plan(
+        old_plan.brush,
+        old_plan.brush_sha256,
+        old_plan.sheet_mm,
+        [old_plan.passes[k] for k in rows],
+        old_plan.extra,
+    )
     strokes = None if work.strokes is None else [work.strokes[k] for k in rows]
     tracking_errors = tuple(work.tracking_errors[k] for k in rows) if work.tracking_errors else ()
     return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)
 
 
-def nearest_first(work: Work) -> Work:
-    """The work with its strokes in the order of the shortest way from the end of one to the start of the next.
+def order_nearest_first(work: Work) -> Work:
+    """Return the work with its strokes in the order of the shortest travel.
 
-    Only strokes that follow each other in one layer change places; none is painted backwards.
+    Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
+    places, and no stroke is painted backwards.
     """
-    return _of_rows(work, travel_order.nearest_first(work.plan.passes))
+    return _select_rows(work, travel_order.nearest_first(work.plan.passes))

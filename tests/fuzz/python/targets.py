@@ -491,7 +491,7 @@ def _read_manifest(data: bytes) -> None:
 def _manifest_seeds() -> Iterator[bytes]:
     import hashlib
 
-    from brushsvg.jobs.batch.manifest import FORMAT, Row, as_line
+    from brushsvg.jobs.batch.manifest import FORMAT, Row, format_row
 
     digest = hashlib.sha256(b"x").hexdigest()
     head = json.dumps(FORMAT) + "\n"
@@ -501,7 +501,7 @@ def _manifest_seeds() -> Iterator[bytes]:
     ]
     yield head.encode()
     for row in rows:
-        yield (head + as_line(row)).encode()
+        yield (head + format_row(row)).encode()
 
 
 # Programs read back

@@ -39,7 +39,7 @@ def quick_check():
     cells: dict[str, object] = {}
     requested: dict[tuple, object] = {}
     before = {
-        checking: {name: getattr(checking, name) for name in ("preparation", "cell_of", "outputs")},
+        checking: {name: getattr(checking, name) for name in ("preparation", "load_cell", "outputs")},
         command: {name: getattr(command, name) for name in ("print_text", "report")},
     }
 
@@ -61,7 +61,7 @@ def quick_check():
 
     def cell_of(name):
         if name not in cells:
-            cells[name] = choices.cell_of(name)
+            cells[name] = choices.load_cell(name)
         return cells[name]
 
     def refusals(*words) -> list[str]:
@@ -75,7 +75,7 @@ def quick_check():
             return [f"{CRASHED}: {type(mistake).__name__} {mistake}"]
         return []
 
-    checking.preparation, checking.cell_of = types.SimpleNamespace(prepare=prepare), cell_of
+    checking.preparation, checking.load_cell = types.SimpleNamespace(prepare=prepare), cell_of
     checking.outputs = types.SimpleNamespace(notes=outputs.notes, reported=lambda *_, **__: None)
     command.print_text, command.report = lambda text: None, types.SimpleNamespace(as_text=lambda *_: "")
     try:

@@ -14,7 +14,7 @@ from desk import BRUSHES, brush_file
 import brushsvg
 from brushsvg import _core
 from brushsvg.cli.arguments.parser import parse
-from brushsvg.cli.steps.options import options_of, typed
+from brushsvg.cli.steps.options import make_choices, make_options
 from brushsvg.jobs.preparation import preparation
 from brushsvg.model.library import find_brush
 
@@ -253,7 +253,9 @@ def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
     ):
         work = preparation.prepare(
             source,
-            options_of(typed(parse(["convert", str(source), "-o", "x.json", "--cell", str(toml), *flags]))),
+            make_options(
+                make_choices(parse(["convert", str(source), "-o", "x.json", "--cell", str(toml), *flags]))
+            ),
         )
     laws = [Lag(brush)]
     for k, a_pass in enumerate(_core.read_plan(json.dumps(plan)).passes):

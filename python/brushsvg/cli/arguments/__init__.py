@@ -1,1 +1,4 @@
-"""Parse and check the command line. Imports nothing heavy, so a typing error is reported at once."""
+"""Parse and check the command line.
+
+Nothing heavy is imported here, so that usage errors are reported at once.
+"""

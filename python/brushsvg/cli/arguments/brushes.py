@@ -1,4 +1,4 @@
-"""The commands for brushes: chart, calibrate, brush."""
+"""Arguments of the commands for brushes: chart, calibrate, brush."""
 
 from __future__ import annotations
 
@@ -7,13 +7,21 @@ from dataclasses import fields
 from ...photo import PHOTOS
 from ...read import READERS
 from . import values
-from .flags import A_PROGRAM, add_explain, add_looks, add_output, add_picture, add_writes, add_z_offset
+from .flags import (
+    PROGRAM_HELP,
+    add_explain,
+    add_list_show_check,
+    add_output,
+    add_picture,
+    add_write_options,
+    add_z_offset,
+)
 from .usage_checks import PICTURES, PROGRAMS, check_extension, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:
     chart = commands.add_parser("chart", help="write a chart: the strokes to calibrate a brush with")
-    add_output(chart, f"a plan (.json) or {A_PROGRAM}")
+    add_output(chart, f"a plan (.json) or {PROGRAM_HELP}")
     chart.add_argument(
         "--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6"
     )
@@ -59,7 +67,7 @@ def add_chart(commands) -> None:
     )
     add_z_offset(chart)
     add_explain(chart, "drawing")
-    add_writes(chart)
+    add_write_options(chart)
     chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
 
 
@@ -74,47 +82,47 @@ def _check_chart(args) -> None:
 
 
 def add_calibrate(commands) -> None:
-    fit = commands.add_parser("calibrate", help="turn measurements or photographs into a brush")
-    fit.add_argument(
+    calibrate = commands.add_parser("calibrate", help="turn measurements or photographs into a brush")
+    calibrate.add_argument(
         "inputs",
         metavar="IN",
         nargs="+",
         help=f"what was measured (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
     )
-    add_output(fit, "a brush (.json); with --scan, outlines in mm (.json)")
-    fit.add_argument(
+    add_output(calibrate, "a brush (.json); with --scan, outlines in mm (.json)")
+    calibrate.add_argument(
         "--scan",
         action="store_true",
         help="only read the outlines of one photograph: calibrate takes them later",
     )
-    _add_photo(fit)
-    fit.add_argument(
+    _add_photo_options(calibrate)
+    calibrate.add_argument(
         "--plan",
         metavar="FILE",
         help="for photographs of a painted job (convert --page): the plan.json that was painted; needs --prior",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--prior",
         metavar="NAME|FILE",
         help="with --plan: the brush that painted it, as it is known up to now",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--aim",
         choices=("edges", "overlap"),
         default="edges",
         help="of painted marks: fit the edges of the usual mark, or go on from there to the largest overlap, if that "
         "predicts marks left out better; it has no intervals; default: edges",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--norm",
         choices=("squares", "absolute"),
         default="squares",
         help="what the fit minimizes: squared or absolute residuals; default: squares",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--total", action="store_true", help="total least squares for series of angles; default: ordinary"
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--machine",
         metavar="PARTS",
         type=values.machine_parts,
@@ -122,41 +130,41 @@ def add_calibrate(commands) -> None:
         help="also estimate these errors of the machine from painted marks: any of "
         "lean,axes,tilt,backlash,field",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--cell",
         metavar="NAME|FILE",
         help="the machine that painted: with --machine, find only what its cell can undo",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--paint",
         action="store_true",
         help="from marks painted in the order of their plan with one load of paint: also find how they narrow",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--brush",
         metavar="NAME|FILE",
         help="for a photograph of dabs (chart --dabs): the brush whose lag is known, which gets the outlines; for one "
         "of strokes: the brush whose outlines are known, which gets the lag",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--spread",
         metavar="FILE",
         help="for photographs: how well the studio repeats, as compare --sheets found it (.json)",
     )
-    fit.add_argument(
+    calibrate.add_argument(
         "--height",
         metavar="MM",
         type=values.noise,
         help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
         "brushsvg setup height; default: 0.3, as by eye",
     )
-    add_picture(fit, "the brush laws, data and residuals")
-    fit.add_argument("--details", action="store_true", help="print all tables of the report")
-    add_writes(fit)
-    fit.set_defaults(run="calibrate_file", parser=fit, check=_check_calibrate)
+    add_picture(calibrate, "the brush laws, data and residuals")
+    calibrate.add_argument("--details", action="store_true", help="print all tables of the report")
+    add_write_options(calibrate)
+    calibrate.set_defaults(run="calibrate_file", parser=calibrate, check=_check_calibrate)
 
 
-def _add_photo(command) -> None:
+def _add_photo_options(command) -> None:
     command.add_argument("--chart", metavar="FILE", help="the chart.json of the page in the photograph")
     command.add_argument(
         "--bar",
@@ -183,15 +191,15 @@ def _add_photo(command) -> None:
 
 
 def _check_calibrate(args) -> None:
-    from ...jobs.calibration_options import contradiction
+    from ...jobs.calibration_options import find_contradiction
 
     args.input = args.inputs[0]
-    args.options = _options_of(args)
+    args.options = _make_options(args)
     if args.scan:
         return _check_scan(args)
     args.photos = [path for path in args.inputs if suffix_of(path) in PHOTOS]
     _refuse_heic(args, args.inputs)
-    if why := contradiction(args.inputs if len(args.inputs) > 1 else args.input, args.options):
+    if why := find_contradiction(args.inputs if len(args.inputs) > 1 else args.input, args.options):
         args.parser.error(why)
     for flag, value in (("--marks-picture", args.marks_picture), ("--picture", args.picture)):
         if value and args.plan:
@@ -204,7 +212,7 @@ def _check_calibrate(args) -> None:
     check_files(args, read, written)
 
 
-def _options_of(args):
+def _make_options(args):
     from ...jobs.calibration_options import CalibrationOptions
 
     return CalibrationOptions(
@@ -226,11 +234,11 @@ def _options_of(args):
     )
 
 
-OF_A_SCAN = ("chart", "bar_mm", "dpi", "mirrored")  # options that reading a photograph needs
+SCAN_OPTIONS = ("chart", "bar_mm", "dpi", "mirrored")  # options for reading a photograph
 
 
 def _check_scan(args) -> None:
-    from ...jobs.calibration_options import CalibrationOptions, contradiction
+    from ...jobs.calibration_options import CalibrationOptions, find_contradiction
 
     args.run = "scan_file"
     if len(args.inputs) > 1:
@@ -239,7 +247,7 @@ def _check_scan(args) -> None:
     given = [
         each.name
         for each in fields(CalibrationOptions)
-        if each.name not in OF_A_SCAN and getattr(args.options, each.name) != each.default
+        if each.name not in SCAN_OPTIONS and getattr(args.options, each.name) != each.default
     ]
     if given or args.picture:
         flag = "--norm" if given == ["absolute"] else f"--{(given or ['picture'])[0].removesuffix('_mm')}"
@@ -248,7 +256,7 @@ def _check_scan(args) -> None:
         args.parser.error("--scan needs --chart, the chart.json of the page in the photograph")
     read = [(args.input, PHOTOS), (args.chart, (".json",))]
     check_files(args, read, [(args.output, (".json",)), (args.marks_picture, (".png",))])
-    if why := contradiction(args.input, args.options):
+    if why := find_contradiction(args.input, args.options):
         args.parser.error(why)
 
 
@@ -260,10 +268,10 @@ def _refuse_heic(args, photos: list[str]) -> None:
 
 
 def add_brush(commands) -> None:
-    whats = add_looks(
+    subcommands = add_list_show_check(
         commands, "brush", "list, show, check, draw and create brushes", "laws and ranges", "brush.json"
     )
-    new = whats.add_parser(
+    new = subcommands.add_parser(
         "new", help="write a brush file from a few numbers; asks for them if you give none"
     )
     add_output(new, "the brush file (.json); its name becomes the brush's name")
@@ -299,12 +307,14 @@ def add_brush(commands) -> None:
     new.add_argument(
         "--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it"
     )
-    add_writes(new)
+    add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
-    plot = whats.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
+    plot = subcommands.add_parser(
+        "plot", help="draw the brush laws with confidence bands, and the footprints"
+    )
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     add_output(plot, "a picture (.svg .png)")
-    add_writes(plot)
+    add_write_options(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
 
 
@@ -319,11 +329,11 @@ def _check_brush_new(args) -> None:
         return
     is_empty = args.lag is None and not (args.lag_at or args.width_at or args.widths)
     if is_empty:
-        from ..steps.ask_measurements import FLAGS, HOW_TO_MEASURE, can_answer
+        from ..steps.ask_measurements import HOW_TO_MEASURE, MEASUREMENT_FLAGS, can_answer
 
         if not can_answer(args):
             args.parser.error(
-                f"nothing was measured. {' '.join(HOW_TO_MEASURE)} Give {FLAGS}; or --like BRUSH"
+                f"nothing was measured. {' '.join(HOW_TO_MEASURE)} Give {MEASUREMENT_FLAGS}; or --like BRUSH"
             )
         return
     if args.lag is None and not args.lag_at:

@@ -1,4 +1,7 @@
-"""The commands that start from a drawing: text, preview, convert, batch, compare, simulate-photo."""
+"""Arguments of the commands for drawings.
+
+These are text, preview, convert, batch, compare and simulate-photo.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from .flags import (
     add_choices,
     add_corrections,
     add_input,
-    add_job,
+    add_job_options,
     add_margin_strokes,
     add_order,
     add_output,
@@ -18,9 +21,9 @@ from .flags import (
     add_report,
     add_script,
     add_speed,
-    add_writes,
+    add_write_options,
     add_z_offset,
-    plans_and_programs,
+    list_output_formats,
 )
 from .usage_checks import (
     DRAWINGS,
@@ -37,10 +40,10 @@ from .usage_checks import (
 def add_convert(commands) -> None:
     convert = commands.add_parser("convert", help="turn a drawing into a robot program")
     add_input(convert)
-    add_output(convert, plans_and_programs())
+    add_output(convert, list_output_formats())
     add_choices(convert)
     add_speed(convert)
-    add_job(convert)
+    add_job_options(convert)
     add_corrections(convert)
     add_margin_strokes(convert)
     convert.add_argument(
@@ -53,7 +56,7 @@ def add_convert(commands) -> None:
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
     )
     convert.add_argument("--report", metavar="FILE", help="also write the report (.txt .json .csv)")
-    add_writes(convert)
+    add_write_options(convert)
     convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
 
 
@@ -162,7 +165,7 @@ def add_compare(commands) -> None:
         help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
     )
     add_report(compare)
-    add_writes(compare)
+    add_write_options(compare)
     compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
 
 
@@ -202,7 +205,7 @@ def add_simulate_photo(commands) -> None:
         "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
     )
     simulate.add_argument("--seed", metavar="N", type=values.count, default=1, help="of chance; default: 1")
-    add_writes(simulate)
+    add_write_options(simulate)
     simulate.set_defaults(run="simulate_photo_file", parser=simulate, check=_check_simulate_photo)
 
 
@@ -254,13 +257,13 @@ def add_preview(commands) -> None:
         "--all-brushes", action="store_true", help="report one line for each brush, the best first"
     )
     add_report(preview)
-    add_writes(preview)
+    add_write_options(preview)
     preview.set_defaults(parser=preview, check=_check_preview)
 
 
 def _check_preview(args) -> None:
     check_drawing(args)
-    args.run = _preview_of(args)
+    args.run = _select_preview(args)
     suffix, error = suffix_of(args.output or ""), args.parser.error
     shows_report = args.run == "preview_report"
     if args.show != "paint" and args.output is None:
@@ -289,7 +292,7 @@ def _check_preview(args) -> None:
     check_files(args, [(args.input, read), *brushes], [(args.output, (*PICTURES, ".html", ".json"))])
 
 
-def _preview_of(args) -> str:
+def _select_preview(args) -> str:
     """Return the name of the function of `commands` that shows this view."""
     if args.show == "strokes":
         return "preview_strokes"
@@ -316,7 +319,7 @@ def add_text(commands) -> None:
         "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )
     add_script(text, "how the letters are written")
-    add_writes(text)
+    add_write_options(text)
     text.set_defaults(run="text_file", parser=text, check=_check_text)
 
 

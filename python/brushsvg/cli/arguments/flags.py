@@ -1,4 +1,4 @@
-"""Operands and flags that several commands have."""
+"""Operands and flags that several commands share."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from . import values
 TERMINALS = ("auto", "round", "butt", "pointed")
 
 
-A_PROGRAM = "a program; its extension names the language (see convert --help)"
+PROGRAM_HELP = "a program; its extension names the language (see convert --help)"
 
 
-def programs() -> str:
-    """The extensions of programs, each with the language it stands for."""
+def list_program_formats() -> str:
+    """Return the extensions of programs, each with the language that it stands for."""
     titles: dict[str, str] = {}
     for post in POSTS.values():
         name = " ".join(post.extensions)
-        # of languages that share an extension what they have in common, as in: G-code for grbl
+        # Languages that share an extension get the common part of their titles, as in: G-code for grbl.
         titles[name] = post.title.partition(" for ")[0] if name in titles else post.title
     return " or ".join(f"{title} ({name})" for name, title in titles.items())
 
 
-def plans_and_programs() -> str:
-    return f"a plan (.json) or {programs()}"
+def list_output_formats() -> str:
+    return f"a plan (.json) or {list_program_formats()}"
 
 
 def add_output(command: argparse.ArgumentParser, what: str, is_needed: bool = True) -> None:
@@ -44,20 +44,23 @@ def add_report(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help="print the report as JSON")
 
 
-def add_looks(commands, kind: str, about: str, shown: str, file: str):
-    """`brush` or `cell` with list, show and check; what else it does is added to the parsers returned."""
-    whats = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
-    whats.add_parser("list", help="list the shipped ones").set_defaults(run=f"{kind}_list")
-    show = whats.add_parser("show", help=f"show {shown} of one")
+def add_list_show_check(commands, kind: str, about: str, shown: str, file: str):
+    """Add the commands list, show and check for a kind, `brush` or `cell`.
+
+    Returns the subparsers, to which further commands can be added.
+    """
+    subcommands = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
+    subcommands.add_parser("list", help="list the shipped ones").set_defaults(run=f"{kind}_list")
+    show = subcommands.add_parser("show", help=f"show {shown} of one")
     show.add_argument("input", metavar="NAME", help=f"a shipped {kind}, or a {file}")
     show.set_defaults(run=f"{kind}_show")
-    check = whats.add_parser("check", help=f"check whether a {kind} file is usable")
+    check = subcommands.add_parser("check", help=f"check whether a {kind} file is usable")
     check.add_argument("input", metavar="FILE", help=f"a {file}")
     check.set_defaults(run=f"{kind}_check")
-    return whats
+    return subcommands
 
 
-def add_job(command: argparse.ArgumentParser) -> None:
+def add_job_options(command: argparse.ArgumentParser) -> None:
     add = command.add_argument
     add_z_offset(command)
     add("--from-stroke", metavar="N", type=values.count, default=1, help="resume a job at this stroke")
@@ -101,8 +104,8 @@ def add_quiet(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="print warnings only")
 
 
-def add_writes(command: argparse.ArgumentParser) -> None:
-    """For a command that writes files of names that were typed."""
+def add_write_options(command: argparse.ArgumentParser) -> None:
+    """Add --force and --quiet, for a command that writes files with typed names."""
     command.add_argument(
         "--force",
         action="store_true",
@@ -112,9 +115,9 @@ def add_writes(command: argparse.ArgumentParser) -> None:
 
 
 def add_explain(command: argparse.ArgumentParser, drawing: str | None = "input") -> None:
-    """For a command that takes settings from a project file.
+    """Add --explain, for a command that takes settings from a project file.
 
-    drawing: the operand near which the file is searched; None: the current folder.
+    drawing: the operand near which the project file is searched; None for the current folder.
     """
     command.add_argument(
         "--explain",

@@ -1,4 +1,7 @@
-"""Help in groups: commands by task, options by topic, with the common ones first and all of them by --help-all."""
+"""Help in groups: commands by task, and options by topic.
+
+Common options come first, and --help-all shows all options.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,8 @@ TOPICS = {
     "what is painted": "layer select colour background width as lenient pen paper-z skip-region skip-comment",
     "strokes": "wide detail terminals start end corners script join order from-stroke margin-strokes per-colour",
 }
-# Options that --help leaves to --help-all.
-RARE = {
+# Options that only --help-all shows.
+RARE_OPTIONS = {
     f"--{name}"
     for name in (
         "z-offset compensation lag tolerance corrections origin units select colour background width as lenient pen "
@@ -28,15 +31,17 @@ RARE = {
         "spread height dpi mirrored prior noise aim paint playback editable at-least explain"
     ).split()
 }
-IN_CONVERT = {
+# Options that are common in convert and rare in other commands.
+COMMON_IN_CONVERT = {
     "--explain",
     "--wide",
     "--detail",
     "--terminals",
     "--scale",
     "--speed",
-}  # common there, rare in other commands
-MANY = 12  # options of a command from which on its rare ones are left to --help-all
+}
+# A command with more options than this shows its rare options only with --help-all.
+MAX_UNGROUPED_OPTIONS = 12
 
 
 def commands_text(parser: argparse.ArgumentParser, commands: argparse._SubParsersAction) -> str:
@@ -56,53 +61,61 @@ def commands_text(parser: argparse.ArgumentParser, commands: argparse._SubParser
 
 
 def group_options(parser: argparse.ArgumentParser) -> None:
-    """Sort the options of a command into the groups of its help; those of no topic stay with the output."""
-    own = parser._optionals
-    own.title = "output and more" if len(own._group_actions) > MANY else "options"
-    for title, names in TOPICS.items() if len(own._group_actions) > MANY else ():
+    """Sort the options of a command into the groups of its help.
+
+    Options without a topic stay with the output.
+    """
+    own_options = parser._optionals
+    own_options.title = (
+        "output and more" if len(own_options._group_actions) > MAX_UNGROUPED_OPTIONS else "options"
+    )
+    for title, names in TOPICS.items() if len(own_options._group_actions) > MAX_UNGROUPED_OPTIONS else ():
         flags = {f"--{name}" for name in names.split()}
-        found = [action for action in own._group_actions if flags & {*action.option_strings}]
-        if found:
-            found.sort(
+        topic_options = [action for action in own_options._group_actions if flags & {*action.option_strings}]
+        if topic_options:
+            topic_options.sort(
                 key=lambda action: min(
                     names.split().index(flag[2:]) for flag in flags & {*action.option_strings}
                 )
             )
-            parser.add_argument_group(title)._group_actions.extend(found)
-            for action in found:
-                own._group_actions.remove(action)
-    parser._action_groups.remove(own)
-    parser._action_groups.append(own)
+            parser.add_argument_group(title)._group_actions.extend(topic_options)
+            for action in topic_options:
+                own_options._group_actions.remove(action)
+    parser._action_groups.remove(own_options)
+    parser._action_groups.append(own_options)
 
 
 def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
-    """Return the help of a command. is_whole: with its rare options."""
+    """Return the help of a command.
+
+    is_whole: include its rare options.
+    """
     options = [action for action in parser._actions if action.option_strings]
-    rare = RARE if parser.prog.endswith(" convert") else RARE | IN_CONVERT
-    is_long = len(options) > MANY and not is_whole
+    rare = RARE_OPTIONS if parser.prog.endswith(" convert") else RARE_OPTIONS | COMMON_IN_CONVERT
+    is_long = len(options) > MAX_UNGROUPED_OPTIONS and not is_whole
     hidden = [action for action in options if is_long and (rare | {"--help-all"}) & {*action.option_strings}]
-    kept = {action: action.help for action in hidden}
+    saved_help = {action: action.help for action in hidden}
     for action in hidden:
         action.help = argparse.SUPPRESS
-    parser.usage = " ".join([parser.prog, *_operands(parser._actions)])
+    parser.usage = " ".join([parser.prog, *_list_operands(parser._actions)])
     text = argparse.ArgumentParser.format_help(parser)
     parser.usage = None
-    for action, words in kept.items():
-        action.help = words
-    more = f"\n--help-all shows {len(hidden) - 1} more options.\n"
-    return text + more * bool(hidden)
+    for action, help_words in saved_help.items():
+        action.help = help_words
+    hint = f"\n--help-all shows {len(hidden) - 1} more options.\n"
+    return text + hint * bool(hidden)
 
 
-def _operands(actions: Iterable[argparse.Action]) -> list[str]:
-    """Return what a command cannot do without, and [options]."""
-    found = ["[options]"]
+def _list_operands(actions: Iterable[argparse.Action]) -> list[str]:
+    """Return [options], then the operands and options that a command requires."""
+    parts = ["[options]"]
     for action in actions:
         name = action.metavar if isinstance(action.metavar, str) else action.dest
         if isinstance(action, argparse._SubParsersAction):
-            found.append(f"{name} ...")
+            parts.append(f"{name} ...")
         elif action.option_strings and action.required:
-            found.append(f"{action.option_strings[0]} {name}")
+            parts.append(f"{action.option_strings[0]} {name}")
         elif not action.option_strings and action.help != argparse.SUPPRESS:
-            plain = {None: name, "?": f"[{name}]", "*": f"[{name} ...]", "+": f"{name} [{name} ...]"}
-            found.append(plain.get(action.nargs, name))
-    return found
+            by_count = {None: name, "?": f"[{name}]", "*": f"[{name} ...]", "+": f"{name} [{name} ...]"}
+            parts.append(by_count.get(action.nargs, name))
+    return parts

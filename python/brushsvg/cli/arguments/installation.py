@@ -1,8 +1,8 @@
-"""The commands for a start: demo, doctor."""
+"""Arguments of the commands for a start: demo, doctor."""
 
 from __future__ import annotations
 
-from .flags import add_output, add_writes
+from .flags import add_output, add_write_options
 from .usage_checks import check_files
 
 DEMO_PICTURE = "brushsvg-demo.png"
@@ -12,7 +12,7 @@ def add_demo(commands) -> None:
     demo = commands.add_parser("demo", help="paint a word that comes with brushsvg, and show the picture")
     add_output(demo, f"the picture (.png); default: {DEMO_PICTURE}", False)
     demo.add_argument("--no-open", action="store_true", help="do not open the picture in a viewer")
-    add_writes(demo)
+    add_write_options(demo)
     demo.set_defaults(run="demo_picture", parser=demo, check=_check_demo)
 
 

@@ -1,10 +1,10 @@
-"""The commands for a machine: setup, check, cell."""
+"""Arguments of the commands for machines: setup, check, cell."""
 
 from __future__ import annotations
 
 from . import values
 from .flags import (
-    A_PROGRAM,
+    PROGRAM_HELP,
     add_choices,
     add_colour,
     add_corners,
@@ -14,7 +14,7 @@ from .flags import (
     add_input,
     add_join,
     add_layout,
-    add_looks,
+    add_list_show_check,
     add_margin_strokes,
     add_output,
     add_picture,
@@ -22,7 +22,7 @@ from .flags import (
     add_script,
     add_speed,
     add_wide,
-    add_writes,
+    add_write_options,
     add_z_offset,
 )
 from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
@@ -30,23 +30,23 @@ from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_ext
 
 def add_setup(commands) -> None:
     about = "write programs to set up a machine, and install the Inkscape extension"
-    whats = commands.add_parser("setup", help=about).add_subparsers(metavar="WHAT", required=True)
-    _add_first_run(whats)
-    _add_height(whats)
-    _add_border(whats)
-    _add_inkscape(whats)
+    subcommands = commands.add_parser("setup", help=about).add_subparsers(metavar="WHAT", required=True)
+    _add_first_run(subcommands)
+    _add_height(subcommands)
+    _add_border(subcommands)
+    _add_inkscape(subcommands)
 
 
 def _add_first_run(commands) -> None:
     first = commands.add_parser("first-run", help="write a safe first program for a new machine")
     first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
-    add_output(first, A_PROGRAM)
+    add_output(first, PROGRAM_HELP)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     first.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
     )
     add_explain(first, None)
-    add_writes(first)
+    add_write_options(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
 
 
@@ -57,11 +57,11 @@ def _check_first_run(args) -> None:
 def _add_border(commands) -> None:
     border = commands.add_parser("border", help="write a run around the job in the air, at safe height")
     add_input(border)
-    add_output(border, A_PROGRAM)
+    add_output(border, PROGRAM_HELP)
     add_choices(border)
     add_z_offset(border)
     add_margin_strokes(border)
-    add_writes(border)
+    add_write_options(border)
     border.set_defaults(run="border_file", parser=border, check=_check_border)
 
 
@@ -72,7 +72,7 @@ def _check_border(args) -> None:
 
 def _add_height(commands) -> None:
     height = commands.add_parser("height", help="write strokes that show how high the paper is")
-    add_output(height, A_PROGRAM)
+    add_output(height, PROGRAM_HELP)
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     height.add_argument(
@@ -98,7 +98,7 @@ def _add_height(commands) -> None:
         "--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1"
     )
     add_explain(height, None)
-    add_writes(height)
+    add_write_options(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
 
 
@@ -124,7 +124,7 @@ def add_check(commands) -> None:
     check = commands.add_parser(
         "check", help="read a program back, simulate it, and compare it with its drawing"
     )
-    check.add_argument("program", metavar="PROGRAM", help=A_PROGRAM)
+    check.add_argument("program", metavar="PROGRAM", help=PROGRAM_HELP)
     check.add_argument(
         "input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint"
     )
@@ -146,7 +146,7 @@ def add_check(commands) -> None:
     add_picture(check, "what will be painted")
     add_explain(check)
     add_report(check)
-    add_writes(check)
+    add_write_options(check)
     check.set_defaults(
         run="check_file",
         parser=check,
@@ -175,8 +175,8 @@ def _check_check(args) -> None:
 
 def add_cell(commands) -> None:
     about = "list, show, check and create cells: machines with their limits"
-    whats = add_looks(commands, "cell", about, "heights, speeds and limits", "cell.toml")
-    new = whats.add_parser("new", help="write a cell file for you to edit")
+    subcommands = add_list_show_check(commands, "cell", about, "heights, speeds and limits", "cell.toml")
+    new = subcommands.add_parser("new", help="write a cell file for you to edit")
     add_output(new, "a cell file (.toml); its name becomes the cell's name")
     new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
     new.add_argument(
@@ -187,20 +187,22 @@ def add_cell(commands) -> None:
         help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
         "left edge, and anywhere else on it, each just touching, in the robot's frame",
     )
-    add_writes(new)
+    add_write_options(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
-    _add_cell_place(whats)
+    _add_cell_place(subcommands)
 
 
-def _add_cell_place(whats) -> None:
-    place = whats.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
+def _add_cell_place(subcommands) -> None:
+    place = subcommands.add_parser(
+        "place", help="find where the paper can be for an arm to reach the drawing"
+    )
     place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
     add_output(place, "a picture of the table (.png .svg)", False)
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     add_layout(place)
     add_wide(place)
-    add_writes(place)
+    add_write_options(place)
     place.set_defaults(run="cell_place", parser=place, check=_check_cell_place)
 
 

@@ -1,4 +1,7 @@
-"""Parse and check the command line. Imports nothing heavy, so a typing error is reported at once."""
+"""Parse and check the command line.
+
+Nothing heavy is imported here, so that a typing error is reported at once.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,10 @@ from . import brushes, drawings, help_text, installation, machines, project
 
 
 def parse(argv: list[str] | None = None) -> argparse.Namespace:
-    """The choices; `run` names a function of `commands`. SystemExit on --help, --version and wrong usage."""
+    """Parse the command line; `run` of the result names a function of `commands`.
+
+    Raises SystemExit on --help, --version and wrong usage.
+    """
     parser = command_parser()
     if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
         from .completion import complete
@@ -28,34 +34,36 @@ def parse(argv: list[str] | None = None) -> argparse.Namespace:
 
 class _Parser(argparse.ArgumentParser):
     def __init__(self, **settings):
-        # A prefix of a flag is no flag: it would change its meaning as flags are added.
+        # A prefix of a flag is not accepted, because its meaning would change when flags are added.
         super().__init__(allow_abbrev=False, **settings)
-        # argparse knows -5 for a value, and takes -5,-5 and -5mm for flags
+        # argparse accepts -5 as a value, but reads -5,-5 and -5mm as flags.
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def _get_values(self, action, arg_strings):
-        # argparse drops "--" at any place: --width=-- would become an empty list
+        # argparse drops "--" anywhere, so that --width=-- would become an empty list.
         if action.option_strings and "--" in arg_strings:
             raise argparse.ArgumentError(action, "'--' is no value")
         return super()._get_values(action, arg_strings)
 
     def _check_value(self, action, value):
         if action.choices is not None and value not in action.choices:
-            known = [str(choice) for choice in action.choices]
-            sentence = f"{value!r} is not known{did_you_mean(str(value), known)} Known are {', '.join(known)}"
+            choices = [str(choice) for choice in action.choices]
+            sentence = (
+                f"{value!r} is not known{did_you_mean(str(value), choices)} Known are {', '.join(choices)}"
+            )
             raise argparse.ArgumentError(action, sentence)
 
     def parse_known_args(self, args=None, namespace=None):
         """Refuse unknown arguments, and suggest a similar flag of this parser."""
-        found, others = super().parse_known_args(args, namespace)
-        if others:
-            flag = others[0].partition("=")[0]
+        parsed, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            flag = unknown[0].partition("=")[0]
             flags = [name for action in self._actions for name in action.option_strings]
             hint = did_you_mean(flag, flags) if flag.startswith("-") else "."
             if flag == "--messages":
                 hint = ": it stands before the command, as in brushsvg --messages json convert"
-            self.error(f"unrecognized arguments: {' '.join(others)}{hint.removesuffix('.')}")
-        return found, others
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{hint.removesuffix('.')}")
+        return parsed, unknown
 
     def format_help(self) -> str:
         commands = next(
@@ -87,7 +95,7 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-@functools.cache  # the flags of all commands take longer than what a short one does
+@functools.cache  # adding the flags of all commands needs more time than a short command
 def command_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="brushsvg", description="Turn vector lettering into brush strokes that a robot can paint."
@@ -115,17 +123,17 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_compare(commands)
     drawings.add_simulate_photo(commands)
     installation.add_doctor(commands)
-    for command in _with_those_below(commands):
-        if sum(bool(action.option_strings) for action in command._actions) > help_text.MANY:
+    for command in _iterate_parsers(commands):
+        if sum(bool(action.option_strings) for action in command._actions) > help_text.MAX_UNGROUPED_OPTIONS:
             command.add_argument("--help-all", action=_HelpAll, nargs=0, help="show all options and exit")
         help_text.group_options(command)
     return parser
 
 
-def _with_those_below(commands: argparse._SubParsersAction) -> Iterator[argparse.ArgumentParser]:
-    """Yield the parsers of commands and of their commands, such as `cell place`."""
+def _iterate_parsers(commands: argparse._SubParsersAction) -> Iterator[argparse.ArgumentParser]:
+    """Yield the parsers of commands and of their subcommands, such as `cell place`."""
     for command in commands.choices.values():
         yield command
         for action in command._actions:
             if isinstance(action, argparse._SubParsersAction):
-                yield from _with_those_below(action)
+                yield from _iterate_parsers(action)

@@ -1,4 +1,4 @@
-"""The command about the project file: init."""
+"""Arguments of the command for the project file: init."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 
 from ...jobs.project import NAME
 from . import values
-from .flags import add_speed, add_writes
+from .flags import add_speed, add_write_options
 
 
 def add_init(commands) -> None:
@@ -25,15 +25,15 @@ def add_init(commands) -> None:
     init.add_argument(
         "--sheet",
         metavar="WxH",
-        type=_sheet,
+        type=_check_sheet,
         help=f"the paper: {', '.join(values.SHEETS_MM)}, or its size; default: asks",
     )
     add_speed(init)
-    add_writes(init)
+    add_write_options(init)
     init.set_defaults(run="init_project", parser=init, check=_check_init)
 
 
-def _sheet(text: str) -> str:
+def _check_sheet(text: str) -> str:
     values.sheet(text)
     return text
 

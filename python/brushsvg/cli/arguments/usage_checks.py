@@ -1,4 +1,7 @@
-"""Wrong usage that argparse does not see: extensions, files named twice, flags that need another."""
+"""Check usage errors that argparse does not detect.
+
+These are wrong extensions, files that are named twice, and flags that require another flag.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ def suffix_of(path: str) -> str:
 
 
 def check_drawing(args) -> None:
-    """Flags that need a drawing of another kind, or another flag."""
+    """Refuse flags that need a drawing of another kind, or another flag."""
     if args.units and suffix_of(args.input) in (".svg", ".svgz"):
         args.parser.error("--units is for drawings that do not say them; an SVG does")
     if args.select and suffix_of(args.input) == ".dxf":
@@ -27,7 +30,7 @@ def check_drawing(args) -> None:
 
 
 def check_job(args) -> None:
-    """Flags that only a program can follow: left out of a plan they would be lost without a word."""
+    """Refuse flags that only a program can follow, because a plan would ignore them."""
     for flag, value in (
         ("--from-stroke", getattr(args, "from_stroke", 1) - 1),
         ("--z-offset", args.z_offset),
@@ -37,18 +40,21 @@ def check_job(args) -> None:
 
 
 def check_files(args, read, written) -> None:
-    """read, written: (path or None, the extensions it may have or None for any). No file is written that is another."""
+    """Refuse files with a wrong extension, and a written file that is named twice.
+
+    read, written: pairs of a path or None, and the extensions that it may have, or None for any extension.
+    """
     for path, suffixes in (*read, *written):
         if path is not None and suffixes:
             check_extension(args, path, suffixes)
-    taken = {os.path.realpath(path) for path, _ in read if path is not None}
+    named_paths = {os.path.realpath(path) for path, _ in read if path is not None}
     for path in (path for path, _ in written if path is not None):
-        if os.path.realpath(path) in taken:
+        if os.path.realpath(path) in named_paths:
             args.parser.error(f"{path} cannot be two files at once")
-        taken.add(os.path.realpath(path))
+        named_paths.add(os.path.realpath(path))
 
 
 def check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
     if suffix_of(path) not in suffixes:
-        what = "is a folder, and no file that ends in" if os.path.isdir(path) else "does not end in"
-        args.parser.error(f"{path} {what} {' or '.join(suffixes)}")
+        problem = "is a folder, and no file that ends in" if os.path.isdir(path) else "does not end in"
+        args.parser.error(f"{path} {problem} {' or '.join(suffixes)}")

@@ -1,11 +1,11 @@
-"""What may be typed behind a flag, as a value within its range: types for argparse."""
+"""Types for argparse: read a typed value and check its range."""
 
 from __future__ import annotations
 
 import argparse
 
 from ...errors import Error
-from ...jobs.calibration_options import LEAST_DPI, MOST_DPI
+from ...jobs.calibration_options import MAX_DPI, MIN_DPI
 from ...units import PAPERS_MM
 
 SHEETS_MM = PAPERS_MM
@@ -14,32 +14,33 @@ SHEETS_MM = PAPERS_MM
 def size(text: str) -> tuple[float, float]:
     from ...units import size_mm
 
-    return _read(size_mm, text)
+    return _parse(size_mm, text)
 
 
-EDGE_NOISE_MM = 0.1  # of digitized edges, by default
+EDGE_NOISE_MM = 0.1  # default standard deviation of a digitized edge
 
 
 def noise(text: str) -> float:
-    return _length(text, 0.001, 10.0)
+    return _parse_length(text, 0.001, 10.0)
 
 
 def sheet(text: str) -> tuple[float, float]:
     from ...units import paper_mm
 
-    return _read(paper_mm, text)
+    return _parse(paper_mm, text)
 
 
 def lag(text: str) -> float:
-    return _length(text, 0.0, 1000.0)
+    return _parse_length(text, 0.0, 1000.0)
 
 
 def tolerance(text: str) -> float:
-    return _length(text, 1e-5, 10.0)  # a program is written to 1e-4 mm: less would only cost poses
+    # A program is written to 1e-4 mm: a smaller tolerance would only add poses.
+    return _parse_length(text, 1e-5, 10.0)
 
 
 def paint_speed(text: str) -> float:
-    value = _number(text, f"{text[:24]!r} is not a speed in mm/s; write for example 15")
+    value = _parse_number(text, f"{text[:24]!r} is not a speed in mm/s; write for example 15")
     if not 0.001 <= value <= 5000:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is outside the range [0.001, 5000] mm/s")
     return value
@@ -61,11 +62,11 @@ def machine_parts(text: str) -> tuple[str, ...]:
 
 
 def height(text: str) -> float:
-    return _length(text, -20.0, 20.0)
+    return _parse_length(text, -20.0, 20.0)
 
 
 def step(text: str) -> float:
-    return _length(text, 0.01, 5.0)
+    return _parse_length(text, 0.01, 5.0)
 
 
 def count(text: str) -> int:
@@ -82,55 +83,55 @@ def jobs(text: str) -> int:
 
 
 def share(text: str) -> float:
-    outside = f"{text[:24]!r} is outside the range [0, 1]"
-    value = _number(text, outside)
+    error = f"{text[:24]!r} is outside the range [0, 1]"
+    value = _parse_number(text, error)
     if not 0.0 <= value <= 1.0:
-        raise argparse.ArgumentTypeError(outside)
+        raise argparse.ArgumentTypeError(error)
     return value
 
 
 def lag_at(text: str) -> tuple[float, float]:
-    depth, its_lag = _at_depth(text, "lag", "3=7.4")
-    return lag(depth), width(its_lag)
+    depth, lag_text = _split_at_depth(text, "lag", "3=7.4")
+    return lag(depth), width(lag_text)
 
 
 def width_at(text: str) -> tuple[float, float]:
-    depth, its_width = _at_depth(text, "width", "3=2.5")
-    return width(depth), width(its_width)
+    depth, width_text = _split_at_depth(text, "width", "3=2.5")
+    return width(depth), width(width_text)
 
 
-def _at_depth(text: str, what: str, example: str) -> tuple[str, str]:
+def _split_at_depth(text: str, quantity: str, example: str) -> tuple[str, str]:
     depth, equals, value = text.partition("=")
     if not equals:
         raise argparse.ArgumentTypeError(
-            f"{text[:24]!r} is not a depth and its {what}; write for example {example}"
+            f"{text[:24]!r} is not a depth and its {quantity}; write for example {example}"
         )
     return depth, value
 
 
 def width(text: str) -> float:
-    return _length(text, 0.001, 1000.0)
+    return _parse_length(text, 0.001, 1000.0)
 
 
 def scale(text: str) -> float:
-    or_else = f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
-    value = _number(text.removesuffix("%"), or_else) / (100 if text.endswith("%") else 1)
+    error = f"{text[:24]!r} is not a factor; write for example 1.5 or 150%"
+    value = _parse_number(text.removesuffix("%"), error) / (100 if text.endswith("%") else 1)
     if not 1e-4 <= value <= 1e4:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.0001, 10000]")
     return value
 
 
 def speed(text: str) -> float:
-    value = _number(text, f"{text[:24]!r} is not a factor; write for example 5")
+    value = _parse_number(text, f"{text[:24]!r} is not a factor; write for example 5")
     if not 0.1 <= value <= 1000:
         raise argparse.ArgumentTypeError(f"{value:g} is outside the range [0.1, 1000]")
     return value
 
 
 def resolution(text: str) -> float:
-    value = _number(text, f"{text[:24]!r} is not a number of dots per inch; write for example 600")
-    if not LEAST_DPI <= value <= MOST_DPI:
-        sentence = f"{value:g} dpi is outside the range [{LEAST_DPI:g}, {MOST_DPI:g}] dpi"
+    value = _parse_number(text, f"{text[:24]!r} is not a number of dots per inch; write for example 600")
+    if not MIN_DPI <= value <= MAX_DPI:
+        sentence = f"{value:g} dpi is outside the range [{MIN_DPI:g}, {MAX_DPI:g}] dpi"
         raise argparse.ArgumentTypeError(f"{sentence} in which a scan can be measured")
     return value
 
@@ -141,7 +142,7 @@ def point(text: str) -> tuple[float, float]:
     parts = text.split(",")
     if len(parts) != 2:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 20,15 or 2cm,1in")
-    x, y = (_read(length_mm, part) for part in parts)
+    x, y = (_parse(length_mm, part) for part in parts)
     if not max(abs(x), abs(y)) <= 1e6:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is beyond 1e6 mm")
     return x, y
@@ -153,18 +154,18 @@ def region(text: str) -> tuple[float, float, float, float]:
     parts = text.split(",")
     if len(parts) != 4:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a region; write for example 0,0,30,20")
-    x0, y0, x1, y1 = (_read(length_mm, part) for part in parts)
+    x0, y0, x1, y1 = (_parse(length_mm, part) for part in parts)
     return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
 
 
 def colour(text: str) -> str:
-    from ...jobs.choices import colour_of
+    from ...jobs.choices import read_colour
 
-    return _read(colour_of, text)
+    return _parse(read_colour, text)
 
 
 def paper_z(text: str) -> float:
-    return _length(text, -1000.0, 1000.0)
+    return _parse_length(text, -1000.0, 1000.0)
 
 
 def point3(text: str) -> tuple[float, float, float]:
@@ -173,31 +174,31 @@ def point3(text: str) -> tuple[float, float, float]:
     parts = text.split(",")
     if len(parts) != 3:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is not a point; write for example 120.5,-300,42")
-    x, y, z = (_read(length_mm, part) for part in parts)
+    x, y, z = (_parse(length_mm, part) for part in parts)
     if not max(abs(x), abs(y), abs(z)) <= 1e5:
         raise argparse.ArgumentTypeError(f"{text[:24]!r} is beyond 1e5 mm")
     return x, y, z
 
 
-def _number(text: str, or_else: str) -> float:
+def _parse_number(text: str, error: str) -> float:
     from ...units import number
 
     try:
         return number(text)
     except Error:
-        raise argparse.ArgumentTypeError(or_else) from None
+        raise argparse.ArgumentTypeError(error) from None
 
 
-def _length(text: str, least: float, greatest: float) -> float:
+def _parse_length(text: str, minimum: float, maximum: float) -> float:
     from ...units import length_mm
 
-    value = _read(length_mm, text)
-    if not least <= value <= greatest:
-        raise argparse.ArgumentTypeError(f"{value:g} mm is outside the range [{least:g}, {greatest:g}] mm")
+    value = _parse(length_mm, text)
+    if not minimum <= value <= maximum:
+        raise argparse.ArgumentTypeError(f"{value:g} mm is outside the range [{minimum:g}, {maximum:g}] mm")
     return value
 
 
-def _read(reader, text: str):
+def _parse(reader, text: str):
     try:
         return reader(text)
     except Error as problem:

@@ -1,6 +1,7 @@
-"""What the commands do, a file for each: call the steps in order, warn, refuse, write everything or nothing.
+"""The commands, with a file for each.
 
-A command is imported when it is run, and with it what it needs: the others start without that.
+A command calls the steps in order, prints warnings, refuses, and writes all files or none. It is imported, together
+with what it needs, when it is run, so that other commands start without its imports.
 """
 
 import importlib

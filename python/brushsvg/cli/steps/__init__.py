@@ -1,1 +1,1 @@
-"""What several commands do alike, with what a terminal needs: options, warnings, places to write to."""
+"""Steps that several commands share: options, warnings, output files."""

@@ -1,51 +1,60 @@
-"""What was typed and what the drawing says, as the options of the steps."""
+"""Turn the command line and the settings of a drawing into options."""
 
 from __future__ import annotations
 
 from ...jobs import choices
 from ...jobs.choices import CHOICES, Choices
-from ...jobs.conversion import of_cell
+from ...jobs.conversion import list_cell_notices
 from ...jobs.options import Options
 from ...machine.cells.cell import Cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
-from ..console import about, warn
+from ..console import refuse_errors, warn
 from .output_places import suffix_of
 
 
-def typed(args, **instead) -> Choices:
-    """What was typed or comes from a project file, but for what is known better."""
+def make_choices(args, **instead) -> Choices:
+    """Return the choices from the command line and a project file.
+
+    instead: choices that replace those of the command line.
+    """
     given = {name: getattr(args, name, None) for name in CHOICES} | instead
-    if isinstance(given["brush"], list):  # of an option that may be given more than once
+    if isinstance(given["brush"], list):  # an option that may be given more than once
         given["brush"] = given["brush"][0] if given["brush"] else None
-    return choices.without_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
+    return choices.drop_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
 
 
-def settled(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
-    with about(drawing):
+def apply_drawing_settings(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
+    with refuse_errors(drawing):
         return choices.settled(chosen, drawing, alone)
 
 
-def brush_of(name: str | None):
-    with about(name or ""):
-        return choices.brush_of(name)
+def load_brush(name: str | None):
+    with refuse_errors(name or ""):
+        return choices.load_brush(name)
 
 
-def cell_of(name: str | None) -> Cell:
-    with about(name or ""):
-        return choices.cell_of(name)
+def load_cell(name: str | None) -> Cell:
+    with refuse_errors(name or ""):
+        return choices.load_cell(name)
 
 
-def exact_cell(name: str | None) -> Cell:
-    """The machine for what is prepared with no Options, which would make it as exact."""
-    return as_exact_as(cell_of(name), DEFAULT_TOLERANCE_MM)
+def load_exact_cell(name: str | None) -> Cell:
+    """Return the cell for work without Options, with the default tolerance.
+
+    Options would set how exact the cell is.
+    """
+    return as_exact_as(load_cell(name), DEFAULT_TOLERANCE_MM)
 
 
-def options_of(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
-    with about(""):  # errors name the brush, cell or file
-        return choices.options_of(chosen, cell, brush)
+def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
+    with refuse_errors(""):  # errors name the brush, cell or file themselves
+        return choices.make_options(chosen, cell, brush)
 
 
-def warn_of_cell(args, cell: Cell) -> None:
-    """Of what makes a program less sure than it looks: a paper that nobody taught, an arm that is not followed."""
+def warn_about_cell(args, cell: Cell) -> None:
+    """Warn of what makes a program less certain than it looks.
+
+    These are a paper position that nobody taught, and an arm whose joints were not checked.
+    """
     if suffix_of(args.output) != ".json":
-        warn(cell.name, of_cell(cell))
+        warn(cell.name, list_cell_notices(cell))

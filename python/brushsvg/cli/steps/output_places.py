@@ -8,17 +8,19 @@ from collections.abc import Collection
 from ...errors import Notice
 from ...files import write_files
 from ...units import clock
-from ..console import RefusedError, about, clear_stage, print_text, say, stage
-from .replacing import refuse_replacing, remember
+from ..console import RefusedError, clear_stage, print_text, refuse_errors, say, stage
+from .replacing import record_written, refuse_replacing
 
 
 def suffix_of(path: str | None) -> str:
     return os.path.splitext(path or "")[1].lower()
 
 
-def check_places(args, *paths: str | None, sources: Collection[str | None] = ()) -> None:
-    """Whether the outputs can be written, as far as that can be said before any work is done. sources: those of them
-    that are brushes, cells, corrections or drawings, see refuse_replacing."""
+def check_outputs(args, *paths: str | None, sources: Collection[str | None] = ()) -> None:
+    """Refuse outputs that cannot be written, as far as that is known before any work.
+
+    sources: the outputs that are brushes, cells, corrections or drawings, see refuse_replacing.
+    """
     for path in filter(None, paths):
         folder = os.path.dirname(os.path.realpath(path))
         reason = None
@@ -34,7 +36,7 @@ def check_places(args, *paths: str | None, sources: Collection[str | None] = ())
     refuse_replacing(filter(None, paths), sources, args.force)
 
 
-def write(
+def write_outputs(
     args,
     files,
     strokes: int | None = None,
@@ -43,24 +45,27 @@ def write(
     more: str = "",
     sources: Collection[str | None] = (),
 ) -> None:
-    """Write all files, and say so with what is known of them, unless --quiet. sources: as for check_places."""
+    """Write all files, and report them with their figures unless --quiet.
+
+    sources: as for check_outputs.
+    """
     stage("writing")
     refuse_replacing(files, sources, args.force)
-    with about(""):  # the error names the file
+    with refuse_errors(""):  # the error names the file itself
         write_files(files)
-    remember(path for path in files if path not in sources)
+    record_written(path for path in files if path not in sources)
     clear_stage()
     if args.quiet:
         return
-    known = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
-    known += [] if seconds is None else [f"takes about {clock(seconds)}"]
-    known += [] if overlap is None else [f"overlap {overlap:.3f}"]
-    known += [more] if more else []
-    say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(known)])]))
+    facts = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
+    facts += [] if seconds is None else [f"takes about {clock(seconds)}"]
+    facts += [] if overlap is None else [f"overlap {overlap:.3f}"]
+    facts += [more] if more else []
+    say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(facts)])]))
 
 
 def print_list(names: list[str], describe) -> None:
     width = max(map(len, names))
     for name in names:
-        with about(name):
+        with refuse_errors(name):
             print_text(f"{name.ljust(width)}  {describe(name)}\n")

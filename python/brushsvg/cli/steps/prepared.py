@@ -1,4 +1,4 @@
-"""A drawing or plan prepared and simulated, with what is to be warned of."""
+"""Prepare and simulate a drawing or plan, and print the warnings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ...errors import Error, Notice
 from ...jobs import prediction
-from ...jobs.choices import Choices, without_effect
+from ...jobs.choices import Choices, report_ineffective_flags
 from ...jobs.preparation import preparation
 from ...jobs.work import Work
 from ...machine import preflight
@@ -15,22 +15,29 @@ from ...machine.cells.cell import Cell
 from ...machine.motion import duration_s
 from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
 from ...machine.program import Walked
-from ..console import about, stage, warn
-from .options import options_of
+from ..console import refuse_errors, stage, warn
+from .options import make_options
 
 
 def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False, plan=None) -> Work:
-    """plan: what the input holds, where that is a file of another kind."""
-    warn(chosen.input, without_effect(chosen))
-    options = options_of(chosen, cell, brush)
-    with about(chosen.input):
+    """Prepare a drawing or plan, and print warnings about flags without effect.
+
+    plan: the plan in the input, if the input is a file of another kind, such as a chart.
+    """
+    warn(chosen.input, report_ineffective_flags(chosen))
+    options = make_options(chosen, cell, brush)
+    with refuse_errors(chosen.input):
         return preparation.prepare(plan or chosen.input, options, stage, partly)
 
 
 @dataclass(frozen=True)
-class Looked:
-    """marks: of the strokes, or of the loads where those are looked at; walk: of the loads, None where no stroke is
-    left; forbidden: which of the warnings forbid to run a program: to someone who looks they only warn."""
+class PreparedPaint:
+    """A prepared and simulated input.
+
+    marks: marks of the strokes, or of the loads if these were simulated.
+    walk: the program of the loads; None if no stroke is left.
+    forbidden: the warnings that forbid running a program. For a preview they are only warnings.
+    """
 
     work: Work
     loads: PlanInLoads
@@ -40,49 +47,60 @@ class Looked:
     forbidden: list[Notice]
 
     def seconds(self) -> float | None:
-        """How long the machine takes; None where it cannot paint this, which a picture does not ask."""
+        """Return how long the machine takes, or None if it cannot paint the plan.
+
+        A picture does not require that the machine can paint the plan.
+        """
         with suppress(Error):
-            visits(self.loads, self.work.options.cell)  # else they are not in what was gone through
+            # Raises Error for a colour that no station serves: the program then lacks the visits to paint stations.
+            visits(self.loads, self.work.options.cell)
             return duration_s(self.walk.made) if self.walk else None
         return None
 
 
-def look(
+def prepare_and_simulate(
     chosen: Choices,
     outlines: bool,
     at_loads: bool = False,
     partly: bool = False,
     whole: bool = True,
     tilted: bool = False,
-) -> Looked:
-    """tilted: look at the marks of a tilted brush, too, which no cell can paint: it is warned of, and there are no
-    loads."""
+) -> PreparedPaint:
+    """Prepare an input, simulate it, and print the warnings.
+
+    outlines, whole: as for prediction.predict.
+    at_loads: simulate the loads of paint instead of the strokes.
+    partly: leave out strokes that are refused.
+    tilted: also accept a tilted brush, which no cell can paint. There is a warning, and there are no loads.
+    """
     work = prepare(chosen, partly=partly)
-    brush, cell, of_drawing = work.brush, work.options.cell, work.strokes is not None
-    with about(chosen.input):
-        held_upright = []
+    brush, cell, is_drawing = work.brush, work.options.cell, work.strokes is not None
+    with refuse_errors(chosen.input):
+        tilt_notices = []
         try:
             loads = in_loads(work.plan, brush, cell)
         except Error as refusal:
             if not tilted or refusal.code != "tilt-unsupported":
                 raise
-            held_upright, loads = (
+            tilt_notices, loads = (
                 [replace(refusal.notice(), refused=True)],
                 PlanInLoads(tuple(work.plan.sheet_mm), ()),
             )
         if at_loads:
-            marks = prediction.marks_of(loads.as_plan(), brush, outlines, stage, whole, cell)
+            marks = prediction.predict_plan_marks(loads.as_plan(), brush, outlines, stage, whole, cell)
         else:
             marks = prediction.predict(work, outlines, stage, whole)
         walk = None
-        if not held_upright and (work.plan.passes or not work.refused):
-            known = None if at_loads else work.walk(cell)
+        if not tilt_notices and (work.plan.passes or not work.refused):
+            known_walk = None if at_loads else work.walk(cell)
             tolerance_mm = work.options.tolerance_mm
-            walk = preflight.look(loads, brush, marks, cell, tolerance_mm, walk=known, of_drawing=of_drawing)
+            walk = preflight.look(
+                loads, brush, marks, cell, tolerance_mm, walk=known_walk, of_drawing=is_drawing
+            )
         forbidden = [replace(problem, refused=True) for problem in walk.problems] if walk else []
         sheet_mm = work.plan.sheet_mm
-        astray = preflight.off_sheet(marks, brush, sheet_mm, of_drawing) if held_upright else []
-        warnings = [*work.notices, *forbidden, *astray, *held_upright]
+        off_sheet_notices = preflight.off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []
+        warnings = [*work.notices, *forbidden, *off_sheet_notices, *tilt_notices]
         warnings += too_long(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
-    return Looked(work, loads, marks, walk, warnings, forbidden)
+    return PreparedPaint(work, loads, marks, walk, warnings, forbidden)

@@ -1,4 +1,7 @@
-"""Settings that nobody typed, taken from the project file; with --explain, where each setting comes from."""
+"""Take settings that were not typed from the project file.
+
+With --explain, print where each setting comes from.
+"""
 
 from __future__ import annotations
 
@@ -10,44 +13,47 @@ from dataclasses import replace
 
 from ...errors import Notice
 from ...jobs.project import Project, find_project_file, read_project
-from ..console import about, say, say_notice
+from ..console import refuse_errors, say, say_notice
 
-# options that exclude settings of a project file: dest of the option, names of the settings
+# The settings of a project file that an option excludes, by the dest of the option.
 EXCLUDED_BY = {"per_colour": ("colour", "margin_strokes")}
 
 
 def use_project(args, argv: list[str] | None) -> None:
-    """Fill the shared options that were not typed from the project file, for commands with --explain.
+    """Fill options that were not typed from the project file.
 
-    What was filled is in `args.from_project`: settings in the drawing still take precedence, see jobs.choices.
+    This concerns commands with --explain. The filled options are in `args.from_project`: settings in the drawing
+    still take precedence, see jobs.choices.
     """
     if "explain" not in args:
         return
-    near = _near(args)
-    path = find_project_file(near)
+    start_path = _find_start_path(args)
+    path = find_project_file(start_path)
     if path is None and not args.explain:
         return
-    with about(path or ""):
+    with refuse_errors(path or ""):
         project = read_project(path) if path else Project("")
-    typed = _typed(args, sys.argv[1:] if argv is None else argv)
-    offered = _offered(args.parser)
+    typed_options = _find_typed_options(args, sys.argv[1:] if argv is None else argv)
+    settable_options = _list_settable_options(args.parser)
     excluded = {name for dest in EXCLUDED_BY if getattr(args, dest, False) for name in EXCLUDED_BY[dest]}
-    if _writes_plan(args):  # whose poses are on the paper, at any height of it
+    if _writes_plan(args):  # the poses of a plan are relative to the paper, at any height of the paper
         excluded.add("z_offset")
-    filled = [name for name in project.settings if name in offered and name not in typed | excluded]
+    filled = [
+        name for name in project.settings if name in settable_options and name not in typed_options | excluded
+    ]
     for name in filled:
         value = project.settings[name]
-        is_listed = isinstance(offered[name], argparse._AppendAction)
+        is_listed = isinstance(settable_options[name], argparse._AppendAction)
         setattr(args, name, value if not is_listed or isinstance(value, list) else [value])
-    # a list of all brushes holds the shipped ones and the project's, not the brush that the drawing names
+    # A list of all brushes has the shipped brushes and the project's brush, not the brush that the drawing names.
     args.from_project = tuple(
         name for name in filled if not (name == "brush" and getattr(args, "all_brushes", False))
     )
     if args.explain:
-        _explain(args, project, typed)
+        _print_sources(args, project, typed_options)
     elif filled and args.messages == "text" and not getattr(args, "quiet", False):
-        # a file in a parent folder must not change a program unseen
-        flags = ", ".join(_flag(offered[name]) for name in filled)
+        # A file in a parent folder must not change a program without a message.
+        flags = ", ".join(_get_flag(settable_options[name]) for name in filled)
         say(path or "", f"settings used: {flags}; --explain lists where each comes from")
 
 
@@ -56,110 +62,127 @@ def _writes_plan(args) -> bool:
     return str(output).lower().endswith(".json")
 
 
-def _near(args) -> str:
-    """Return the path near which the project file is searched: the first drawing, the program to check, or the current
-    folder."""
+def _find_start_path(args) -> str:
+    """Return the path near which the project file is searched.
+
+    This is the first drawing, the program to check, or the current folder.
+    """
     given = getattr(args, args.project_near or "", None)
     if isinstance(given, list):
         given = given[0] if given else getattr(args, "words", None)
     return given or getattr(args, "program", None) or os.curdir
 
 
-def _offered(parser: argparse.ArgumentParser) -> dict[str, argparse.Action]:
-    """Return the options of a command that a project file can set, by the names of their choices."""
+def _list_settable_options(parser: argparse.ArgumentParser) -> dict[str, argparse.Action]:
+    """Return the options that a project file can set, by the names of their choices."""
     from ...jobs.choices import CHOICES
 
     actions = {action.dest: action for action in parser._actions if action.option_strings}
     return {name: actions[name] for name in CHOICES if name in actions}
 
 
-def _typed(args, argv: Iterable[str]) -> set[str]:
-    """Return the dests of options that were typed. Flags are never abbreviated, and no value is one of them."""
-    words = list(argv)
-    words = words[: words.index("--")] if "--" in words else words
-    flags = {word.partition("=")[0] for word in words}
+def _find_typed_options(args, argv: Iterable[str]) -> set[str]:
+    """Return the dests of the options that were typed.
+
+    Flags are never abbreviated, and no value of an option equals a flag.
+    """
+    arguments = list(argv)
+    arguments = arguments[: arguments.index("--")] if "--" in arguments else arguments
+    flags = {word.partition("=")[0] for word in arguments}
     return {action.dest for action in args.parser._actions if flags & {*action.option_strings}}
 
 
-def _explain(args, project: Project, typed: set[str]) -> None:
+def _print_sources(args, project: Project, typed: set[str]) -> None:
     """Print a line for each setting: its name, its value, and where it comes from."""
-    settled = _settled(args)
+    final_choices = _make_final_choices(args)
     rows = [
-        (_flag(action), *_source(args, project, typed, name, getattr(settled, name), settled.from_project))
-        for name, action in _offered(args.parser).items()
+        (
+            _get_flag(action),
+            *_describe_source(
+                args, project, typed, name, getattr(final_choices, name), final_choices.from_project
+            ),
+        )
+        for name, action in _list_settable_options(args.parser).items()
     ]
     widths = [max(len(row[column]) for row in rows) for column in (0, 1)]
     for name, value, source in rows:
         if args.messages == "json":
-            say_notice(_near(args), Notice(name, f"{value}, from {source}", code="setting-explained"))
+            say_notice(
+                _find_start_path(args), Notice(name, f"{value}, from {source}", code="setting-explained")
+            )
         else:
             say(f"{name:<{widths[0]}}  {value:<{widths[1]}}  {source}")
 
 
-def _flag(action: argparse.Action) -> str:
+def _get_flag(action: argparse.Action) -> str:
     return next(flag for flag in action.option_strings if flag.startswith("--"))[2:]
 
 
-def _settled(args):
-    """Return the choices as the command will make them. Refuse a drawing that cannot be read."""
-    from ...jobs.choices import without_overruled
+def _make_final_choices(args):
+    """Return the choices as the command will make them.
+
+    Raises RefusedError for a drawing that cannot be read.
+    """
+    from ...jobs.choices import drop_overruled
     from ...read import settings_in
     from . import options
 
     given = getattr(args, args.project_near or "", None)
     drawing = given if isinstance(given, str) else None
-    chosen = options.typed(args, input=drawing)
+    chosen = options.make_choices(args, input=drawing)
     if drawing is None:
         return chosen
     if not _is_of_program(args):
-        return options.settled(chosen, drawing, alone=args.project_near != "input")
-    with about(drawing):
-        said = settings_in(drawing)
-    kept = {name: value for name, value in said.items() if name not in ("brush", "cell")}
-    chosen = without_overruled(chosen, kept)
-    return replace(chosen, **{name: kept[name] for name in kept if getattr(chosen, name) is None})
+        return options.apply_drawing_settings(chosen, drawing, alone=args.project_near != "input")
+    with refuse_errors(drawing):
+        drawing_settings = settings_in(drawing)
+    settings = {name: value for name, value in drawing_settings.items() if name not in ("brush", "cell")}
+    chosen = drop_overruled(chosen, settings)
+    return replace(chosen, **{name: settings[name] for name in settings if getattr(chosen, name) is None})
 
 
-def _source(args, project: Project, typed, name: str, value, from_project) -> tuple[str, str]:
+def _describe_source(args, project: Project, typed, name: str, value, from_project) -> tuple[str, str]:
     """Return the value of a setting and where it comes from."""
     if name in typed:
-        return _shown(value), "command line"
+        return _format_value(value), "command line"
     if name in from_project or (name in project.settings and value == project.settings[name]):
-        of_program = ("brush", "cell", "sheet", "z_offset")
-        unless = ", unless the program names another" if _is_of_program(args) and name in of_program else ""
-        return _shown(value), project.path + unless
+        program_settings = ("brush", "cell", "sheet", "z_offset")
+        exception = (
+            ", unless the program names another" if _is_of_program(args) and name in program_settings else ""
+        )
+        return _format_value(value), project.path + exception
     default = getattr(args, name)
     if value is None or value == default:
-        return _shown_default(args, name, value), "default"
-    return _shown(value), f"drawing {_near(args)}"
+        return _format_default(args, name, value), "default"
+    return _format_value(value), f"drawing {_find_start_path(args)}"
 
 
-def _shown_default(args, name: str, value) -> str:
+def _format_default(args, name: str, value) -> str:
     from ...jobs.options import DEFAULT_BRUSH, DEFAULTS
     from ...machine.cells.cell_file import DEFAULT_CELL
 
     if value is not None:
-        return _shown(value)
+        return _format_value(value)
     if _is_of_program(args) and name in ("brush", "cell", "sheet", "z_offset"):
         return "the program's"
-    if name == "brush" and _near(args).lower().endswith(".json"):
+    if name == "brush" and _find_start_path(args).lower().endswith(".json"):
         return "the plan's"
-    fixed = {"brush": DEFAULT_BRUSH, "cell": DEFAULT_CELL, "terminals": "auto", "paint_speed": None}
-    return _shown(fixed.get(name, getattr(DEFAULTS, name, getattr(DEFAULTS, f"{name}_mm", None))))
+    defaults = {"brush": DEFAULT_BRUSH, "cell": DEFAULT_CELL, "terminals": "auto", "paint_speed": None}
+    return _format_value(defaults.get(name, getattr(DEFAULTS, name, getattr(DEFAULTS, f"{name}_mm", None))))
 
 
 def _is_of_program(args) -> bool:
-    """Check whether the command reads a program, whose header says how it was made."""
+    """Return whether the command reads a program, whose header says how it was made."""
     return "program" in args
 
 
-def _shown(value) -> str:
+def _format_value(value) -> str:
     if value is None or value == ():
         return "-"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):
-        return " ".join(map(_shown, value))
+        return " ".join(map(_format_value, value))
     if isinstance(value, tuple):
         return ("x" if len(value) == 2 else ",").join(f"{number:g}" for number in value)
     return f"{value:g}" if isinstance(value, float) else str(value)

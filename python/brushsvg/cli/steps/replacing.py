@@ -1,9 +1,11 @@
-"""Which files a command may replace: programs and pictures that brushsvg wrote and nobody changed since.
+"""Decide which files a command may replace.
 
-What it wrote is remembered in a file of the user's own, a line of two hashes for each path. A mark inside the outputs
-would change the bytes of programs, which must be the same for the same input, and most formats of pictures have no
-place for one; a file next to each output would litter folders. Where nothing is remembered, for example about
-files copied from another machine, a file counts as somebody's own.
+Programs and pictures may be replaced if brushsvg wrote them and nobody changed them since.
+
+Written files are recorded in a file of the user, with a line of two hashes for each path. A mark inside the outputs
+would change the bytes of programs, which must be the same for the same input. Most picture formats have no place
+for a mark, and a file next to each output would litter folders. A file without a record, such as one copied from
+another machine, counts as a file of somebody else.
 """
 
 from __future__ import annotations
@@ -19,26 +21,28 @@ from ...errors import Error, Notice
 from ...files import read_bytes, write_files
 from ..console import RefusedError
 
-MOST_BYTES = 4_000_000  # of what is remembered: some 30,000 files; of more, the older half is forgotten
+# The largest size of the record: some 30,000 files. If it is larger, the older half is dropped.
+MAX_RECORD_BYTES = 4_000_000
 
 
 def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force: bool = False) -> None:
-    """Refuse to replace a file that may be somebody's own. sources: paths of brushes, cells, corrections and drawings,
-    which are never replaced without force; others may be, as they were written."""
+    """Refuse to replace a file that brushsvg did not write.
+
+    sources: paths of brushes, cells, corrections and drawings. They are never replaced without force; other files
+        may be replaced if they are unchanged.
+    """
     if force:
         return
-    known: dict[str, str] | None = None
+    recorded: dict[str, str] | None = None
     for path in paths:
         if not os.path.isfile(path):
             continue
-        known = _remembered() if known is None else known
+        recorded = _read_record() if recorded is None else recorded
         if path in sources:
             sentence = "the file is there already, and might be somebody's own"
-        elif _key(path) not in known:
-            sentence = (
-                f"the file is there already, and brushsvg does not know that it wrote it{_unwritable()}"
-            )
-        elif known[_key(path)] != _sha256_of(path):
+        elif _hash_path(path) not in recorded:
+            sentence = f"the file is there already, and brushsvg does not know that it wrote it{_explain_unwritable()}"
+        elif recorded[_hash_path(path)] != _hash_content(path):
             sentence = "the file is there already, and was changed since brushsvg wrote it"
         else:
             continue
@@ -46,20 +50,24 @@ def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force:
         raise RefusedError(path, [Notice("", sentence, code="file-exists", advice=advice)])
 
 
-def remember(paths: Iterable[str]) -> None:
-    """That these files are as brushsvg wrote them. Where that cannot be written, they count as somebody's own later."""
-    lines = [f"{_key(path)} {_sha256_of(path)}\n" for path in paths if os.path.isfile(path)]
-    with suppress(OSError, Error, RuntimeError):  # RuntimeError: nobody's home
-        place = _place()
-        place.parent.mkdir(parents=True, exist_ok=True)
-        with open(place, "a", encoding="ascii") as file:
-            file.write("".join(lines))  # short: whole also where others write at the same time
-        if place.stat().st_size > MOST_BYTES:
-            kept = place.read_text("ascii").splitlines(keepends=True)
-            write_files({place: "".join(kept[len(kept) // 2 :])})
+def record_written(paths: Iterable[str]) -> None:
+    """Record that these files are as brushsvg wrote them.
+
+    If the record cannot be written, the files later count as files of somebody else.
+    """
+    lines = [f"{_hash_path(path)} {_hash_content(path)}\n" for path in paths if os.path.isfile(path)]
+    with suppress(OSError, Error, RuntimeError):  # RuntimeError: there is no home folder
+        record_path = _find_record_path()
+        record_path.parent.mkdir(parents=True, exist_ok=True)
+        with open(record_path, "a", encoding="ascii") as file:
+            # The text is short, so it stays whole if other processes write at the same time.
+            file.write("".join(lines))
+        if record_path.stat().st_size > MAX_RECORD_BYTES:
+            kept_lines = record_path.read_text("ascii").splitlines(keepends=True)
+            write_files({record_path: "".join(kept_lines[len(kept_lines) // 2 :])})
 
 
-def _place() -> Path:
+def _find_record_path() -> Path:
     if os.environ.get("XDG_STATE_HOME"):
         return Path(os.environ["XDG_STATE_HOME"], "brushsvg", "written.txt")
     if sys.platform == "win32" and os.environ.get("LOCALAPPDATA"):
@@ -67,30 +75,38 @@ def _place() -> Path:
     return Path.home() / ".local" / "state" / "brushsvg" / "written.txt"
 
 
-def _unwritable() -> str:
-    """Why nothing is remembered, if nothing can be: in a container, for example, whose home cannot be written."""
+def _explain_unwritable() -> str:
+    """Return why nothing can be recorded, or "" if the record can be written.
+
+    The home folder of a container, for example, may not be writable.
+    """
     with suppress(RuntimeError):
-        place = _place()
-        there = next(folder for folder in place.parents if folder.exists())
-        if not os.access(there, os.W_OK) or (place.exists() and not os.access(place, os.W_OK)):
-            return f": {place}, where brushsvg keeps this, cannot be written"
+        record_path = _find_record_path()
+        existing_folder = next(folder for folder in record_path.parents if folder.exists())
+        if not os.access(existing_folder, os.W_OK) or (
+            record_path.exists() and not os.access(record_path, os.W_OK)
+        ):
+            return f": {record_path}, where brushsvg keeps this, cannot be written"
     return ""
 
 
-def _remembered() -> dict[str, str]:
-    """The hash of its content by that of its path, the last one of each."""
+def _read_record() -> dict[str, str]:
+    """Return the recorded hash of the content of each file, by the hash of its path.
+
+    The last record of a path counts.
+    """
     with suppress(OSError, ValueError, RuntimeError):
-        lines = [line.split() for line in _place().read_text("ascii").splitlines()]
+        lines = [line.split() for line in _find_record_path().read_text("ascii").splitlines()]
         return dict(line for line in lines if len(line) == 2)
     return {}
 
 
-def _key(path: str) -> str:
+def _hash_path(path: str) -> str:
     return hashlib.sha256(os.fsencode(os.path.realpath(path))).hexdigest()
 
 
-def _sha256_of(path: str) -> str:
-    """Of a file's content; "" of one that cannot be read."""
+def _hash_content(path: str) -> str:
+    """Return the sha256 of a file, or "" if the file cannot be read."""
     try:
         return hashlib.sha256(read_bytes(path)).hexdigest()
     except Error:

@@ -1,1 +1,1 @@
-"""Convert many drawings, each on its own; finished ones are kept."""
+"""Convert many drawings, each on its own. Finished drawings are kept."""

@@ -1,4 +1,4 @@
-"""Where drawings of a batch are converted: processes of this machine, or a cluster of Dask's."""
+"""Executors for a batch: processes of this machine, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -11,32 +11,38 @@ from contextlib import contextmanager
 
 from ...errors import Error, lacking
 
-PATIENCE_S = 10  # for a scheduler to answer
+MAX_SCHEDULER_WAIT_S = 10  # how long to wait for an answer of the scheduler, in seconds
 
 
 @contextmanager
-def processes(jobs: int) -> Iterator[Executor]:
-    """As many processes. They end when the context does, in the middle of what they do, and where this process is
-    killed: each holds an end of a pipe, whose other end is here alone."""
+def start_processes(jobs: int) -> Iterator[Executor]:
+    """Yield an executor with this number of processes.
+
+    The processes end with the context, even in the middle of their work, and also if this process is killed. For
+    this, each worker holds one end of a pipe, and only this process holds the other end.
+    """
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    theirs, ours = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(jobs, context, initializer=_end_with, initargs=(theirs,))
+    worker_end, own_end = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(jobs, context, initializer=_end_with_parent, initargs=(worker_end,))
     try:
         yield pool
     except BaseException:
-        ours.close()
+        own_end.close()
         pool.shutdown(wait=False, cancel_futures=True)
         raise
     else:
         pool.shutdown()
     finally:
-        ours.close()
-        theirs.close()
+        own_end.close()
+        worker_end.close()
 
 
-def _end_with(pipe) -> None:
-    """In a worker: Ctrl-C is its parent's."""
+def _end_with_parent(pipe) -> None:
+    """End this worker process when its parent closes the pipe or dies.
+
+    Ctrl-C is ignored here, because the parent handles it.
+    """
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -49,14 +55,14 @@ def _end_with(pipe) -> None:
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Executor]:
-    """The workers of a scheduler of Dask's."""
+def connect_cluster(address: str) -> Iterator[Executor]:
+    """Yield an executor that runs on the workers of a Dask scheduler."""
     try:
         from dask.distributed import Client
     except ImportError:
         raise lacking("a cluster needs", "distributed") from None
     try:
-        client = Client(address, timeout=PATIENCE_S, set_as_default=False)
+        client = Client(address, timeout=MAX_SCHEDULER_WAIT_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as problem:
         sentence = f"no scheduler answers there: {str(problem).splitlines()[0][:200]}"
         raise Error(sentence, file=address, code="cluster-unreachable") from None

@@ -1,4 +1,7 @@
-"""What a batch paints: drawings in files, folders and lists, words in a font; each with a name of its own."""
+"""The drawings of a batch, from files, folders, lists and texts.
+
+Each drawing has a name of its own.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +19,23 @@ from ...files import read_bytes
 from ...read import READERS, InMemory
 from ...read.text import text_svg
 
-IN_FOLDERS = (".svg", ".svgz", ".dxf")  # G-code is read only by its path: programs are in folders, too
-LIST = ".txt"
-MOST_LETTERS = 60  # of a word, in the name of its files
+# G-code is read only by its path, because folders hold programs as well.
+FOLDER_SUFFIXES = (".svg", ".svgz", ".dxf")
+LIST_SUFFIX = ".txt"
+MAX_NAME_LETTERS = 60  # letters of a word that are used in the names of its files
 
 
 @dataclass(frozen=True)
 class Item:
-    """One drawing. name: of its files, without extension, below the batch's folder; source: what a person calls it;
-    read: reads it, when it is its turn; digest: of all that it depends on; "" where it cannot be read, which `read`
-    raises; path: its path, absolute; "" where it is no file."""
+    """One drawing.
+
+    name: the name of its files, without extension, below the folder of the batch.
+    source: the name that a person gave to the drawing, such as a path.
+    digest: hash of everything that the drawing depends on; "" if it cannot be read, in which case `read` raises the
+        error.
+    read: reads the drawing when it is converted.
+    path: the absolute path, "" if the drawing is no file.
+    """
 
     name: str
     source: str
@@ -34,43 +44,51 @@ class Item:
     path: str = ""
 
 
-def drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
-    """Of files, folders (all SVG and DXF below them), patterns with * ? [], and lists (.txt: a path on each line, from
-    the folder of the list), in that order. Error where one names nothing, or two would have the same name."""
+def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
+    """List the drawings of files, folders, patterns and lists, in that order.
+
+    A folder stands for all SVG and DXF files below it. A pattern has * ? or []. A list (.txt) has a path on each
+    line, from the folder of the list. Error if an operand matches nothing.
+    """
     items = []
     for operand in map(os.fspath, operands):
         if os.path.isdir(operand):
-            items += [_drawing(path, path.relative_to(operand)) for path in _below(Path(operand))]
-        elif Path(operand).suffix.lower() == LIST:
-            items += drawings(_listed(operand))
+            items += [
+                _make_drawing_item(path, path.relative_to(operand))
+                for path in _find_drawings_below(Path(operand))
+            ]
+        elif Path(operand).suffix.lower() == LIST_SUFFIX:
+            items += list_drawings(_read_list(operand))
         elif os.path.exists(operand) or not glob.has_magic(operand):
-            items.append(_drawing(Path(operand), Path(Path(operand).name)))
+            items.append(_make_drawing_item(Path(operand), Path(Path(operand).name)))
         else:
-            found = [
+            matches = [
                 Path(path) for path in sorted(glob.glob(operand, recursive=True)) if os.path.isfile(path)
             ]
-            drawn = [path for path in found if path.suffix.lower() in READERS]
-            items += [_drawing(path, Path(path.name)) for path in drawn]
-            if not drawn:
+            matching_drawings = [path for path in matches if path.suffix.lower() in READERS]
+            items += [_make_drawing_item(path, Path(path.name)) for path in matching_drawings]
+            if not matching_drawings:
                 raise Error("no drawing has such a name", file=operand, code="file-unreadable")
     return items
 
 
-def _below(folder: Path) -> list[Path]:
-    found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in IN_FOLDERS and path.is_file())
-    if not found:
-        sentence = f"no drawing is in this folder; looked for {', '.join(IN_FOLDERS)}"
+def _find_drawings_below(folder: Path) -> list[Path]:
+    paths = sorted(
+        path for path in folder.rglob("*") if path.suffix.lower() in FOLDER_SUFFIXES and path.is_file()
+    )
+    if not paths:
+        sentence = f"no drawing is in this folder; looked for {', '.join(FOLDER_SUFFIXES)}"
         raise Error(sentence, file=str(folder), code="file-unreadable")
-    return found
+    return paths
 
 
-def _listed(path: str) -> list[str]:
-    lines = _lines(path)
+def _read_list(path: str) -> list[str]:
+    lines = _read_lines(path)
     return [os.path.join(os.path.dirname(path), line) for line in lines]
 
 
-def _lines(path: str | os.PathLike[str]) -> list[str]:
-    """Lines of a text that are not blank, without blanks around them."""
+def _read_lines(path: str | os.PathLike[str]) -> list[str]:
+    """Read the lines of a text file that are not blank, without surrounding blanks."""
     try:
         lines = [line.strip() for line in read_bytes(path).decode("utf-8-sig").splitlines()]
     except UnicodeDecodeError:
@@ -80,16 +98,18 @@ def _lines(path: str | os.PathLike[str]) -> list[str]:
     return [line for line in lines if line]
 
 
-def _drawing(path: Path, name: Path) -> Item:
+def _make_drawing_item(path: Path, name: Path) -> Item:
     stem = name.with_suffix("").as_posix() if name.name else ""
     if not stem.isprintable():
-        return _unnamed(_printable(stem), _printable(str(path)))
+        return _make_refused_item(_escape_unprintable(stem), _escape_unprintable(str(path)))
 
     def read() -> InMemory:
         extension = path.suffix.lower()
         if extension not in READERS and (extension or path.exists()):
-            known = ", ".join(READERS)
-            sentence = f"{extension or 'no extension'} is not a drawing format that is read; known: {known}"
+            known_formats = ", ".join(READERS)
+            sentence = (
+                f"{extension or 'no extension'} is not a drawing format that is read; known: {known_formats}"
+            )
             raise Error(sentence, file=str(path), code="drawing-format")
         return InMemory(extension, read_bytes(path))
 
@@ -100,8 +120,8 @@ def _drawing(path: Path, name: Path) -> Item:
     return Item(stem, str(path), digest, read, os.path.realpath(path))
 
 
-def _unnamed(name: str, source: str) -> Item:
-    """A drawing that is refused when it is its turn, since its files cannot have its name."""
+def _make_refused_item(name: str, source: str) -> Item:
+    """Make an item that is refused when it is read, as no file can have its name."""
 
     def read() -> InMemory:
         sentence = (
@@ -112,51 +132,53 @@ def _unnamed(name: str, source: str) -> Item:
     return Item(name, source, "", read)
 
 
-def _printable(text: str) -> str:
-    """With what is not printed, as the end of a line, written as in Python."""
+def _escape_unprintable(text: str) -> str:
+    """Escape characters that cannot be printed, such as line ends, as Python does."""
     return "".join(
         each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode()
         for each in text
     )
 
 
-def words(
+def list_words(
     path: str | os.PathLike[str],
     font: bytes,
     size_mm: float = 20.0,
     sheet_mm: tuple[float, float] | None = None,
 ) -> list[Item]:
-    """A drawing of each line of a text file (\\n in it starts a line), as `brushsvg text` makes it, named by its
-    letters."""
-    lines = _lines(path)
+    """Make a drawing of each line of a text file, as `brushsvg text` does.
+
+    Each drawing is named after its letters. In a line, \\n starts a new line of text.
+    """
+    lines = _read_lines(path)
     _check_font(lines[0], font, size_mm, sheet_mm)
-    setting = [hashlib.sha256(font).hexdigest(), size_mm, sheet_mm]
+    settings = [hashlib.sha256(font).hexdigest(), size_mm, sheet_mm]
 
     def item(line: str, name: str) -> Item:
         text = line.replace("\\n", "\n")
 
         def read() -> InMemory:
             document, notices = text_svg(text, font, size_mm=size_mm, sheet_mm=sheet_mm)
-            for notice in notices:  # nobody looks at each word: one that would lack a letter is not painted
-                if notice.where == "font":  # of what kind it is
+            for notice in notices:  # nobody inspects each word, so a word with a missing letter is refused
+                if notice.where == "font":  # only says what kind of font it is
                     continue
                 raise Error(notice.sentence, notice.where, code=notice.code)
             return InMemory(".svg", document.encode())
 
-        said = json.dumps([text, *setting]).encode()
-        return Item(name, line, hashlib.sha256(said).hexdigest(), read)
+        content = json.dumps([text, *settings]).encode()
+        return Item(name, line, hashlib.sha256(content).hexdigest(), read)
 
     names: dict[str, int] = {}
     items = []
     for line in lines:
-        name = "".join(each if _may_name(each) else "_" for each in line)[:MOST_LETTERS]
-        count = names[as_one_file(name)] = names.get(as_one_file(name), 0) + 1
+        name = "".join(each if _is_name_letter(each) else "_" for each in line)[:MAX_NAME_LETTERS]
+        count = names[file_name_key(name)] = names.get(file_name_key(name), 0) + 1
         items.append(item(line, name if count == 1 else f"{name}~{count}"))
     return items
 
 
 def _check_font(line: str, font: bytes, size_mm: float, sheet_mm) -> None:
-    """Error for what concerns all words."""
+    """Raise Error for a problem that concerns all words, not only this line."""
     try:
         text_svg(line, font, size_mm=size_mm, sheet_mm=sheet_mm)
     except Error as refusal:
@@ -164,58 +186,64 @@ def _check_font(line: str, font: bytes, size_mm: float, sheet_mm) -> None:
             raise
 
 
-def _may_name(letter: str) -> bool:
+def _is_name_letter(letter: str) -> bool:
     return letter in "-" or unicodedata.category(letter)[0] in "LMN"
 
 
-def given(items: Iterable) -> list[Item]:
-    """Paths, pairs of a name and an SVG document (text or bytes), and Items as they are."""
-    found = []
+def make_items(items: Iterable) -> list[Item]:
+    """Make items of paths, of pairs of a name and an SVG document, and of Items.
+
+    The document is text or bytes. An Item is returned as it is.
+    """
+    result = []
     for each in items:
         if isinstance(each, Item):
-            found.append(each)
+            result.append(each)
         elif isinstance(each, str | os.PathLike):
-            found += drawings([each])
+            result += list_drawings([each])
         else:
             need(each, tuple, "a path, or a pair of a name and an SVG document")
             if len(each) != 2 or not isinstance(each[0], str) or not isinstance(each[1], str | bytes):
                 raise Error("a pair is a name and an SVG document as text or bytes", code="wrong-type")
-            found.append(_in_memory(*each))
-    _make_unique(found)
-    return found
+            result.append(_make_memory_item(*each))
+    _check_names(result)
+    return result
 
 
-def _in_memory(name: str, document: str | bytes) -> Item:
+def _make_memory_item(name: str, document: str | bytes) -> Item:
     data = document.encode() if isinstance(document, str) else document
     return Item(name, name, hashlib.sha256(b".svg\n" + data).hexdigest(), lambda: InMemory(".svg", data))
 
 
-def _make_unique(items: list[Item]) -> None:
-    """Error where two would be written to the same place, or one outside of the folder."""
+def _check_names(items: list[Item]) -> None:
+    """Raise Error if two items have one place, or one is outside of the folder."""
     by_name: dict[str, Item] = {}
     for item in items:
         parts = Path(item.name).parts
         if not parts or Path(item.name).is_absolute() or ".." in parts or not item.name.isprintable():
             raise Error(f"{item.name[:60]!r} cannot be the name of a file", code="name-invalid")
-        other = by_name.setdefault(as_one_file(item.name), item)
+        other = by_name.setdefault(file_name_key(item.name), item)
         if other is not item:
             sentence = f"{other.source} and {item.source} would both be written as {item.name}"
-            raise Error(sentence, code="name-taken", advice=_way_out(other, item, items))
+            raise Error(sentence, code="name-taken", advice=_suggest_remedy(other, item, items))
 
 
-def as_one_file(name: str) -> str:
-    """Equal for names that are one file on Windows or macOS, which ignore case and how accents are composed."""
+def file_name_key(name: str) -> str:
+    """Return a key that is equal for names of the same file on Windows or macOS.
+
+    These systems ignore case, and how accents are composed.
+    """
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name).casefold())
 
 
-def _way_out(one: Item, other: Item, items: list[Item]) -> str:
-    """What helps where two drawings have one name."""
-    if one.path and one.path == other.path:
+def _suggest_remedy(first: Item, second: Item, items: list[Item]) -> str:
+    """Return advice for two drawings that have one name."""
+    if first.path and first.path == second.path:
         return "it is one drawing: give it once"
-    for each in (other, one):
-        names = [item.name for item in items if each.path and item.path == each.path]
+    for drawing in (second, first):
+        names = [item.name for item in items if drawing.path and item.path == drawing.path]
         if len(names) > 1:
-            return f"{each.source} is given twice, as {' and '.join(names)}: leave its folder out"
-    if one.path and os.path.dirname(one.path) == os.path.dirname(other.path):
+            return f"{drawing.source} is given twice, as {' and '.join(names)}: leave its folder out"
+    if first.path and os.path.dirname(first.path) == os.path.dirname(second.path):
         return "rename one of them"
     return "give one of them to a batch of its own, with another folder (-o)"

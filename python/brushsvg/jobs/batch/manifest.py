@@ -1,5 +1,7 @@
-"""The finished part of a batch: a line of JSON for each drawing, added when its files are written: a run continues
-where the last one ended."""
+"""The manifest of a batch: a line of JSON for each finished drawing.
+
+A line is added once the files of the drawing are written, so a run continues where the last run ended.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +13,12 @@ from pathlib import Path
 
 from ...errors import Error, Notice
 from ...files import read_bytes, reason, write_files
-from .items import Item, as_one_file
+from .items import Item, file_name_key
 from .one import Figures, sha256
 
 try:
     import fcntl
-except ImportError:  # Windows: there nobody sees that two runs write to one folder
+except ImportError:  # on Windows, two runs that write to one folder are not detected
     fcntl = None
 
 NAME = "manifest.jsonl"
@@ -25,11 +27,15 @@ FORMAT = {"format": "brushsvg/batch", "version": 1}
 
 @dataclass(frozen=True)
 class Row:
-    """One drawing of a batch.
+    """The result for one drawing of a batch.
 
-    name: of its files; source: what a person calls it; figures: None where it was refused, for the reason in code,
-    where (the element) and sentence; notices: warnings; files: path below the batch's folder to sha256; key: sha256 of
-    all that it depends on; path: of the drawing, from the batch's folder, "" where it is no file.
+    name: the name of its files.
+    source: the name that a person gave to the drawing, such as a path.
+    key: sha256 of everything that the result depends on.
+    figures: None for a refused drawing; code, where (the element) and sentence are the reason.
+    notices: warnings.
+    files: sha256 of each file, by its path below the folder of the batch.
+    path: the path of the drawing from the folder of the batch, "" if the drawing is no file.
     """
 
     name: str
@@ -48,17 +54,20 @@ class Row:
         return ": ".join(filter(None, (self.where, self.sentence)))
 
 
-def as_line(row: Row) -> str:
+def format_row(row: Row) -> str:
     return json.dumps(asdict(row), ensure_ascii=False) + "\n"
 
 
-def _row(line: bytes) -> Row | None:
-    """None for a line that a killed run left half, and for one that is no row."""
+def _parse_row(line: bytes) -> Row | None:
+    """Return the row in a line, or None if the line is incomplete or is no row.
+
+    A killed run may leave an incomplete line.
+    """
     try:
-        said = json.loads(line)
-        figures = said.pop("figures")
-        notices = tuple(Notice(*each.values()) for each in said.pop("notices"))
-        row = Row(**said, notices=notices, figures=figures and Figures(**figures))
+        values = json.loads(line)
+        figures = values.pop("figures")
+        notices = tuple(Notice(*each.values()) for each in values.pop("notices"))
+        row = Row(**values, notices=notices, figures=figures and Figures(**figures))
         texts = [row.name, row.source, row.key, row.path, *row.files, *row.files.values()]
         return row if all(isinstance(each, str) and "\0" not in each for each in texts) else None
     except (ValueError, TypeError, KeyError, AttributeError):
@@ -66,7 +75,10 @@ def _row(line: bytes) -> Row | None:
 
 
 class Manifest:
-    """The manifest of a folder, open and locked while a run writes to it. Error where another one does."""
+    """The manifest of a folder, open and locked while a run writes to it.
+
+    Raises Error if another run is writing to the folder.
+    """
 
     def __init__(self, folder: Path):
         self.folder, self.path = folder, folder / NAME
@@ -98,26 +110,29 @@ class Manifest:
             self._add(json.dumps(FORMAT) + "\n")
             return
         try:
-            said = json.loads(first)
+            header = json.loads(first)
         except ValueError:
-            said = None
-        if said != FORMAT:
+            header = None
+        if header != FORMAT:
             sentence = f"this is not a manifest of {FORMAT['format']}, version {FORMAT['version']}"
             raise Error(sentence, file=str(self.path), code="format-unknown")
-        for row in filter(None, map(_row, lines)):
+        for row in filter(None, map(_parse_row, lines)):
             self._refuse_outside(row)
             self._by_name.setdefault(row.name, []).append(row)
             for name in row.files:
-                self._by_file.setdefault(as_one_file(name), []).append(row)
+                self._by_file.setdefault(file_name_key(name), []).append(row)
         if lines and lines[-1]:
-            self._add("\n")  # what was left half stays a line of its own
+            self._add("\n")  # an incomplete line stays a line of its own
 
     def _refuse_outside(self, row: Row) -> None:
-        """Error for a file outside of the folder: outdated files are deleted, and a manifest may be anybody's."""
+        """Raise Error for a file outside of the folder.
+
+        Outdated files are deleted, and the manifest may come from another person.
+        """
         for name in row.files:
-            way = os.path.normpath(os.path.join(self._place, name))
-            real = os.path.realpath(os.path.dirname(way))
-            if not (self._is_inside(way) and self._is_inside(real)):
+            path = os.path.normpath(os.path.join(self._place, name))
+            real_folder = os.path.realpath(os.path.dirname(path))
+            if not (self._is_inside(path) and self._is_inside(real_folder)):
                 sentence = f"row {row.name}: {name[:200]!r} is outside of the folder"
                 advice = "delete the manifest, or give another folder (-o)"
                 raise Error(sentence, file=str(self.path), code="path-outside", advice=advice)
@@ -130,50 +145,62 @@ class Manifest:
         self._file.flush()
 
     def add(self, row: Row) -> None:
-        """After its files were written."""
-        self._add(as_line(row))
+        """Add the row of a drawing whose files are written."""
+        self._add(format_row(row))
 
-    def done(self, key: str, item: Item) -> Row | None:
-        """Return the row of a drawing whose files are there as they were written. A refused drawing is not finished:
-        its cause may be gone, as a missing font or a full disk."""
+    def find_finished(self, key: str, item: Item) -> Row | None:
+        """Return the row of a finished drawing, or None.
+
+        A drawing is finished if its files are unchanged since they were written. A refused drawing is not finished,
+        because the cause may be gone by now, such as a missing font or a full disk.
+        """
         for row in self._by_name.get(item.name, []):
             if row.figures and row.key == key and all(map(self._has_file, row.files.items())):
-                return replace(row, source=item.source, path=self.way_to(item))
+                return replace(row, source=item.source, path=self.make_relative_path(item))
         return None
 
-    def way_to(self, item: Item) -> str:
-        """Return the path of the drawing, from this folder: the same from any current folder."""
+    def make_relative_path(self, item: Item) -> str:
+        """Return the path of a drawing from this folder.
+
+        The path does not depend on the current folder.
+        """
         try:
             return Path(os.path.relpath(item.path, self._place)).as_posix() if item.path else ""
-        except ValueError:  # Windows: another drive
+        except ValueError:  # on Windows, the drawing is on another drive
             return item.path
 
     def refuse_other_drawing(self, item: Item) -> None:
-        """Raise Error where files with this name were made of another drawing that still exists."""
-        path = self.way_to(item)
+        """Raise Error where files with this name belong to another drawing.
+
+        Only drawings that still exist count.
+        """
+        path = self.make_relative_path(item)
         for row in self._by_name.get(item.name, []):
-            here = [file for file in row.files.items() if self._has_file(file)]
-            if here and row.path not in ("", path) and (self.folder / row.path).exists():
-                sentence = (
-                    f"{here[0][0]} was made of {row.source}: that of {item.source} would be written over it"
-                )
+            unchanged = [file for file in row.files.items() if self._has_file(file)]
+            if unchanged and row.path not in ("", path) and (self.folder / row.path).exists():
+                sentence = f"{unchanged[0][0]} was made of {row.source}: that of {item.source} would be written over it"
                 raise Error(
                     sentence, file=str(self.folder), code="name-taken", advice="give another folder (-o)"
                 )
 
-    def other_source(self, item: Item, path: str) -> str:
-        """The other drawing, still there, that an earlier run made this file of; "" where there is none."""
-        for row in self._by_file.get(as_one_file(path), []):
-            is_other = row.name != item.name and row.path not in ("", self.way_to(item))
+    def find_other_source(self, item: Item, path: str) -> str:
+        """Return the other drawing that an earlier run made this file from.
+
+        Returns "" if there is none, or if that drawing no longer exists.
+        """
+        for row in self._by_file.get(file_name_key(path), []):
+            is_other = row.name != item.name and row.path not in ("", self.make_relative_path(item))
             if is_other and (self.folder / path).exists() and (self.folder / row.path).exists():
                 return row.source
         return ""
 
     def remove_outdated(self, row: Row) -> list[str]:
-        """Files of an earlier program of this drawing, as they were written, are removed: their paths.
+        """Remove unchanged files of an earlier program of this drawing.
 
-        All that were made under the name of what is refused. Of what is done those of the same language that are not
-        written now, such as parts of a longer job.
+        All files under the name of a refused drawing are removed. For a converted drawing, files of the same
+        language that were not written now are removed, such as parts of a longer job.
+
+        Returns the paths of the removed files.
         """
         removed: list[str] = []
         endings = {Path(name).suffix for name in row.files}
@@ -197,24 +224,28 @@ class Manifest:
             return False
 
     def finish(self, rows: Sequence[Row]) -> None:
-        """The rows of the whole batch in its order, then the last of each other name whose files or whose drawing still
-        exist: another batch into this folder goes on where it ended, and no other drawing takes its names."""
-        ours = {row.name for row in rows}
-        others = [each[-1] for name, each in self._by_name.items() if name not in ours]
-        kept = [row for row in others if self._is_there(row)]
-        write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(as_line, [*rows, *kept])])})
+        """Rewrite the manifest: the rows of this batch, then rows of other drawings.
 
-    def _is_there(self, row: Row) -> bool:
+        The rows of this batch are in the order of the batch. The last row of each other name is kept if its files
+        or its drawing still exist. Another batch into this folder can then continue, and no other drawing takes its
+        names.
+        """
+        own_names = {row.name for row in rows}
+        others = [rows_of_name[-1] for name, rows_of_name in self._by_name.items() if name not in own_names]
+        kept = [row for row in others if self._still_exists(row)]
+        write_files({self.path: "".join([json.dumps(FORMAT) + "\n", *map(format_row, [*rows, *kept])])})
+
+    def _still_exists(self, row: Row) -> bool:
         names = row.files or ([row.path] if row.path else [])
-        # not Path.exists, which raises for a name of a damaged file that is longer than names can be
+        # Path.exists would raise for a name in a damaged manifest that is too long for a file.
         return any(os.path.exists(self.folder / name) for name in names)
 
     def close(self) -> None:
         self._file.close()
 
 
-def below(folder: Path, name: str) -> str:
-    """Return the path of a file, for the writer of files; its folder is made."""
+def make_path_below(folder: Path, name: str) -> str:
+    """Return the path of a file below a folder, and make the folder of the file."""
     path = folder / name
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,7 @@
-"""Convert one drawing of a batch, in any process: arguments and results can be pickled."""
+"""Convert one drawing of a batch, in any process.
+
+All arguments and results can be pickled.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +16,10 @@ from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation import report
 from .. import conversion, outputs
-from ..choices import Choices, checked, options_of, settled
+from ..choices import Choices, check_choices, make_options, settled
 from ..preparation import preparation
 
-PICTURE_PX = 480
+PICTURE_LONG_SIDE_PX = 480
 
 
 @dataclass(frozen=True)
@@ -27,15 +30,19 @@ class SentBrush:
     sha256: str
 
     def brush(self) -> _core.Brush:
-        found = parse_brush(self.data)
-        found.sha256 = self.sha256
-        return found
+        brush = parse_brush(self.data)
+        brush.sha256 = self.sha256
+        return brush
 
 
 @dataclass(frozen=True)
 class Task:
-    """drawing: what to convert; chosen: how, without brush, a cell as itself; suffix: of the program, "" for the first
-    of the cell's language; version: of brushsvg, which must be the worker's."""
+    """A drawing to convert, with everything that a worker needs.
+
+    chosen: the choices without a brush; a cell is a Cell.
+    suffix: the extension of the program, "" for the first one of the cell's language.
+    version: the version of brushsvg, which the worker must have as well.
+    """
 
     drawing: InMemory
     chosen: Choices
@@ -48,7 +55,10 @@ class Task:
 
 @dataclass(frozen=True)
 class Figures:
-    """Of one drawing. time_s: how long the machine takes; lengths in mm, see evaluation.report.Figures."""
+    """The figures of one drawing. Lengths are in mm, see evaluation.report.Figures.
+
+    time_s: how long the machine takes.
+    """
 
     strokes: int
     poses: int
@@ -64,9 +74,14 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class Made:
-    """figures: None for what was refused; texts: of the program, by what they add to its name (see writer.in_parts);
-    suffix: of all of them; sentence, code: of a refusal."""
+class TaskResult:
+    """The result of a task.
+
+    figures: None for a refused drawing.
+    texts: the files of the program, by what each adds to the name of the program (see writer.in_parts).
+    suffix: the extension of all these files.
+    where, sentence, code: the element, reason and kind of a refusal.
+    """
 
     figures: Figures | None
     texts: dict[str, bytes]
@@ -80,58 +95,61 @@ class Made:
 
 
 def version() -> str:
-    """Of brushsvg, as it is installed here."""
+    """Return the version of brushsvg that is installed here."""
     return metadata.version("brushsvg")
 
 
-def made(task: Task) -> Made:
-    here = version()
-    if task.version != here:
-        return Made(None, {}, b"", version=here)
+def convert_task(task: Task) -> TaskResult:
+    """Convert the drawing of a task. A refusal or a bug becomes a result."""
+    installed_version = version()
+    if task.version != installed_version:
+        return TaskResult(None, {}, b"", version=installed_version)
     try:
-        done = _made(task)
+        result = _convert(task)
     except Error as refusal:
-        done = Made(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
-    except Exception as mistake:  # of ours: the others are painted all the same
-        said = unexpected(mistake)
-        done = Made(None, {}, b"", sentence=str(said), code=said.code)
-    return replace(done, version=here)
+        result = TaskResult(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
+    except Exception as bug:  # a bug of brushsvg: the other drawings are converted nevertheless
+        error = unexpected(bug)
+        result = TaskResult(None, {}, b"", sentence=str(error), code=error.code)
+    return replace(result, version=installed_version)
 
 
-def _made(task: Task) -> Made:
+def _convert(task: Task) -> TaskResult:
     chosen = replace(task.chosen, input=task.drawing, brush=task.brush.brush() if task.brush else None)
     if task.drawing.extension in (".svg", ".svgz"):
-        chosen = replace(chosen, units=None)  # of those among the drawings that do not say theirs
-    chosen = settled(checked(chosen), task.drawing)
-    work = preparation.prepare(task.drawing, options_of(chosen))
-    suffix = task.suffix or conversion.first_format(work.options.cell)
-    one = conversion.tried(work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient)
-    if one.problems:
-        first, *others = one.problems
-        more = f", and {len(others)} more of other kinds" if others else ""
-        raise Error(f"{first.sentence}{more}", first.where, code=first.code)
+        chosen = replace(chosen, units=None)  # units are for the drawings of a batch that do not define them
+    chosen = settled(check_choices(chosen), task.drawing)
+    work = preparation.prepare(task.drawing, make_options(chosen))
+    suffix = task.suffix or conversion.default_suffix(work.options.cell)
+    simulated = conversion.simulate_and_check(
+        work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient
+    )
+    if simulated.problems:
+        problem, *others = simulated.problems
+        rest = f", and {len(others)} more of other kinds" if others else ""
+        raise Error(f"{problem.sentence}{rest}", problem.where, code=problem.code)
     texts = {
         name: pieces if isinstance(pieces, bytes) else "".join(pieces).encode()
-        for name, pieces in one.encoded().items()
+        for name, pieces in simulated.encoded().items()
     }
     _, total = report.measure(
         report.PaintedPlan(
-            one.work.plan,
-            one.marks,
+            simulated.work.plan,
+            simulated.marks,
             work.brush,
-            one.work.strokes,
+            simulated.work.strokes,
             work.options.tolerance_mm,
             None,
             work.options.compensation,
             work.unreached,
         )
     )
-    of_machine = conversion.of_cell(one.cell) if one.is_program else []
-    notices = (*one.work.notices, *one.remarks(), *of_machine)
+    cell_notices = conversion.list_cell_notices(simulated.cell) if simulated.is_program else []
+    notices = (*simulated.work.notices, *simulated.remarks(), *cell_notices)
     figures = Figures(
-        len(one.work.plan.passes),
+        len(simulated.work.plan.passes),
         total.poses,
-        one.time_s(),
+        simulated.time_s(),
         total.overlap,
         total.centre_mean_mm,
         total.centre_largest_mm,
@@ -141,8 +159,8 @@ def _made(task: Task) -> Made:
         total.painted_mm,
         len(notices),
     )
-    picture = outputs.overlap_picture(".png", one.work, one.marks, PICTURE_PX)
-    return Made(figures, texts, picture, notices=notices, suffix=suffix)
+    picture = outputs.overlap_picture(".png", simulated.work, simulated.marks, PICTURE_LONG_SIDE_PX)
+    return TaskResult(figures, texts, picture, notices=notices, suffix=suffix)
 
 
 def sha256(data: bytes) -> str:

@@ -1,4 +1,7 @@
-"""A batch: drawings handed to an executor, their files written as they come back, each remembered in the manifest."""
+"""Run a batch: convert drawings in an executor, and write their files.
+
+Each drawing is recorded in the manifest as soon as its files are written.
+"""
 
 from __future__ import annotations
 
@@ -24,24 +27,30 @@ from ...model import library
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
 from ..cancelling import Cancel
-from ..choices import Choices, Given, cell_of
-from ..conversion import ORDERS, chosen_of
+from ..choices import ChoiceKeywords, Choices, load_cell
+from ..conversion import ORDERS, make_choices
 from . import executors, one, tables
-from .items import Item, as_one_file, given
-from .manifest import Manifest, Row, below
-from .one import Made, SentBrush, Task, made, sha256
+from .items import Item, file_name_key, make_items
+from .manifest import Manifest, Row, make_path_below
+from .one import SentBrush, Task, TaskResult, convert_task, sha256
 
 PROGRAMS, PICTURES = "programs", "pictures"
-LOOKS_S = 0.1
-AT_ONCE = 256  # drawings an executor is given ahead: a cluster's workers are not left waiting, and memory is bounded
-BYTES_AT_ONCE = 64 * 2**20
+POLL_INTERVAL_S = 0.1
+# Drawings that are submitted ahead. With fewer, the workers of a cluster wait; with more, memory grows.
+MAX_PENDING_DRAWINGS = 256
+MAX_PENDING_BYTES = 64 * 2**20
 
 
 @dataclass(frozen=True)
 class Batch:
-    """rows: one for each drawing, in their order; resumed: how many of them an earlier run had done; files: the tables
-    and contact sheets; removed: programs and pictures, below the folder, that an earlier run had made of drawings that
-    are refused now."""
+    """The result of a batch.
+
+    rows: one for each drawing, in the order of the drawings.
+    resumed: the number of drawings that an earlier run had finished.
+    files: paths of the tables and contact sheets.
+    removed: programs and pictures, by their path below the folder, that an earlier run made of drawings that are
+        refused now.
+    """
 
     rows: tuple[Row, ...]
     resumed: int
@@ -66,29 +75,38 @@ def batch(
     parquet: bool = False,
     progress: Callable[[str], object] | None = None,
     cancel: Cancel | None = None,
-    **choices: Unpack[Given],
+    **choices: Unpack[ChoiceKeywords],
 ) -> Batch:
-    """Convert many drawings, each as `convert` does. What an earlier run into the same folder has done with the same
-    drawing, choices, brush, cell and version, and whose files are there as written, is not done again.
+    """Convert many drawings, each as `convert` does.
+
+    A drawing is not converted again if an earlier run into the same folder has finished it. For this, the drawing,
+    choices, brush, cell and version must be the same, and its files must be unchanged.
 
     items: paths of drawings, folders, patterns with * and lists (.txt), and pairs of a name and an SVG document.
-    out: the folder: programs/NAME.ngc, pictures/NAME.png, manifest.jsonl, table.csv, contact-1.png ...; a drawing that
-    is refused is a row with its sentence and code, and stops nothing; what an earlier run made of it is removed.
-    executor: any of concurrent.futures; it is given functions and values that can be pickled, and is not shut down.
-    jobs: without it, the number of processes, by default one for each processor (a script that starts them needs
-    `if __name__ == "__main__":`); cluster: the address of a scheduler of Dask's instead. The rows and files are the
-    same in any process.
-    format: extension of the programs, by default the first of the cell's language; parquet: table.parquet, too.
-    progress, cancel, order, lenient, choices: as for convert; corrections are for one drawing alone.
+    out: the folder for programs/NAME.ngc, pictures/NAME.png, manifest.jsonl, table.csv, contact-1.png and so on.
+    executor: any executor of concurrent.futures; it receives functions and values that can be pickled, and is not
+        shut down.
+    jobs: the number of processes if there is no executor, by default one for each processor. A script that starts
+        processes needs `if __name__ == "__main__":`.
+    cluster: the address of a Dask scheduler, to use in place of processes. Rows and files are the same in any
+        process.
+    format: the extension of the programs, by default the first one of the cell's language.
+    parquet: also write table.parquet.
+    progress, cancel, order, lenient, choices: as for `convert`. Corrections are not accepted, because they belong
+        to one drawing.
 
-    Raises Error for what concerns all: the folder, items of one name, files there that were made of another drawing of
-    that name, a brush, a cell; CancelledError once cancel says so, and what is done stays done.
+    A refused drawing is a row with its sentence and code. It does not stop the batch, and files that an earlier run
+    made of it are removed.
+
+    Raises Error for a problem that concerns the whole batch: the folder, two items with one name, files that were
+        made of another drawing with that name, a brush or a cell. Raises CancelledError when `cancel` is set;
+        finished drawings are kept.
     """
     need(out, (str, os.PathLike), "a path, which out is")
     need(format, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
-    known = {".json", *(extension for post in POSTS.values() for extension in post.extensions)}
-    if format and format not in known:
+    extensions = {".json", *(extension for post in POSTS.values() for extension in post.extensions)}
+    if format and format not in extensions:
         raise Error(f"{format[:40]!r} is no extension of programs or plans", "format", code="program-format")
     if (executor is not None) + (jobs is not None) + (cluster is not None) > 1:
         raise Error("executor, jobs and cluster exclude each other", code="options-contradict")
@@ -98,8 +116,8 @@ def batch(
         need(cluster, str, "the address of a scheduler")
     if progress is not None:
         need(progress, Callable, "a callable, which progress is")
-    is_over = getattr(cancel, "is_set", cancel) or (lambda: False)
-    need(is_over, Callable, "a callable or an event, which cancel is")
+    is_cancelled = getattr(cancel, "is_set", cancel) or (lambda: False)
+    need(is_cancelled, Callable, "a callable or an event, which cancel is")
     if "corrections" in choices:
         raise Error(
             "corrections are of one drawing, not of a batch", "corrections", code="options-contradict"
@@ -109,45 +127,55 @@ def batch(
         tables.need_parquet()
     need(items, Iterable, "an iterable of drawings")
     need(items, object if not isinstance(items, str | bytes) else tuple, "a list of drawings")
-    listed = given(items)
+    drawings = make_items(items)
     need_truth(lenient, "lenient")
     need_truth(parquet, "parquet")
-    way = _way(chosen_of(None, choices), format, order, bool(lenient))
+    settings = _make_batch_settings(make_choices(None, choices), format, order, bool(lenient))
     folder = Path(out)
     manifest = Manifest(folder)
     try:
-        keys = [way.key(item) for item in listed]
+        keys = [settings.key(item) for item in drawings]
         rows: list[Row | None] = [
-            manifest.done(key, item) if item.digest else None for key, item in zip(keys, listed, strict=True)
+            manifest.find_finished(key, item) if item.digest else None
+            for key, item in zip(keys, drawings, strict=True)
         ]
-        resumed = len(listed) - rows.count(None)
-        left = [index for index, row in enumerate(rows) if row is None]
-        for index in left:
-            manifest.refuse_other_drawing(listed[index])
-        places = _Places(listed, manifest)
+        resumed = len(drawings) - rows.count(None)
+        remaining = [index for index, row in enumerate(rows) if row is None]
+        for index in remaining:
+            manifest.refuse_other_drawing(drawings[index])
+        places = _TakenPlaces(drawings, manifest)
         removed = [path for row in rows if row for path in manifest.remove_outdated(row)]
-        report_row = _make_reporter(len(listed), resumed, progress or (lambda text: None))
+        report_row = _make_reporter(len(drawings), resumed, progress or (lambda text: None))
         with ExitStack() as stack:
             is_ours = executor is None and cluster is None
-            if left and executor is None:
-                place = executors.cluster(cluster) if cluster else executors.processes(min(count, len(left)))
-                executor = stack.enter_context(place)
-            for index, done in _each_made(executor, is_ours, left, listed, way, is_over):
-                row = _kept(folder, listed[index], keys[index], done, places)
-                row = rows[index] = replace(row, path=manifest.way_to(listed[index]))
+            if remaining and executor is None:
+                executor_context = (
+                    executors.connect_cluster(cluster)
+                    if cluster
+                    else executors.start_processes(min(count, len(remaining)))
+                )
+                executor = stack.enter_context(executor_context)
+            for index, result in _convert_remaining(
+                executor, is_ours, remaining, drawings, settings, is_cancelled
+            ):
+                row = _write_result(folder, drawings[index], keys[index], result, places)
+                row = rows[index] = replace(row, path=manifest.make_relative_path(drawings[index]))
                 removed += manifest.remove_outdated(row)
                 manifest.add(row)
                 report_row(row)
         manifest.finish(rows)
-        files = _summary(folder, rows, parquet)
+        files = _write_summary(folder, rows, parquet)
     finally:
         manifest.close()
     return Batch(tuple(rows), resumed, tuple(files), tuple(removed))
 
 
 @dataclass(frozen=True)
-class _Way:
-    """How all are converted; said: all of it in one text, with what comes along."""
+class _BatchSettings:
+    """How all drawings are converted.
+
+    description: all settings in one text, with the hashes of everything that is shipped with brushsvg.
+    """
 
     chosen: Choices
     brush: SentBrush | None
@@ -155,31 +183,37 @@ class _Way:
     order: str
     lenient: bool
     version: str
-    said: str
+    description: str
 
     def key(self, item: Item) -> str:
-        return sha256(f"{item.digest}\n{self.said}".encode())
+        return sha256(f"{item.digest}\n{self.description}".encode())
 
     def task(self, item: Item) -> Task:
         return Task(item.read(), self.chosen, self.brush, self.format, self.order, self.lenient, self.version)
 
 
-def _way(chosen: Choices, format: str, order: str, lenient: bool) -> _Way:
+def _make_batch_settings(chosen: Choices, format: str, order: str, lenient: bool) -> _BatchSettings:
     version = one.version()
-    cell = cell_of(chosen.cell) if chosen.cell is not None else None
-    brush = _sent(chosen.brush) if chosen.brush is not None else None
+    cell = load_cell(chosen.cell) if chosen.cell is not None else None
+    brush = _read_brush_to_send(chosen.brush) if chosen.brush is not None else None
     shipped = [library.SHIPPED.glob("*.json"), cell_file.SHIPPED.glob("*.toml")]
-    along = [sha256(read_bytes(path)) for paths in shipped for path in sorted(paths)]
-    chosen = replace(chosen, z_offset=chosen.z_offset or 0.0, join=bool(chosen.join))  # as flags have them
-    typed = asdict(replace(chosen, brush=None, cell=None))
-    post = [sha256(read_bytes(path)) for path in sources_of_post(cell)] if cell else []
-    known = [brush and (brush.sha256, sha256(brush.data)), cell and write_cell(cell), post, along]
-    said = json.dumps([typed, format, order, lenient, version, known])
+    shipped_hashes = [sha256(read_bytes(path)) for paths in shipped for path in sorted(paths)]
+    # The command line sets these two choices in the same way, so both give the same keys.
+    chosen = replace(chosen, z_offset=chosen.z_offset or 0.0, join=bool(chosen.join))
+    plain_choices = asdict(replace(chosen, brush=None, cell=None))
+    post_hashes = [sha256(read_bytes(path)) for path in sources_of_post(cell)] if cell else []
+    hashes = [
+        brush and (brush.sha256, sha256(brush.data)),
+        cell and write_cell(cell),
+        post_hashes,
+        shipped_hashes,
+    ]
+    description = json.dumps([plain_choices, format, order, lenient, version, hashes])
     chosen = replace(chosen, brush=None, cell=cell)
-    return _Way(chosen, brush, format, order, lenient, version, said)
+    return _BatchSettings(chosen, brush, format, order, lenient, version, description)
 
 
-def _sent(brush) -> SentBrush:
+def _read_brush_to_send(brush) -> SentBrush:
     if isinstance(brush, _core.Brush):
         return SentBrush(_core.write_brush(brush).encode(), brush.sha256)
     try:
@@ -191,120 +225,139 @@ def _sent(brush) -> SentBrush:
     return SentBrush(data, sha256(data))
 
 
-def _each_made(executor, is_ours: bool, left: list[int], items: list[Item], way: _Way, is_over):
-    """(Number, Made) of each that is left, as they come. is_ours: the work ends by itself, and is not polled."""
-    done: queue.SimpleQueue = queue.SimpleQueue()
-    waiting: dict[Future, tuple[int, int]] = {}
-    numbers = iter(left)
+def _convert_remaining(
+    executor, is_ours: bool, remaining: list[int], items: list[Item], settings: _BatchSettings, is_cancelled
+):
+    """Yield the number and the TaskResult of each remaining drawing as it finishes.
+
+    is_ours: the executor belongs to this batch and ends with it, so pending futures need no cancelling.
+    """
+    finished: queue.SimpleQueue = queue.SimpleQueue()
+    pending: dict[Future, tuple[int, int]] = {}
+    numbers = iter(remaining)
     try:
         while True:
-            while len(waiting) < AT_ONCE and sum(size for _, size in waiting.values()) < BYTES_AT_ONCE:
+            while (
+                len(pending) < MAX_PENDING_DRAWINGS
+                and sum(size for _, size in pending.values()) < MAX_PENDING_BYTES
+            ):
                 index = next(numbers, None)
                 if index is None:
                     break
                 try:
-                    task = way.task(items[index])
+                    task = settings.task(items[index])
                 except Error as refusal:
-                    yield index, Made(None, {}, b"", refusal.where, str(refusal), refusal.code)
+                    yield index, TaskResult(None, {}, b"", refusal.where, str(refusal), refusal.code)
                     continue
-                future = executor.submit(made, task)
-                waiting[future] = index, len(task.drawing.data)
-                future.add_done_callback(done.put)
-            if not waiting:
+                future = executor.submit(convert_task, task)
+                pending[future] = index, len(task.drawing.data)
+                future.add_done_callback(finished.put)
+            if not pending:
                 return
-            if is_over():
+            if is_cancelled():
                 raise CancelledError("cancelled")
             try:
-                future = done.get(timeout=LOOKS_S)
+                future = finished.get(timeout=POLL_INTERVAL_S)
             except queue.Empty:
                 continue
-            index, _ = waiting.pop(future)
-            yield index, _result(future, items[index], way.version)
+            index, _ = pending.pop(future)
+            yield index, _get_result(future, items[index], settings.version)
     finally:
-        for future in () if is_ours else waiting:
+        for future in () if is_ours else pending:
             future.cancel()
 
 
-def _result(future: Future, item: Item, version: str) -> Made:
+def _get_result(future: Future, item: Item, version: str) -> TaskResult:
     try:
-        found = future.result()
+        result = future.result()
     except BrokenExecutor as broken:
         sentence = f"a worker died, over {item.source} or another one; what was done before is kept: {broken}"
         raise Error(sentence.splitlines()[0], code="worker-lost") from None
-    if found.version != version:
-        sentence = f"the worker has version {found.version} of brushsvg, not {version}"
+    if result.version != version:
+        sentence = f"the worker has version {result.version} of brushsvg, not {version}"
         raise Error(sentence, code="version-unknown")
-    return found
+    return result
 
 
-class _Places:
-    """Where the files of each drawing may be written, with no regard to case, as on Windows and macOS.
+class _TakenPlaces:
+    """Where the files of each drawing may be written, without regard to case.
 
-    A program in several files is a folder: that of `a` may contain the file that `a/a` is written to.
+    Windows and macOS ignore case. A program in several files is a folder: the folder of drawing `a` may contain the
+    file that drawing `a/a` is written to.
     """
 
     def __init__(self, items: list[Item], manifest: Manifest):
         self.manifest = manifest
-        self.sources = {as_one_file(item.name): item.source for item in items}
+        self.sources = {file_name_key(item.name): item.source for item in items}
         self.folders = {
-            as_one_file(folder.as_posix()): item.source
+            file_name_key(folder.as_posix()): item.source
             for item in items
             for folder in Path(item.name).parents
         }
 
     def refuse_taken(self, item: Item, paths: Iterable[str]) -> None:
-        """Error where a file of this drawing would be one of another drawing, or a folder that contains one."""
+        """Raise Error if a file would replace a file of another drawing.
+
+        A file also must not replace a folder that contains files of another drawing.
+        """
         for path in paths:
             place = Path(path).relative_to(Path(path).parts[0])
-            stem, own = as_one_file(place.with_suffix("").as_posix()), as_one_file(item.name)
-            other = self.sources.get(stem) if stem != own else None
-            other = other or self.folders.get(as_one_file(place.as_posix()))
-            other = other or self.manifest.other_source(item, path)
+            stem_key, own_key = file_name_key(place.with_suffix("").as_posix()), file_name_key(item.name)
+            other = self.sources.get(stem_key) if stem_key != own_key else None
+            other = other or self.folders.get(file_name_key(place.as_posix()))
+            other = other or self.manifest.find_other_source(item, path)
             if other:
                 sentence = f"{path} belongs to {other}: {item.source} would be written over it"
                 raise Error(sentence, code="name-taken", advice="rename one of the two drawings")
 
 
-def _kept(folder: Path, item: Item, key: str, done: Made, places: _Places) -> Row:
-    """Its row, once its files are written, all or none."""
-    if done.figures is None:
-        return Row(item.name, item.source, key, None, done.code, done.where, done.sentence, done.notices)
-    place = Path(PROGRAMS, item.name) if len(done.texts) > 1 else Path(PROGRAMS, item.name).parent
-    first = place / f"{Path(item.name).name}{done.suffix}"
-    data = {Path(path_next_to(first, name)).as_posix(): text for name, text in done.texts.items()}
-    data[f"{PICTURES}/{item.name}.png"] = done.picture
+def _write_result(folder: Path, item: Item, key: str, result: TaskResult, places: _TakenPlaces) -> Row:
+    """Write all files of a drawing or none, and return its row."""
+    if result.figures is None:
+        return Row(
+            item.name, item.source, key, None, result.code, result.where, result.sentence, result.notices
+        )
+    program_folder = Path(PROGRAMS, item.name) if len(result.texts) > 1 else Path(PROGRAMS, item.name).parent
+    first = program_folder / f"{Path(item.name).name}{result.suffix}"
+    contents = {Path(path_next_to(first, name)).as_posix(): text for name, text in result.texts.items()}
+    contents[f"{PICTURES}/{item.name}.png"] = result.picture
     try:
-        places.refuse_taken(item, data)
+        places.refuse_taken(item, contents)
     except Error as refusal:
-        return Row(item.name, item.source, key, None, refusal.code, refusal.where, str(refusal), done.notices)
-    write_files({below(folder, name): text for name, text in data.items()})
-    sums = {name: sha256(text) for name, text in data.items()}
-    return Row(item.name, item.source, key, done.figures, notices=done.notices, files=sums)
+        return Row(
+            item.name, item.source, key, None, refusal.code, refusal.where, str(refusal), result.notices
+        )
+    write_files({make_path_below(folder, name): text for name, text in contents.items()})
+    hashes = {name: sha256(text) for name, text in contents.items()}
+    return Row(item.name, item.source, key, result.figures, notices=result.notices, files=hashes)
 
 
 def _make_reporter(count: int, resumed: int, progress):
-    """Return a function that reports each row with the progress, the speed, and the time left."""
-    start, found = time.monotonic(), [0, 0]
+    """Return a function that reports progress, speed and time left after each row."""
+    start, counts = time.monotonic(), [0, 0]
 
     def report_row(row: Row) -> None:
-        found[0] += 1
-        found[1] += row.figures is None
-        rate = found[0] / max(time.monotonic() - start, 1e-9)
-        refused = f", {found[1]} refused" if found[1] else ""
-        left_s = (count - resumed - found[0]) / rate
+        counts[0] += 1
+        counts[1] += row.figures is None
+        drawings_per_s = counts[0] / max(time.monotonic() - start, 1e-9)
+        refused = f", {counts[1]} refused" if counts[1] else ""
+        left_s = (count - resumed - counts[0]) / drawings_per_s
         progress(
-            f"{resumed + found[0]} of {count} drawings{refused}; {rate:.1f} a second, {clock(left_s)} left"
+            f"{resumed + counts[0]} of {count} drawings{refused}; {drawings_per_s:.1f} a second, {clock(left_s)} left"
         )
 
     return report_row
 
 
-def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
-    """The tables and the contact sheets of all rows, and nothing that an earlier, larger batch left of the latter."""
-    files = {folder / "table.csv": tables.as_csv(rows)}
+def _write_summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
+    """Write the tables and contact sheets of all rows, and return their paths.
+
+    Contact sheets of an earlier, larger batch are deleted.
+    """
+    files = {folder / "table.csv": tables.format_csv(rows)}
     if parquet:
-        files[folder / "table.parquet"] = tables.as_parquet(rows)
-    cards = [_card(folder, row) for row in rows]
+        files[folder / "table.parquet"] = tables.format_parquet(rows)
+    cards = [_make_card(folder, row) for row in rows]
     sheets = contact_sheets(cards)
     for number, data in enumerate(sheets, 1):
         write_files({folder / f"contact-{number}.png": data})
@@ -317,11 +370,11 @@ def _summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
     return [os.fspath(path) for path in files]
 
 
-def _card(folder: Path, row: Row) -> Card:
+def _make_card(folder: Path, row: Row) -> Card:
     if row.figures is None:
         return Card(row.name, row.code, row.text, None)
     figures = row.figures
     overlap = "" if figures.overlap is None else f"overlap {figures.overlap:.3f}"
-    takes = "" if figures.time_s is None else clock(figures.time_s)
-    words = ", ".join(filter(None, (overlap, takes)))
-    return Card(row.name, words, "", lambda: read_bytes(folder / PICTURES / f"{row.name}.png"))
+    duration = "" if figures.time_s is None else clock(figures.time_s)
+    caption = ", ".join(filter(None, (overlap, duration)))
+    return Card(row.name, caption, "", lambda: read_bytes(folder / PICTURES / f"{row.name}.png"))

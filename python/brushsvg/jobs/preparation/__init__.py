@@ -1,1 +1,1 @@
-"""A drawing to the plan of one brush and cell, with its warnings."""
+"""Turn a drawing into the plan of one brush and cell, with warnings."""

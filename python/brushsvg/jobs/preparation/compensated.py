@@ -1,4 +1,4 @@
-"""Strokes to a plan as options ask for, and strokes begun where the tool may be."""
+"""Compensate strokes as the options request, with ends that the machine can run."""
 
 from __future__ import annotations
 
@@ -9,16 +9,19 @@ from ...machine.paint_reload import in_loads
 from ...machine.preflight import within_limits
 from ...machine.program import POSES_KEPT, Job
 from ..options import Options
-from ..work import Known
+from ..work import KnownSimulation
 
 
-def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
-    """What compensates strokes, by default as the options ask for, or in closed form where that is to be refined."""
-    first = "closed" if options.compensation == "refined" else options.compensation
+def make_compensation(brush, sheet_mm, options: Options, stage=lambda text: None):
+    """Return a function that compensates strokes and returns the result of the core.
 
-    def compensated(some, method=first):
+    The method is by default the requested one, or closed form if refinement follows.
+    """
+    default_method = "closed" if options.compensation == "refined" else options.compensation
+
+    def compensated(strokes, method=default_method):
         return _core.compensate(
-            some,
+            strokes,
             brush,
             sheet_mm,
             method,
@@ -33,56 +36,70 @@ def compensation_by(brush, sheet_mm, options: Options, stage=lambda text: None):
     return compensated
 
 
-def begun_within_reach(
+def fit_ends_to_machine(
     painted: list, brush, plan, compensated, options: Options, stage, added: frozenset[str] = frozenset()
-) -> tuple[list, Known | None]:
-    """The strokes, with plainer terminals where "auto" chose some that the machine cannot run. A round start is landed
-    on the far side, where the tool may not be allowed, and its front may be wider than the drawing; at a butt terminal
-    the tool moves sideways. Added strokes, given by their ids, are left out where they cannot be run: their areas stay
-    unpainted. The list itself where all can be run. Also the simulated plan, if it was simulated and is
-    small enough to keep.
+) -> tuple[list, KnownSimulation | None]:
+    """Replace automatic ends of strokes that the machine cannot run.
+
+    Where "auto" chose a terminal that the machine cannot run, plainer terminals are tried. A round start lands on
+    the far side, where the tool may not be allowed, and its front may be wider than the drawing. At a butt terminal
+    the tool moves sideways.
+
+    added: ids of the strokes that the search added. They are left out where they cannot be run, and their areas
+        stay unpainted.
+
+    Returns the strokes, and the simulation of the plan. The strokes are the given list itself if all of them can be
+    run. The simulation is None if none was made or if it is too large to keep.
     """
 
-    def tried(of) -> Known:
-        loads = in_loads(of, brush, options.cell)
+    def simulate(a_plan) -> KnownSimulation:
+        loads = in_loads(a_plan, brush, options.cell)
         marks = _core.simulate(
-            of, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
+            a_plan, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
         )
         walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
-        return Known(copy(of), marks, walk)
+        return KnownSimulation(copy(a_plan), marks, walk)
 
-    def astray(of: Known) -> set[str]:
-        return {problem.where for problem in of.walk.problems}
+    def find_refused(simulation: KnownSimulation) -> set[str]:
+        return {problem.where for problem in simulation.walk.problems}
 
-    choosing = [stroke for stroke in painted if "auto" in _ends(stroke, options)]
-    if not choosing and not added:
+    automatic = [stroke for stroke in painted if "auto" in _get_requested_ends(stroke, options)]
+    if not automatic and not added:
         return painted, None
-    whole = tried(plan)
-    left = {stroke.id for stroke in choosing} & astray(whole)
-    found = {}
-    for plain in (
+    simulated = simulate(plan)
+    unresolved = {stroke.id for stroke in automatic} & find_refused(simulated)
+    replaced = {}
+    for terminals in (
         {"end": "round"},
         {"start": "round"},
         {"start": "round", "end": "round"},
         {"start": "pointed", "end": "round"},
     ):
-        some = {stroke.id: _plain(stroke, options, plain) for stroke in choosing if stroke.id in left}
-        fits = some.keys() - astray(tried(compensated(list(some.values())).plan)) if some else set()
-        found |= {name: some[name] for name in fits}
-        left -= fits
-    is_little = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
-    no_room = added & astray(whole) - found.keys()
-    if not found and not no_room:
-        return painted, whole if is_little else None
-    return [found.get(stroke.id, stroke) for stroke in painted if stroke.id not in no_room], None
+        candidates = {
+            stroke.id: _replace_auto_ends(stroke, options, terminals)
+            for stroke in automatic
+            if stroke.id in unresolved
+        }
+        fits = (
+            candidates.keys() - find_refused(simulate(compensated(list(candidates.values())).plan))
+            if candidates
+            else set()
+        )
+        replaced |= {name: candidates[name] for name in fits}
+        unresolved -= fits
+    is_small = sum(len(run.poses_mm) for run in plan.passes) <= POSES_KEPT
+    dropped = added & find_refused(simulated) - replaced.keys()
+    if not replaced and not dropped:
+        return painted, simulated if is_small else None
+    return [replaced.get(stroke.id, stroke) for stroke in painted if stroke.id not in dropped], None
 
 
-def _ends(stroke, options: Options) -> tuple[str, str]:
+def _get_requested_ends(stroke, options: Options) -> tuple[str, str]:
     return stroke.settings.start or options.start, stroke.settings.end or options.end
 
 
-def _plain(stroke, options: Options, plain: dict[str, str]):
-    """The stroke with these terminals, where it would choose."""
-    said = {name: getattr(stroke.settings, name) or getattr(options, name) for name in plain}
-    chosen = {name: plain[name] for name, value in said.items() if value == "auto"}
-    return stroke.replaced(settings=stroke.settings.replaced(**chosen))
+def _replace_auto_ends(stroke, options: Options, terminals: dict[str, str]):
+    """Return the stroke with these terminals at its automatic ends."""
+    requested = {name: getattr(stroke.settings, name) or getattr(options, name) for name in terminals}
+    replaced = {name: terminals[name] for name, value in requested.items() if value == "auto"}
+    return stroke.replaced(settings=stroke.settings.replaced(**replaced))

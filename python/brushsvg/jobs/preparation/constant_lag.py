@@ -1,4 +1,4 @@
-"""The same drawing with one lag for all strokes, to compare with."""
+"""One constant lag for all strokes of a drawing, for comparison."""
 
 from __future__ import annotations
 
@@ -12,21 +12,20 @@ from ..work import Work
 
 
 def best_constant(work: Work, step_mm: float = 0.25) -> Work:
-    """A drawing's work with the one lag for all strokes whose marks overlap most with it, to compare with.
+    """Return the work compensated with the constant lag of largest overlap.
 
-    Lags from 0 to the brush's greatest are tried, step_mm apart, and compared by pixels. The best one is in
-    options.lag_mm; notices stay those of the work.
+    Lags from 0 to the greatest lag of the brush are tried, step_mm apart, and compared by pixels. The best lag is
+    in options.lag_mm. The notices are those of the given work.
     """
     window = (0.0, 0.0, *work.plan.sheet_mm)
-    px_per_mm = min(
-        4.0, 4000.0 / max(work.plan.sheet_mm)
-    )  # overlaps to 2e-4, in a twentieth of the rings' time
+    # This resolution gives overlaps to 2e-4, in a twentieth of the time that outlines need.
+    px_per_mm = min(4.0, 4000.0 / max(work.plan.sheet_mm))
     target = _core.wanted_coverage(work.strokes, window, px_per_mm)
-    best, most = work, -1.0
+    best_work, best_overlap = work, -1.0
     greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
         options = replace(work.options, compensation="constant", lag_mm=lag_mm)
-        done = _core.compensate(
+        compensated = _core.compensate(
             within_reach(work.strokes, work.brush, "clamp")[0],
             work.brush,
             work.plan.sheet_mm,
@@ -35,11 +34,16 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
             lag_mm,
             options.speed_mm_s,
         )
-        painted = _core.coverage(_core.simulate(done.plan, work.brush), work.brush, window, px_per_mm)
+        painted = _core.coverage(_core.simulate(compensated.plan, work.brush), work.brush, window, px_per_mm)
         overlap = np.minimum(painted, target).sum() / np.maximum(painted, target).sum()
-        if overlap > most:
-            best, most = (
-                replace(work, plan=done.plan, tracking_errors=tuple(done.tracking_errors), options=options),
+        if overlap > best_overlap:
+            best_work, best_overlap = (
+                replace(
+                    work,
+                    plan=compensated.plan,
+                    tracking_errors=tuple(compensated.tracking_errors),
+                    options=options,
+                ),
                 overlap,
             )
-    return best
+    return best_work

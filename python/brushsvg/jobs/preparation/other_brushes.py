@@ -1,4 +1,4 @@
-"""The same drawing painted with other brushes, the best first."""
+"""Rank other brushes by how well they would paint the same drawing."""
 
 from __future__ import annotations
 
@@ -13,8 +13,13 @@ from .preparation import prepare
 
 @dataclass(frozen=True)
 class Suit:
-    """One brush and a drawing. overlap: of all that was drawn, strokes that it cannot paint included; worst: the
-    stroke it paints worst, with its overlap; None where it paints none."""
+    """How well one brush paints a drawing.
+
+    overlap: with all that was drawn, including strokes that the brush cannot paint.
+    worst, worst_overlap: the stroke with the smallest overlap, and that overlap; None if the brush paints no
+        stroke.
+    refused, strokes: numbers of strokes.
+    """
 
     brush: str
     overlap: float | None
@@ -22,12 +27,14 @@ class Suit:
     worst_overlap: float | None
     refused: int
     strokes: int
-    why: str = ""  # the first stroke that is refused, and why
+    why: str = ""  # the first refused stroke, and the reason
 
 
-def suits(path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None) -> list[Suit]:
-    """How well each brush paints a drawing, the best first."""
-    found = []
+def rank_brushes(
+    path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None
+) -> list[Suit]:
+    """Return how well each brush paints a drawing, the best brush first."""
+    results = []
     for brush in brushes:
         work = prepare(path, replace(options, brush=brush), stage, partly=True)
         marks = predict(work, outlines=False, stage=stage)
@@ -37,14 +44,17 @@ def suits(path: str | os.PathLike[str], options: Options, brushes, stage=lambda 
                 work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
             )
         )
-        found.append(suit(brush.name, rows, total.overlap if rows else 0.0, work.refused))
-    return best_first(found)
+        results.append(rate_brush(brush.name, rows, total.overlap if rows else 0.0, work.refused))
+    return sort_best_first(results)
 
 
-def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
-    """From the figures of a report; refused: notices of strokes."""
-    known = [row for row in rows if row.overlap is not None]
-    worst = min(known, key=lambda row: row.overlap, default=None)
+def rate_brush(brush: str, rows, overlap: float | None, refused) -> Suit:
+    """Return how well a brush paints a drawing, from the rows of a report.
+
+    refused: notices on the strokes that the brush cannot paint.
+    """
+    measured = [row for row in rows if row.overlap is not None]
+    worst = min(measured, key=lambda row: row.overlap, default=None)
     return Suit(
         brush,
         overlap,
@@ -56,5 +66,5 @@ def suit(brush: str, rows, overlap: float | None, refused) -> Suit:
     )
 
 
-def best_first(suits: list[Suit]) -> list[Suit]:
-    return sorted(suits, key=lambda each: (-(each.overlap or 0.0), each.brush))
+def sort_best_first(ratings: list[Suit]) -> list[Suit]:
+    return sorted(ratings, key=lambda each: (-(each.overlap or 0.0), each.brush))

@@ -1,4 +1,4 @@
-"""The same drawing at other sizes: which would be painted better, in words."""
+"""Advice on the size at which a drawing would be painted better."""
 
 from __future__ import annotations
 
@@ -11,44 +11,54 @@ from ...strokes.stroke_search import Searched, searched
 from ...strokes.wide_shapes import within_reach
 from ..options import Options
 from ..work import Work
-from .compensated import compensation_by
+from .compensated import make_compensation
 
 
-def advice(work: Work) -> str:
-    """On the drawing's size, in words; none for a plan."""
+def advise_on_size(work: Work) -> str:
+    """Return a sentence on a better size of the drawing; "" for a plan."""
     options = work.options
     if not work.drawn or options.layout.width_mm is not None:
         return ""
-    outlines = {stroke.origin.element for stroke in work.drawn if stroke.wanted_mm}
-    in_lanes = {each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.wanted_mm}
-    is_filled = options.wide == "passes" or not outlines.isdisjoint(in_lanes)
-    if options.wide == "auto" and not is_filled:
-        options = replace(options, wide="clamp")  # strokes are tried alone, and shapes are filled whole
-    made = _trial(work.brush, options)
-    if is_filled:
-        size = size_advice.best_letter_size(work.drawn, work.brush, made)
+    outline_elements = {stroke.origin.element for stroke in work.drawn if stroke.wanted_mm}
+    lane_elements = {
+        each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.wanted_mm
+    }
+    are_filled = options.wide == "passes" or not outline_elements.isdisjoint(lane_elements)
+    if options.wide == "auto" and not are_filled:
+        # Strokes are tried one at a time, but a shape is only filled as a whole.
+        options = replace(options, wide="clamp")
+    trial = _make_trial(work.brush, options)
+    if are_filled:
+        size = size_advice.best_letter_size(work.drawn, work.brush, trial)
     else:
-        size = size_advice.best_size(work.drawn, work.brush, made, _quick_trial(work.brush, options))
+        size = size_advice.best_size(work.drawn, work.brush, trial, _make_quick_trial(work.brush, options))
     scale = (options.layout.scale or 1.0) if options.layout.fit_mm is None else None
     return size_advice.advice(size, scale)
 
 
-def _trial(brush, options: Options):
-    """From strokes to (marks, what they should become), made as a drawing is, but on no sheet and for no machine."""
-    compensated = compensation_by(brush, None, options)
+def _make_trial(brush, options: Options):
+    """Return a function that plans and simulates strokes as a drawing is planned.
 
-    def made(strokes):
-        found = _searched(strokes, brush, options, compensated)
-        plan = found.done.plan
+    The function takes strokes and returns their marks and their targets. It uses no sheet and no machine.
+    """
+    compensated = make_compensation(brush, None, options)
+
+    def run_trial(strokes):
+        search = _search_strokes(strokes, brush, options, compensated)
+        plan = search.done.plan
         if options.compensation == "refined":
-            plan.passes = refined(found.painted, found.targets, brush, found.done, compensated).passes
-        return _core.simulate(plan, brush).passes, found.targets
+            plan.passes = refined(search.painted, search.targets, brush, search.done, compensated).passes
+        return _core.simulate(plan, brush).passes, search.targets
 
-    return made
+    return run_trial
 
 
-def _quick_trial(brush, options: Options):
-    """A trial in a quarter of the time, or a tenth of refined: in closed form, with more poses than are needed."""
+def _make_quick_trial(brush, options: Options):
+    """Return a faster trial, or None if the method has none.
+
+    The trial needs a quarter of the time, or a tenth of the time with refinement: it uses the closed form and
+    leaves more poses than are needed.
+    """
     if options.compensation not in ("closed", "refined"):
         return None
 
@@ -63,14 +73,14 @@ def _quick_trial(brush, options: Options):
             end=options.end,
         )
 
-    def made(strokes):
-        found = _searched(strokes, brush, options, compensated)
-        return _core.simulate(found.done.plan, brush).passes, found.targets
+    def run_trial(strokes):
+        search = _search_strokes(strokes, brush, options, compensated)
+        return _core.simulate(search.done.plan, brush).passes, search.targets
 
-    return made
+    return run_trial
 
 
-def _searched(strokes: list, brush, options: Options, compensated) -> Searched:
+def _search_strokes(strokes: list, brush, options: Options, compensated) -> Searched:
     painted, targets, _ = within_reach(strokes, brush, options.wide)
     if options.compensation not in ("closed", "refined"):
         return Searched(strokes, painted, targets, compensated(painted))

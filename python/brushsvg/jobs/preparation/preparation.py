@@ -1,4 +1,4 @@
-"""A file to its plan: read, strokes found, brought within reach, compensated."""
+"""Plan a drawing: read it, find its strokes, limit their widths, compensate them."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from ...strokes.uncovered_areas import uncovered_areas
 from ...strokes.wide_shapes import is_within_reach, within_reach
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
-from ..work import Known, Work, of_colour
-from .compensated import begun_within_reach, compensation_by
-from .margin_strokes import with_margin_strokes
-from .paint_astray import off_middle_line, outside
-from .thin_outlines import without_thin_outlines
-from .width_advice import warnings_with_advice
+from ..work import KnownSimulation, Work, select_colour
+from .compensated import fit_ends_to_machine, make_compensation
+from .margin_strokes import add_margin_strokes
+from .paint_astray import find_off_middle_line, find_paint_outside
+from .thin_outlines import remove_thin_outlines
+from .width_advice import add_width_advice
 
 if TYPE_CHECKING:
     Source = read.Source | Design | _core.Plan
@@ -48,86 +48,103 @@ def prepare(
     stage: Callable[[str], object] = lambda text: None,
     partly: bool = False,
 ) -> Work:
-    """Read a drawing or plan.json and plan the TCP's path. source: the path of one, a Plan, a Design, or an open
-    drawing as read_drawing takes it. Error when it cannot be read or painted; partly: strokes that are refused are left
-    out."""
-    work = _prepared(source, options, stage, partly)
-    return work if options.colour is None else of_colour(work, options.colour)
+    """Read a drawing or plan.json and plan the path of the TCP.
+
+    source: a path, a Plan, a Design, or an open drawing as read_drawing accepts it.
+    stage: called with words on the progress.
+    partly: leave out strokes that are refused, instead of raising an error.
+
+    Raises Error if the source cannot be read or painted.
+    """
+    work = _prepare_source(source, options, stage, partly)
+    return work if options.colour is None else select_colour(work, options.colour)
 
 
-def _prepared(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
+def _prepare_source(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
     if isinstance(source, _core.Plan):
-        _core.write_plan(source)  # refuses what no file may hold
+        _core.write_plan(source)  # raises Error for a plan that is not valid as a file
         return _prepare_plan(source, options)
     if isinstance(source, str | os.PathLike) and Path(source).suffix.lower() == ".json":
         return _prepare_plan(read_plan(source), options)
     stage("reading")
     brush = options.brush or find_brush(DEFAULT_BRUSH)
     _check_speed(brush, options)
-    design = layout.arrange(_design(source, options.reading), options.layout)
+    design = layout.arrange(_read_design(source, options.reading), options.layout)
     notices = [*mistyped_keys(brush), *design.notices]
     try:
-        return _planned(design, brush, options, stage, partly, notices)
+        return _plan_design(design, brush, options, stage, partly, notices)
     except Error as refusal:
         refusal.notices = tuple(notices)
         raise
 
 
-def _planned(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
-    """The work of a drawing that was read. notices: its warnings; further ones are added."""
+def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
+    """Plan the strokes of a drawing that was read.
+
+    notices: the warnings of the drawing; further warnings are added to this list.
+    """
     stage("finding strokes")
-    found, of_strokes = _found(design, brush, options)
-    notices += of_strokes
+    found_strokes, stroke_notices = _find_strokes(design, brush, options)
+    notices += stroke_notices
     if not partly:
-        _refuse_wide_lines(found, brush)
-    lines = _within_reach(found, brush, options, partly)
-    compensated = compensation_by(brush, design.sheet_mm, options, stage)
-    lines, done = _compensated(lines, compensated, partly)
-    if _leads(options):
-        lines, done = _searched(lines, done, brush, compensated, options)
-    notices += lines.notices
-    way = _refined(_way(lines, done, brush, compensated, options, stage), brush, compensated, options)
-    lines = _without_left_out(lines, way)
-    way.plan = _at_speed(_with_speeds(way.plan, lines.targets), options)
-    advised = compensated if options.layout.width_mm is None else None
-    bare, blank, astray = _find_stray_paint(lines, way, brush, options)
+        _refuse_wide_lines(found_strokes, brush)
+    strokes = _limit_widths(found_strokes, brush, options, partly)
+    compensated = make_compensation(brush, design.sheet_mm, options, stage)
+    strokes, compensation = _compensate(strokes, compensated, partly)
+    if _leads_paint(options):
+        strokes, compensation = _search_strokes(strokes, compensation, brush, compensated, options)
+    notices += strokes.notices
+    planned = _refine(
+        _plan_strokes(strokes, compensation, brush, compensated, options, stage), brush, compensated, options
+    )
+    strokes = _drop_left_out(strokes, planned)
+    planned.plan = _set_requested_speed(_set_drawn_speeds(planned.plan, strokes.targets), options)
+    tried_compensation = compensated if options.layout.width_mm is None else None
+    unreached, missed, outside = _find_stray_paint(strokes, planned, brush, options)
     notices += (
-        *way.notices,
-        *warnings_with_advice(way.painted, way.done, brush, advised),
-        *_other_brushes(lines.targets, brush),
-        *blank_notices(bare),
-        *blank_notices(blank),
-        *(astray if _leads(options) else []),
+        *planned.notices,
+        *add_width_advice(planned.painted, planned.done, brush, tried_compensation),
+        *_report_other_brushes(strokes.targets, brush),
+        *blank_notices(unreached),
+        *blank_notices(missed),
+        *(outside if _leads_paint(options) else []),
     )
     work = Work(
         design.title,
         brush,
-        way.plan,
-        lines.targets,
-        tuple(way.tracking_errors),
+        planned.plan,
+        strokes.targets,
+        tuple(planned.tracking_errors),
         options,
         tuple(notices),
-        tuple(lines.refused),
-        tuple(lines.left_out),
-        tuple(lines.drawn),
-        tuple(bare),
-        tuple(blank),
-        tuple(notice.where for notice in astray),
-        way.known,
+        tuple(strokes.refused),
+        tuple(strokes.left_out),
+        tuple(strokes.drawn),
+        tuple(unreached),
+        tuple(missed),
+        tuple(notice.where for notice in outside),
+        planned.known,
     )
-    work = with_margin_strokes(work)
+    work = add_margin_strokes(work)
     return replace(work, plan=corrected(work.plan, options.corrections, brush))
 
 
-def _leads(options: Options) -> bool:
-    """Whether the tool leads the paint, or goes where the lines are."""
+def _leads_paint(options: Options) -> bool:
+    """Return whether the tool leads the paint, instead of following the drawn lines."""
     return options.compensation in ("closed", "refined")
 
 
 @dataclass(frozen=True)
-class _Lines:
-    """Strokes as they were found, as the brush will paint them, and what each of these should become; notices on
-    them, why some were refused, what those should have become, and which the search added."""
+class _StrokeSet:
+    """The strokes of a drawing at three stages, and what was refused or added.
+
+    drawn: as found in the drawing.
+    painted: as the brush will paint them.
+    targets: the target of each painted stroke.
+    notices: warnings on the strokes.
+    refused, left_out: notices on the refused strokes, and the targets of these.
+    added: ids of the strokes that the search added.
+    """
 
     drawn: list
     painted: list
@@ -139,9 +156,13 @@ class _Lines:
 
 
 @dataclass
-class _Way:
-    """How lines are painted. painted, targets: as in _Lines, pressed deeper where paint runs out; done: what
-    compensation said; moved: which strokes refinement moved."""
+class _PlannedStrokes:
+    """Strokes with their plan.
+
+    painted, targets: as in _StrokeSet, but pressed deeper where paint runs out.
+    done: the result of the compensation.
+    moved: for each stroke whether refinement moved it.
+    """
 
     painted: list
     targets: list
@@ -150,43 +171,48 @@ class _Way:
     tracking_errors: list
     moved: list[bool]
     notices: list[Notice]
-    known: Known | None
+    known: KnownSimulation | None
 
 
-def _found(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
-    """Return a design's strokes, joined, lifted and cut at their corners as requested."""
-    thin: list[Notice] = []
+def _find_strokes(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
+    """Return the strokes of a design and warnings.
+
+    The strokes are joined, and lifted at their corners, as requested.
+    """
+    outline_notices: list[Notice] = []
     if options.paths_as is None:
-        design, thin = without_thin_outlines(design, brush)
+        design, outline_notices = remove_thin_outlines(design, brush)
     strokes, notices = strokes_of(design, options.paths_as, options.script)
-    notices += thin
+    notices += outline_notices
     if options.join:
-        strokes, joints = joined(strokes)
-        notices += joints
-    if options.corners == "auto" and _leads(options):
+        strokes, joint_notices = joined(strokes)
+        notices += joint_notices
+    if options.corners == "auto" and _leads_paint(options):
         strokes = lifted_at_corners(strokes, brush)
     return strokes, notices
 
 
 def _fills_corners(options: Options) -> bool:
-    """Whether strokes may begin, end and turn as fills the corners of a shape."""
+    """Return whether ends and turns may be chosen to fill the corners of a shape."""
     return (options.start, options.end, options.corners) == ("auto", "auto", "auto")
 
 
-def _within_reach(found: list, brush, options: Options, partly: bool) -> _Lines:
-    """No wider than the brush."""
-    strokes, refused, left_out = found, [], []
+def _limit_widths(drawn: list, brush, options: Options, partly: bool) -> _StrokeSet:
+    """Make strokes no wider than the brush."""
+    strokes, refused, left_out = drawn, [], []
     if partly and options.wide == "refuse":
-        strokes, _, refused, left_out = _sorted_out(
-            strokes, strokes, lambda some: within_reach(some, brush, options.wide)
+        strokes, _, refused, left_out = _separate_refused(
+            strokes, strokes, lambda pairs: within_reach(pairs, brush, options.wide)
         )
-    painted, targets, notices = within_reach(strokes, brush, options.wide, _leads(options))
-    return _Lines(list(found), painted, targets, notices, refused, left_out)
+    painted, targets, notices = within_reach(strokes, brush, options.wide, _leads_paint(options))
+    return _StrokeSet(list(drawn), painted, targets, notices, refused, left_out)
 
 
-def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tuple[_Lines, _core.Compensated]:
-    """The lines as a search leads them, and those that it adds."""
-    found = searched(
+def _search_strokes(
+    lines: _StrokeSet, compensation, brush, compensated, options: Options
+) -> tuple[_StrokeSet, _core.Compensated]:
+    """Improve the strokes by a search, which also adds strokes."""
+    search = searched(
         lines.drawn,
         lines.painted,
         lines.targets,
@@ -195,19 +221,21 @@ def _searched(lines: _Lines, done, brush, compensated, options: Options) -> tupl
         options.detail,
         _fills_corners(options),
         options.wide != "clamp",
-        done,
+        compensation,
     )
-    lines = replace(lines, drawn=found.drawn, painted=found.painted, targets=found.targets, added=found.added)
-    return lines, found.done
+    lines = replace(
+        lines, drawn=search.drawn, painted=search.painted, targets=search.targets, added=search.added
+    )
+    return lines, search.done
 
 
-def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _core.Compensated]:
+def _compensate(lines: _StrokeSet, compensated, partly: bool) -> tuple[_StrokeSet, _core.Compensated]:
     try:
         return lines, compensated(lines.painted)
     except Error:
         if not partly:
             raise
-    painted, targets, refused, left_out = _sorted_out(lines.painted, lines.targets, compensated)
+    painted, targets, refused, left_out = _separate_refused(lines.painted, lines.targets, compensated)
     lines = replace(
         lines,
         painted=painted,
@@ -218,76 +246,95 @@ def _compensated(lines: _Lines, compensated, partly: bool) -> tuple[_Lines, _cor
     return lines, compensated(lines.painted)
 
 
-def _way(lines: _Lines, done, brush, compensated, options: Options, stage) -> _Way:
-    """Begun where the tool may be, and pressed deeper as paint runs out."""
-    painted, targets, notices, known, cell = lines.painted, lines.targets, [], None, options.cell
-    if cell is not None and _leads(options):
-        fitting, known = begun_within_reach(
-            painted, brush, done.plan, compensated, options, stage, lines.added
+def _plan_strokes(
+    lines: _StrokeSet, compensation, brush, compensated, options: Options, stage
+) -> _PlannedStrokes:
+    """Choose ends that the machine can run, and press deeper as paint runs out."""
+    painted, targets, notices, simulation, cell = lines.painted, lines.targets, [], None, options.cell
+    if cell is not None and _leads_paint(options):
+        fitting, simulation = fit_ends_to_machine(
+            painted, brush, compensation.plan, compensated, options, stage, lines.added
         )
         if fitting is not painted:
-            kept = {stroke.id for stroke in fitting}
-            targets = [target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept]
-            painted, done = fitting, compensated(fitting)
-    if brush.paint and brush.width_follows_depth() and _leads(options):
+            kept_ids = {stroke.id for stroke in fitting}
+            targets = [
+                target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept_ids
+            ]
+            painted, compensation = fitting, compensated(fitting)
+    if brush.paint and brush.width_follows_depth() and _leads_paint(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
 
         def fetched(plan):
             return fetched_mm(plan, brush, cell)
 
-        pressed = pressed_deeper(painted, targets, brush, done, compensated, fetched, lowest_mm)
-        painted, targets, done = pressed.painted, pressed.targets, pressed.done
+        pressed = pressed_deeper(painted, targets, brush, compensation, compensated, fetched, lowest_mm)
+        painted, targets, compensation = pressed.painted, pressed.targets, pressed.done
         notices = pressed.notices
-    return _Way(
-        painted, targets, done, done.plan, done.tracking_errors, [False] * len(painted), notices, known
+    return _PlannedStrokes(
+        painted,
+        targets,
+        compensation,
+        compensation.plan,
+        compensation.tracking_errors,
+        [False] * len(painted),
+        notices,
+        simulation,
     )
 
 
-def _without_left_out(lines: _Lines, way: _Way) -> _Lines:
-    """The lines without the added strokes for which the cell has no room."""
-    left_out = lines.added - {stroke.id for stroke in way.painted}
+def _drop_left_out(lines: _StrokeSet, planned: _PlannedStrokes) -> _StrokeSet:
+    """Remove added strokes for which the cell has no room."""
+    left_out = lines.added - {stroke.id for stroke in planned.painted}
     drawn, targets = (
-        [each for each in some if each.id not in left_out] for some in (lines.drawn, lines.targets)
+        [each for each in selected if each.id not in left_out] for selected in (lines.drawn, lines.targets)
     )
     return replace(lines, drawn=drawn, targets=targets)
 
 
-def _refined(way: _Way, brush, compensated, options: Options) -> _Way:
-    """Return the way, or a refined one whose marks are nearer to the target, if requested."""
+def _refine(planned: _PlannedStrokes, brush, compensated, options: Options) -> _PlannedStrokes:
+    """Refine the planned strokes if requested, so that marks are closer to targets."""
     if options.compensation != "refined":
-        return way
-    forbidden = _forbidden(brush, options)
-    better = refined(way.painted, way.targets, brush, way.done, compensated, forbidden)
-    way.plan.passes = better.passes
-    unmoved = better.nothing_moved()
+        return planned
+    forbidden = _make_limit_check(brush, options)
+    refinement = refined(planned.painted, planned.targets, brush, planned.done, compensated, forbidden)
+    planned.plan.passes = refinement.passes
+    unmoved = refinement.nothing_moved()
     return replace(
-        way,
-        tracking_errors=better.tracking_errors,
-        moved=better.moved,
-        notices=[*way.notices, *([unmoved] if unmoved else [])],
+        planned,
+        tracking_errors=refinement.tracking_errors,
+        moved=refinement.moved,
+        notices=[*planned.notices, *([unmoved] if unmoved else [])],
     )
 
 
-def _find_stray_paint(lines: _Lines, way: _Way, brush, options: Options) -> tuple[list, list, list[Notice]]:
-    """Return pieces of shapes that no stroke reaches, those that strokes reach and their marks do not, and the strokes
-    whose paint is outside of the drawing."""
+def _find_stray_paint(
+    lines: _StrokeSet, planned: _PlannedStrokes, brush, options: Options
+) -> tuple[list, list, list[Notice]]:
+    """Find unpainted parts of shapes, and strokes with paint outside of the drawing.
+
+    Returns the parts that no stroke reaches, and the parts that strokes reach and their marks do not. The third
+    value has notices on strokes whose paint is outside of the drawing.
+    """
     refused = {notice.where for notice in lines.refused}
-    planned = [stroke for stroke in lines.drawn if stroke.id not in refused]
-    areas = uncovered_areas(planned, way.painted, list(way.plan.passes), brush)
-    bare = [each for each in areas if not each.is_reached]
-    blank = [each for each in areas if each.is_reached and _leads(options)]
-    return bare, blank, _astray(way, brush, options)
+    accepted = [stroke for stroke in lines.drawn if stroke.id not in refused]
+    areas = uncovered_areas(accepted, planned.painted, list(planned.plan.passes), brush)
+    unreached = [each for each in areas if not each.is_reached]
+    missed = [each for each in areas if each.is_reached and _leads_paint(options)]
+    return unreached, missed, _find_paint_outside(planned, brush, options)
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
-    """Error for the first line that is wider than the brush, before the time is taken that shapes do."""
+    """Raise Error for the first line that is wider than the brush.
+
+    Lines are checked before filled shapes, which need much more time.
+    """
     for stroke in strokes if brush.width_follows_depth() else ():
         widest = max(half for _, half in stroke.half_width)
         if not stroke.wanted_mm and not is_within_reach(widest, brush.half_width_range_mm()[1]):
             brush.depth_for_half_width(widest, stroke.id)
 
 
-def _design(source, reading: read.ReadOptions) -> Design:
+def _read_design(source, reading: read.ReadOptions) -> Design:
     if not isinstance(source, Design):
         return read.read_drawing(source, reading)
     if reading.units or reading.select:
@@ -296,8 +343,11 @@ def _design(source, reading: read.ReadOptions) -> Design:
     return source if reading.sheet_mm is None else replace(source, sheet_mm=reading.sheet_mm)
 
 
-def _forbidden(brush, options: Options):
-    """What says of a plan why the cell may not run it, one sentence each; None without a cell."""
+def _make_limit_check(brush, options: Options):
+    """Return a function that lists why the cell cannot run a plan.
+
+    The function returns a notice for each problem. It is None without a cell.
+    """
     if options.cell is None:
         return None
     cell, job = options.cell, Job(options.z_offset_mm)
@@ -309,10 +359,12 @@ def _forbidden(brush, options: Options):
     return sentences
 
 
-def _sorted_out(painted, targets, step):
-    """Strokes that a step takes, with what they should become, why it refuses the others, and what those should become:
-    each is tried alone."""
-    sound, refused, left_out = [], [], []
+def _separate_refused(painted, targets, step):
+    """Try a step on each stroke alone, and separate the strokes that it refuses.
+
+    Returns the accepted strokes, their targets, notices on the refused strokes, and the targets of these.
+    """
+    accepted, refused, left_out = [], [], []
     for pair in zip(painted, targets, strict=True):
         try:
             step(pair[:1])
@@ -320,12 +372,12 @@ def _sorted_out(painted, targets, step):
             refused.append(error.notice(pair[0].id))
             left_out.append(pair[1])
         else:
-            sound.append(pair)
-    return [stroke for stroke, _ in sound], [stroke for _, stroke in sound], refused, left_out
+            accepted.append(pair)
+    return [stroke for stroke, _ in accepted], [stroke for _, stroke in accepted], refused, left_out
 
 
-def _with_speeds(plan, strokes):
-    """The plan with the speeds that the drawing's settings ask for."""
+def _set_drawn_speeds(plan, strokes):
+    """Set the speeds of a plan that the settings of the drawing request."""
     speeds = [stroke.settings.speed_mm_s for stroke in strokes]
     if any(speeds):
         for a_pass, speed in zip(plan.passes, speeds, strict=True):
@@ -334,27 +386,27 @@ def _with_speeds(plan, strokes):
 
 
 def _check_speed(brush, options: Options) -> None:
-    """Error where all is to be painted at a speed that is not the brush's, or not the cell's."""
+    """Raise Error if the requested speed is outside the limits of the brush or cell."""
     speed, cell = options.speed_of_all_mm_s, options.cell
     if speed is None:
         return
-    least = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
-    most = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
-    whose = f"brush {brush.name}" if most == brush.max_speed_mm_s else f"cell {cell.name}"
-    if not least <= speed <= most:
-        sentence = f"speed {speed:.4g} mm/s is outside the range [{least:g}, {most:g}] mm/s of {whose}"
+    min_mm_s = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
+    max_mm_s = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
+    whose = f"brush {brush.name}" if max_mm_s == brush.max_speed_mm_s else f"cell {cell.name}"
+    if not min_mm_s <= speed <= max_mm_s:
+        sentence = f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:g}, {max_mm_s:g}] mm/s of {whose}"
         raise Error(sentence, code="speed-out-of-range")
 
 
-def _at_speed(plan, options: Options):
-    """Return the plan with the one speed that was requested for all."""
+def _set_requested_speed(plan, options: Options):
+    """Set the speed of all passes of a plan, if one was requested."""
     if options.speed_of_all_mm_s is not None:
         for a_pass in plan.passes:
             a_pass.speed_mm_s = options.speed_of_all_mm_s
     return plan
 
 
-def _other_brushes(strokes, brush) -> list[Notice]:
+def _report_other_brushes(strokes, brush) -> list[Notice]:
     brushes = ((stroke.id, stroke.settings.brush or brush.name) for stroke in strokes)
     return [
         Notice(
@@ -367,20 +419,30 @@ def _other_brushes(strokes, brush) -> list[Notice]:
     ]
 
 
-def _astray(way: _Way, brush, options: Options) -> list[Notice]:
-    """Return notices on strokes outside of the drawing. A shape has no drawn middle line, and refinement leaves it on
-    purpose: there the paint is judged."""
-    shapes = {stroke.origin.element for stroke in way.targets if stroke.wanted_mm}
+def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> list[Notice]:
+    """Report strokes whose paint is outside of the drawing.
+
+    The paint is judged where a stroke has no drawn middle line, as in a shape, and where refinement leaves the
+    middle line on purpose. Other strokes are judged by their tracking errors.
+    """
+    shapes = {stroke.origin.element for stroke in planned.targets if stroke.wanted_mm}
     by_paint = [
         is_moved or stroke.origin.element in shapes
-        for stroke, is_moved in zip(way.targets, way.moved, strict=True)
+        for stroke, is_moved in zip(planned.targets, planned.moved, strict=True)
     ]
-    lines = [None if by else stroke for stroke, by in zip(way.painted, by_paint, strict=True)]
-    off = [by and not error.within_tolerance for by, error in zip(by_paint, way.tracking_errors, strict=True)]
-    runs = [run if is_off else None for run, is_off in zip(way.plan.passes, off, strict=True)]
+    lines = [
+        None if is_by_paint else stroke for stroke, is_by_paint in zip(planned.painted, by_paint, strict=True)
+    ]
+    is_off_tolerance = [
+        is_by_paint and not error.within_tolerance
+        for is_by_paint, error in zip(by_paint, planned.tracking_errors, strict=True)
+    ]
+    runs = [
+        run if is_off else None for run, is_off in zip(planned.plan.passes, is_off_tolerance, strict=True)
+    ]
     return [
-        *off_middle_line(lines, way.tracking_errors, brush, options.tolerance_mm),
-        *outside(way.targets, runs, brush),
+        *find_off_middle_line(lines, planned.tracking_errors, brush, options.tolerance_mm),
+        *find_paint_outside(planned.targets, runs, brush),
     ]
 
 
@@ -404,5 +466,5 @@ def _prepare_plan(plan, options: Options) -> Work:
             )
         )
     _check_speed(brush, options)
-    plan = _at_speed(plan, options)
+    plan = _set_requested_speed(plan, options)
     return Work("", brush, corrected(plan, options.corrections, brush), None, (), options, tuple(notices))

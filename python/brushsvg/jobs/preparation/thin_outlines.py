@@ -1,4 +1,7 @@
-"""Outlines in a colour of their own that are finer than the brush paints: the filled shape is painted without them."""
+"""Leave out outlines that are finer than the brush can paint.
+
+This concerns outlines in another colour than their fill. The filled shape is painted without them.
+"""
 
 from __future__ import annotations
 
@@ -8,20 +11,23 @@ from ...read.design import Design, Element, Notice
 from ...strokes.uncovered_areas import finest
 
 
-def without_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:
-    """The drawing without outlines that have another colour than their fill and are finer than the brush's finest line,
-    each with a notice: painted, they would be wider, and hide what they go around."""
+def remove_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:
+    """Remove outlines that are finer than the finest line of the brush.
+
+    Only outlines in another colour than their fill are removed, each with a notice. If they were painted, they
+    would be wider and would hide the shape that they go around.
+    """
     least_mm = 2 * finest(brush)
     elements, notices = [], []
     for element in design.elements:
         if element.fill_colour and 0 < element.stroke_width_mm < least_mm:
-            notices.append(_left_out(element, least_mm))
+            notices.append(_report_left_out(element, least_mm))
             element = element.by_colour()[0]
         elements.append(element)
     return (replace(design, elements=tuple(elements)), notices) if notices else (design, [])
 
 
-def _left_out(element: Element, least_mm: float) -> Notice:
+def _report_left_out(element: Element, least_mm: float) -> Notice:
     sentence = (
         f"its outline in {element.colour} is {element.stroke_width_mm:.2g} mm wide, finer than the brush's finest line "
         f"of {least_mm:.2g} mm: left out, the shape is painted in {element.fill_colour}"

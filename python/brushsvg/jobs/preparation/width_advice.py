@@ -1,4 +1,4 @@
-"""Strokes pressed through depths that the brush was not measured at, and which widths would help."""
+"""Warn of depths at which the brush was not measured, and advise on widths."""
 
 from __future__ import annotations
 
@@ -11,55 +11,74 @@ from ...errors import Error
 from ...read.design import Notice
 
 
-def warnings_with_advice(painted, done, brush, compensated) -> list[Notice]:
-    """What compensation warns of: of a stroke that its depths were not measured, of none that widths are ignored. Not
-    where that is so at a stroke's ends alone: every brush is set down and lifted through less depth, and who draws a
-    point can do nothing about it. compensated: tries what is advised, None where one width was requested."""
+def add_width_advice(painted, compensation, brush, compensated) -> list[Notice]:
+    """Return the warnings of the compensation, with advice on widths.
+
+    The warning on depths that were not measured names a stroke. It is dropped where only the ends of the stroke
+    have such depths. Every brush is set down and lifted through smaller depths, and a user who draws a pointed end
+    cannot avoid them. The warning that widths are ignored names no stroke.
+
+    compensated: compensates strokes, to try the advised width; None if one width was requested.
+    """
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
     measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
-    pairs = zip(painted, done.plan.passes, strict=True)
-    thin = {stroke.id for stroke, run in pairs if measured and _gets_thinner(stroke, run, brush, *measured)}
-    off = {each.where for each in done.warnings if each.code == "depth-not-measured"} - thin
-    advice, lines = "", []
+    strokes_and_passes = zip(painted, compensation.plan.passes, strict=True)
+    shallow_at_ends = {
+        stroke.id
+        for stroke, run in strokes_and_passes
+        if measured and _is_shallow_only_at_ends(stroke, run, brush, *measured)
+    }
+    unmeasured = {
+        each.where for each in compensation.warnings if each.code == "depth-not-measured"
+    } - shallow_at_ends
+    advice, advisable = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
-        lines = [stroke for stroke in painted if stroke.id in off and not stroke.wanted_mm]
-        advice = _width_advice(lines[:1], brush, measured, compensated)
-    advised = {stroke.id for stroke in lines}
+        advisable = [stroke for stroke in painted if stroke.id in unmeasured and not stroke.wanted_mm]
+        advice = _make_width_advice(advisable[:1], brush, measured, compensated)
+    advised = {stroke.id for stroke in advisable}
     return [
         replace(each, advice=advice if each.where in advised else "")
         if each.code == "depth-not-measured"
         else each
-        for each in done.warnings
-        if each.code != "depth-not-measured" or each.where not in thin
+        for each in compensation.warnings
+        if each.code != "depth-not-measured" or each.where not in shallow_at_ends
     ]
 
 
-def _width_advice(lines: list, brush, measured: tuple[float, float], compensated) -> str:
-    """Which widths keep a line within the depths that were measured; "" where the middle one of them does not."""
+def _make_width_advice(lines: list, brush, measured: tuple[float, float], compensated) -> str:
+    """Return advice on the widths that keep a line within the measured depths.
+
+    Returns "" if the middle one of these widths does not.
+    """
     halves = [brush.half_width(depth) for depth in measured]
-    same = [stroke.replaced(half_width=[(0.0, sum(halves) / 2)]) for stroke in lines]
+    equal_width = [stroke.replaced(half_width=[(0.0, sum(halves) / 2)]) for stroke in lines]
     try:
-        helps = bool(same) and not any(
-            each.code == "depth-not-measured" for each in compensated(same).warnings
+        helps = bool(equal_width) and not any(
+            each.code == "depth-not-measured" for each in compensated(equal_width).warnings
         )
     except Error:
         helps = False
     if not helps:
         return ""
-    least, greatest = (2 * half for half in halves)
-    return f"--width MM, from {least:.2g} to {greatest:.2g}, gives all strokes one width that was measured"
+    min_width_mm, max_width_mm = (2 * half for half in halves)
+    return f"--width MM, from {min_width_mm:.2g} to {max_width_mm:.2g}, gives all strokes one width that was measured"
 
 
-def _gets_thinner(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
-    """Whether a stroke is pressed less than was measured at its ends alone, over no more than its width. run: its
-    pass; a dot, which is turned round on the spot, is pressed less than a line as wide."""
+def _is_shallow_only_at_ends(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
+    """Return whether only the ends of a stroke are shallower than was measured.
+
+    Each end may be as long as the stroke is wide. A dot is turned on the spot, and so is pressed less than a line
+    of the same width.
+
+    run: the pass of the stroke.
+    """
     if -np.asarray(run.poses_mm)[:, 2].min() < least_mm:
         return False
-    half = max(half for _, half in stroke.half_width)
-    if stroke.closed or brush.depth_for_half_width(half, stroke.id) > greatest_mm:
+    half_width = max(half_width for _, half_width in stroke.half_width)
+    if stroke.closed or brush.depth_for_half_width(half_width, stroke.id) > greatest_mm:
         return False
     length_mm = _core.flatten(stroke, 0.1)[-1, 2]
-    end = min(2 * half / max(length_mm, 1e-9), 0.5)
-    inside = np.interp(np.linspace(end, 1 - end, 101), *np.array(stroke.half_width).T)
-    return bool((inside >= brush.half_width(least_mm)).all())
+    end_share = min(2 * half_width / max(length_mm, 1e-9), 0.5)
+    inner_half_widths = np.interp(np.linspace(end_share, 1 - end_share, 101), *np.array(stroke.half_width).T)
+    return bool((inner_half_widths >= brush.half_width(least_mm)).all())

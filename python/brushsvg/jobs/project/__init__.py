@@ -1,4 +1,7 @@
-"""The project file, brushsvg.toml: brush, cell, paper, layers and options of all drawings in a folder."""
+"""The project file, brushsvg.toml: settings for all drawings in a folder.
+
+It has a brush, a cell, the paper, layers and options.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +19,19 @@ from .values import name_or_path, read_value
 
 NAME = "brushsvg.toml"
 FORMAT, VERSION = "brushsvg/project", 1
-MAX_BYTES = 1_000_000  # TOML of this size is read within seconds; a project needs some hundred bytes
-TOP_KEYS = {"brush": "brush", "cell": "cell", "paper": "sheet", "layers": "layer"}  # key: choice
-OF_ONE_DRAWING = ("input", "corrections")  # choices that no project can make
+MAX_BYTES = 1_000_000  # TOML of this size is read within seconds; a project file needs some hundred bytes
+# The choice that each top-level key makes.
+CHOICE_BY_TOP_KEY = {"brush": "brush", "cell": "cell", "paper": "sheet", "layers": "layer"}
+OF_ONE_DRAWING = ("input", "corrections")  # choices that a project file cannot make
 
 
 @dataclass(frozen=True)
 class Project:
-    """Settings that the drawings of a folder share, as a project file has them.
+    """Settings that the drawings of a folder share, as in a project file.
 
-    path: of the file. settings: values by the names of the keywords of `convert`; lengths in mm. A brush or cell is a
-    shipped name or a path, relative paths joined to the folder of the file.
+    path: the path of the file.
+    settings: values by the names of the keywords of `convert`; lengths in mm. A brush or cell is a shipped name or
+        a path, and relative paths are joined to the folder of the file.
     """
 
     path: str
@@ -40,15 +45,20 @@ class Project:
 
     @property
     def choices(self) -> dict[str, Any]:
-        """Keywords for `convert`, `check`, `compare` and `batch`; settings in a drawing take precedence over them."""
+        """Keywords for `convert`, `check`, `compare` and `batch`.
+
+        Settings in a drawing take precedence over them.
+        """
         return {**self.settings, "from_project": tuple(self.settings)}
 
 
 def find_project(drawing: str | os.PathLike[str]) -> Project | None:
     """Find and read the project file of a drawing, or return None if there is none.
 
-    drawing: its path, which need not exist, or a folder. The file is `brushsvg.toml` in the folder of the drawing, or
-    in the nearest folder above it. The search ends after your home folder, and after a folder that contains `.git`.
+    drawing: the path of the drawing, which need not exist, or of a folder.
+
+    The file is `brushsvg.toml` in the folder of the drawing, or in the nearest folder above it. The search ends
+    after your home folder, and after a folder that contains `.git`.
 
     Raises Error, as read_project does, for a file that is not valid.
     """
@@ -57,7 +67,7 @@ def find_project(drawing: str | os.PathLike[str]) -> Project | None:
 
 
 def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
-    """Find the path of the project file of a drawing, see find_project."""
+    """Find the path of the project file of a drawing, or None; see find_project."""
     need(drawing, (str, os.PathLike), "a path, which the drawing of a project is")
     try:
         folder = os.path.abspath(drawing)
@@ -79,8 +89,9 @@ def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
 def read_project(path: str | os.PathLike[str]) -> Project:
     """Read a project file.
 
-    Raises Error, with the path in `file` and the key in `where`, for a file that cannot be read, a key that is not
-    known, a value that the same option of the command line does not accept, and a brush or cell that does not exist.
+    Raises Error, with the path in `file` and the key in `where`, if the file cannot be read or a key is unknown. A
+    value that the same option of the command line refuses, and a brush or cell that does not exist, also raise
+    Error.
     """
     need(path, (str, os.PathLike), "the path of a project file")
     path = os.fspath(path)
@@ -89,30 +100,34 @@ def read_project(path: str | os.PathLike[str]) -> Project:
         if len(data) > MAX_BYTES:
             sentence = f"a project file has at most {MAX_BYTES} bytes, this one has {len(data)}"
             raise Error(sentence, value=len(data), range=(0, MAX_BYTES), code="file-too-large")
-        settings = _settings(toml_document(_text(data), "project"), os.path.dirname(path))
+        settings = _read_settings(toml_document(_decode_text(data), "project"), os.path.dirname(path))
     except Error as refusal:
         refusal.file = path
         raise
-    except ValueError:  # of a hexadecimal number, which Python reads but does not print
+    except ValueError:  # raised for a long hexadecimal number, which Python reads but does not print
         raise Error("a number has thousands of digits", file=path, code="not-toml") from None
     return Project(path, settings)
 
 
 def options() -> dict[str, str]:
     """Return the keys of [defaults], each with the name of its choice."""
-    from ..choices import CHOICES, NAMED_OTHERWISE
+    from ..choices import CHOICE_BY_FLAG, CHOICES
 
-    flags = {choice: flag for flag, choice in NAMED_OTHERWISE.items()}
-    top = {*TOP_KEYS.values(), *OF_ONE_DRAWING}
+    flags = {choice: flag for flag, choice in CHOICE_BY_FLAG.items()}
+    top = {*CHOICE_BY_TOP_KEY.values(), *OF_ONE_DRAWING}
     return {flags.get(name, name.replace("_", "-")): name for name in CHOICES if name not in top}
 
 
 def write_project(
     brush: str | None = None, cell: str | None = None, paper: str | None = None, speed: float | None = None
 ) -> str:
-    """Write a project file with a comment on each key. A key without a value is written as a comment.
+    """Write a project file with a comment on each key.
 
-    brush, cell: a shipped name, or a path relative to the file; paper: as `--sheet`; speed: mm/s.
+    A key without a value is written as a comment.
+
+    brush, cell: a shipped name, or a path relative to the file.
+    paper: as `--sheet`.
+    speed: mm/s.
     """
 
     def line(key: str, value, example) -> str:
@@ -142,7 +157,7 @@ def write_project(
     return "\n".join([*lines, ""])
 
 
-def _text(data: bytes) -> str:
+def _decode_text(data: bytes) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
@@ -150,8 +165,8 @@ def _text(data: bytes) -> str:
         raise Error(sentence, code="not-toml") from None
 
 
-def _settings(document: dict, folder: str) -> dict[str, object]:
-    from ..choices import Choices, checked
+def _read_settings(document: dict, folder: str) -> dict[str, object]:
+    from ..choices import Choices, check_choices
 
     if document.pop("format", None) != FORMAT:
         sentence = f'the file is not a project: it lacks the line format = "{FORMAT}"'
@@ -163,16 +178,19 @@ def _settings(document: dict, folder: str) -> dict[str, object]:
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):
         raise Error("defaults is written as a table, [defaults]", where="defaults", code="wrong-type")
-    known = options()
+    choice_by_key = options()
     for key in document:
-        _refuse_unknown(key, TOP_KEYS, known, "write it below [defaults]")
-    settings = {TOP_KEYS[key]: read_value(TOP_KEYS[key], value, key) for key, value in document.items()}
+        _refuse_unknown(key, CHOICE_BY_TOP_KEY, choice_by_key, "write it below [defaults]")
+    settings = {
+        CHOICE_BY_TOP_KEY[key]: read_value(CHOICE_BY_TOP_KEY[key], value, key)
+        for key, value in document.items()
+    }
     for key, value in defaults.items():
-        _refuse_unknown(key, known, TOP_KEYS, "write it above [defaults]", "defaults.")
-        settings[known[key]] = read_value(known[key], value, f"defaults.{key}")
+        _refuse_unknown(key, choice_by_key, CHOICE_BY_TOP_KEY, "write it above [defaults]", "defaults.")
+        settings[choice_by_key[key]] = read_value(choice_by_key[key], value, f"defaults.{key}")
     for kind in {"brush", "cell"} & {*settings}:
         settings[kind] = name_or_path(kind, settings[kind], folder)
-    checked(Choices(**settings))
+    check_choices(Choices(**settings))
     return settings
 
 

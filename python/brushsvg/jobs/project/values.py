@@ -1,4 +1,4 @@
-"""Values of a project file, read as the options of the command line read them."""
+"""Read values of a project file as the command line reads its options."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from ...units import length_mm, number, paper_mm, size_mm
 
 
 def read_value(choice: str, value: object, key: str) -> object:
-    """Read a value as the option of the command line does. Error with the key."""
-    from ..choices import ONE_OF
+    """Read a value as the option of the command line does.
+
+    Raises Error with the key.
+    """
+    from ..choices import CHOICE_VALUES
 
     try:
         if choice == "join":
@@ -20,15 +23,13 @@ def read_value(choice: str, value: object, key: str) -> object:
             return value
         if choice in ("layer", "skip_region", "skip_comment"):
             need(value, list, f"a list of texts, which {key} is")
-            return [_read(choice, _as_typed(each, key), key) for each in value]
-        text = _as_typed(value, key)
-        if choice in ONE_OF and text not in ONE_OF[choice]:
-            known = ONE_OF[choice]
-            sentence = (
-                f"{key} {text[:40]!r} is not known{did_you_mean(text, known)} Known are {', '.join(known)}"
-            )
+            return [_read_typed(choice, _format_as_typed(each, key), key) for each in value]
+        text = _format_as_typed(value, key)
+        if choice in CHOICE_VALUES and text not in CHOICE_VALUES[choice]:
+            allowed = CHOICE_VALUES[choice]
+            sentence = f"{key} {text[:40]!r} is not known{did_you_mean(text, allowed)} Known are {', '.join(allowed)}"
             raise Error(sentence, code="choice-unknown")
-        return _read(choice, text, key)
+        return _read_typed(choice, text, key)
     except Error as refusal:
         sentence = refusal.sentence if key in refusal.sentence else f"{key}: {refusal.sentence}"
         raise Error(
@@ -36,7 +37,7 @@ def read_value(choice: str, value: object, key: str) -> object:
         ) from None
 
 
-def _as_typed(value: object, key: str) -> str:
+def _format_as_typed(value: object, key: str) -> str:
     """Return the text that a user would type for a value of TOML."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return str(value)[:400]
@@ -44,48 +45,51 @@ def _as_typed(value: object, key: str) -> str:
     return str(value)
 
 
-def _read(choice: str, text: str, key: str) -> object:
-    from ..choices import RANGES, colour_of
+def _read_typed(choice: str, text: str, key: str) -> object:
+    from ..choices import CHOICE_RANGES, read_colour
 
     readers: dict[str, Callable[[str], object]] = {
         "sheet": paper_mm,
         "fit": size_mm,
-        "origin": lambda text: _lengths(text, 2, "a point, as 20,15"),
-        "skip_region": _region,
-        "colour": colour_of,
-        "scale": _factor,
+        "origin": lambda text: _read_lengths(text, 2, "a point, as 20,15"),
+        "skip_region": _read_region,
+        "colour": read_colour,
+        "scale": _read_factor,
         "paint_speed": number,
     } | dict.fromkeys(("width", "lag", "tolerance", "z_offset", "paper_z"), length_mm)
-    found = readers.get(choice, _words)(text)
-    if choice in RANGES:
-        return need_number(found, key, *RANGES[choice])
-    return found
+    value = readers.get(choice, _read_words)(text)
+    if choice in CHOICE_RANGES:
+        return need_number(value, key, *CHOICE_RANGES[choice])
+    return value
 
 
-def _words(text: str) -> str:
+def _read_words(text: str) -> str:
     if not text.strip():
         raise Error("the text is empty", code="not-text")
     return text
 
 
-def _factor(text: str) -> float:
+def _read_factor(text: str) -> float:
     return number(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
 
 
-def _lengths(text: str, count: int, shape: str) -> tuple[float, ...]:
+def _read_lengths(text: str, count: int, shape: str) -> tuple[float, ...]:
     parts = text.split(",")
     if len(parts) != count:
         raise Error(f"{text[:24]!r} is not {shape}", code="wrong-type")
     return tuple(need_number(length_mm(part), "a number of it", -1e6, 1e6) for part in parts)
 
 
-def _region(text: str) -> tuple[float, ...]:
-    x0, y0, x1, y1 = _lengths(text, 4, "a region, as 0,0,30,20")
+def _read_region(text: str) -> tuple[float, ...]:
+    x0, y0, x1, y1 = _read_lengths(text, 4, "a region, as 0,0,30,20")
     return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
 
 
 def name_or_path(kind: str, text: str, folder: str) -> str:
-    """Return a shipped name as it is, and a file with the folder of the project. Error if there is neither."""
+    """Return a shipped name as it is, and a file joined to the folder of the project.
+
+    Raises Error if there is neither.
+    """
     from ...machine.cells.cell_file import cell_names
     from ...model.library import brush_names
 
@@ -102,9 +106,11 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
             code="file-unreadable",
             advice="correct the path, which counts from the folder of the project file",
         )
-    own = f"{text}{suffix}"
+    file_name = f"{text}{suffix}"
     advice = (
-        f"{own} is in this folder: write it with its ending" if _is_file(os.path.join(folder, own)) else ""
+        f"{file_name} is in this folder: write it with its ending"
+        if _is_file(os.path.join(folder, file_name))
+        else ""
     )
     raise Error(
         f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "

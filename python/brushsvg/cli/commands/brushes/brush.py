@@ -9,9 +9,9 @@ from ....errors import Error
 from ....files import read_bytes
 from ....model.describe import LAWS, one_line, page, reach
 from ....model.library import brush_like, brush_names, find_brush, unknown_keys
-from ...console import about, print_text, warn
-from ...steps.ask_measurements import ask_measurements, few_depths
-from ...steps.output_places import check_places, print_list, suffix_of, write
+from ...console import print_text, refuse_errors, warn
+from ...steps.ask_measurements import ask_measurements, warn_of_few_depths
+from ...steps.output_places import check_outputs, print_list, suffix_of, write_outputs
 
 
 def brush_list(_args) -> None:
@@ -19,15 +19,15 @@ def brush_list(_args) -> None:
 
 
 def brush_show(args) -> None:
-    with about(args.input):
+    with refuse_errors(args.input):
         print_text(page(find_brush(args.input)) + "\n")
 
 
 def brush_check(args) -> None:
-    with about(args.input):
+    with refuse_errors(args.input):
         brush = find_brush(args.input)
-        odd = [*unknown_keys(brush), *remarks(brush)]
-    warn(args.input, odd)
+        notices = [*unknown_keys(brush), *remarks(brush)]
+    warn(args.input, notices)
     print_text(f"{args.input}: brush {brush.name} can be used\n")
 
 
@@ -37,14 +37,14 @@ def brush_new(args) -> None:
 
     path = args.output
     name = os.path.splitext(os.path.basename(path))[0]
-    check_places(args, path, sources=[path])
+    check_outputs(args, path, sources=[path])
     if args.like is None and args.lag is None and not (args.lag_at or args.width_at or args.widths):
         args.lag_at, args.width_at = ask_measurements(path)
     widths = list(args.width_at)
     if args.widths:
-        with about(args.widths):
+        with refuse_errors(args.widths):
             widths += read_widths(read_bytes(args.widths).decode("utf-8", "replace"))
-    with about(path):
+    with refuse_errors(path):
         if name in brush_names():
             raise Error(
                 f"a brush named {name} comes along: give yours another name", "name", code="name-taken"
@@ -55,22 +55,22 @@ def brush_new(args) -> None:
         else:
             brush = new_brush(name, args.lag_at or args.lag, widths, args.depth_max, args.speed or 25.0)
         text = write_brush(brush)
-    warn(path, few_depths(args, widths))
-    write(args, {path: text}, sources=[path])
+    warn(path, warn_of_few_depths(args, widths))
+    write_outputs(args, {path: text}, sources=[path])
     print_text(f"{path}: {reach(brush)}\n")
     if args.like is not None:
         print_text(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
         return
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
-    deepest, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
-    if deepest > measured and "half_width" not in assumed:
+    deepest_mm, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
+    if deepest_mm > measured and "half_width" not in assumed:
         assumed.append(
-            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest):.1f} mm at {deepest:g} mm)"
+            f"widths beyond {measured:g} mm of depth ({2 * brush.half_width(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
         )
-    farthest = max((depth for depth, _ in args.lag_at), default=deepest)
-    if deepest > farthest and "lag" not in assumed:
+    lag_measured_mm = max((depth for depth, _ in args.lag_at), default=deepest_mm)
+    if deepest_mm > lag_measured_mm and "lag" not in assumed:
         assumed.append(
-            f"lags beyond {farthest:g} mm of depth ({brush.lag(deepest):.1f} mm at {deepest:g} mm)"
+            f"lags beyond {lag_measured_mm:g} mm of depth ({brush.lag(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
         )
     print_text(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
 
@@ -78,7 +78,7 @@ def brush_new(args) -> None:
 def brush_plot(args) -> None:
     from ....model.plot import brush_picture
 
-    check_places(args, args.output)
-    with about(args.input):
+    check_outputs(args, args.output)
+    with refuse_errors(args.input):
         picture = brush_picture(find_brush(args.input), suffix_of(args.output))
-    write(args, {args.output: picture})
+    write_outputs(args, {args.output: picture})

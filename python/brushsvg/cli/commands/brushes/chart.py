@@ -1,4 +1,4 @@
-"""brushsvg chart: the strokes that a brush is calibrated from."""
+"""brushsvg chart: write the strokes that a brush is calibrated from."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from .... import _core
 from ....errors import Notice
-from ....jobs.conversion import time_written_s
+from ....jobs.conversion import estimate_output_time_s
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine import preflight, writer
 from ....machine.paint_reload import in_loads
@@ -14,12 +14,18 @@ from ....machine.program import Job
 from ....model.library import find_brush
 from ....text_summary import summarized
 from ...arguments.values import EDGE_NOISE_MM
-from ...console import RefusedError, about, print_text, stage
-from ...steps.options import brush_of, exact_cell, settled, typed, warn_of_cell
-from ...steps.output_places import check_places, suffix_of, write
+from ...console import RefusedError, print_text, refuse_errors, stage
+from ...steps.options import (
+    apply_drawing_settings,
+    load_brush,
+    load_exact_cell,
+    make_choices,
+    warn_about_cell,
+)
+from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 
-def _with_sheet(problem: Notice) -> Notice:
+def _advise_smaller_sheet(problem: Notice) -> Notice:
     is_too_large = problem.code == "out-of-box" and problem.about != "z"
     return replace(problem, advice="--sheet WxH makes a smaller chart") if is_too_large else problem
 
@@ -31,32 +37,38 @@ def chart_file(args) -> None:
     from ....calibration.chart.layout import chart
     from ....calibration.chart.page import chart_page, chart_pdf
 
-    check_places(args, args.output, args.page, args.chart)
-    chosen = typed(args)
+    check_outputs(args, args.output, args.page, args.chart)
+    chosen = make_choices(args)
     if args.drawing:
-        chosen = settled(chosen, args.drawing, alone=True)
-    brush = brush_of(chosen.brush) or find_brush(DEFAULT_BRUSH)
-    suffix, cell = suffix_of(args.output), exact_cell(chosen.cell)
-    with about(args.output):
+        chosen = apply_drawing_settings(chosen, args.drawing, alone=True)
+    brush = load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
+    suffix, cell = suffix_of(args.output), load_exact_cell(chosen.cell)
+    with refuse_errors(args.output):
         if suffix != ".json":
             writer.post_for(suffix, cell)
         stage("laying out the chart")
-        made = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
-        loads, marks = in_loads(made.plan, brush, cell), _core.simulate(made.plan, brush)
+        laid_out = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
+        loads, marks = in_loads(laid_out.plan, brush, cell), _core.simulate(laid_out.plan, brush)
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.look(loads, brush, marks, cell, tolerance_mm, Job(args.z_offset))
         if walk.problems:
-            raise RefusedError(args.output, summarized([_with_sheet(each) for each in walk.problems]))
+            raise RefusedError(
+                args.output, summarized([_advise_smaller_sheet(each) for each in walk.problems])
+            )
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
-        files = writer.in_files(args.output, writer.encoded(suffix, made.plan, walk, brush, title))
+        files = writer.in_files(args.output, writer.encoded(suffix, laid_out.plan, walk, brush, title))
     if args.page:
-        pdf = suffix_of(args.page) == ".pdf"
-        with about(args.page):
-            files[args.page] = chart_pdf(made) if pdf else chart_page(made).encode()
+        is_pdf = suffix_of(args.page) == ".pdf"
+        with refuse_errors(args.page):
+            files[args.page] = chart_pdf(laid_out) if is_pdf else chart_page(laid_out).encode()
     if args.chart:
-        files[args.chart] = write_chart(made).encode()
-    warn_of_cell(args, cell)
-    write(args, files, len(loads.loads), time_written_s(suffix, made.plan, walk, brush, cell))
+        files[args.chart] = write_chart(laid_out).encode()
+    warn_about_cell(args, cell)
+    write_outputs(
+        args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell)
+    )
     print_text(
-        dab_chart_report(made, brush) if args.dabs else chart_report(made, brush, args.noise or EDGE_NOISE_MM)
+        dab_chart_report(laid_out, brush)
+        if args.dabs
+        else chart_report(laid_out, brush, args.noise or EDGE_NOISE_MM)
     )

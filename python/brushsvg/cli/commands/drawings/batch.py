@@ -1,4 +1,7 @@
-"""brushsvg batch: many drawings, each to its program, its picture and a row of a table."""
+"""brushsvg batch: convert many drawings.
+
+Each drawing gets a program, a picture and a row of a table.
+"""
 
 from __future__ import annotations
 
@@ -8,25 +11,25 @@ from ....errors import Notice
 from ....jobs.choices import CHOICES
 from ....text_summary import summarized
 from ....units import clock
-from ...console import RefusedError, about, clear_stage, say, stage, warn
-from ...steps.options import typed
-from .text import font_of
+from ...console import RefusedError, clear_stage, refuse_errors, say, stage, warn
+from ...steps.options import make_choices
+from .text import read_font
 
-OF_ONE = ("input", "corrections")  # choices that are of one drawing
+SINGLE_DRAWING_CHOICES = ("input", "corrections")  # choices that belong to one drawing
 
 
 def batch_files(args) -> None:
-    from ....jobs.batch.items import drawings, words
+    from ....jobs.batch.items import list_drawings, list_words
     from ....jobs.batch.run import batch
 
-    with about(args.font or ""):  # errors about the words name their file
-        set_in_font = (
-            words(args.words, font_of(args.font), args.size or 20.0, args.sheet) if args.words else []
+    with refuse_errors(args.font or ""):  # errors about the words name their file themselves
+        word_items = (
+            list_words(args.words, read_font(args.font), args.size or 20.0, args.sheet) if args.words else []
         )
-    chosen = typed(args, input=None)
-    with about(args.output):
-        done = batch(
-            [*drawings(args.inputs), *set_in_font],
+    chosen = make_choices(args, input=None)
+    with refuse_errors(args.output):
+        result = batch(
+            [*list_drawings(args.inputs), *word_items],
             args.output,
             jobs=args.jobs,
             cluster=args.cluster,
@@ -35,34 +38,36 @@ def batch_files(args) -> None:
             lenient=args.lenient,
             parquet=args.parquet,
             progress=stage,
-            **{name: getattr(chosen, name) for name in CHOICES if name not in OF_ONE},
+            **{name: getattr(chosen, name) for name in CHOICES if name not in SINGLE_DRAWING_CHOICES},
             from_project=chosen.from_project,
         )
     clear_stage()
-    notices = [replace(each, where=_where(row, each.where)) for row in done.rows for each in row.notices]
+    notices = [
+        replace(each, where=_format_place(row, each.where)) for row in result.rows for each in row.notices
+    ]
     outdated = "removed: it was made from an earlier version of the drawing"
-    notices += [Notice(path, outdated, code="outdated-removed") for path in done.removed]
+    notices += [Notice(path, outdated, code="outdated-removed") for path in result.removed]
     warn(args.output, notices)
     if not args.quiet:
-        say(args.output, _said(done))
-    if done.refused:
-        why = [Notice(_where(row, row.where), row.sentence, code=row.code) for row in done.refused]
+        say(args.output, _summarize(result))
+    if result.refused:
+        why = [Notice(_format_place(row, row.where), row.sentence, code=row.code) for row in result.refused]
         raise RefusedError(args.output, summarized(why))
 
 
-def _where(row, element: str) -> str:
+def _format_place(row, element: str) -> str:
     return ": ".join(filter(None, (row.source, element)))
 
 
-def _said(done) -> str:
-    painted = [row.figures for row in done.rows if row.figures]
-    known = [f"{len(done.rows)} drawing{'s' * (len(done.rows) != 1)}"]
-    known += [f"{done.resumed} of them done before"] if done.resumed else []
-    known += [f"{len(done.refused)} refused"] if done.refused else []
-    seconds = [each.time_s for each in painted if each.time_s is not None]
-    known += [f"all take about {clock(sum(seconds))}"] if seconds else []
-    overlaps = [each.overlap for each in painted if each.overlap is not None]
+def _summarize(result) -> str:
+    figures = [row.figures for row in result.rows if row.figures]
+    facts = [f"{len(result.rows)} drawing{'s' * (len(result.rows) != 1)}"]
+    facts += [f"{result.resumed} of them done before"] if result.resumed else []
+    facts += [f"{len(result.refused)} refused"] if result.refused else []
+    seconds = [each.time_s for each in figures if each.time_s is not None]
+    facts += [f"all take about {clock(sum(seconds))}"] if seconds else []
+    overlaps = [each.overlap for each in figures if each.overlap is not None]
     if overlaps:
         mean = sum(overlaps) / len(overlaps)
-        known += [f"overlap {mean:.3f} on average, {min(overlaps):.3f} at least"]
-    return f"written; {', '.join(known)}"
+        facts += [f"overlap {mean:.3f} on average, {min(overlaps):.3f} at least"]
+    return f"written; {', '.join(facts)}"

@@ -1,4 +1,4 @@
-"""brushsvg check: a program read back, simulated, and held against what it should paint."""
+"""brushsvg check: read a program back, simulate it, and compare it."""
 
 from __future__ import annotations
 
@@ -6,71 +6,73 @@ import json
 
 from ....errors import Error
 from ....jobs import outputs, prediction
-from ....jobs.checking import Check, checked
+from ....jobs.checking import Check, check_program
 from ....reporting.report_text import AGAINST
 from ....show.evaluation import report
 from ....text_summary import summarized
 from ....units import clock
-from ...console import RefusedError, about, print_text, stage, warn
-from ...steps.options import typed
-from ...steps.output_places import check_places, suffix_of, write
+from ...console import RefusedError, print_text, refuse_errors, stage, warn
+from ...steps.options import make_choices
+from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 RUNNABLE = "OK to run: no problem found"
 
 
 def check_file(args) -> None:
-    check_places(args, args.picture)
-    with about(""):  # errors name their file
-        done = checked(args.program, typed(args), stage, warn)
-    with about(args.program):
-        if done.is_foreign and args.lenient:
+    check_outputs(args, args.picture)
+    with refuse_errors(""):  # errors name their file themselves
+        result = check_program(args.program, make_choices(args), stage, warn)
+    with refuse_errors(args.program):
+        if result.is_foreign and args.lenient:
             sentence = "brushsvg did not write it: --lenient would change nothing"
             raise Error(sentence, code="flag-without-effect")
-        if done.work is None and args.picture:
+        if result.work is None and args.picture:
             raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
         if args.picture:
-            outlined = prediction.outlined(done.marks, done.work.brush, stage)
-            picture = outputs.picture(suffix_of(args.picture), done.work, outlined)
-            overlap = None if done.is_foreign else done.figures.total.overlap
-            write(args, {args.picture: picture}, len(done.plan.passes), done.time_s, overlap)
-    if done.job == "painting":
-        print_text(report.as_text(".json" if args.json else ".txt", done.figures, args.details))
+            outlined = prediction.trace_mark_outlines(result.marks, result.work.brush, stage)
+            picture = outputs.picture(suffix_of(args.picture), result.work, outlined)
+            overlap = None if result.is_foreign else result.figures.total.overlap
+            write_outputs(args, {args.picture: picture}, len(result.plan.passes), result.time_s, overlap)
+    if result.job == "painting":
+        print_text(report.as_text(".json" if args.json else ".txt", result.figures, args.details))
     elif args.json:
-        print_text(json.dumps(_in_json(done)) + "\n")
+        print_text(json.dumps(_make_json(result)) + "\n")
     else:
-        print_text(f"{args.program}: {_does(done)}; takes about {clock(done.time_s)}\n")
-    if done.problems:
-        raise RefusedError(args.program, summarized(list(done.problems)))
+        print_text(f"{args.program}: {_describe_setup_job(result)}; takes about {clock(result.time_s)}\n")
+    if result.problems:
+        raise RefusedError(args.program, summarized(list(result.problems)))
     if not args.json:
-        print_text(f"{args.program}: {_allowed(done)}\n")
+        print_text(f"{args.program}: {_describe_outcome(result)}\n")
 
 
-def _allowed(done: Check) -> str:
-    if done.is_foreign:
+def _describe_outcome(result: Check) -> str:
+    if result.is_foreign:
         return (
-            f"brushsvg did not write it; with brush {done.work.brush.name} it keeps the limits that are checked: "
+            f"brushsvg did not write it; with brush {result.work.brush.name} it keeps the limits that are checked: "
             "depth, speed, rapid moves while the brush touches, the sheet, the workspace"
         )
-    if done.figures is not None and done.figures.verdict.startswith(AGAINST):
+    if result.figures is not None and result.figures.verdict.startswith(AGAINST):
         return "it breaks no limit, but its paint is not what the drawing needs: read the verdict above"
-    is_alone = not done.is_compared and done.job in ("painting", "border")
+    is_alone = not result.is_compared and result.job in ("painting", "border")
     return RUNNABLE + ("; it was not compared with a drawing" if is_alone else "")
 
 
-def _does(done: Check) -> str:
-    """What a program before the first stroke does."""
-    if done.job == "border":
-        left, bottom, right, top = done.border_mm
+def _describe_setup_job(result: Check) -> str:
+    """Describe what a program before the first stroke does."""
+    if result.job == "border":
+        left, bottom, right, top = result.border_mm
         return (
             f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
         )
-    if done.job == "first-run":
-        does = "goes round the sheet in the air, touches it at four points, strokes at heights from {:g} to {:g} mm"
-        return does.format(*done.heights_mm)
-    highest, lowest, step = done.heights_mm
+    if result.job == "first-run":
+        template = "goes round the sheet in the air, touches it at four points, strokes at heights from {:g} to {:g} mm"
+        return template.format(*result.heights_mm)
+    highest, lowest, step = result.heights_mm
     return f"strokes at heights from {highest:g} to {lowest:g} mm, {step:g} mm apart"
 
 
-def _in_json(done: Check) -> dict:
-    made = {"job": done.job, "time_s": round(done.time_s, 3)}
-    return made | ({"border_mm": done.border_mm} if done.border_mm else {"heights_mm": done.heights_mm})
+def _make_json(result: Check) -> dict:
+    common = {"job": result.job, "time_s": round(result.time_s, 3)}
+    return common | (
+        {"border_mm": result.border_mm} if result.border_mm else {"heights_mm": result.heights_mm}
+    )

@@ -1,4 +1,4 @@
-"""brushsvg demo: a first picture, from a word that comes with the package."""
+"""brushsvg demo: draw a first picture from a word that is part of the package."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ import sys
 from pathlib import Path
 
 from ...console import print_text, stage
-from ...steps.output_places import check_places, write
+from ...steps.output_places import check_outputs, write_outputs
 
-WORD = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
+DEMO_DRAWING = Path(__file__).parents[3] / "data" / "drawings" / "vincent.svg"
 
 
 def demo_picture(args) -> None:
-    """Write the picture of the word, print its path, and open it where there is a display."""
-    check_places(args, args.output)
+    """Write the picture of the word, print its path, and open it.
+
+    The picture is opened only if there is a display.
+    """
+    check_outputs(args, args.output)
     from ....jobs import prediction
     from ....jobs.comparison_picture import TITLES, comparison_png
     from ....jobs.options import Options
@@ -23,34 +26,36 @@ def demo_picture(args) -> None:
     from ....show.evaluation import report
 
     stage("painting")
-    works = {how: preparation.prepare(WORD, Options(compensation=how)) for how in TITLES}
+    works = {how: preparation.prepare(DEMO_DRAWING, Options(compensation=how)) for how in TITLES}
     marks = {how: prediction.predict(work) for how, work in works.items()}
     totals = {
         how: report.measure(report.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
         for how, work in works.items()
     }
-    made = comparison_png(works, marks, totals)
-    write(args, {args.output: made}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap)
+    picture = comparison_png(works, marks, totals)
+    write_outputs(
+        args, {args.output: picture}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap
+    )
     print_text(f"{os.path.abspath(args.output)}\n")
     if not args.no_open:
         open_picture(args.output)
 
 
 def open_picture(path: str) -> None:
-    """Show a picture in the viewer of the desktop. Nothing happens where there is no desktop."""
+    """Show a picture in the viewer of the desktop, if there is a desktop."""
     if sys.platform == "win32":
         os.startfile(path)
     elif sys.platform == "darwin":
-        _start("open", path)
+        _start_viewer("open", path)
     elif os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        _start("xdg-open", path)
+        _start_viewer("xdg-open", path)
 
 
-def _start(program: str, path: str) -> None:
+def _start_viewer(program: str, path: str) -> None:
     nothing = subprocess.DEVNULL
     try:
         subprocess.Popen(
             [program, path], stdin=nothing, stdout=nothing, stderr=nothing, start_new_session=True
         )
-    except OSError:  # the path was printed
+    except OSError:  # the path of the picture was printed already
         return

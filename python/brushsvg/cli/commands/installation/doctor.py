@@ -1,4 +1,4 @@
-"""brushsvg doctor: what is installed, and what is missing for what."""
+"""brushsvg doctor: list what is installed, and what is missing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ...console import RefusedError, print_text
 from ...install_plugin import FOLDER, NOTE, SOURCE, extensions_folder, own_program
 from ..drawings.text import SINGLE_LINE_FONTS
 
-PURPOSE = {  # of each extra that a user may want
+PURPOSE = {  # the purpose of each extra that a user may want
     "text": "text in TrueType and OpenType fonts",
     "plot": "pictures of brush laws, pages as PDF",
     "arm": "the joints of robot arms",
@@ -25,74 +25,84 @@ PURPOSE = {  # of each extra that a user may want
     "parquet": "the table of batch as Parquet",
     "completion": "commands completed by the shell",
 }
-_WAIT_S = 20  # for Inkscape's version: a Snap starts slowly the first time
+_MAX_INKSCAPE_WAIT_S = 20  # seconds to wait for the version of Inkscape: a Snap starts slowly the first time
 
 
 def list_installation(args) -> None:
-    """Print the list. RefusedError where a library is missing that brushsvg cannot work without."""
-    needed, extras = _requirements()
-    problems = {package: _problem(package, least) for package, least in needed.items()}
+    """Print the list of installed and missing parts.
+
+    Raises RefusedError if a library is missing that brushsvg needs.
+    """
+    needed, extras = _read_requirements()
+    problems = {package: _find_version_problem(package, minimum) for package, minimum in needed.items()}
     unusable = {package: problem for package, problem in problems.items() if problem}
     sections = {
-        "Program": _program(),
+        "Program": _list_program(),
         "Libraries": ((package, problems[package] or metadata.version(package)) for package in needed),
-        "Extras": _extras(extras),
-        "Fonts": _fonts(),
-        "Inkscape": _inkscape(),
+        "Extras": _list_extras(extras),
+        "Fonts": _list_fonts(),
+        "Inkscape": _list_inkscape(),
     }
     for title, rows in sections.items():
-        print_text(f"{title}\n" + "".join(f"  {name:<23} {what}\n" for name, what in rows))
+        print_text(f"{title}\n" + "".join(f"  {name:<23} {description}\n" for name, description in rows))
     if unusable:
-        what = ", ".join(f"{package} {problem}" for package, problem in unusable.items())
-        why = Notice("", f"{what}: install with  {command_to_add(*unusable)}", code="package-missing")
+        description = ", ".join(f"{package} {problem}" for package, problem in unusable.items())
+        why = Notice("", f"{description}: install with  {command_to_add(*unusable)}", code="package-missing")
         raise RefusedError("", [why])
 
 
-def _program() -> Iterator[tuple[str, str]]:
+def _list_program() -> Iterator[tuple[str, str]]:
     yield "brushsvg", f"{metadata.version('brushsvg')}  {own_program() or Path(__file__).parents[3]}"
     yield "Python", f"{platform.python_version()}  {sys.executable}"
     yield "System", f"{platform.platform()}, {os.cpu_count()} processors"
 
 
-def _requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Packages with their least versions: those always needed, and those of each extra in PURPOSE."""
+def _read_requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
+    """Return packages with their minimum versions.
+
+    The first dict has the packages that are always needed, the second one those of each extra in PURPOSE.
+    """
     needed: dict[str, str] = {}
     extras: dict[str, dict[str, str]] = {name: {} for name in PURPOSE}
     for line in metadata.requires("brushsvg") or []:
-        found = re.match(r"([\w.-]+)\s*>=([\d.]+)(?:\s*;.*extra == [\"'](\w+)[\"'])?", line)
-        if found and found[3] in extras:
-            extras[found[3]][found[1]] = found[2]
-        elif found and not found[3]:
-            needed[found[1]] = found[2]
+        match = re.match(r"([\w.-]+)\s*>=([\d.]+)(?:\s*;.*extra == [\"'](\w+)[\"'])?", line)
+        if match and match[3] in extras:
+            extras[match[3]][match[1]] = match[2]
+        elif match and not match[3]:
+            needed[match[1]] = match[2]
     return needed, extras
 
 
-def _problem(package: str, least: str) -> str:
+def _find_version_problem(package: str, minimum: str) -> str:
     try:
-        found = metadata.version(package)
+        installed = metadata.version(package)
     except metadata.PackageNotFoundError:
         return "is missing"
-    return f"{found} is older than {least}" if _numbers(found) < _numbers(least) else ""
+    return (
+        f"{installed} is older than {minimum}" if _parse_version(installed) < _parse_version(minimum) else ""
+    )
 
 
-def _numbers(version: str) -> list[int]:
+def _parse_version(version: str) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", version.partition("+")[0])[:3]]
 
 
-def _extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
+def _list_extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
     for name, packages in extras.items():
-        lacking = [package for package, least in packages.items() if _problem(package, least)]
-        if lacking:
-            yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*lacking)}"
+        missing = [
+            package for package, minimum in packages.items() if _find_version_problem(package, minimum)
+        ]
+        if missing:
+            yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*missing)}"
         else:
             versions = ", ".join(f"{package} {metadata.version(package)}" for package in packages)
             yield name, f"{versions}  ({PURPOSE[name]})"
 
 
-def _fonts() -> Iterator[tuple[str, str]]:
-    found = sorted(path.stem for path in SINGLE_LINE_FONTS.glob("*.svg"))
-    if found:
-        yield "single-line fonts", f"{len(found)} in {SINGLE_LINE_FONTS}, such as {found[0]}"
+def _list_fonts() -> Iterator[tuple[str, str]]:
+    font_names = sorted(path.stem for path in SINGLE_LINE_FONTS.glob("*.svg"))
+    if font_names:
+        yield "single-line fonts", f"{len(font_names)} in {SINGLE_LINE_FONTS}, such as {font_names[0]}"
     else:
         yield (
             "single-line fonts",
@@ -100,41 +110,48 @@ def _fonts() -> Iterator[tuple[str, str]]:
         )
 
 
-def _inkscape() -> Iterator[tuple[str, str]]:
+def _list_inkscape() -> Iterator[tuple[str, str]]:
     program = shutil.which("inkscape")
     if program is None:
         yield "program", "not on PATH; only the live preview and *Save as robot program* need it"
     else:
-        yield "program", f"{_version(program)}  {program}"
-        if kind := sandbox(program):
+        yield "program", f"{_read_inkscape_version(program)}  {program}"
+        if kind := find_sandbox(program):
             yield "sandbox", f"{kind} Inkscape cannot start programs outside: see docs/howto/inkscape.md"
     folder = extensions_folder() / FOLDER
     if not (folder / "brushsvg_program.py").is_file():
-        zipped = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"  # a wheel does not hold it
-        yield "extension", f"not installed. Add it with  brushsvg setup inkscape{zipped}"
+        # A wheel does not contain the extension.
+        zip_argument = "" if SOURCE.is_dir() else " brushsvg-inkscape.zip"
+        yield "extension", f"not installed. Add it with  brushsvg setup inkscape{zip_argument}"
         return
     note = folder / NOTE
-    runs = os.fsdecode(note.read_bytes()).strip() if note.is_file() else ""
+    noted_program = os.fsdecode(note.read_bytes()).strip() if note.is_file() else ""
     state = (
-        "" if not runs or shutil.which(runs) else ", which is no longer there: install the extension again"
+        ""
+        if not noted_program or shutil.which(noted_program)
+        else ", which is no longer there: install the extension again"
     )
-    yield "extension", f"{folder}" + (f", runs {runs}{state}" if runs else "")
+    yield "extension", f"{folder}" + (f", runs {noted_program}{state}" if noted_program else "")
 
 
-def sandbox(program: str) -> str:
-    """ "a Snap's" or "a Flatpak's" by where the program is, empty for any other."""
+def find_sandbox(program: str) -> str:
+    """Return "a Snap's" or "a Flatpak's" by the path of the program, otherwise ""."""
     real = os.path.realpath(program)
     if program.startswith("/snap/") or real.startswith("/snap/") or os.path.basename(real) == "snap":
         return "a Snap's"
     return "a Flatpak's" if "/flatpak/" in real else ""
 
 
-def _version(program: str) -> str:
+def _read_inkscape_version(program: str) -> str:
     try:
-        done = subprocess.run(
-            [program, "--version"], capture_output=True, text=True, timeout=_WAIT_S, stdin=subprocess.DEVNULL
+        process = subprocess.run(
+            [program, "--version"],
+            capture_output=True,
+            text=True,
+            timeout=_MAX_INKSCAPE_WAIT_S,
+            stdin=subprocess.DEVNULL,
         )
     except (OSError, subprocess.TimeoutExpired, UnicodeDecodeError):
         return "does not start"
-    found = re.search(r"Inkscape \S+", done.stdout)
-    return found[0] if found else "does not say its version"
+    match = re.search(r"Inkscape \S+", process.stdout)
+    return match[0] if match else "does not say its version"

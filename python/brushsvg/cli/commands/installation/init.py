@@ -1,4 +1,4 @@
-"""brushsvg init: four questions, and the project file with their answers."""
+"""brushsvg init: ask four questions, and write the project file."""
 
 from __future__ import annotations
 
@@ -14,48 +14,53 @@ from ....machine.cells.cell_file import DEFAULT_CELL, cell_names, find_cell
 from ....machine.posts import POSTS
 from ....model.library import brush_names, find_brush
 from ...arguments import values
-from ...console import RefusedError, about, print_text, say
+from ...console import RefusedError, print_text, refuse_errors, say
 from ...steps.ask_measurements import can_answer
-from ...steps.output_places import check_places, write
+from ...steps.output_places import check_outputs, write_outputs
 
 NOT_MEASURED = "none"
-PAPER = "a4"
+DEFAULT_PAPER = "a4"
 
 
 def init_project(args) -> None:
-    """Ask for what no flag gives, and write the file. Without a terminal, what no flag gives has its default."""
-    check_places(args, args.output, sources=[args.output])
+    """Ask for settings without a flag, and write the project file.
+
+    Without a terminal, settings without a flag have their defaults.
+    """
+    check_outputs(args, args.output, sources=[args.output])
     folder = os.path.dirname(os.path.abspath(args.output))
-    with about(""):  # errors name the brush or cell
-        cell = _cell(args.cell, folder) if args.cell else None
-        brush = _brush(args.brush, folder) if args.brush else None
+    with refuse_errors(""):  # errors name the brush or cell themselves
+        cell = _read_cell(args.cell, folder) if args.cell else None
+        brush = _read_brush(args.brush, folder) if args.brush else None
     paper, speed = args.sheet, args.paint_speed
     if can_answer(args):
         if cell is None:
-            for line in _machines():
+            for line in _list_machines():
                 say(line)
-            cell = _ask(f"Machine, a name or a cell.toml [{DEFAULT_CELL}]: ", DEFAULT_CELL, folder, _cell)
+            cell = _ask(
+                f"Machine, a name or a cell.toml [{DEFAULT_CELL}]: ", DEFAULT_CELL, folder, _read_cell
+            )
         if args.brush is None:
             say(f"Brushes: {', '.join(brush_names())}, or your own brush.json")
             brush = _ask(
                 f"Brush, a name, a file, or {NOT_MEASURED} if it is not measured yet [{NOT_MEASURED}]: ",
                 NOT_MEASURED,
                 folder,
-                _brush,
+                _read_brush,
             )
         if paper is None:
             say(f"Papers: {', '.join(values.SHEETS_MM)}, or a size such as 300x200mm")
-            paper = _ask(f"Paper [{PAPER}]: ", PAPER, folder, _paper)
+            paper = _ask(f"Paper [{DEFAULT_PAPER}]: ", DEFAULT_PAPER, folder, _read_paper)
         if speed is None:
-            speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, _speed)
-    text = write_project(brush or None, cell, paper or PAPER, speed)
-    write(args, {args.output: text}, sources=[args.output])
+            speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, _read_speed)
+    text = write_project(brush or None, cell, paper or DEFAULT_PAPER, speed)
+    write_outputs(args, {args.output: text}, sources=[args.output])
     if not args.quiet:
-        print_text("".join(f"{line}\n" for line in _next(brush)))
+        print_text("".join(f"{line}\n" for line in _list_next_steps(brush)))
 
 
-def _machines() -> list[str]:
-    """Return a line of shipped cells for each robot language."""
+def _list_machines() -> list[str]:
+    """Return a line with the shipped cells of each robot language."""
     by_title: dict[str, list[str]] = {}
     for name in cell_names():
         by_title.setdefault(POSTS[find_cell(name).language].title, []).append(name)
@@ -63,7 +68,10 @@ def _machines() -> list[str]:
 
 
 def _ask(question: str, default: str, folder: str, read: Callable[[str, str], object]):
-    """Ask until the answer can be read; an empty answer is the default. Refuse where the answers end."""
+    """Ask until the answer can be read. An empty answer is the default.
+
+    Raises RefusedError if the answers end too early.
+    """
     while True:
         sys.stderr.write(question)
         sys.stderr.flush()
@@ -77,39 +85,39 @@ def _ask(question: str, default: str, folder: str, read: Callable[[str, str], ob
             say(str(problem))
 
 
-def _cell(text: str, folder: str) -> str:
+def _read_cell(text: str, folder: str) -> str:
     find_cell(text)
-    return text if text in cell_names() else _from(folder, text)
+    return text if text in cell_names() else _make_relative_path(folder, text)
 
 
-def _brush(text: str, folder: str) -> str:
-    """Return "" for a brush that is not measured yet."""
+def _read_brush(text: str, folder: str) -> str:
+    """Return the brush as in a project file, or "" if it is not measured yet."""
     if text == NOT_MEASURED:
         return ""
     find_brush(text)
-    return text if text in brush_names() else _from(folder, text)
+    return text if text in brush_names() else _make_relative_path(folder, text)
 
 
-def _paper(text: str, _folder: str) -> str:
+def _read_paper(text: str, _folder: str) -> str:
     values.sheet(text)
     return text
 
 
-def _speed(text: str, _folder: str) -> float | None:
+def _read_speed(text: str, _folder: str) -> float | None:
     return values.paint_speed(text.replace(",", ".")) if text else None
 
 
-def _from(folder: str, path: str) -> str:
-    """Return the path as a file in this folder has to write it."""
+def _make_relative_path(folder: str, path: str) -> str:
+    """Return a path as a file in this folder has to write it."""
     try:
         relative = os.path.relpath(os.path.abspath(path), folder)
-    except ValueError:  # on another drive of Windows
+    except ValueError:  # on Windows, the file is on another drive
         return os.path.abspath(path)
     return relative.replace(os.sep, "/")
 
 
-def _next(brush: str | None) -> list[str]:
-    """Return what to do next."""
+def _list_next_steps(brush: str | None) -> list[str]:
+    """Return lines on what to do next."""
     lines = [f"Commands use {NAME} for every drawing in this folder; edit it as you like."]
     if not brush:
         lines += [

@@ -24,9 +24,9 @@ from ....machine.posts import POSTS
 from ....machine.program import stations_astray
 from ....machine.writer import whole_program
 from ....model.library import find_brush
-from ...console import RefusedError, about, print_text, stage, warn
-from ...steps.options import brush_of, exact_cell, typed
-from ...steps.output_places import check_places, print_list, suffix_of, write
+from ...console import RefusedError, print_text, refuse_errors, stage, warn
+from ...steps.options import load_brush, load_exact_cell, make_choices
+from ...steps.output_places import check_outputs, print_list, suffix_of, write_outputs
 from ...steps.prepared import prepare
 
 
@@ -35,16 +35,16 @@ def cell_list(_args) -> None:
 
 
 def cell_show(args) -> None:
-    with about(args.input):
+    with refuse_errors(args.input):
         print_text(cell_page(find_cell(args.input)) + "\n")
 
 
 def cell_check(args) -> None:
-    with about(args.input):
+    with refuse_errors(args.input):
         cell = find_cell(args.input)
     if cell.language not in POSTS:
-        known = ", ".join(POSTS)
-        sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known}"
+        known_languages = ", ".join(POSTS)
+        sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known_languages}"
         warn(args.input, [Notice("language", sentence, code="language-unknown")])
     frame = robot_from_paper(cell)
     if problems := cell_checks.out_of_reach(cell) or stations_astray(find_brush(DEFAULT_BRUSH), cell, frame):
@@ -61,9 +61,9 @@ def cell_place(args) -> None:
     from ....machine.setup_programs import over_sheet
     from ....show.table_picture import table_picture
 
-    check_places(args, args.output)
-    cell = exact_cell(args.input)
-    with about(args.input):
+    check_outputs(args, args.output)
+    cell = load_exact_cell(args.input)
+    with refuse_errors(args.input):
         if cell.arm is None:
             raise Error(
                 f"cell {cell.name} has no table arm: nobody knows what its machine reaches",
@@ -71,52 +71,61 @@ def cell_place(args) -> None:
             )
         joints = joints_of(cell.arm)
     if args.drawing:
-        work = prepare(typed(args, input=args.drawing, cell=args.input), cell)
+        work = prepare(make_choices(args, input=args.drawing, cell=args.input), cell)
         sheet_mm = work.plan.sheet_mm
-        made = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
+        program = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
     else:
-        sheet_mm = args.sheet or SHEET_MM
-        made = over_sheet(brush_of(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
+        sheet_mm = args.sheet or DEFAULT_SHEET_MM
+        program = over_sheet(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
     stage("following the joints")
-    followed = follow(made, joints)
-    problems = [*followed.problems, *astray_in(made, sheet_mm)]
-    found = place.nearest(made, joints, lambda there: not astray_in(there, sheet_mm)) if problems else None
-    there = followed if found is None else follow(place.at(made, found.frame), joints)
+    followed = follow(program, joints)
+    problems = [*followed.problems, *astray_in(program, sheet_mm)]
+    nearest_place = (
+        place.nearest(program, joints, lambda moved: not astray_in(moved, sheet_mm)) if problems else None
+    )
+    followed_there = (
+        followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)
+    )
     if args.output:
         stage("looking at the table")
-        table = place.table_of(cell, made.robot_from_frame, joints)
+        table = place.table_of(cell, program.robot_from_frame, joints)
         drawn = table_picture(
-            suffix_of(args.output), table, cell, sheet_mm, made.robot_from_frame, found and found.frame
+            suffix_of(args.output),
+            table,
+            cell,
+            sheet_mm,
+            program.robot_from_frame,
+            nearest_place and nearest_place.frame,
         )
-        write(args, {args.output: drawn})
+        write_outputs(args, {args.output: drawn})
     if not problems:
         print_text(f"{args.input}: arm {cell.arm.name} reaches all of it with the paper where it is\n")
-    elif found:
-        pose = place.cell_at(cell, found.frame).paper
-        print_text(f"{args.input}: the sheet {found.text} would do: {_pose(pose)}\n")
-    if there.start_rad is not None:
-        angles = ", ".join(f"{math.degrees(angle):.0f}" for angle in there.start_rad)
+    elif nearest_place:
+        pose = place.cell_at(cell, nearest_place.frame).paper
+        print_text(f"{args.input}: the sheet {nearest_place.text} would do: {_format_pose(pose)}\n")
+    if followed_there.start_rad is not None:
+        angles = ", ".join(f"{math.degrees(angle):.0f}" for angle in followed_there.start_rad)
         print_text(f"{args.input}: it begins with its joints at {angles} degrees, or turned by whole turns\n")
     if problems:
-        if not found:
+        if not nearest_place:
             problems[0] = replace(problems[0], advice=place.NOWHERE)
         raise RefusedError(args.drawing or args.input, problems)
 
 
-SHEET_MM = (200.0, 100.0)
+DEFAULT_SHEET_MM = (200.0, 100.0)
 
 
-def _pose(paper) -> str:
+def _format_pose(paper) -> str:
     origin, turned = (", ".join(f"{v:g}" for v in each) for each in (paper.origin_mm, paper.rotation_deg))
     return f"origin_mm = [{origin}], rotation_deg = [{turned}]"
 
 
 def cell_new(args) -> None:
-    check_places(args, args.output, sources=[args.output])
-    with about(args.like or DEFAULT_CELL):
+    check_outputs(args, args.output, sources=[args.output])
+    with refuse_errors(args.like or DEFAULT_CELL):
         cell = find_cell(args.like or DEFAULT_CELL)
     name = os.path.splitext(os.path.basename(args.output))[0]
-    with about(args.output):
+    with refuse_errors(args.output):
         paper = (
             replace(
                 cell.paper,
@@ -129,6 +138,6 @@ def cell_new(args) -> None:
             else cell.paper
         )
         text = write_cell(replace(cell, name=own_name(name), paper=paper))
-        made = parse_cell(text)
-    warn(args.output, cell_checks.out_of_reach(made) or cell_checks.remarks(made))
-    write(args, {args.output: text}, sources=[args.output])
+        new_cell = parse_cell(text)
+    warn(args.output, cell_checks.out_of_reach(new_cell) or cell_checks.remarks(new_cell))
+    write_outputs(args, {args.output: text}, sources=[args.output])

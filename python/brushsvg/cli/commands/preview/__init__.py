@@ -1,1 +1,1 @@
-"""`brushsvg preview`, a file for each view."""
+"""The views of `brushsvg preview`, with a file for each."""

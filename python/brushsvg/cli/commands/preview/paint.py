@@ -1,21 +1,26 @@
-"""brushsvg preview: draw what will be painted."""
+"""brushsvg preview: draw the paint of a drawing or plan."""
 
 from __future__ import annotations
 
 from ....jobs import outputs
-from ...console import about, say, stage
-from ...steps.options import settled, typed
-from ...steps.output_places import check_places, suffix_of, write
-from ...steps.prepared import look
+from ...console import refuse_errors, say, stage
+from ...steps.options import apply_drawing_settings, make_choices
+from ...steps.output_places import check_outputs, suffix_of, write_outputs
+from ...steps.prepared import prepare_and_simulate
 
 
 def preview_paint(args) -> None:
-    check_places(args, args.output)
+    check_outputs(args, args.output)
     suffix = suffix_of(args.output)
     outlines = suffix != ".png" or args.band
-    looked = look(settled(typed(args), args.input), outlines=outlines, whole=suffix == ".json", tilted=True)
-    work, marks = looked.work, looked.marks
-    with about(args.input):
+    prepared = prepare_and_simulate(
+        apply_drawing_settings(make_choices(args), args.input),
+        outlines=outlines,
+        whole=suffix == ".json",
+        tilted=True,
+    )
+    work, marks = prepared.work, prepared.marks
+    with refuse_errors(args.input):
         band = None
         if args.band:
             from ....show.evaluation.uncertainty import band as band_of
@@ -25,4 +30,4 @@ def preview_paint(args) -> None:
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = outputs.picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")
-    write(args, {args.output: picture}, len(work.plan.passes), looked.seconds())
+    write_outputs(args, {args.output: picture}, len(work.plan.passes), prepared.seconds())

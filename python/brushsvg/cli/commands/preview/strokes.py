@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from ....errors import Error
-from ....jobs.choices import layout_of, reading_of, without_effect
+from ....jobs.choices import make_layout, make_read_options, report_ineffective_flags
 from ....read import read_drawing
 from ....read.layout import arrange
 from ....strokes.extraction import strokes as strokes_of
-from ...console import about, stage, warn
-from ...steps.options import typed
-from ...steps.output_places import check_places, suffix_of, write
+from ...console import refuse_errors, stage, warn
+from ...steps.options import make_choices
+from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 
 def preview_strokes(args) -> None:
-    check_places(args, args.output)
-    chosen = typed(args)
-    warn(args.input, without_effect(chosen))
-    with about(args.input):
+    check_outputs(args, args.output)
+    chosen = make_choices(args)
+    warn(args.input, report_ineffective_flags(chosen))
+    with refuse_errors(args.input):
         stage("reading")
-        design = arrange(read_drawing(args.input, reading_of(chosen)), layout_of(chosen))
+        design = arrange(read_drawing(args.input, make_read_options(chosen)), make_layout(chosen))
         try:
             strokes, notices = strokes_of(design, args.paths_as, args.script or "auto")
-        except Error as nothing:  # a drawing with nothing to paint is worth looking at, too
+        except Error as nothing:  # a drawing with nothing to paint can be drawn as well
             if args.editable:
                 raise
             strokes, notices = [], [nothing.notice()]
@@ -35,4 +35,4 @@ def preview_strokes(args) -> None:
             from ....show.import_picture import overview
 
             picture = overview(suffix_of(args.output), design, strokes, notices)
-    write(args, {args.output: picture}, len(strokes))
+    write_outputs(args, {args.output: picture}, len(strokes))

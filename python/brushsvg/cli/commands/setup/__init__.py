@@ -1,1 +1,1 @@
-"""`brushsvg setup`: programs before the first job, and the extension for Inkscape."""
+"""`brushsvg setup`: programs before the first job, and the Inkscape extension."""
