@@ -90,7 +90,7 @@ def test_holes_belong_to_no_stroke():
 
 
 def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
-    monkeypatch.setattr(shape_to_strokes, "MOST_CUT", 0)
+    monkeypatch.setattr(shape_to_strokes, "MAX_CUT_POINTS", 0)
     test_holes_belong_to_no_stroke()
 
 
