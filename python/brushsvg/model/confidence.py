@@ -55,8 +55,8 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
 
 def learned_of(brush) -> dict:
     """Return what a brush file says about its origin; {} where it says nothing."""
-    said = json.loads(brush.extra or "{}").get(LEARNED)
-    return said if isinstance(said, dict) else {}
+    learned = json.loads(brush.extra or "{}").get(LEARNED)
+    return learned if isinstance(learned, dict) else {}
 
 
 def fitted_down_to_mm(brush, law: str) -> float:

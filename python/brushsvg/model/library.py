@@ -95,10 +95,10 @@ def _parse_object(text: str) -> dict:
     A brush made by hand may contain anything here. A value that is no object is refused when the brush is written.
     """
     try:
-        found = json.loads(text)
+        parsed = json.loads(text)
     except (ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return parsed if isinstance(parsed, dict) else {}
 
 
 def _make_unknown_notice(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
@@ -117,10 +117,10 @@ def mistyped_keys(brush: _core.Brush) -> list[Notice]:
 
     They are reported to a person who paints. Notes that somebody keeps in a file are not reported.
     """
-    found = [notice for notice in unknown_keys(brush) if notice.about]
+    mistyped = [notice for notice in unknown_keys(brush) if notice.about]
     return [
         Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code)
-        for notice in found
+        for notice in mistyped
     ]
 
 
@@ -155,13 +155,13 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
             source=f"Taken from brush {like.name}: {known.source}",
             assumed=True,
         )
-    said = json.loads(like.extra)
-    outlines = said.get("footprints") if isinstance(said.get("footprints"), dict) else {}
+    entries = json.loads(like.extra)
+    outlines = entries.get("footprints") if isinstance(entries.get("footprints"), dict) else {}
     outlines = {key: value for key, value in outlines.items() if key != "standard_error_mm"}
     source = f"Taken from brush {like.name}: {outlines.get('source', '')}".strip()
-    said["footprints"] = outlines | {"source": source, "assumed": True}
-    said["about"] = f"Like {like.name}, until it is measured."
-    brush.extra = json.dumps(said)
+    entries["footprints"] = outlines | {"source": source, "assumed": True}
+    entries["about"] = f"Like {like.name}, until it is measured."
+    brush.extra = json.dumps(entries)
     return brush
 
 

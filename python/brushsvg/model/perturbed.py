@@ -24,7 +24,7 @@ def with_lag(brush, change: np.ndarray):
 
     The result can be simulated and is good for nothing else.
     """
-    other = _core.Brush()
+    changed = _core.Brush()
     for name in (
         "name",
         "kind",
@@ -35,9 +35,9 @@ def with_lag(brush, change: np.ndarray):
         "max_speed_mm_s",
         "paint_depth_mm",
     ):
-        setattr(other, name, getattr(brush, name))
-    other.lag = changed_lag(brush, change)
-    return other
+        setattr(changed, name, getattr(brush, name))
+    changed.lag = changed_lag(brush, change)
+    return changed
 
 
 def with_factors(brush, factors: dict[str, tuple[float, ...]]):
@@ -46,7 +46,7 @@ def with_factors(brush, factors: dict[str, tuple[float, ...]]):
     factors: for each law the coefficients of its polynomial, ascending. The result can only be simulated. With the
     half width, its footprints become larger by the same factor, like those of a brush with more bristles.
     """
-    other = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
+    changed = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
     if "half_width" in factors:
         factors = factors | {"tip_to_widest": factors["half_width"]}
     for name, factor in factors.items():
@@ -55,13 +55,17 @@ def with_factors(brush, factors: dict[str, tuple[float, ...]]):
         changed_law = _core.Profile(
             coefficients, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0]
         )
-        setattr(other, name, changed_law)
+        setattr(changed, name, changed_law)
     if "half_width" in factors:
-        other.footprints = _core.FootprintTable(
-            dragged=[_scale_footprint(one, factors["half_width"]) for one in brush.footprints.dragged],
-            pressed=[_scale_footprint(one, factors["half_width"]) for one in brush.footprints.pressed],
+        changed.footprints = _core.FootprintTable(
+            dragged=[
+                _scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.dragged
+            ],
+            pressed=[
+                _scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.pressed
+            ],
         )
-    return other
+    return changed
 
 
 def _scale_footprint(footprint, factor):

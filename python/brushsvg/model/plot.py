@@ -166,10 +166,10 @@ def note(axes, at, text: str, **style) -> None:
 def encoded(figure, suffix: str) -> bytes:
     if notes := figure.findobj(lambda artist: artist.get_gid() == NOTE):
         _place_notes(figure, notes)
-    out = io.BytesIO()
+    buffer = io.BytesIO()
     metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
-    figure.savefig(out, format=suffix[1:], dpi=140, metadata=metadata)
-    return out.getvalue()
+    figure.savefig(buffer, format=suffix[1:], dpi=140, metadata=metadata)
+    return buffer.getvalue()
 
 
 def _place_notes(figure, notes: list) -> None:

@@ -1,4 +1,7 @@
-"""Widen the targets of strokes as paint runs out, so that the marks come out as wide as drawn."""
+"""Wider targets for strokes as paint runs out.
+
+With them, the marks come out as wide as drawn.
+"""
 
 from __future__ import annotations
 
@@ -119,10 +122,10 @@ def _widen_stroke(stroke: _core.Stroke, shares: np.ndarray, most_mm: float) -> _
     # A dab is as wide as the patch is long.
     if shares[:, 1].min() > 1 - MAX_SHARE_CHANGE / 2 or whole_mm < MIN_LENGTH_MM:
         return stroke
-    own = np.array(stroke.half_width)
+    own_knots = np.array(stroke.half_width)
     knots = [(at, half) for at, half in stroke.half_width]
-    new = [at for at in np.clip(shares[:, 0], 0, 1) if not np.isin(at, own[:, 0])]
-    knots += [(at, float(np.interp(at, *own.T))) for at in new]
+    new_places = [at for at in np.clip(shares[:, 0], 0, 1) if not np.isin(at, own_knots[:, 0])]
+    knots += [(at, float(np.interp(at, *own_knots.T))) for at in new_places]
     knots.sort(key=lambda knot: knot[0])
     widened = [(at, max(half, min(half / float(np.interp(at, *shares.T)), most_mm))) for at, half in knots]
     outlines = [_widen_ring(np.asarray(ring), stroke, shares) for ring in stroke.wanted_mm]
@@ -176,14 +179,14 @@ def _widen_ring(ring: np.ndarray, stroke, shares: np.ndarray) -> np.ndarray:
         ]
     )
     across = ((points - middle[row]) * normal[row]).sum(axis=1)
-    more = 1 / np.interp(fine[row] / fine[-1], *shares.T) - 1
-    return points + (more * across)[:, None] * normal[row]
+    growth = 1 / np.interp(fine[row] / fine[-1], *shares.T) - 1
+    return points + (growth * across)[:, None] * normal[row]
 
 
 def _measure_shortage(stroke, shares: np.ndarray, most_mm: float) -> float:
     """Return the share by which a stroke is narrower than drawn at its worst place."""
-    own = np.array(stroke.half_width)
-    half = np.interp(shares[:, 0], *own.T)
+    own_knots = np.array(stroke.half_width)
+    half = np.interp(shares[:, 0], *own_knots.T)
     painted_half = np.maximum(half, np.minimum(half / shares[:, 1], most_mm)) * shares[:, 1]
     return float(1 - (painted_half / np.maximum(half, 1e-9)).min())
 

@@ -1,6 +1,6 @@
 """Refined passes, taken where they are better than those in closed form.
 
-They follow the marks that a brush can reach, within a machine's limits, and make no letter worse.
+They aim at the marks that a brush can reach, stay within a machine's limits, and make no letter worse.
 """
 
 from __future__ import annotations

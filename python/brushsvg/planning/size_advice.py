@@ -48,18 +48,20 @@ def best_size(strokes, brush, made, quick=None) -> SizeAdvice:
     that look better there are made in full.
     """
     units = [[stroke] for stroke in strokes]
-    some = _pick_evenly(units, MAX_TRIED_STROKES)
-    few = _pick_evenly(sorted(some, key=_half_width), MAX_FIRST_STROKES)
-    first_overlaps = {factor: _overlap_at(factor, few, brush, quick or made) for factor in COARSE_SCALES}
+    tried_units = _pick_evenly(units, MAX_TRIED_STROKES)
+    first_units = _pick_evenly(sorted(tried_units, key=_half_width), MAX_FIRST_STROKES)
+    first_overlaps = {
+        factor: _overlap_at(factor, first_units, brush, quick or made) for factor in COARSE_SCALES
+    }
     at = SCALES.index(max(first_overlaps, key=first_overlaps.get))
     for factor in SCALES[max(at - 1, 0) : at + 2]:
         if factor not in first_overlaps:
-            first_overlaps[factor] = _overlap_at(factor, few, brush, quick or made)
+            first_overlaps[factor] = _overlap_at(factor, first_units, brush, quick or made)
     promising = {_choose_factor(first_overlaps), max(first_overlaps, key=first_overlaps.get)}
     if _choose_factor(first_overlaps) == 1.0:
-        return SizeAdvice(first_overlaps, 1.0, len(few), len(strokes))
-    found = {factor: _overlap_at(factor, some, brush, made) for factor in sorted({1.0, *promising})}
-    return SizeAdvice(found, _choose_factor(found), len(some), len(strokes))
+        return SizeAdvice(first_overlaps, 1.0, len(first_units), len(strokes))
+    overlaps = {factor: _overlap_at(factor, tried_units, brush, made) for factor in sorted({1.0, *promising})}
+    return SizeAdvice(overlaps, _choose_factor(overlaps), len(tried_units), len(strokes))
 
 
 def best_letter_size(strokes, brush, made) -> SizeAdvice:
@@ -70,12 +72,18 @@ def best_letter_size(strokes, brush, made) -> SizeAdvice:
     groups = _core.touching(strokes)
     alone = set(range(len(strokes))).difference(*groups)
     letters = sorted([*groups, *([k] for k in alone)])
-    some = [[strokes[k] for k in letter] for letter in _pick_evenly(letters, MAX_TRIED_LETTERS)]
-    found = {1.0: _overlap_at(1.0, some, brush, made)}
-    if found[1.0] + MIN_OVERLAP_GAIN < 1:  # otherwise no size can be noticeably better
-        found |= {factor: _overlap_at(factor, some, brush, made) for factor in LETTER_SCALES if factor != 1.0}
+    tried_letters = [[strokes[k] for k in letter] for letter in _pick_evenly(letters, MAX_TRIED_LETTERS)]
+    overlaps = {1.0: _overlap_at(1.0, tried_letters, brush, made)}
+    if overlaps[1.0] + MIN_OVERLAP_GAIN < 1:  # otherwise no size can be noticeably better
+        overlaps |= {
+            factor: _overlap_at(factor, tried_letters, brush, made)
+            for factor in LETTER_SCALES
+            if factor != 1.0
+        }
     reach = LETTER_SCALES[0], LETTER_SCALES[-1]
-    return SizeAdvice(found, _choose_factor(found), sum(map(len, some)), len(strokes), "whole letters", reach)
+    return SizeAdvice(
+        overlaps, _choose_factor(overlaps), sum(map(len, tried_letters)), len(strokes), "whole letters", reach
+    )
 
 
 def _choose_factor(overlaps: dict[float, float]) -> float:
@@ -127,12 +135,12 @@ def _overlap_at(factor: float, units, brush, made) -> float:
 
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
-        found = list(pool.map(area, units))
+        areas = list(pool.map(area, units))
     finally:
         # Ctrl-C waits only for the strokes that are being painted.
         pool.shutdown(cancel_futures=True)
-    together = sum(each.together_mm2 for each in found)
-    return sum(each.common_mm2 for each in found) / together if together > 0 else 1.0
+    total_mm2 = sum(each.together_mm2 for each in areas)
+    return sum(each.common_mm2 for each in areas) / total_mm2 if total_mm2 > 0 else 1.0
 
 
 def scaled(stroke, factor: float):

@@ -26,18 +26,18 @@ def find_worse_strokes(
     overlap, these strokes are worse.
     """
     first, second = (_core.simulate(_core.Plan(passes=each), brush).passes for each in (refined, closed))
-    found = []
+    worse = []
     for members in groups:
         members_targets = [targets[k] for k in members]
-        now, then = (
+        refined_areas, closed_areas = (
             _core.common_area([marks[k] for k in members], members_targets, brush)
             for marks in (first, second)
         )
-        if now.overlap < then.overlap:
-            found += members
+        if refined_areas.overlap < closed_areas.overlap:
+            worse += members
         elif 1 < len(members) <= MAX_STROKES:  # single strokes were judged when they were refined
-            found += _find_restless(members, first, second, members_targets, brush)
-    return found
+            worse += _find_restless(members, first, second, members_targets, brush)
+    return worse
 
 
 def _find_restless(
@@ -61,14 +61,14 @@ def _find_restless(
     def overlap(marks: list) -> float:
         return _core.common_area(marks, members_targets, brush).overlap
 
-    marks, found = [refined[k] for k in members], []
-    best = overlap(marks) - (paid := cost(marks))
+    marks, worse = [refined[k] for k in members], []
+    best = overlap(marks) - (best_penalty := cost(marks))
     for place, k in enumerate(members):
-        if paid == 0.0:
+        if best_penalty == 0.0:
             break
         without = [*marks[:place], closed[k], *marks[place + 1 :]]
-        less = cost(without)
-        if (reached := overlap(without) - less) > best:
-            marks, best, paid = without, reached, less
-            found.append(k)
-    return found
+        penalty = cost(without)
+        if (reached := overlap(without) - penalty) > best:
+            marks, best, best_penalty = without, reached, penalty
+            worse.append(k)
+    return worse

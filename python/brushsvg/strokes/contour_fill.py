@@ -83,6 +83,6 @@ def _estimate_close_pairs(shape, half: float) -> float:
     GEOS needs time for each of them when it offsets the shape inward.
     """
     points = shapely.get_coordinates(shape)
-    some = points[:: max(len(points) // 200, 1)]
-    near = [np.count_nonzero(np.hypot(*(points - point).T) < half) for point in some]
+    sample = points[:: max(len(points) // 200, 1)]
+    near = [np.count_nonzero(np.hypot(*(points - point).T) < half) for point in sample]
     return float(np.mean(near)) * len(points)

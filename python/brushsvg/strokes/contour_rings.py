@@ -25,7 +25,7 @@ _MAX_TO_MIDDLE = 0.9
 _MIN_RING_PLACE = 0.05
 _UPPER_LEFT = (-0.3, 1.0)
 _MIN_CORNER_RAD, _MIN_SHARP_RAD = np.radians(30), np.radians(100)
-_CUSP_DISTANCE = 0.4  # in half widths
+_CUSP_DISTANCE = 0.4  # how much of a line is cut off at a cusp, in half widths
 # How far a footprint reaches before and behind the place where a ring begins, in half widths. Chords of this length
 # that differ by less than the second value have similar bends.
 _FOOTPRINT_REACH, _MAX_CHORD_DIFFERENCE = 1.5, 0.02
@@ -111,7 +111,7 @@ def _cut_ring(points: np.ndarray, half: float, is_outermost: bool) -> list[Line]
         ring, corners = _begin_amid_longest(ring, corners)
         return [_fit_line(np.vstack([ring, ring[:1]]), corners, half, True)]
     first = sharp[(ring[sharp] @ _UPPER_LEFT).argmax()]
-    sharp, corners = (np.sort((which - first) % len(ring)) for which in (sharp, corners))
+    sharp, corners = (np.sort((numbers - first) % len(ring)) for numbers in (sharp, corners))
     ring = np.roll(ring, -first, axis=0)
     ring = np.vstack([ring, ring[:1]])
     return [

@@ -153,10 +153,12 @@ def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -
     parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
     target = _core.wanted_outline(whole, 0.01)
     try:
-        one, several = (misplaced_mm2(trial_marks(some, brush), target, brush) for some in ([whole], parts))
+        single_mm2, lifted_mm2 = (
+            misplaced_mm2(trial_marks(trial, brush), target, brush) for trial in ([whole], parts)
+        )
     except Error:
         return False
-    return one - several > _MIN_LIFT_GAIN * (2 * max(half for _, half in whole.half_width)) ** 2
+    return single_mm2 - lifted_mm2 > _MIN_LIFT_GAIN * (2 * max(half for _, half in whole.half_width)) ** 2
 
 
 def drawn_line(cubics: np.ndarray, half_width: list) -> Line:
@@ -166,12 +168,12 @@ def drawn_line(cubics: np.ndarray, half_width: list) -> Line:
 def line_stroke(line: Line, like=None, lane: int = 1):
     from .. import _core
 
-    made = _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width)
+    stroke = _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width)
     if like is not None:
-        of = like.origin
-        made.id = _core.StrokeId(of.element, of.part, of.repeat, lane)
-        made.layer, made.colour, made.settings = like.layer, like.colour, like.settings
-    return made
+        origin = like.origin
+        stroke.id = _core.StrokeId(origin.element, origin.part, origin.repeat, lane)
+        stroke.layer, stroke.colour, stroke.settings = like.layer, like.colour, like.settings
+    return stroke
 
 
 def _is_straight(points: np.ndarray) -> bool:

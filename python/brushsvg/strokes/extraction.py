@@ -61,7 +61,7 @@ def strokes(
     need(design, Design, "a drawing, as read_drawing returns it")
     need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
     need_one_of(script, SCRIPTS, "script")
-    found, empty, notices = [], [], []
+    painted_elements, empty, notices = [], [], []
     for element in (part for each in design.elements for part in _split_by_colour(each, paths_as)):
         try:
             lines = _find_lines(element, paths_as, script)
@@ -69,30 +69,30 @@ def strokes(
             notices.append(Notice(element.id or "filled", f"{beyond}: left out", code=beyond.code))
             continue
         if lines:
-            found.append((element, lines))
+            painted_elements.append((element, lines))
         else:
             empty.append(element)
     notices += _report_left_out(empty, paths_as)
-    if not found:
+    if not painted_elements:
         where, sentence = (notices[-1].where, notices[-1].text) if notices else ("", "it is empty")
         sentence = f"there is nothing to paint: {sentence}"
         if notice := next(iter(design.notices), None):
             sentence += f"; for example {notice.where}: {notice.sentence}"
         raise Error(sentence, where=where, code="nothing-to-paint")
-    names, renamed = _name_elements([(element, len(lines)) for element, lines in found])
-    made = [
+    names, renamed = _name_elements([(element, len(lines)) for element, lines in painted_elements])
+    ordered = [
         (element.settings.get("order", 0), stroke)
-        for (element, lines), own in zip(found, names, strict=True)
+        for (element, lines), own in zip(painted_elements, names, strict=True)
         for stroke in _make_strokes(element, own, lines)
     ]
-    return [stroke for _, stroke in sorted(made, key=lambda pair: pair[0])], [*renamed, *notices]
+    return [stroke for _, stroke in sorted(ordered, key=lambda pair: pair[0])], [*renamed, *notices]
 
 
 def _report_left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
     if not elements:
         return []
     first = next((element.id for element in elements if element.id), "filled")
-    what = "has no stroke" if paths_as == "stroke" else "holds no area"
+    reason = "has no stroke" if paths_as == "stroke" else "holds no area"
     others = (
         f", nor do {len(elements) - 1} others"
         if len(elements) > 2
@@ -100,7 +100,7 @@ def _report_left_out(elements: list[Element], paths_as: str | None) -> list[Noti
     )
     for_lines = "lines need a stroke instead of a fill; brushsvg text sets single-line fonts as lines"
     advice = "--as stroke counts fills as none" if paths_as == "stroke" else for_lines
-    return [Notice(first, f"its outline {what}{others}: left out", code="outline-empty", advice=advice)]
+    return [Notice(first, f"its outline {reason}{others}: left out", code="outline-empty", advice=advice)]
 
 
 def _split_by_colour(element: Element, paths_as: str | None) -> tuple[Element, ...]:
@@ -151,9 +151,9 @@ def _grow_by_stroke(element: Element) -> list | None:
         )
         for line in drawn
     ]
-    own = _core.unite([ring for mark in marks for ring in mark])
-    both = _core.unite([*own, *filled(element)])
-    shows = _core.area(both) - _core.area(own) > _MIN_FILL_SHARE * _core.area(own)
+    stroke_rings = _core.unite([ring for mark in marks for ring in mark])
+    both = _core.unite([*stroke_rings, *filled(element)])
+    shows = _core.area(both) - _core.area(stroke_rings) > _MIN_FILL_SHARE * _core.area(stroke_rings)
     return both if shows else None
 
 
@@ -237,8 +237,8 @@ def _name_elements(elements: list[tuple[Element, int]]) -> tuple[list[str], list
 
 def _find_lane_owner(name: str) -> str:
     """Return the stroke to whose lane a name belongs, or "" if to none."""
-    found = re.fullmatch(r"(.+?)~[0-9]+(\+[0-9]+)?", name, re.DOTALL)
-    return found[1] if found else ""
+    match = re.fullmatch(r"(.+?)~[0-9]+(\+[0-9]+)?", name, re.DOTALL)
+    return match[1] if match else ""
 
 
 def _list_names(element: Element, name: str, count: int) -> list[str]:

@@ -46,17 +46,17 @@ def find_wide_shapes(strokes: list, wider: list[int], least: float, greatest: fl
     wider: the numbers of the strokes; least, greatest: half widths of the brush [mm]. Shapes with more strokes than
     any lettering are left out.
     """
-    found, beyond = [], set(wider)
+    wide_shapes, beyond = [], set(wider)
     for shape, members in _find_shapes_with_strokes(strokes, wider):
         if len(members) > _MAX_STROKES:
             continue
         wide = [k for k in members if k in beyond]
         narrow = [strokes[k] for k in members if k not in beyond]
         part = _core.unite([ring for k in wide for ring in strokes[k].wanted_mm])
-        found.append(
+        wide_shapes.append(
             WideShape(wide, narrow, rings_of(shape), find_contour_passes(shape, least, greatest), part)
         )
-    return found
+    return wide_shapes
 
 
 def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
@@ -65,7 +65,7 @@ def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
     for k, stroke in enumerate(strokes):
         if stroke.wanted_mm:
             elements.setdefault(_shape_key(stroke), []).append(k)
-    found = []
+    pairs = []
     wide = set(wider)
     for element in dict.fromkeys(_shape_key(strokes[k]) for k in wider):
         numbers = elements[element]
@@ -77,8 +77,8 @@ def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
         ):
             members[home].append(k)
         if all(members):  # otherwise a stroke paints in two of the shapes
-            found += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
-    return found
+            pairs += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
+    return pairs
 
 
 def _without_slits(shape):

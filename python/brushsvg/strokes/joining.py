@@ -88,7 +88,7 @@ class _Chain:
         parts = [(self.cubics, self.widths), (cubics, widths)]
         (first, before), (second, after) = parts if at_end else parts[::-1]
         second = second.copy()
-        second[0, 0] = first[-1, 3]  # within MEET_MM of it
+        second[0, 0] = first[-1, 3]  # the two ends are within MAX_GAP_MM
         self.cubics = np.concatenate([first, second])
         after = after + np.array([before[-1, 0], 0])
         self.widths = np.concatenate([before, after[1:]])
@@ -107,13 +107,13 @@ class _Chain:
         )
 
 
-def _find_continuation(chain: _Chain, at_end: bool, near: dict, lines: dict, taken: set[int]) -> int | None:
+def _find_continuation(chain: _Chain, at_end: bool, near: dict, lines: dict, used: set[int]) -> int | None:
     """Return the line that continues an end of the chain with the least turn."""
     place, out, half = chain.end(at_end)
     turns = []
     x, y = _grid_cell(place)
     candidates = {k for dx in (-1, 0, 1) for dy in (-1, 0, 1) for k in near.get((x + dx, y + dy), ())}
-    for k in sorted(candidates - taken):
+    for k in sorted(candidates - used):
         other = lines[k]
         if not _can_join(chain.first, other):
             continue

@@ -145,8 +145,8 @@ def _read_array(path, id: str) -> np.ndarray:
 
 
 def _not_cubics_error(id: str) -> Error:
-    said = "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)"
-    return Error(said, where=id, code="wrong-type")
+    sentence = "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)"
+    return Error(sentence, where=id, code="wrong-type")
 
 
 def _need_short_list(path, id: str, levels: int = 3) -> int:

@@ -70,14 +70,14 @@ def searched(
     shapes = _collect_shapes(drawn, painted, list(done.plan.passes), brush)
     # Areas that a pen fills have exact edges.
     are_free = are_corners_filled and brush.width_follows_depth()
-    found = _core.search_strokes(
+    changes = _core.search_strokes(
         [(each.rings, each.strokes, each.passes) for each in shapes], brush, detail, are_free
     )
     rows = [(stroke, target, k) for k, (stroke, target) in enumerate(zip(painted, targets, strict=True))]
     lanes = [_lane_counter(shape.strokes) for shape in shapes]
     wide = _find_drawn_wider(drawn, brush)
     added_strokes: list[_AddedStroke] = []
-    for shape, (strokes, changed, added), following in zip(shapes, found, lanes, strict=True):
+    for shape, (strokes, changed, added), following in zip(shapes, changes, lanes, strict=True):
         rows = _replace_paths(rows, shape, strokes, changed, following)
         added_strokes += _name_added(shape, added, following, are_corners_filled)
     if not are_sides_painted:  # no strokes next to one that was drawn wider than the brush
@@ -156,13 +156,13 @@ def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Sh
 
     For a brush of one width, these are only the shapes that it fills in passes.
     """
-    found, paint, repeats = defaultdict(list), defaultdict(list), defaultdict(set)
+    strokes_of, paint, repeats = defaultdict(list), defaultdict(list), defaultdict(set)
     for stroke in drawn:
         if stroke.origin.repeat == 1 and stroke.wanted_mm:
-            found[stroke.origin.element].append(stroke)
+            strokes_of[stroke.origin.element].append(stroke)
     for stroke, a_pass in zip(painted, passes, strict=True):
         element = stroke.origin.element
-        if element in found:
+        if element in strokes_of:
             repeats[element].add(stroke.origin.repeat)
             if stroke.origin.repeat == 1:
                 paint[element].append((stroke, a_pass))
@@ -174,7 +174,7 @@ def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Sh
             *map(list, zip(*paint[element], strict=True)),
             sorted(repeats[element]),
         )
-        for element, strokes in found.items()
+        for element, strokes in strokes_of.items()
         if paint[element]
         and (brush.width_follows_depth() or not all(stroke.wanted_mm for stroke, _ in paint[element]))
     ]
@@ -197,12 +197,12 @@ def _replace_paths(
         (part, lane): [lane, *(following(part) for _ in new_strokes[1:])]
         for (part, lane), new_strokes in paths.items()
     }
-    out = []
+    new_rows = []
     for row in rows:
         of = row[0].origin
         key = of.part, of.lane
         if of.element != shape.element or key not in paths:
-            out.append(row)
+            new_rows.append(row)
             continue
         parts = [
             new_stroke.replaced(id=_core.StrokeId(of.element, of.part, of.repeat, lane))
@@ -210,8 +210,8 @@ def _replace_paths(
                 paths[key], lanes[key], strict=False
             )  # a stroke that is left out has no parts
         ]
-        out += [(part, target, None) for part, target in _share_target(parts, row[1])]
-    return out
+        new_rows += [(part, target, None) for part, target in _share_target(parts, row[1])]
+    return new_rows
 
 
 def _share_target(parts: list, target) -> list[tuple]:
@@ -257,17 +257,17 @@ def _name_added(shape: _Shape, added: list, following, are_corners_filled: bool)
     hosts = list(shape.strokes)
     by_found = swept_discs(shape.found) if added and not shape.is_filled else []
     by_painted = swept_discs(shape.strokes) if added and not shape.is_filled else []
-    for made, neighbour, area_mm, mark_mm in added:
+    for path_stroke, neighbour, area_mm, mark_mm in added:
         like = hosts[neighbour]
         hosts.append(like)
         stroke = like.replaced(
-            middle_mm=made.middle_mm,
+            middle_mm=path_stroke.middle_mm,
             closed=False,
-            half_width=made.half_width,
+            half_width=path_stroke.half_width,
             wanted_mm=[],
             start_covered=shape.is_filled,
             end_covered=shape.is_filled,
-            settings=like.settings.replaced(start=made.settings.start, end=made.settings.end),
+            settings=like.settings.replaced(start=path_stroke.settings.start, end=path_stroke.settings.end),
         )
         are_filled = are_corners_filled and not any(map(_is_set, (like.settings.start, like.settings.end)))
         is_rim = not shape.is_filled and is_mostly_within(area_mm, by_found)
@@ -292,8 +292,8 @@ def _is_set(end: str | None) -> bool:
 
 
 def _repeat_stroke(stroke, repeat: int):
-    of = stroke.origin
-    return stroke.replaced(id=_core.StrokeId(of.element, of.part, repeat, of.lane))
+    origin = stroke.origin
+    return stroke.replaced(id=_core.StrokeId(origin.element, origin.part, repeat, origin.lane))
 
 
 def _insert_behind(added: list, rows: list, stroke_of) -> list:

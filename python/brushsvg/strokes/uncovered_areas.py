@@ -41,12 +41,12 @@ def uncovered_areas(drawn: list, painted: list, passes: list, brush) -> list[Unc
     """
     if not brush.width_follows_depth():
         return []  # a brush of one width is not expected to cover a shape
-    found, paint = defaultdict(list), defaultdict(list)
+    strokes_of, paint = defaultdict(list), defaultdict(list)
     for stroke in drawn:
         if stroke.origin.repeat == 1 and stroke.wanted_mm:
-            found[stroke.origin.element].append(stroke)
+            strokes_of[stroke.origin.element].append(stroke)
     for stroke, a_pass in zip(painted, passes, strict=True):
-        if stroke.origin.element in found:
+        if stroke.origin.element in strokes_of:
             paint[stroke.origin.element].append((stroke, a_pass))
     shapes = [
         (
@@ -54,14 +54,14 @@ def uncovered_areas(drawn: list, painted: list, passes: list, brush) -> list[Unc
             [stroke for stroke, _ in paint[element]],
             [a_pass for _, a_pass in paint[element]],
         )
-        for element, strokes in found.items()
+        for element, strokes in strokes_of.items()
     ]
     areas = _core.uncovered_areas(shapes, brush, MIN_UNREACHED_SHARE)
-    rows = zip(found.items(), shapes, areas, strict=True)
+    rows = zip(strokes_of.items(), shapes, areas, strict=True)
     return [
-        blank
+        area
         for (element, strokes), (rings, of_shape, _), left in rows
-        for blank in _find_element_areas(element, left, _core.area(rings), strokes, of_shape, brush)
+        for area in _find_element_areas(element, left, _core.area(rings), strokes, of_shape, brush)
     ]
 
 
@@ -98,7 +98,7 @@ def notices(found: list[UncoveredArea]) -> list[Notice]:
     by_kind: dict[tuple[str, bool, bool], list[UncoveredArea]] = {}
     for piece in found:
         by_kind.setdefault((piece.element, piece.is_reached, piece.is_rim), []).append(piece)
-    made = []
+    reports = []
     for (element, is_reached, is_rim), pieces in by_kind.items():
         x, y = pieces[0].at_mm
         share = 100 * sum(piece.share for piece in pieces)
@@ -106,13 +106,13 @@ def notices(found: list[UncoveredArea]) -> list[Notice]:
         if len(pieces) > 1:
             where = f"in {len(pieces)} pieces, the largest {where}"
         if is_reached:
-            said = f"the mark leaves at least {share:.2g} % of its shape blank, {where}"
+            sentence = f"the mark leaves at least {share:.2g} % of its shape blank, {where}"
         elif is_rim:
-            said = f"the brush is too narrow for {share:.2g} % of its shape, {where}"
+            sentence = f"the brush is too narrow for {share:.2g} % of its shape, {where}"
         else:
-            said = f"no stroke reaches {share:.2g} % of its shape, {where}"
-        made.append(Notice(element, said, code="mark-misses" if is_reached else "unreached"))
-    return made
+            sentence = f"no stroke reaches {share:.2g} % of its shape, {where}"
+        reports.append(Notice(element, sentence, code="mark-misses" if is_reached else "unreached"))
+    return reports
 
 
 def finest(brush) -> float:

@@ -63,9 +63,9 @@ def within_reach(
     )
     painted, targets = [], []
     for k, stroke in enumerate(strokes):
-        made, its_targets, how = filled.get(k) or ([stroke], [stroke], "")
+        passes, its_targets, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
-            made, how = [_clamp_widths(stroke, least, greatest)], "painted at the nearest width"
+            passes, how = [_clamp_widths(stroke, least, greatest)], "painted at the nearest width"
             if is_searched and wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
                 how += ", and its sides by strokes of their own"
         if beyond[k] and (k in filled or _is_visible_change(beyond[k][1], least, greatest)):
@@ -79,7 +79,7 @@ def within_reach(
                     advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
                 )
             )
-        painted += made
+        painted += passes
         targets += its_targets
     return painted, targets, notices
 
@@ -146,7 +146,9 @@ def _find_wide_strokes(strokes: list, beyond: dict, greatest: float) -> list[int
     At least one stroke of the element is wider by _MIN_PASSES_RATIO.
     """
     wider = {
-        k: found[1] for k, found in beyond.items() if found and found[1] > greatest and strokes[k].wanted_mm
+        k: out_of_reach[1]
+        for k, out_of_reach in beyond.items()
+        if out_of_reach and out_of_reach[1] > greatest and strokes[k].wanted_mm
     }
     elements = {strokes[k].origin.element for k, half in wider.items() if half > greatest * _MIN_PASSES_RATIO}
     return [k for k in wider if strokes[k].origin.element in elements]
@@ -211,9 +213,9 @@ def _mark_overlap(strokes: list, rings: list, brush) -> float:
 
 
 def _make_pass(stroke, line, lane: int = 1):
-    of = stroke.origin
+    origin = stroke.origin
     return stroke.replaced(
-        id=_core.StrokeId(of.element, of.part, of.repeat, lane),
+        id=_core.StrokeId(origin.element, origin.part, origin.repeat, lane),
         middle_mm=line.middle_mm,
         closed=line.closed,
         half_width=line.half_width,

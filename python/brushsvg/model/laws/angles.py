@@ -74,8 +74,8 @@ def from_angles(
 
     alpha0_rad: (...), one for each series, in (0, 95 degrees]. s_mm, alpha_rad, beta_rad: (..., n), the ways since
     alpha0 and the angles after them; beta_rad may be None. total: both sides count as measured (total least
-    squares), where the article takes F and I as exact. Exact angles give exact results; one degree of noise gives r
-    = 9.24 +- 0.45 for 9.3.
+    squares), where the article takes F and I as exact. Exact angles give exact results; with one
+    degree of noise r is 9.24 +- 0.45 instead of 9.3.
 
     Raises Error for numbers outside of these ranges, series without a usable reading and shapes that do not
     broadcast.
@@ -92,11 +92,11 @@ def from_angles(
     if alpha0.size == 0:
         raise Error("there is no reading", code="measurement-missing")
     line_kind = _core.Lines.total if total else _core.Lines.plain
-    found = [
+    results = [
         _core.from_angles(alpha0[at][0], *(row[at] for row in rows), lines=line_kind)
         for at in np.ndindex(alpha0.shape[:-1])
     ]
     names = FromAngles.__dataclass_fields__
     return FromAngles(
-        *(frozen(np.reshape([one[name] for one in found], alpha0.shape[:-1])) for name in names)
+        *(frozen(np.reshape([result[name] for result in results], alpha0.shape[:-1])) for name in names)
     )

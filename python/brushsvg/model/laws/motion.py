@@ -103,9 +103,9 @@ def contact_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
 
 
 def tip_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike, tip_gap_mm: ArrayLike) -> np.ndarray:
-    """Return the brush's tip as seen from the handle, (15) and (16): contact_offset with r + b in place of r.
+    """Return the brush's tip as seen from the handle, (15) and (16).
 
-    alpha_rad, lag_mm, tip_gap_mm: (...). Returns mm, (..., 2).
+    It is contact_offset with r + b in place of r. alpha_rad, lag_mm, tip_gap_mm: (...). Returns mm, (..., 2).
 
     Raises Error for numbers outside of the ranges of alpha_after and shapes that do not broadcast.
     """

@@ -20,13 +20,13 @@ def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
     message.
     """
     try:
-        found = np.asarray(given)
+        array = np.asarray(given)
     except ValueError:  # rows of different lengths
         raise Error(f"{what} is no number and no array of them", code="wrong-type") from None
-    if found.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf":
         raise Error(f"{what} is no number and no array of them", code="wrong-type")
-    found = found.astype(float)
-    outside = found[~((found >= least) & (found <= greatest))]
+    array = array.astype(float)
+    outside = array[~((array >= least) & (array <= greatest))]
     if outside.size:
         raise Error(
             f"{what}, {outside[0]:g}, is outside the range [{least:g}, {greatest:g}]",
@@ -34,7 +34,7 @@ def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
             range=(least, greatest),
             code="out-of-range",
         )
-    return found
+    return array
 
 
 def together(*arrays: np.ndarray) -> list[np.ndarray]:

@@ -12,7 +12,7 @@ from .junctions import MAX_JOIN_TURN_RAD, MIN_STEM_END, Arm, Crossing, measure_t
 
 # The shares below are parts of the shape's area around a crossing, and "bare" is the area that no line paints.
 # Another arrangement of the arms replaces the simplest one only if it leaves bare at least this share less. With
-# more, notches stay between arms that begin apart; with less, the bend of a u becomes two strokes.
+# more, notches stay between arms that begin apart, as in the bend of a u, which is one stroke.
 MIN_BARE_GAIN = 0.01
 # The same for parting one line of two limbs that turns sharply next to a third limb.
 MIN_FORK_BARE_GAIN = 0.04
@@ -121,8 +121,8 @@ def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     ]
     if not through:
         return
-    found, _ = follow_edges([trace_bridge(a, a.mate, c) for a, c in through], rings)
-    for (a, _), line in zip(through, found, strict=True):
+    moved, _ = follow_edges([trace_bridge(a, a.mate, c) for a, c in through], rings)
+    for (a, _), line in zip(through, moved, strict=True):
         a.bridge, a.mate.bridge = line, line[::-1]
 
 
@@ -237,7 +237,7 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     at = middles[:, None] + (halves[:, None] * BAR_PROBE_OFFSETS)[..., None] * lefts[:, None]
     ways = np.repeat(backs, len(BAR_PROBE_OFFSETS), axis=0)
     reached = np.array(_core.first_crossings(rings, at.reshape(-1, 2), ways)).reshape(len(ending), -1)
-    stem = reached[:, [0, -1]].max(axis=1)  # its far side, next to the bar
+    stem = reached[:, [0, -1]].max(axis=1)  # the far side of the stem, next to the bar
     sticks_out = (reached[:, 1:-1] > (stem + MIN_BEYOND_SIDES * halves)[:, None]).all(axis=1)
     sticks_out &= (reached[:, 2] > stem + MIN_BEYOND * halves) & (reached[:, 2] < stem + MAX_BEYOND * halves)
     rooms = np.array(_core.clearance(rings, at[:, [0, -1]].reshape(-1, 2))).reshape(-1, 2)
@@ -298,7 +298,7 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
         disc = crossing.discs[0, 2]
         widths = [arm.line[arm.out, 2] for arm in crossing.arms]
         meet = _find_farthest_clear(along[0], rooms[k, 0], max(widths), disc) or (crossing.discs[0, :2], disc)
-        own = [
+        own_ends = [
             _find_farthest_clear(
                 along[n],
                 rooms[k, n],
@@ -320,16 +320,16 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
                 ],
                 around[k],
             )
-            for ends in (own, [meet, meet])
+            for ends in (own_ends, [meet, meet])
         ]
         crossing.corner = meet
         for arm, end in zip(
-            crossing.arms, own if bare[0] < bare[1] + MIN_BARE_GAIN else [meet, meet], strict=True
+            crossing.arms, own_ends if bare[0] < bare[1] + MIN_BARE_GAIN else [meet, meet], strict=True
         ):
             arm.corner = end
         onward = [
             arm.lead if arm.lead is not None else trace_straight(*end, arm.line[arm.out])
-            for arm, end in zip(crossing.arms, own, strict=True)
+            for arm, end in zip(crossing.arms, own_ends, strict=True)
         ]
         _choose_bent_ways(crossing, around[k], min(bare))
         if _is_affordable(len(corners), rings):

@@ -126,8 +126,8 @@ def find_straight_cuts(
     left = np.stack([-ways[..., 1], ways[..., 0]], axis=-1)
     at = here[..., None, :] + offsets[..., None] * left[..., None, :]
     along = np.broadcast_to(ways[..., None, :], at.shape)
-    found = _core.first_crossings(rings, at.reshape(-1, 2), along.reshape(-1, 2))
-    reached = np.array(found).reshape(at.shape[:-1])
+    distances = _core.first_crossings(rings, at.reshape(-1, 2), along.reshape(-1, 2))
+    reached = np.array(distances).reshape(at.shape[:-1])
     reached[~np.isfinite(reached).all(axis=-1)] = np.nan
     slope = (reached[..., -1] - reached[..., 0]) / (offsets[..., -1] - offsets[..., 0])
     middle = (reached[..., 0] + reached[..., -1]) / 2

@@ -50,12 +50,12 @@ def _estimate_crossings(tails: np.ndarray, heads: np.ndarray, pairs: int = 100_0
     count = len(tails)
     if count < 200:
         return 0.0
-    one, two = np.random.default_rng(0).integers(0, count, (2, pairs))
+    firsts, seconds = np.random.default_rng(0).integers(0, count, (2, pairs))
 
     def side(a, b, p):  # the side of the line from a to b on which p is
         return np.sign((b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0]))
 
-    a, b, c, d = tails[one], heads[one], tails[two], heads[two]
+    a, b, c, d = tails[firsts], heads[firsts], tails[seconds], heads[seconds]
     cross = (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
     return float(cross.mean()) * count * (count - 1) / 2
 

@@ -1,4 +1,4 @@
-"""Crossings of a medial axis: which nodes form one, and which two arms are one line."""
+"""Crossings of a medial axis: which nodes form one, which arms are one line."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Arm:
     branch: int
     forward: bool
     crossing: int
-    line: np.ndarray  # from the crossing on
+    line: np.ndarray  # rows (k, 3), from the crossing on
     out: int = 0  # first row outside of the crossing's discs
     mate: Arm | None = None
     # the arm at the other end of the branch, None where that end is free
@@ -216,8 +216,8 @@ def _merge_nodes(nodes, lines, ends, degree) -> tuple[dict[int, list[int]], set[
 def _add_arm(branch: int, side: int, crossing: int, line: np.ndarray, crossings: list[Crossing]) -> Arm:
     line = line if side == 0 else line[::-1]
     discs = crossings[crossing].discs
-    off = np.hypot(line[:, None, 0] - discs[None, :, 0], line[:, None, 1] - discs[None, :, 1])
-    beyond = (off > discs[None, :, 2]).all(axis=1)
+    distances = np.hypot(line[:, None, 0] - discs[None, :, 0], line[:, None, 1] - discs[None, :, 1])
+    beyond = (distances > discs[None, :, 2]).all(axis=1)
     arm = Arm(branch, side == 0, crossing, line, int(np.argmax(beyond)) if beyond.any() else len(line) - 1)
     crossings[crossing].arms.append(arm)
     return arm

@@ -1,4 +1,4 @@
-"""Order of strokes on a page: rows, then letters or characters, then their strokes."""
+"""Order of strokes on a page: rows, then letters or characters, then strokes."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def order_strokes(
     order = []
     for group in group_areas(boxes, script):
         strokes = [(area, k) for area in group for k in range(len(lines[area]))]
-        found = find_writing_order([lines[area][k] for area, k in strokes], script)
+        writing_order = find_writing_order([lines[area][k] for area, k in strokes], script)
         if script == "devanagari":
-            found = _move_headline_last(found, [lines[area][k] for area, k in strokes])
-        order += [strokes[k] for k in found]
+            writing_order = _move_headline_last(writing_order, [lines[area][k] for area, k in strokes])
+        order += [strokes[k] for k in writing_order]
     return order
 
 
@@ -153,8 +153,8 @@ def _move_headline_last(order: list[int], lines: list[np.ndarray]) -> list[int]:
 
     The headline consists of the flat lines on the level of the longest flat line on top.
     """
-    every = np.vstack(lines)
-    middle = every[:, 1].min() + MIN_HEADLINE_HEIGHT * np.ptp(every[:, 1])
+    points = np.vstack(lines)
+    middle = points[:, 1].min() + MIN_HEADLINE_HEIGHT * np.ptp(points[:, 1])
     extents = np.array([np.ptp(line[:, :2], axis=0) for line in lines])
     levels = np.array([line[:, 1].mean() for line in lines])
     flat = (extents[:, 1] < MAX_HEADLINE_SLOPE * extents[:, 0]) & (levels > middle)

@@ -50,7 +50,8 @@ MAX_RING_SHARE = 0.05
 # pinhole parts a line in two; with more, the dot of a small i is lost.
 SPECK_ROUGHNESSES = 2.0
 PLACES_PER_SMOOTHING = 4  # places along a ring per smoothing length: fewer show as corners
-MAX_PLACES = 200_000  # of a smoothed shape: about 50 MB, and as many edges as a shape may have
+# Places on all rings of a smoothed shape: about 50 MB, and as many edges as a shape may have.
+MAX_PLACES = 200_000
 
 
 def smooth_rough_outlines(rings: list[np.ndarray]) -> list[np.ndarray]:
@@ -116,7 +117,10 @@ def _are_alike(heights: np.ndarray) -> bool:
 
 
 def _is_right_angled(rings: list[np.ndarray]) -> bool:
-    """Return whether all edges run in two directions, at right angles: four times their angles are the same."""
+    """Return whether all edges run in two directions at right angles.
+
+    Four times their angles are then the same.
+    """
     step = np.vstack([np.roll(ring, -1, axis=0) - ring for ring in rings])
     lengths_mm = np.hypot(*step.T)
     fourfold = np.exp(4j * np.arctan2(step[:, 1], step[:, 0]))

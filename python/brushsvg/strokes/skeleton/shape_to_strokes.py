@@ -103,12 +103,12 @@ def _find_area_strokes(
     lines = [np.vstack([piece.line for piece in chain]) for chain in chains]
     if len(chains) == 1:
         return [(lines[0], _make_stroke(chains[0], area, area))]
-    cuts = len(chains) * sum(map(len, area)) < MAX_CUT_POINTS
-    parts = [_find_chain_part(chain, area_skeleton, area if cuts else None) for chain in chains]
+    can_cut = len(chains) * sum(map(len, area)) < MAX_CUT_POINTS
+    parts = [_find_chain_part(chain, area_skeleton, area if can_cut else None) for chain in chains]
     kept = [k for k, part in enumerate(parts) if part]
     strokes = [_make_stroke(chains[k], parts[k], area) for k in kept]
     return list(
-        zip([lines[k] for k in kept], with_shared_corners(strokes, area) if cuts else strokes, strict=True)
+        zip([lines[k] for k in kept], with_shared_corners(strokes, area) if can_cut else strokes, strict=True)
     )
 
 
@@ -117,13 +117,13 @@ def _make_dab(disc: np.ndarray, wanted_mm: list[np.ndarray]) -> OutlineStroke:
     return OutlineStroke(np.array([[x, y] * 4]), [(0.0, radius)], False, wanted_mm)
 
 
-def _find_chain_part(chain, found: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
+def _find_chain_part(chain, area_skeleton: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
     """Return the part of the shape that belongs to a chain of pieces.
 
     It is the area nearest to the chain's branches and, if the area is given, what the chain paints inside of
     crossings.
     """
-    nearest = [ring for piece in chain for branch in piece.branches for ring in found.parts[branch]]
+    nearest = [ring for piece in chain for branch in piece.branches for ring in area_skeleton.parts[branch]]
     if area is None:
         return _core.unite(nearest)
     across = [

@@ -27,13 +27,13 @@ def with_shared_corners(strokes: list, area: list[np.ndarray]) -> list:
     if not ends:
         return strokes
     lines = [_core.wanted_outline(_as_plain_stroke(stroke), 0.01) for stroke in strokes]
-    out = list(strokes)
+    changed = list(strokes)
     for k, (box, half) in ends:
         corners = _core.intersect([box], area)
         covered = _core.unite([ring for line in lines for ring in _core.intersect(corners, line)])
         if _core.area(corners) - _core.area(covered) > MIN_BARE_CORNERS * half**2:
-            out[k] = replace(out[k], wanted_mm=_core.unite([*out[k].wanted_mm, *corners]))
-    return out
+            changed[k] = replace(changed[k], wanted_mm=_core.unite([*changed[k].wanted_mm, *corners]))
+    return changed
 
 
 def _find_end_boxes(stroke, area) -> list[tuple[np.ndarray, float]]:

@@ -1,11 +1,15 @@
-"""Writing order of strokes, from geometric features whose weights were fitted to stroke-order data.
+"""Writing order of strokes, from geometric features with fitted weights.
 
-Two numbers are computed for each pair of strokes by one small network (`stroke_order.json`):
+Two numbers are computed for each pair of strokes by one small network (`stroke_order.json`). Its weights were
+fitted to stroke-order data.
 
     m(a, b) = f(a, b) - f(b, a)   log odds that a is written before b
     h(a, b)                       how well b follows immediately after a
 
-The score of writing b after a, with the strokes R still to write, is h(a, b) + sum over r in R of log sigmoid(m(b, r)).
+The score of writing b after a, with the strokes R still to write, is
+
+    h(a, b) + sum over r in R of log sigmoid(m(b, r))
+
 The softmax over R of this score is the probability of the next stroke. A beam search finds the most probable order.
 `benchmarks/fit_stroke_order.py` describes how the weights were fitted, and names the data.
 """
@@ -92,15 +96,15 @@ def pair_features(lines: list[np.ndarray], script_flag: float) -> np.ndarray:
     chord, length = end - start, np.hypot(*np.moveaxis(np.diff(places, axis=1), 2, 0)).sum(axis=1)
     span = np.hypot(*chord.T)
     heading = chord / np.maximum(span, 1e-9)[:, None]
-    own = np.column_stack([heading, length, span / np.maximum(length, 1e-9)])
+    stroke_features = np.column_stack([heading, length, span / np.maximum(length, 1e-9)])
     where = np.column_stack([start, end, middle])
     gap = start[None] - end[:, None]
     shape = (len(lines), len(lines))
     return np.concatenate(
         [
             where[None] - where[:, None],
-            np.broadcast_to(own[:, None], (*shape, own.shape[1])),
-            np.broadcast_to(own[None], (*shape, own.shape[1])),
+            np.broadcast_to(stroke_features[:, None], (*shape, stroke_features.shape[1])),
+            np.broadcast_to(stroke_features[None], (*shape, stroke_features.shape[1])),
             contact,
             component[..., None],
             _find_layout_cuts(low, high, middle),
@@ -146,13 +150,13 @@ def _find_layout_cuts(low: np.ndarray, high: np.ndarray, middle: np.ndarray) -> 
         if len(strokes) < 2:
             continue
         size = max((high[strokes].max(axis=0) - low[strokes].min(axis=0)).max(), 1e-6)
-        found = []
+        candidates = []
         for axis, sign in ((0, 1), (1, -1)):
             order = strokes[np.argsort(sign * middle[strokes, axis], kind="stable")]
             begin, end = np.sort(sign * np.array([low[order, axis], high[order, axis]]), axis=0)
             overlap = np.maximum.accumulate(end)[:-1] - np.minimum.accumulate(begin[::-1])[::-1][1:]
-            found.append((overlap.min() / size, axis, order, int(overlap.argmin()) + 1))
-        overlap, axis, order, at = min(found, key=lambda each: each[0])
+            candidates.append((overlap.min() / size, axis, order, int(overlap.argmin()) + 1))
+        overlap, axis, order, at = min(candidates, key=lambda each: each[0])
         first, second = order[:at], order[at:]
         sure = 1 / (1 + np.exp((overlap - SOFT_CUT) / SOFT_CUT_WIDTH))
         for part, other_part, signed in ((first, second, sure), (second, first, -sure)):
