@@ -142,18 +142,18 @@ def fonts(modules: Path) -> list[bytes]:
 def found_lines(document: str, script: str) -> list[np.ndarray]:
     """Return the middle lines (k, 3) of a drawing's strokes, in their direction."""
     kept = []
-    made = shapes._strokes
+    made = shapes._find_area_strokes
 
     def keep(*arguments):
         found = made(*arguments)
         kept.extend(line for line, _ in found)
         return found
 
-    shapes._strokes = keep
+    shapes._find_area_strokes = keep
     try:
         extraction.strokes(read_svg(document.encode()), script=script)
     finally:
-        shapes._strokes = made
+        shapes._find_area_strokes = made
     return kept
 
 

@@ -19,15 +19,15 @@ from brushsvg.geometry.rings import with_holes
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
 from brushsvg.strokes.skeleton import filled
-from brushsvg.strokes.skeleton.graph import skeleton
+from brushsvg.strokes.skeleton.graph import build_skeleton
 from brushsvg.strokes.skeleton.reading_order import order_strokes
 from brushsvg.strokes.skeleton.shape_to_strokes import (
-    LEAST_LIMB,
-    LEAST_SHARE,
-    _strokes,
+    MIN_BRANCH_AREA,
+    MIN_LIMB_AREA,
+    _find_area_strokes,
     outline_strokes,
 )
-from brushsvg.strokes.skeleton.writing_order import joined
+from brushsvg.strokes.skeleton.writing_order import join_pieces
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
 PX_PER_MM = 20
@@ -66,10 +66,12 @@ def main() -> None:
     filling, shapes = ms_each(elements, filled)
     areas = [area for shape in shapes for area in with_holes(shape)]
     per_glyph = len(areas) / len(shapes)
-    axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, LEAST_SHARE, LEAST_LIMB))
+    axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, MIN_BRANCH_AREA, MIN_LIMB_AREA))
     joined_up = list(zip(areas, axes, strict=True))
-    joining, found = ms_each(joined_up, lambda each: skeleton(each[0], *each[1]))
-    directing, chains = ms_each(found, lambda each: joined(each.pieces, each, SCRIPT) if each.pieces else [])
+    joining, found = ms_each(joined_up, lambda each: build_skeleton(each[0], *each[1]))
+    directing, chains = ms_each(
+        found, lambda each: join_pieces(each.pieces, each, SCRIPT) if each.pieces else []
+    )
     lines = [[np.vstack([piece.line for piece in chain]) for chain in each] for each in chains]
     boxes = [np.array([[*area[0].min(axis=0), *area[0].max(axis=0)]]) for area in areas]
     ordering, _ = ms_each(
@@ -77,7 +79,7 @@ def main() -> None:
         lambda each: order_strokes(each[0], [each[1]], SCRIPT),
     )
     writing = directing + ordering
-    strokes, made = ms_each(joined_up, lambda each: _strokes(each[0], *each[1], SCRIPT))
+    strokes, made = ms_each(joined_up, lambda each: _find_area_strokes(each[0], *each[1], SCRIPT))
     whole, _ = ms_each(shapes, lambda rings: outline_strokes(rings, SCRIPT))
     edges = np.mean([sum(map(len, shape)) for shape in shapes])
     count = sum(len(each) for each in made)

@@ -60,11 +60,11 @@ def test_closed_lines_without_a_corner_there_or_without_a_straight_side_begin_as
 
 
 def test_widths_go_with_the_line_when_it_begins_elsewhere():
-    from brushsvg.strokes.corners import begun_amid_a_side
+    from brushsvg.strokes.corners import begin_amid_side
 
     corners = np.array([[0, 0], [30, 0], [30, 10], [0, 10], [0, 0]], float)
     cubics = np.stack([corners[:-1] + k / 3 * np.diff(corners, axis=0) for k in range(4)], axis=1)
-    begun, widths = begun_amid_a_side(cubics, [(0.0, 1.0), (0.5, 3.0), (1.0, 1.0)])
+    begun, widths = begin_amid_side(cubics, [(0.0, 1.0), (0.5, 3.0), (1.0, 1.0)])
     assert begun[0, 0] == pytest.approx([15, 0])
     at, half = np.array(widths).T
     assert (np.diff(at) >= 0).all()

@@ -11,10 +11,10 @@ from svg_text import read
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.numbers.from_widths import new_brush
-from brushsvg.strokes.contour_fill import contour_passes
+from brushsvg.strokes.contour_fill import find_contour_passes
 from brushsvg.strokes.contour_rings import Line
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.fillings import fillings
+from brushsvg.strokes.fillings import find_wide_shapes
 from brushsvg.strokes.skeleton import shape_to_strokes
 from brushsvg.strokes.swept_areas import painted, region
 from brushsvg.strokes.wide_shapes import within_reach
@@ -90,7 +90,7 @@ def test_holes_belong_to_no_stroke():
 
 
 def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
-    monkeypatch.setattr(shape_to_strokes, "MOST_CUT", 0)
+    monkeypatch.setattr(shape_to_strokes, "MAX_CUT_POINTS", 0)
     test_holes_belong_to_no_stroke()
 
 
@@ -115,16 +115,16 @@ def test_the_target_of_the_first_pass_is_its_own_mark_and_not_the_whole_shape(br
 
 
 def ways_of(shape, narrow=()):
-    return contour_passes(shape, 0.0, HALF_MM)
+    return find_contour_passes(shape, 0.0, HALF_MM)
 
 
 def test_rings_come_from_the_outline_inwards_cut_at_sharp_corners_alone():
-    rings = contour_passes(shapely.box(5, 5, 50, 50), 0.0, HALF_MM)[0]
+    rings = find_contour_passes(shapely.box(5, 5, 50, 50), 0.0, HALF_MM)[0]
     assert all(each.closed for each in rings)
     sizes = [np.ptp(way_of(each)[:, 0]) for each in rings]
     assert sizes[0] == pytest.approx(45 - 2 * HALF_MM, abs=0.02)
     assert sizes == sorted(sizes, reverse=True)
-    sharp = contour_passes(shapely.Polygon([(5, 5), (55, 5), (30, 48.3)]), 0.0, HALF_MM)[0]
+    sharp = find_contour_passes(shapely.Polygon([(5, 5), (55, 5), (30, 48.3)]), 0.0, HALF_MM)[0]
     sides = [each for each in sharp if not each.closed]
     assert len(sides) == 3
     inside = 50 - 2 * np.sqrt(3) * HALF_MM  # the side of the triangle that discs run along
@@ -199,7 +199,7 @@ def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
     """Compared by the marks' outlines with shapely; discs would report the star's five square ends as the best."""
     made = of(SHAPES[name])
     wide = [k for k, each in enumerate(made) if max(half for _, half in each.half_width) > HALF_MM]
-    (filling,) = fillings(made, wide, *brush.half_width_range_mm())
+    (filling,) = find_wide_shapes(made, wide, *brush.half_width_range_mm())
     assert filling.along
     shape = region(filling.rings)
 
@@ -283,8 +283,8 @@ def test_what_is_no_lettering_is_left_to_the_middle_lines():
     turns = np.linspace(0, 2 * np.pi, 9000, endpoint=False)
     far = 30 + np.arange(9000) * 7919 % 1000 / 1000
     rough = shapely.Polygon(np.column_stack([far * np.cos(turns), far * np.sin(turns)]))
-    assert contour_passes(rough, 0.0, HALF_MM) == []
-    assert contour_passes(shapely.box(0, 0, 4000, 4000), 0.0, 1.0) == []
+    assert find_contour_passes(rough, 0.0, HALF_MM) == []
+    assert find_contour_passes(shapely.box(0, 0, 4000, 4000), 0.0, 1.0) == []
     line = Line(np.array([[0.0, 0, 1, 0, 2, 0, 3, 0]]), [(0.0, 1.0)])
     assert painted([line]).area == pytest.approx(6 + np.pi, rel=1e-3)
 
@@ -329,7 +329,7 @@ def straight(name, start, end, half):
 def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
     """Rings along them, by 2 mm from an inner corner of this star."""
     made = of(SHAPES["star"])
-    (filling,) = fillings(made, list(range(len(made))), *brush.half_width_range_mm())
+    (filling,) = find_wide_shapes(made, list(range(len(made))), *brush.half_width_range_mm())
     parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
     corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in filling.rings]
     assert corners == [10]

@@ -563,14 +563,14 @@ def test_shapes_of_more_lines_than_any_page_are_refused():
 
 
 def test_edges_side_by_side_are_counted_in_bands():
-    from brushsvg.strokes.skeleton.fill_rule import _side_by_side
+    from brushsvg.strokes.skeleton.fill_rule import _count_compared_pairs
 
     def pairs(ring):
         ring = np.asarray(ring, float)
         both = np.array([ring, np.roll(ring, -1, axis=0)])
         low, high = both.min(axis=0), both.max(axis=0)
         order = np.argsort(low[:, 0])
-        return _side_by_side(low[order], high[order])
+        return _count_compared_pairs(low[order], high[order])
 
     teeth = zigzag(20_000)
     tilted = np.column_stack([teeth[:, 0], teeth[:, 1] + teeth[:, 0] / 10])

@@ -46,7 +46,7 @@ def test_too_large_a_drawing_is_advised_to_shrink():
 
 def test_a_drawing_of_the_right_size_is_left_alone():
     found = size_advice.best_size([line(150, 1.5)] * 40, BRUSH, painted)
-    assert (found.best, found.tried, found.strokes) == (1.0, size_advice.FEW, 40)
+    assert (found.best, found.tried, found.strokes) == (1.0, size_advice.MAX_FIRST_STROKES, 40)
     advice = size_advice.advice(found)
     assert gives(advice, "0.35", "2.8", "6", "40")
 
@@ -63,8 +63,8 @@ def test_what_looks_better_is_tried_as_it_is_made():
     assert found.overlaps[1.0] == pytest.approx(0.4, abs=0.15)  # half of them are refused
     assert (found.best, found.tried, len(seen)) == (
         0.7,
-        size_advice.TRIED,
-        size_advice.TRIED * len(found.overlaps),
+        size_advice.MAX_TRIED_STROKES,
+        size_advice.MAX_TRIED_STROKES * len(found.overlaps),
     )
     found = size_advice.best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
     assert found.best == 1.0  # nothing looked better

@@ -14,7 +14,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.show.evaluation import report
-from brushsvg.strokes.uncovered_areas import Blank, notices, uncovered_areas
+from brushsvg.strokes.uncovered_areas import UncoveredArea, notices, uncovered_areas
 from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (
@@ -154,8 +154,8 @@ def test_the_report_gives_it_as_the_reason(tmp_path):
     assert worst(()).code != "wider-than-brush"
     x, y = worst(()).place_mm
     square = np.array([(x - 2, y - 2), (x + 2, y - 2), (x + 2, y + 2), (x - 2, y + 2)])
-    assert worst([Blank("p", (x, y), 0.04, [square])]).code == "unreached"
-    assert worst([Blank("q", (x, y), 0.04, [square])]).code != "unreached"
+    assert worst([UncoveredArea("p", (x, y), 0.04, [square])]).code == "unreached"
+    assert worst([UncoveredArea("q", (x, y), 0.04, [square])]).code != "unreached"
 
 
 def test_what_discs_leave_of_a_corner_is_no_tracking_error(tmp_path):

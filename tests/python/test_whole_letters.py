@@ -6,7 +6,7 @@ import shapely
 from brushsvg import Pass, Stroke, _core, compensate, find_brush
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
-from brushsvg.planning.touching_strokes import worse
+from brushsvg.planning.touching_strokes import find_worse_strokes
 
 SHORT_BAR = '<path d="M10 12H34V28H10Z"/>'
 
@@ -55,8 +55,8 @@ def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_n
         marks.append(painted.outline_mm)
     assert overlaps[1] > overlaps[0]  # by overlap alone it was kept
     assert turned_deg(marks[1]) > turned_deg(marks[0]) + 270
-    assert worse([closed[0], waving], closed, wider, brush, group) == [1]
-    assert worse(calm, closed, wider, brush, group) == []
+    assert find_worse_strokes([closed[0], waving], closed, wider, brush, group) == [1]
+    assert find_worse_strokes(calm, closed, wider, brush, group) == []
 
 
 def waved(poses_mm: np.ndarray) -> np.ndarray:

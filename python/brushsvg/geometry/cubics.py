@@ -1,4 +1,4 @@
-"""Cubic Bezier curves: points on them, the box round them, chords along them, their parts."""
+"""Cubic Bezier curves: points, bounds, chords and parts."""
 
 from __future__ import annotations
 
@@ -6,16 +6,19 @@ import numpy as np
 
 
 def at(t, p0, p1, p2, p3):
-    """Where curves of these points are at t; arrays that broadcast together."""
+    """Return the points of curves at t; arrays broadcast together."""
     u = 1 - t
     return u**3 * p0 + 3 * t * u**2 * p1 + 3 * t**2 * u * p2 + t**3 * p3
 
 
 def extremes(cubics: np.ndarray) -> np.ndarray:
-    """Points that bound cubics (n, 4, 2): their ends, and where x or y turns back."""
+    """Return points that bound cubics (n, 4, 2).
+
+    These are their ends, and the places where x or y turns back.
+    """
     p = np.moveaxis(cubics, 1, 0)
     a, b, c = p[3] - p[0] + 3 * (p[1] - p[2]), 2 * (p[0] - 2 * p[1] + p[2]), p[1] - p[0]
-    # a t^2 + b t + c = 0 by the form of the roots that is exact where a is small, too
+    # The roots of a t^2 + b t + c = 0, in the form that is exact even where a is small.
     with np.errstate(all="ignore"):
         q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
         t = np.stack((q / a, c / q))
@@ -24,8 +27,11 @@ def extremes(cubics: np.ndarray) -> np.ndarray:
 
 
 def flattened(cubics: np.ndarray, tolerance: float) -> np.ndarray:
-    """Points (k, 2) of cubics (n, 4, 2), nowhere further from them than the tolerance: the chord of 1/n of a cubic
-    is off by |B''| / 8 n^2 at most."""
+    """Return points (k, 2) of cubics (n, 4, 2) within the tolerance.
+
+    No chord is further from its cubic than the tolerance: the chord of 1/n of a cubic is off by |B''| / 8 n^2 at
+    most.
+    """
     second = 6 * np.abs(np.diff(cubics, n=2, axis=1)).max(axis=1)
     bend = np.hypot(second[:, 0], second[:, 1])
     counts = np.clip(np.ceil(np.sqrt(bend / (8 * tolerance))), 1, 1000).astype(int)
@@ -36,7 +42,7 @@ def flattened(cubics: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def split(cubic: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-    """A cubic (4, 2) up to t and from there on."""
+    """Split a cubic (4, 2) at t and return both parts."""
     left, right = [], []
     while len(cubic):
         left.append(cubic[0])
@@ -46,7 +52,10 @@ def split(cubic: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def between(cubics: np.ndarray, begin: tuple[int, float], end: tuple[int, float]) -> np.ndarray:
-    """The part of joined cubics (n, 4, 2) between two places, each a cubic's number and a parameter in it."""
+    """Return the part of joined cubics (n, 4, 2) between two places.
+
+    begin, end: each the number of a cubic and a parameter in it.
+    """
     (first, t0), (last, t1) = begin, end
     if begin == end:
         return np.repeat(split(cubics[first], t0)[0][None, 3:], 4, axis=1)

@@ -1,4 +1,4 @@
-"""Rings: points (n, 2) of which the last is joined to the first."""
+"""Rings: points (n, 2), the last of which is joined to the first."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ import numpy as np
 
 
 def signed_area(ring: np.ndarray) -> float:
-    """Above 0 for a ring that runs counter-clockwise."""
+    """Return the area of a ring, positive if it runs counter-clockwise."""
     x, y = ring.T
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
 def centroid(rings: list[np.ndarray]) -> np.ndarray:
-    """(2,) of the area within, holes clockwise; of rings without area, the mean of their points."""
+    """Return the centroid, (2,), of the area within rings, holes clockwise.
+
+    For rings without area, return the mean of their points.
+    """
     area, moment = 0.0, np.zeros(2)
     for ring in rings:
         after = np.roll(ring, -1, axis=0)
@@ -39,7 +42,7 @@ def is_within(places: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
 
 
 def with_holes(rings: list[np.ndarray]) -> list[list[np.ndarray]]:
-    """Each outer ring with its holes, which follow it."""
+    """Return each outer ring together with its holes, which follow it."""
     areas: list[list[np.ndarray]] = []
     for ring in rings:
         if signed_area(ring) > 0:
@@ -49,7 +52,10 @@ def with_holes(rings: list[np.ndarray]) -> list[list[np.ndarray]]:
 
 
 def without_slivers(ring: np.ndarray, width_mm: float) -> np.ndarray:
-    """A ring that may touch itself without the loops between two touches that are no wider than this on the mean."""
+    """Remove thin loops of a ring that touches itself.
+
+    A loop runs between two touches. It is removed if its mean width is at most width_mm.
+    """
     places = list(map(tuple, ring.tolist()))
     kept = np.ones(len(ring), bool)
 

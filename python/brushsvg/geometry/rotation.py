@@ -1,4 +1,4 @@
-"""Points turned in the plane."""
+"""Rotation of points in the plane."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import numpy as np
 
 
 def rotation(turn_rad: float) -> np.ndarray:
-    """(2, 2): points (n, 2) times it are turned counter-clockwise about the origin."""
+    """Return the matrix (2, 2) of a rotation by turn_rad.
+
+    Points (n, 2) times the matrix are turned counter-clockwise about the origin.
+    """
     c, s = np.cos(turn_rad), np.sin(turn_rad)
     return np.array([[c, s], [-s, c]])

@@ -1,4 +1,7 @@
-"""Confidence in a law at a depth: the 95 % band of its polynomial, from the covariance of a brush."""
+"""Confidence in a law at a depth.
+
+The 95 % band of the law's polynomial follows from the covariance of the brush.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,8 @@ import numpy as np
 
 from .. import _core
 
-LEARNED = "learned"  # in a brush file: the brushes before, of what photographs, and how deep their marks were
+# Key of a brush file: the earlier brushes, the photographs they learned from, and how deep their marks were.
+LEARNED = "learned"
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
 
 
@@ -20,8 +24,11 @@ def places(brush) -> dict[str, slice]:
 
 
 def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float | None) -> np.ndarray:
-    """t sqrt(x^T C x), x the powers of depth, C (n, n) the covariance of a law's coefficients, found from so many
-    values to spare, t the 95 % quantile of Student's t; None: nobody knows from how many, t as for a normal value.
+    """Return half of the 95 % interval of a law at depths, t sqrt(x^T C x) [mm].
+
+    covariance: C, (n, n), of the law's coefficients; depths: (k,) [mm], whose powers are x; freedom: degrees of
+    freedom of the fit, for the 95 % quantile t of Student's t. None stands for an unknown number, with t as for a
+    normal value.
     """
     powers = np.vander(depths, len(covariance), increasing=True)
     squared = np.einsum("ij,jk,ik->i", powers, covariance, powers)
@@ -29,9 +36,10 @@ def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float 
 
 
 def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
-    """Half height [mm] of a law's band at depths, and what it is; None where nothing is known.
+    """Return half the height [mm] of a law's band at depths, and its meaning.
 
-    From the covariance; else the RMSE. The intervals of single coefficients make no band: these depend on each other.
+    It follows from the covariance, or otherwise from the RMSE. Returns None where nothing is known. The intervals
+    of single coefficients make no band, because the coefficients depend on each other.
     """
     law, place = getattr(brush, name), places(brush)[name]
     if len(brush.covariance):
@@ -46,15 +54,17 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
 
 
 def learned_of(brush) -> dict:
-    """What a brush file says of what it was made from; {} where it says nothing."""
-    said = json.loads(brush.extra or "{}").get(LEARNED)
-    return said if isinstance(said, dict) else {}
+    """Return what a brush file says about its origin; {} where it says nothing."""
+    learned = json.loads(brush.extra or "{}").get(LEARNED)
+    return learned if isinstance(learned, dict) else {}
 
 
 def fitted_down_to_mm(brush, law: str) -> float:
-    """The depth down to which a law was fitted to marks or measurements; 0 for one that was typed or assumed. Fits
-    leave a covariance. A brush that learned from marks keeps the depths that were typed before as its range, and
-    says itself how deep the marks were."""
+    """Return the depth down to which a law was fitted to marks or measurements.
+
+    Returns 0 for a law that was typed or assumed: fits leave a covariance. A brush that learned from marks keeps
+    the depths that were typed before as its range, and states itself how deep the marks were.
+    """
     place = places(brush)[law]
     if not len(brush.covariance) or not np.any(np.array(brush.covariance)[place, place]):
         return 0.0
@@ -65,12 +75,17 @@ def fitted_down_to_mm(brush, law: str) -> float:
 
 
 def paint_interval_per_m(paint) -> float:
-    """Half of the 95 % interval of how a mark narrows from dip to dip; of paint that has a covariance."""
+    """Return half of the 95 % interval of how a mark narrows from dip to dip.
+
+    paint: has a covariance.
+    """
     return _core.deviations_of_95(paint.degrees_of_freedom) * float(np.sqrt(paint.covariance[0][0]))
 
 
 def unseen_mm(brush, depth_mm: float) -> float:
-    """What a tracking error adds to that of the brush's lag by 3 %, as errors add in squares: a quarter of what
-    law_band says of it. 0 where nothing is known."""
+    """Return the tracking error that adds 3 % to the error of the brush's lag.
+
+    Errors add in squares, so it is a quarter of the band of law_band. Returns 0 where nothing is known.
+    """
     known = law_band(brush, "lag", np.array([depth_mm]))
     return 0.0 if known is None else 0.25 * float(known[0][0])

@@ -1,4 +1,4 @@
-"""A brush in words and numbers."""
+"""Descriptions of a brush in words and numbers."""
 
 from __future__ import annotations
 
@@ -18,19 +18,22 @@ LAWS = (
 
 
 def one_line(brush: _core.Brush) -> str:
-    """For a list of brushes: what the file says about itself, else what follows from its laws."""
+    """Return one line about a brush for a list.
+
+    It is what the file says about itself, or otherwise follows from the laws.
+    """
     about = json.loads(brush.extra).get("about")
     return about if isinstance(about, str) and about else reach(brush)
 
 
 def reach(brush: _core.Brush) -> str:
-    """Kind, depth, what it paints and how far it trails."""
+    """Return kind, depth, line width and lag of a brush in words."""
     least, greatest = brush.depth_range_mm
     trail = "no lag" if brush.is_rigid() else f"lag {brush.lag(least):.1f} to {brush.lag(greatest):.1f} mm"
-    return f"{brush.kind or 'brush'}, {_lines(brush)}, depth {least:g} to {greatest:g} mm, {trail}"
+    return f"{brush.kind or 'brush'}, {_describe_lines(brush)}, depth {least:g} to {greatest:g} mm, {trail}"
 
 
-def _lines(brush) -> str:
+def _describe_lines(brush) -> str:
     least, greatest = (2 * half for half in brush.half_width_range_mm())
     if not brush.width_follows_depth():
         return f"lines {greatest:g} mm wide"
@@ -38,7 +41,10 @@ def _lines(brush) -> str:
 
 
 def page(brush: _core.Brush) -> str:
-    """All there is to know of a brush: limits, laws with their source, footprints, a table of values."""
+    """Return a full description of a brush.
+
+    It has limits, laws with their source, footprints and a table of values.
+    """
     least, greatest = brush.depth_range_mm
     lines = [
         f"{brush.name}: {one_line(brush)}",
@@ -48,13 +54,13 @@ def page(brush: _core.Brush) -> str:
         "laws, mm against depth d in mm",
     ]
     for name, meaning in LAWS:
-        lines += _law(name, meaning, getattr(brush, name))
-    lines += _paint(brush.paint) if brush.paint else []
-    lines += ["", *_footprints(brush), "", *_table(brush, least, greatest)]
+        lines += _describe_law(name, meaning, getattr(brush, name))
+    lines += _describe_paint(brush.paint) if brush.paint else []
+    lines += ["", *_describe_footprints(brush), "", *_tabulate_laws(brush, least, greatest)]
     return "\n".join(lines)
 
 
-def _law(name: str, meaning: str, law) -> list[str]:
+def _describe_law(name: str, meaning: str, law) -> list[str]:
     formula = polynomial(law.coefficients)
     if math.isfinite(law.floor):
         formula = f"max({polynomial([law.floor, law.floor_slope])}, {formula})"
@@ -63,10 +69,10 @@ def _law(name: str, meaning: str, law) -> list[str]:
         known.append("measured at depths {:g} to {:g} mm".format(*law.calibrated_mm))
     if law.rmse_mm is not None:
         known.append(f"RMSE {law.rmse_mm:g} mm")
-    return [f"  {name}: {meaning}", f"      {formula}", *_known(known, law.source)]
+    return [f"  {name}: {meaning}", f"      {formula}", *_wrap_caption(known, law.source)]
 
 
-def _known(known: list[str], source: str) -> list[str]:
+def _wrap_caption(known: list[str], source: str) -> list[str]:
     caption = ". ".join(part for part in (", ".join(known), source) if part)
     return textwrap.wrap(caption, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
 
@@ -74,7 +80,7 @@ def _known(known: list[str], source: str) -> list[str]:
 PAINT = "how much narrower the mark is, by the way s in mm painted since the last dip"
 
 
-def _paint(paint) -> list[str]:
+def _describe_paint(paint) -> list[str]:
     known = ["assumed"] if paint.assumed else []
     if paint.calibrated_mm:
         known.append("measured at ways of {:g} to {:g} mm".format(*paint.calibrated_mm))
@@ -83,11 +89,11 @@ def _paint(paint) -> list[str]:
         known.append(f"narrows by {paint.narrows_per_m:g} +- {half:.2g} per metre (95 %)")
     formula = f"width exp(-{paint.narrows_per_m:g} s / 1000)" if paint.narrows_per_m else "width as dipped"
     lasts = f"; hairs run dry after {paint.lasts_mm:g} mm" if paint.lasts_mm else ""
-    return [f"  paint: {PAINT}", f"      {formula}{lasts}", *_known(known, paint.source)]
+    return [f"  paint: {PAINT}", f"      {formula}{lasts}", *_wrap_caption(known, paint.source)]
 
 
 def polynomial(coefficients) -> str:
-    """In words of d, the press depth: 3.1 + 0.86 d."""
+    """Return a polynomial of d, the press depth, as text: 3.1 + 0.86 d."""
     text = ""
     for power, c in enumerate(coefficients):
         if c == 0:
@@ -97,7 +103,7 @@ def polynomial(coefficients) -> str:
     return text or "0"
 
 
-def _footprints(brush) -> list[str]:
+def _describe_footprints(brush) -> list[str]:
     def depths(shapes):
         return ", ".join(f"{shape.depth_mm:g}" for shape in shapes)
 
@@ -110,7 +116,7 @@ def _footprints(brush) -> list[str]:
     ]
 
 
-def _table(brush, least: float, greatest: float) -> list[str]:
+def _tabulate_laws(brush, least: float, greatest: float) -> list[str]:
     lines = ["depth".rjust(7) + "".join(name.rjust(15) for name, _ in LAWS)]
     for step in range(6):
         depth = least + (greatest - least) * step / 5

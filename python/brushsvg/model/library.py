@@ -1,4 +1,4 @@
-"""Brush files: those that come with brushsvg, a user's own, and writing them."""
+"""Brush files: shipped ones, a user's own, and writing them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..suggestions import nearest_name
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
 _LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
-# what a brush file may hold, docs/reference/brush.md
+# Keys of a brush file, see docs/reference/brush.md.
 _KEYS = (
     *(
         "format",
@@ -42,15 +42,15 @@ _KEYS_OF_FOOTPRINTS = ("dragged", "pressed", "source", "assumed", "standard_erro
 
 
 def brush_names() -> list[str]:
-    """Names of the brushes that come with brushsvg, in alphabetical order."""
+    """Return the names of the shipped brushes in alphabetical order."""
     return names_in(SHIPPED, ".json")
 
 
 def find_brush(name_or_path: str | os.PathLike[str]) -> _core.Brush:
-    """The shipped brush of a name, or the brush in a .json file; read, checked, with the sha256 of its bytes.
+    """Return the shipped brush of a name, or the brush in a .json file.
 
-    Raises Error for an unknown name, a file that cannot be read and a brush that is refused; the latter two
-    have the file in `file`, the last the key in `where`.
+    The brush is read and checked, and has the sha256 of its bytes. Raises Error for an unknown name, a file that
+    cannot be read and a brush that is refused. The latter two have the file in `file`, the last the key in `where`.
     """
     path = find_file("brush", SHIPPED, ".json", name_or_path)
     try:
@@ -61,7 +61,7 @@ def find_brush(name_or_path: str | os.PathLike[str]) -> _core.Brush:
 
 
 def parse_brush(data: bytes) -> _core.Brush:
-    """The brush that a file holds, read, checked, with its sha256."""
+    """Return the brush that a file holds, checked and with its sha256."""
     brush = _core.read_brush(data)
     _core.check(brush)
     brush.sha256 = hashlib.sha256(data).hexdigest()
@@ -69,33 +69,39 @@ def parse_brush(data: bytes) -> _core.Brush:
 
 
 def unknown_keys(brush: _core.Brush) -> list[Notice]:
-    """A notice for each key of its file that brushsvg does not know: kept, and without effect."""
-    said = _object(brush.extra)
+    """Return a notice for each key of a brush file that brushsvg does not know.
+
+    Such a key is kept and has no effect.
+    """
+    entries = _parse_object(brush.extra)
     tables = [
-        ("", said, _KEYS),
-        ("footprints.", _object(json.dumps(said.get("footprints"))), _KEYS_OF_FOOTPRINTS),
+        ("", entries, _KEYS),
+        ("footprints.", _parse_object(json.dumps(entries.get("footprints"))), _KEYS_OF_FOOTPRINTS),
     ]
-    tables += [(f"{law}.", _object(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
+    tables += [(f"{law}.", _parse_object(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
     if brush.paint:
-        tables.append(("paint.", _object(brush.paint.extra), _KEYS_OF_PAINT))
+        tables.append(("paint.", _parse_object(brush.paint.extra), _KEYS_OF_PAINT))
     return [
-        _unknown(where + key, where, key, known)
-        for where, said, known in tables
-        for key in said
+        _make_unknown_notice(where + key, where, key, known)
+        for where, entries, known in tables
+        for key in entries
         if key not in known
     ]
 
 
-def _object(text: str) -> dict:
-    """A brush made by hand may say anything there: what is no object is refused where it is written."""
+def _parse_object(text: str) -> dict:
+    """Return the JSON object in a text, or {} if there is none.
+
+    A brush made by hand may contain anything here. A value that is no object is refused when the brush is written.
+    """
     try:
-        found = json.loads(text)
+        parsed = json.loads(text)
     except (ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return parsed if isinstance(parsed, dict) else {}
 
 
-def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
+def _make_unknown_notice(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
     near = nearest_name(key, known)
     hint = f"; did you mean {where}{near}?" if near else ""
     return Notice(
@@ -107,20 +113,22 @@ def _unknown(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
 
 
 def mistyped_keys(brush: _core.Brush) -> list[Notice]:
-    """Return the keys that may be another key, mistyped: they are reported to a person who paints; notes that somebody
-    keeps in a file are not."""
-    found = [notice for notice in unknown_keys(brush) if notice.about]
+    """Return notices for unknown keys that may be mistyped.
+
+    They are reported to a person who paints. Notes that somebody keeps in a file are not reported.
+    """
+    mistyped = [notice for notice in unknown_keys(brush) if notice.about]
     return [
         Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code)
-        for notice in found
+        for notice in mistyped
     ]
 
 
 def brush_like(name: str, like: _core.Brush) -> _core.Brush:
-    """A brush of another name with the laws and outlines of one that is known, all of them marked as assumed: nobody
-    measured this one, and how sure the other's numbers are says nothing of it.
+    """Return a brush of another name with the laws and outlines of a known one.
 
-    like: a Brush [mm], which stays as it is. Raises Error where it is refused.
+    All laws and outlines are marked as assumed: nobody measured this brush, and the confidence in the other one's
+    numbers does not apply to it. like: a Brush [mm], which stays as it is. Raises Error where it is refused.
     """
     need(name, str, "the name of a brush")
     need(like, _core.Brush, "a brush")
@@ -128,37 +136,37 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
     brush = copy.copy(like)
     brush.name, brush.sha256, brush.covariance = name, "", []
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
-        its = getattr(like, law)
-        taken = _core.Profile(
-            its.coefficients,
-            floor=its.floor,
-            floor_slope=its.floor_slope,
-            calibrated_mm=its.calibrated_mm,
-            source=f"Taken from brush {like.name}: {its.source}",
+        known = getattr(like, law)
+        assumed_law = _core.Profile(
+            known.coefficients,
+            floor=known.floor,
+            floor_slope=known.floor_slope,
+            calibrated_mm=known.calibrated_mm,
+            source=f"Taken from brush {like.name}: {known.source}",
             assumed=True,
         )
-        setattr(brush, law, taken)
+        setattr(brush, law, assumed_law)
     if like.paint:
-        its = like.paint
+        known = like.paint
         brush.paint = _core.Paint(
-            its.narrows_per_m,
-            lasts_mm=its.lasts_mm,
-            calibrated_mm=its.calibrated_mm,
-            source=f"Taken from brush {like.name}: {its.source}",
+            known.narrows_per_m,
+            lasts_mm=known.lasts_mm,
+            calibrated_mm=known.calibrated_mm,
+            source=f"Taken from brush {like.name}: {known.source}",
             assumed=True,
         )
-    said = json.loads(like.extra)
-    outlines = said.get("footprints") if isinstance(said.get("footprints"), dict) else {}
+    entries = json.loads(like.extra)
+    outlines = entries.get("footprints") if isinstance(entries.get("footprints"), dict) else {}
     outlines = {key: value for key, value in outlines.items() if key != "standard_error_mm"}
     source = f"Taken from brush {like.name}: {outlines.get('source', '')}".strip()
-    said["footprints"] = outlines | {"source": source, "assumed": True}
-    said["about"] = f"Like {like.name}, until it is measured."
-    brush.extra = json.dumps(said)
+    entries["footprints"] = outlines | {"source": source, "assumed": True}
+    entries["about"] = f"Like {like.name}, until it is measured."
+    brush.extra = json.dumps(entries)
     return brush
 
 
 def save_brush(brush: _core.Brush, path: str | os.PathLike[str]) -> None:
-    """Write a brush as .json, whole or not at all.
+    """Write a brush as .json, completely or not at all.
 
     path: ends in .json. Raises Error when the brush is refused or the place cannot be written.
     """

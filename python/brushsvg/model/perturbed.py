@@ -1,4 +1,4 @@
-"""A brush whose law is another, for who asks what a change of it does."""
+"""Brushes with changed laws, to measure the effect of a change."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from .confidence import LAWS
 
 
 def changed_lag(brush, change: np.ndarray):
-    """Its lag with other coefficients."""
+    """Return a brush's lag with other coefficients.
+
+    change: (n,), added to the coefficients.
+    """
     law = brush.lag
     return _core.Profile(
         (np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope
@@ -17,8 +20,11 @@ def changed_lag(brush, change: np.ndarray):
 
 
 def with_lag(brush, change: np.ndarray):
-    """The brush with other coefficients of the lag: fit to be simulated, nothing else."""
-    other = _core.Brush()
+    """Return the brush with other coefficients of the lag.
+
+    The result can be simulated and is good for nothing else.
+    """
+    changed = _core.Brush()
     for name in (
         "name",
         "kind",
@@ -29,30 +35,39 @@ def with_lag(brush, change: np.ndarray):
         "max_speed_mm_s",
         "paint_depth_mm",
     ):
-        setattr(other, name, getattr(brush, name))
-    other.lag = changed_lag(brush, change)
-    return other
+        setattr(changed, name, getattr(brush, name))
+    changed.lag = changed_lag(brush, change)
+    return changed
 
 
 def with_factors(brush, factors: dict[str, tuple[float, ...]]):
-    """The brush with laws times a polynomial of depth, coefficients ascending: fit to be simulated. With the half width
-    its footprints become as much larger, as those of a brush with more bristles."""
-    other = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
+    """Return the brush with laws multiplied by polynomials of depth.
+
+    factors: for each law the coefficients of its polynomial, ascending. The result can only be simulated. With the
+    half width, its footprints become larger by the same factor, like those of a brush with more bristles.
+    """
+    changed = with_lag(brush, np.zeros(len(brush.lag.coefficients)))
     if "half_width" in factors:
         factors = factors | {"tip_to_widest": factors["half_width"]}
     for name, factor in factors.items():
         law = getattr(brush, name)
-        times = np.convolve(law.coefficients, factor).tolist()
-        made = _core.Profile(times, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0])
-        setattr(other, name, made)
-    if "half_width" in factors:
-        other.footprints = _core.FootprintTable(
-            dragged=[_larger(one, factors["half_width"]) for one in brush.footprints.dragged],
-            pressed=[_larger(one, factors["half_width"]) for one in brush.footprints.pressed],
+        coefficients = np.convolve(law.coefficients, factor).tolist()
+        changed_law = _core.Profile(
+            coefficients, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0]
         )
-    return other
+        setattr(changed, name, changed_law)
+    if "half_width" in factors:
+        changed.footprints = _core.FootprintTable(
+            dragged=[
+                _scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.dragged
+            ],
+            pressed=[
+                _scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.pressed
+            ],
+        )
+    return changed
 
 
-def _larger(footprint, factor):
+def _scale_footprint(footprint, factor):
     times = np.polynomial.polynomial.polyval(footprint.depth_mm, factor)
     return _core.Footprint(footprint.depth_mm, np.array(footprint.outline_mm) * times)

@@ -1,4 +1,7 @@
-"""A brush as a picture: its laws against depth with confidence bands, and its footprints. Needs the extra plot."""
+"""Pictures of a brush: its laws with confidence bands, and its footprints.
+
+The laws are drawn against depth. Needs the extra `plot`.
+"""
 
 from __future__ import annotations
 
@@ -14,16 +17,18 @@ from .confidence import law_band, paint_interval_per_m
 from .describe import LAWS
 
 INK, QUIET, BAND = "#2b3a67", "#767a82", "#3f8fd9"
-NOTE = "note"  # mark of a text that `encoded` places
-AROUND_PX = 4  # around a note
-DRAWN = 215  # brightness of a pixel with something in it: grids and bands are brighter
-SHADES = ("#b9c3de", "#2b3a67")  # of footprints, shallow to deep
+NOTE = "note"  # marks a text that `encoded` places
+NOTE_MARGIN_PX = 4  # space around a note
+# Greatest brightness of a pixel with something in it: grids and bands are brighter.
+MAX_DRAWN_BRIGHTNESS = 215
+FOOTPRINT_COLOURS = ("#b9c3de", "#2b3a67")  # colours of footprints, shallow to deep
 
 
 def brush_picture(brush, suffix: str, data: dict | None = None) -> bytes:
-    """.svg or .png. data: law -> (n, 2) depths and values [mm] that it was fitted to.
+    """Return a picture of a brush as .svg or .png.
 
-    Error with the command to run where matplotlib is not installed.
+    data: law -> (n, 2) depths and values [mm] to which it was fitted. Raises Error with the command to run where
+    matplotlib is not installed.
     """
     figure = new_figure((11, 7.2))
     brush_picture_on(figure, brush, data)
@@ -31,23 +36,23 @@ def brush_picture(brush, suffix: str, data: dict | None = None) -> bytes:
 
 
 def brush_picture_on(figure, brush, data: dict | None = None) -> None:
-    """The same on a figure, or a part of one."""
+    """Draw the picture of a brush on a figure, or on a part of one."""
     grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 1.1))
     depths = np.linspace(*brush.depth_range_mm, 201)
     for number, (name, meaning) in enumerate(LAWS):
         axes = figure.add_subplot(grid[number // 2, number % 2])
-        _law(axes, depths, name, meaning, getattr(brush, name), law_band(brush, name, depths))
+        _draw_law(axes, depths, name, meaning, getattr(brush, name), law_band(brush, name, depths))
         if data and name in data:
             axes.plot(*data[name].T, "o", color=INK, markersize=3, alpha=0.6, label="measured")
-    _legend(figure)
-    _footprints(figure.add_subplot(grid[0, 2] if brush.paint else grid[:, 2]), brush)
+    _draw_legend(figure)
+    _draw_footprints(figure.add_subplot(grid[0, 2] if brush.paint else grid[:, 2]), brush)
     if brush.paint:
-        _paint(figure.add_subplot(grid[1, 2]), brush.paint)
+        _draw_paint(figure.add_subplot(grid[1, 2]), brush.paint)
     figure.suptitle(shortened(brush.name, 60))
 
 
-def _legend(figure) -> None:
-    """Draw one legend for all laws, below them: inside it would cover a law."""
+def _draw_legend(figure) -> None:
+    """Draw one legend for all laws below them: inside, it would cover a law."""
     named = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -56,7 +61,7 @@ def _legend(figure) -> None:
 
 
 def fill_rings(axes, rings: list, colour: str) -> None:
-    """Rings (n, 2) as one shape, holes clockwise."""
+    """Fill rings (n, 2) as one shape, holes clockwise."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -64,7 +69,7 @@ def fill_rings(axes, rings: list, colour: str) -> None:
     axes.add_patch(PathPatch(Path.make_compound_path(*closed), color=colour, linewidth=0))
 
 
-def _law(axes, depths, name, meaning, law, band) -> None:
+def _draw_law(axes, depths, name, meaning, law, band) -> None:
     values = np.array([law(depth) for depth in depths])
     if band:
         half, what = band
@@ -89,8 +94,11 @@ def _law(axes, depths, name, meaning, law, band) -> None:
     axes.grid(color="#e4e2dc", linewidth=0.6)
 
 
-def _paint(axes, paint) -> None:
-    """The share of the width that is left, to where it was measured, hairs run dry, or a tenth is gone."""
+def _draw_paint(axes, paint) -> None:
+    """Draw the share of the width that is left as paint runs out.
+
+    It ends where it was measured, where hairs run dry, or where a tenth of the width is gone.
+    """
     ends = [paint.calibrated_mm[1] if paint.calibrated_mm else 0.0, 1.2 * (paint.lasts_mm or 0.0)]
     to_mm = max(ends) or min(paint.way_to_share_mm(0.9), 1000.0)
     ways = np.linspace(0.0, to_mm, 201)
@@ -111,10 +119,10 @@ def _paint(axes, paint) -> None:
     axes.grid(color="#e4e2dc", linewidth=0.6)
 
 
-def _footprints(axes, brush) -> None:
+def _draw_footprints(axes, brush) -> None:
     from matplotlib.colors import LinearSegmentedColormap
 
-    shades = LinearSegmentedColormap.from_list("depth", SHADES)
+    shades = LinearSegmentedColormap.from_list("depth", FOOTPRINT_COLOURS)
     least, greatest = brush.depth_range_mm
     for shape in reversed(brush.footprints.dragged):
         depth = min(shape.depth_mm, greatest)
@@ -133,33 +141,39 @@ def _footprints(axes, brush) -> None:
 
 
 def new_figure(size_in: tuple[float, float]):
-    """A figure without a window or global state. Error where matplotlib is missing."""
+    """Return a figure without a window or global state.
+
+    Raises Error where matplotlib is missing.
+    """
     try:
         import matplotlib
         from matplotlib.figure import Figure
     except ImportError:
         raise lacking("pictures of laws need", "matplotlib") from None
-    matplotlib.rcParams["svg.hashsalt"] = "brushsvg"  # same input, same bytes
+    matplotlib.rcParams["svg.hashsalt"] = "brushsvg"  # the same input gives the same bytes
     matplotlib.rcParams["svg.fonttype"] = "none"
     return Figure(figsize=size_in, layout="constrained", facecolor="white")
 
 
 def note(axes, at, text: str, **style) -> None:
-    """Text for a place of the data; `encoded` finds where it covers nothing."""
+    """Add a text for a place of the data.
+
+    `encoded` moves it to where it covers nothing.
+    """
     axes.text(*at, text, gid=NOTE, ha="left", va="bottom", **style)
 
 
 def encoded(figure, suffix: str) -> bytes:
     if notes := figure.findobj(lambda artist: artist.get_gid() == NOTE):
-        _place(figure, notes)
-    out = io.BytesIO()
-    without = {"Date": None} if suffix == ".svg" else {"Software": None}
-    figure.savefig(out, format=suffix[1:], dpi=140, metadata=without)
-    return out.getvalue()
+        _place_notes(figure, notes)
+    buffer = io.BytesIO()
+    metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
+    figure.savefig(buffer, format=suffix[1:], dpi=140, metadata=metadata)
+    return buffer.getvalue()
 
 
-def _place(figure, notes: list) -> None:
-    """Move notes to where they cover nothing that is drawn, within their axes."""
+def _place_notes(figure, notes: list) -> None:
+    """Move notes within their axes to where they cover nothing that is drawn."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.lines import Line2D
 
@@ -167,8 +181,8 @@ def _place(figure, notes: list) -> None:
     for each in notes:
         each.set_visible(False)
     canvas.draw()
-    figure.set_layout_engine("none")  # what is placed now must not move again
-    marks = np.asarray(canvas.buffer_rgba())[..., :3].min(axis=2) < DRAWN
+    figure.set_layout_engine("none")  # notes that are placed now must not move again
+    marks = np.asarray(canvas.buffer_rgba())[..., :3].min(axis=2) < MAX_DRAWN_BRIGHTNESS
     height, width = marks.shape
     spaces: dict = {}
     for each in notes:
@@ -177,8 +191,10 @@ def _place(figure, notes: list) -> None:
         x, y = each.axes.transData.transform(each.get_position())
         bounds = (frame.x0 + 2, height - frame.y1 + 2, frame.x1 - 2, height - frame.y0 - 2)
         space = spaces.setdefault(each.axes, LabelSpace(marks, bounds=bounds))
-        label = space.place((x, height - y), [(extent.width + 2 * AROUND_PX, extent.height + 2 * AROUND_PX)])
-        left, bottom = label.left + AROUND_PX, label.top + label.height - AROUND_PX
+        label = space.place(
+            (x, height - y), [(extent.width + 2 * NOTE_MARGIN_PX, extent.height + 2 * NOTE_MARGIN_PX)]
+        )
+        left, bottom = label.left + NOTE_MARGIN_PX, label.top + label.height - NOTE_MARGIN_PX
         each.set_transform(figure.transFigure)
         each.set_position((left / width, 1 - bottom / height))
         if label.leader:
@@ -190,5 +206,5 @@ def _place(figure, notes: list) -> None:
 
 
 def shortened(text: str, most: int = 40) -> str:
-    """A name that fits a picture, and is no formula: matplotlib reads $...$."""
+    """Return a name that fits a picture and is no formula: matplotlib reads $...$."""
     return (text if len(text) <= most else text[: most - 3] + "...").replace("$", r"\$")

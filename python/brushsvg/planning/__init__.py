@@ -1,1 +1,1 @@
-"""Steps of a plan next to compensation: refinement, order, size."""
+"""Steps of a plan other than compensation: refinement, order, size."""

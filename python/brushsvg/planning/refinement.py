@@ -1,5 +1,7 @@
-"""Refined passes where they are right to take: towards what a brush can reach, within a machine's limits, and no letter
-the worse for them."""
+"""Refined passes, taken where they are better than those in closed form.
+
+They aim at the marks that a brush can reach, stay within a machine's limits, and make no letter worse.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +11,22 @@ import numpy as np
 
 from .. import _core
 from ..errors import Notice
-from .touching_strokes import worse
+from .touching_strokes import find_worse_strokes
 
-# Of the brush's greatest half width, missing on the mean of a stroke. At 0.1 of it a bar's middle waves by 0.2 mm to
-# cover more of a shape that is too wide anyway, at 0.2 by 0.5 mm, at 2 it becomes a C. Letters that are too wide at
-# their crossings only stay below; without their outlines they would lose 0.007 of overlap.
-SPARED = 0.1
+# Greatest mean of the half width that a stroke's target has more than the brush, as a share of the brush's greatest
+# half width. At 0.1 of it a bar's middle waves by 0.2 mm to cover more of a shape that is too wide anyway, at 0.2
+# by 0.5 mm, at 2 it becomes a C. Letters that are too wide only at their crossings stay below; without their
+# outlines they would lose 0.007 of overlap.
+MAX_EXCESS_WIDTH = 0.1
 
 
 @dataclass(frozen=True)
 class Refined:
-    """One of each per pass. moved: whether it is another pass than the one in closed form; kept: why it is not."""
+    """The refined passes of strokes, with one entry of each list per pass.
+
+    passes, tracking_errors: of each stroke; moved: whether the pass differs from the one in closed form; kept: the
+    reason if it does not.
+    """
 
     passes: list
     tracking_errors: list
@@ -27,7 +34,7 @@ class Refined:
     kept: list[str]
 
     def nothing_moved(self) -> Notice | None:
-        """Where all passes are those in closed form: that, and why."""
+        """Return a notice if all passes are those in closed form, with the reasons."""
         if any(self.moved) or not self.moved:
             return None
         count = {why: self.kept.count(why) for why in self.kept}
@@ -40,18 +47,18 @@ class Refined:
         )
 
 
-# why a stroke stays as it is in closed form
+# Reasons why a stroke keeps its pass in closed form.
 NO_GAIN = "no way was found that paints the drawing better"
 FORBIDDEN = "a refined way would break a limit of the cell or the sheet"
 WORSE = "a refined way would paint the letter worse"
 
 
 def refined(painted: list, targets: list, brush, closed, compensated, forbidden=None) -> Refined:
-    """The refined passes of strokes, but the closed form's where those are forbidden, or paint a letter worse.
+    """Return refined passes where they are allowed and paint no letter worse.
 
-    painted: strokes that the brush can paint; targets: what they should become; closed: their compensation in closed
-    form; compensated: (strokes, method) to what _core.compensate returns; forbidden: a plan to the sentences that
-    forbid it.
+    Other strokes keep their passes in closed form. painted: strokes that the brush can paint; targets: what they
+    should become; closed: their compensation in closed form; compensated: a function of strokes and method, with
+    the result of _core.compensate; forbidden: a function from a plan to the sentences that forbid it.
     """
     aims = [towards_reach(*pair, brush) for pair in zip(painted, targets, strict=True)]
     done = compensated(aims, "refined")
@@ -65,32 +72,38 @@ def refined(painted: list, targets: list, brush, closed, compensated, forbidden=
             moved[k], kept[k] = False, kept[k] or why
 
     def worse_of(groups):
-        return worse(passes, closed.plan.passes, targets, brush, groups)
+        return find_worse_strokes(passes, closed.plan.passes, targets, brush, groups)
 
-    same = [k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)]
-    keep_closed(same, NO_GAIN)
+    unchanged = [
+        k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)
+    ]
+    keep_closed(unchanged, NO_GAIN)
     if forbidden:
-        keep_closed(_forbidden(passes, closed.plan, moved, forbidden), FORBIDDEN)
+        keep_closed(_find_forbidden(passes, closed.plan, moved, forbidden), FORBIDDEN)
     if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
-        keep_closed(worse_of(redirected), WORSE)  # they were judged by what they aimed at
+        # Refinement judged these strokes by other targets.
+        keep_closed(worse_of(redirected), WORSE)
     keep_closed(worse_of(_core.touching(targets)), WORSE)
     return Refined(passes, tracking_errors, moved, kept)
 
 
 def towards_reach(painted, target, brush):
-    """Return the target of refinement for a stroke: its discs, where the outline it was found in is far too wide. All
-    of the shape next to the paint would pull the stroke's line to it."""
+    """Return the target of refinement for a stroke.
+
+    These are its discs alone, if the outline in which it was found is far too wide. All of the shape next to the
+    paint would pull the stroke's line to it.
+    """
     if not painted.wanted_mm or not brush.width_follows_depth():
         return painted
     greatest = brush.half_width_range_mm()[1]
     half = np.interp(np.linspace(0, 1, 101), *np.array(target.half_width).T)
-    if np.maximum(half - greatest, 0).mean() <= SPARED * greatest:
+    if np.maximum(half - greatest, 0).mean() <= MAX_EXCESS_WIDTH * greatest:
         return painted
     return painted.replaced(wanted_mm=[])
 
 
-def _forbidden(passes: list, closed, moved: list[bool], forbidden) -> list[int]:
-    """Numbers of refined passes that may not be run as they are, while less forbids those in closed form."""
+def _find_forbidden(passes: list, closed, moved: list[bool], forbidden) -> list[int]:
+    """Return the numbers of refined passes that break more limits than closed form."""
 
     def sentences(*some) -> list:
         return forbidden(_core.Plan(closed.brush, closed.brush_sha256, closed.sheet_mm, list(some)))

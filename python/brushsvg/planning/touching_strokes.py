@@ -1,40 +1,49 @@
-"""Strokes that touch are one letter: refined strokes, each better by itself, may make a worse one."""
+"""Letters of touching strokes: refined strokes that make their letter worse.
+
+Each refined stroke may be better by itself and still make a worse letter.
+"""
 
 from __future__ import annotations
 
 from .. import _core
 
-# Of a letter's overlap, a full turn of its outline beyond that in closed form, and a thorn more.
-CALM, THORN = 0.15, 0.03
-# Strokes of a letter. Larger groups are words of script: each of their strokes would be tried against all of the word.
-MOST = 12
+# Costs in units of a letter's overlap: of a full turn of its outline more than in closed form, and of one more
+# thorn.
+TURN_COST, THORN_COST = 0.15, 0.03
+# Greatest number of strokes of a letter. Larger groups are words of script, and each of their strokes would be
+# tried against the whole word.
+MAX_STROKES = 12
 
 
-def worse(refined: list, closed: list, targets: list, brush, groups: list[list[int]]) -> list[int]:
-    """Numbers of the strokes of those groups, such as letters, that refined passes paint worse than those in closed
-    form.
+def find_worse_strokes(
+    refined: list, closed: list, targets: list, brush, groups: list[list[int]]
+) -> list[int]:
+    """Return the numbers of strokes that refined passes paint worse than closed form.
 
-    targets: what the passes should become, one each. Groups are judged by the overlap of all they paint with all
-    targets, as in the report, and by how calm their outline is. Where a letter is the calmer without some of its
-    refined strokes, by more than it loses of overlap, those are worse.
+    groups: numbers of strokes that are judged together, such as letters; targets: what the passes should become,
+    one each. Groups are judged by the overlap of all they paint with all targets, as in the report, and by how calm
+    their outline is. Where a letter becomes calmer without some of its refined strokes, by more than it loses of
+    overlap, these strokes are worse.
     """
     first, second = (_core.simulate(_core.Plan(passes=each), brush).passes for each in (refined, closed))
-    found = []
+    worse = []
     for members in groups:
         members_targets = [targets[k] for k in members]
-        now, then = (
+        refined_areas, closed_areas = (
             _core.common_area([marks[k] for k in members], members_targets, brush)
             for marks in (first, second)
         )
-        if now.overlap < then.overlap:
-            found += members
-        elif 1 < len(members) <= MOST:  # single ones were looked at when they were refined
-            found += _restless(members, first, second, members_targets, brush)
-    return found
+        if refined_areas.overlap < closed_areas.overlap:
+            worse += members
+        elif 1 < len(members) <= MAX_STROKES:  # single strokes were judged when they were refined
+            worse += _find_restless(members, first, second, members_targets, brush)
+    return worse
 
 
-def _restless(members: list[int], refined: list, closed: list, members_targets: list, brush) -> list[int]:
-    """Those of a letter's strokes without whose refined marks it looks better, one after the other."""
+def _find_restless(
+    members: list[int], refined: list, closed: list, members_targets: list, brush
+) -> list[int]:
+    """Return a letter's strokes without whose refined marks it is better, one by one."""
     shape = _core.unite([ring for each in members_targets for ring in _core.wanted_outline(each, 0.01)])
 
     def restless(marks: list) -> tuple[float, int]:
@@ -47,19 +56,19 @@ def _restless(members: list[int], refined: list, closed: list, members_targets: 
 
     def cost(marks: list) -> float:
         turns, has = restless(marks)
-        return CALM * max(0.0, turns - turning) + THORN * max(0, has - thorns)
+        return TURN_COST * max(0.0, turns - turning) + THORN_COST * max(0, has - thorns)
 
     def overlap(marks: list) -> float:
         return _core.common_area(marks, members_targets, brush).overlap
 
-    marks, found = [refined[k] for k in members], []
-    best = overlap(marks) - (paid := cost(marks))
+    marks, worse = [refined[k] for k in members], []
+    best = overlap(marks) - (best_penalty := cost(marks))
     for place, k in enumerate(members):
-        if paid == 0.0:
+        if best_penalty == 0.0:
             break
         without = [*marks[:place], closed[k], *marks[place + 1 :]]
-        less = cost(without)
-        if (reached := overlap(without) - less) > best:
-            marks, best, paid = without, reached, less
-            found.append(k)
-    return found
+        penalty = cost(without)
+        if (reached := overlap(without) - penalty) > best:
+            marks, best, best_penalty = without, reached, penalty
+            worse.append(k)
+    return worse

@@ -1,4 +1,4 @@
-"""Passes in the order of the shortest way from the end of one to the start of the next."""
+"""Order of passes with the shortest ways between them."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ import numpy as np
 
 
 def nearest_first(passes) -> list[int]:
-    """Numbers of the passes in the order of the shortest way from the end of one to the start of the next.
+    """Return the numbers of the passes, each followed by the one that starts nearest.
 
-    Only passes that follow each other in one layer change places; none is painted backwards. The loads of one stroke
-    stay together.
+    Only passes that follow each other in one layer change places, and none is painted backwards. The loads of one
+    stroke stay together.
     """
-    return [int(k) for group in _groups(passes) for k in _nearest(passes, group)]
+    return [int(k) for group in _group_by_layer(passes) for k in _order_nearest(passes, group)]
 
 
-def _groups(passes) -> list[list[int]]:
-    """Numbers of passes that follow each other in one layer with the same wish for an order."""
-    wishes = [(a_pass.layer, a_pass.settings.order or 0) for a_pass in passes]
+def _group_by_layer(passes) -> list[list[int]]:
+    """Return the numbers of consecutive passes with the same layer and `order`."""
+    keys = [(a_pass.layer, a_pass.settings.order or 0) for a_pass in passes]
     numbers = range(len(passes))
-    return [list(group) for _, group in itertools.groupby(numbers, key=wishes.__getitem__)]
+    return [list(group) for _, group in itertools.groupby(numbers, key=keys.__getitem__)]
 
 
-def _nearest(passes, group: list[int]) -> list[int]:
+def _order_nearest(passes, group: list[int]) -> list[int]:
     strokes: list[list[int]] = []
     for k in group:
         if strokes and passes[k].load > 1:
@@ -32,7 +32,7 @@ def _nearest(passes, group: list[int]) -> list[int]:
             strokes.append([k])
     starts = np.array([passes[stroke[0]].poses_mm[0, :2] for stroke in strokes])
     ends = np.array([passes[stroke[-1]].poses_mm[-1, :2] for stroke in strokes])
-    order, here = [0], ends[0]  # the first stays the first
+    order, here = [0], ends[0]  # the first stroke remains the first
     left = np.arange(1, len(strokes))
     while len(left):
         next_ = int(np.linalg.norm(starts[left] - here, axis=1).argmin())

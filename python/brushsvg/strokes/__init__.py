@@ -1,1 +1,1 @@
-"""A drawing to the strokes that paint it."""
+"""Strokes that paint a drawing."""

@@ -1,4 +1,7 @@
-"""Strokes from paths that a program holds, and back: svgpathtools' Path, path data as text, cubics as an array."""
+"""Strokes from path objects of a program, and back.
+
+Paths are svgpathtools' Path, path data as text, or cubics as an array.
+"""
 
 from __future__ import annotations
 
@@ -23,14 +26,15 @@ def stroke_from_path(
     id: str = "stroke1",
     page_height_mm: float | None = None,
 ) -> _core.Stroke:
-    """One stroke along a path, as wide as width_mm everywhere.
+    """Return one stroke along a path, as wide as width_mm everywhere.
 
-    path: a svgpathtools.Path, SVG path data as text, or cubics as an array of shape (n, 4, 2), or (n, 4) complex, or
-    (n, 8); one unbroken line in mm, in painting direction. It is in the paper's frame, y up; with page_height_mm its
-    y points down from the upper edge of a page of that height, as in SVG. Closed where path data end in Z, and where a
-    Path or an array ends where it began.
+    path: a svgpathtools.Path, SVG path data as text, or cubics as an array of shape (n, 4, 2), or (n, 4) complex,
+    or (n, 8). It is one unbroken line in mm, in painting direction, in the paper's frame with y up. With
+    page_height_mm, y points down from the upper edge of a page of that height, as in SVG. Path data that end in Z
+    are closed, and so are a Path or an array that end where they began.
 
-    Error where the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not positive.
+    Raises Error if the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not
+    positive.
     """
     need(width_mm, (int, float, np.number), "a width in mm")
     need(id, str, "a stroke's id")
@@ -39,12 +43,12 @@ def stroke_from_path(
             f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range"
         )
     if isinstance(path, str):
-        cubics, closed = _of_text(path, id)
+        cubics, closed = _read_text(path, id)
     elif hasattr(path, "d") and hasattr(path, "isclosed"):
-        cubics, _ = _of_text(path.d(), id)
+        cubics, _ = _read_text(path.d(), id)
         closed = bool(len(path)) and path.isclosed()
     else:
-        cubics = _of_array(path, id)
+        cubics = _read_array(path, id)
         closed = (
             len(cubics) > 0
             and np.ptp(cubics.reshape(-1, 2), axis=0).any()
@@ -55,30 +59,36 @@ def stroke_from_path(
         cubics = cubics * (1.0, -1.0) + (0.0, page_height_mm)
     half_mm = width_mm / 2
     stroke = _core.Stroke(id, cubics.reshape(-1, 8), bool(closed), [(0.0, half_mm), (1.0, half_mm)])
-    _core.flatten(stroke, 1.0)  # refuses what no stroke can be
+    _core.flatten(stroke, 1.0)  # refuses lines that cannot be a stroke
     return stroke
 
 
 def path_from_stroke(stroke: _core.Stroke, page_height_mm: float | None = None) -> svgpathtools.Path:
-    """The middle line as a svgpathtools.Path of cubics [mm], y up, or down from the upper edge of a page."""
+    """Return the middle line as a svgpathtools.Path of cubics [mm].
+
+    y points up, or down from the upper edge of a page of page_height_mm.
+    """
     from svgpathtools import CubicBezier, Path
 
     need(stroke, _core.Stroke, "a stroke")
-    points = _complex(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), page_height_mm)
+    points = _as_complex(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), page_height_mm)
     return Path(*(CubicBezier(*each) for each in points.tolist()))
 
 
 def path_from_pass(a_pass: _core.Pass, page_height_mm: float | None = None) -> svgpathtools.Path:
-    """The TCP's way over the paper as a svgpathtools.Path of lines [mm], y up, or down from the upper edge of a page.
-    Poses where the tool only rises or sinks add nothing to it."""
+    """Return the TCP's way over the paper as a svgpathtools.Path of lines [mm].
+
+    y points up, or down from the upper edge of a page of page_height_mm. Poses where the tool only rises or sinks
+    add nothing to it.
+    """
     from svgpathtools import Line, Path
 
     need(a_pass, _core.Pass, "a pass of a plan")
-    points = _complex(np.asarray(a_pass.poses_mm)[:, :2], page_height_mm).tolist()
+    points = _as_complex(np.asarray(a_pass.poses_mm)[:, :2], page_height_mm).tolist()
     return Path(*(Line(here, there) for here, there in itertools.pairwise(points) if here != there))
 
 
-def _complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
+def _as_complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
     _need_height(page_height_mm)
     y = points[..., 1] if page_height_mm is None else page_height_mm - points[..., 1]
     return points[..., 0] + 1j * y
@@ -90,7 +100,7 @@ def _need_height(page_height_mm) -> None:
         raise Error("the page's height is outside the range [-1e6, 1e6] mm", code="out-of-range")
 
 
-def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:
+def _read_text(text: str, id: str) -> tuple[np.ndarray, bool]:
     commands, damaged_at = parse_path(text)
     if len(commands) >= MOST_COMMANDS:
         raise Error(
@@ -115,15 +125,15 @@ def _of_text(text: str, id: str) -> tuple[np.ndarray, bool]:
     return line.subpaths[0].cubics, line.subpaths[0].closed
 
 
-def _of_array(path, id: str) -> np.ndarray:
-    _need_few(path, id)
+def _read_array(path, id: str) -> np.ndarray:
+    _need_short_list(path, id)
     try:
         table = np.asarray(path)
         if np.iscomplexobj(table):
             table = np.stack([table.real, table.imag], axis=-1)
         cubics = np.asarray(table, dtype=float).reshape(len(table), 4, 2)
     except (TypeError, ValueError):
-        raise _no_cubics(id) from None
+        raise _not_cubics_error(id) from None
     broken = [k for k in range(1, len(cubics)) if not _meets(cubics[k - 1, 3], cubics[k, 0])]
     if broken:
         raise Error(
@@ -134,22 +144,25 @@ def _of_array(path, id: str) -> np.ndarray:
     return cubics
 
 
-def _no_cubics(id: str) -> Error:
-    said = "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)"
-    return Error(said, where=id, code="wrong-type")
+def _not_cubics_error(id: str) -> Error:
+    sentence = "cubics are an array of shape (n, 4, 2), (n, 8) or, complex, (n, 4)"
+    return Error(sentence, where=id, code="wrong-type")
 
 
-def _need_few(path, id: str, levels: int = 3) -> int:
-    """Error for lists of more entries than are ever read, before numpy makes room for them; else how many there are."""
+def _need_short_list(path, id: str, levels: int = 3) -> int:
+    """Return the number of entries of a list, and refuse a list that is too long.
+
+    Raises Error before numpy allocates memory for more entries than are ever read.
+    """
     if not hasattr(path, "__len__") or isinstance(path, str | bytes):
         return 1
     if levels == 0:
-        raise _no_cubics(id)
+        raise _not_cubics_error(id)
     count = path.size if isinstance(path, np.ndarray) else len(path)
     if not isinstance(path, np.ndarray) and count <= _core.MOST_ENTRIES:
         count = 0
         for each in path:
-            count += _need_few(each, id, levels - 1)
+            count += _need_short_list(each, id, levels - 1)
             if count > _core.MOST_ENTRIES:
                 break
     if count > _core.MOST_ENTRIES:
@@ -164,4 +177,5 @@ def _need_few(path, id: str, levels: int = 3) -> int:
 
 
 def _meets(end: np.ndarray, start: np.ndarray) -> bool:
-    return bool(np.abs(end - start).max() <= 1e-6)  # what rounding leaves of one point
+    # Rounding may part one point by this much.
+    return bool(np.abs(end - start).max() <= 1e-6)

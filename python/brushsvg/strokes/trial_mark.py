@@ -1,4 +1,4 @@
-"""What a brush would paint of a few strokes, before anybody chooses how they are painted."""
+"""Trial marks: what a brush would paint of a few strokes with default settings."""
 
 from __future__ import annotations
 
@@ -6,13 +6,17 @@ import numpy as np
 
 from .. import _core
 
-_ANY_SHEET_MM = (1e6, 1e6)
-SEEN_MM = 0.15  # paint further outside of a shape is a bulge, blank further inside a notch
-_TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs what corners look like
+_HUGE_SHEET_MM = (1e6, 1e6)
+# Paint that is further outside of a shape is a bulge, a blank that is further inside a notch.
+MIN_VISIBLE_MM = 0.15
+_TOLERANCE_MM = 0.05  # as plans have by default: a coarser one blurs the look of corners
 
 
 def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
-    """How much the mark of strokes overlaps with a shape, in pixels: its outline takes ten times as long."""
+    """Return how much the mark of strokes overlaps with a shape.
+
+    It is measured in pixels: outlines take ten times as long.
+    """
     shape = _core.Stroke(middle_mm=np.tile(rings[0][0], 4)[None], half_width=[(0.0, 1.0)])
     shape.wanted_mm = rings
     return _core.common_area(trial_marks(strokes, brush, few_poses=False).passes, [shape], brush).overlap
@@ -26,8 +30,11 @@ def misplaced_mm2(marks, rings: list[np.ndarray], brush) -> float:
 
 
 def trial_marks(strokes: list, brush, few_poses: bool = True):
-    """Simulate strokes in closed form, each begun as suits it. few_poses: as a plan has them; more are made faster."""
+    """Simulate strokes that are compensated in closed form.
+
+    Each begins as suits it. few_poses: whether there are as few poses as in a plan; more are made faster.
+    """
     plan = _core.compensate(
-        strokes, brush, _ANY_SHEET_MM, "closed", _TOLERANCE_MM, few_poses=few_poses, start="auto", end="auto"
+        strokes, brush, _HUGE_SHEET_MM, "closed", _TOLERANCE_MM, few_poses=few_poses, start="auto", end="auto"
     ).plan
     return _core.simulate(plan, brush)

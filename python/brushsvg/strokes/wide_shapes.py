@@ -1,4 +1,4 @@
-"""Strokes found in outlines, made such that a brush can paint them: wider or narrower than it, they are not."""
+"""Strokes of outlines, changed so that a brush of another width can paint them."""
 
 from __future__ import annotations
 
@@ -10,24 +10,29 @@ from ..read.design import Notice
 from .trial_mark import trial_overlap
 
 WIDE = ("auto", "clamp", "passes", "refuse")
-# Hardly wider than the brush, passes paint no more than the nearest width does: so much wider, they are tried.
-_WORTH_PASSES = 1 / 0.95
-POINT_MM = 1e-3  # half the width of a line where it ends in a point
-UNSEEN_MM = 0.1  # of half a width out of reach: a mark's edge is further from the shape's
+# Passes are tried for shapes that are wider than the brush by this factor. In narrower ones they paint no more than
+# strokes at the nearest width do.
+_MIN_PASSES_RATIO = 1 / 0.95
+MIN_HALF_WIDTH_MM = 1e-3  # least half width of a line: it ends in a point
+# A difference of half widths that one does not see: a mark's edge is further from the shape's.
+MAX_UNSEEN_MM = 0.1
 
 
 def within_reach(
     strokes: list[_core.Stroke], brush: _core.Brush, wide: str = "auto", is_searched: bool = True
 ) -> tuple[list[_core.Stroke], list[_core.Stroke], list[Notice]]:
-    """Return what to paint, stroke by stroke, and what each should become: (strokes to paint, targets, notices).
+    """Return the strokes to paint, their targets and notices, stroke by stroke.
 
-    A line that was drawn narrower than the brush is painted at the brush's least width; one drawn wider is refused when
-    the plan is made. Other widths are changed only where strokes carry an outline. A stroke whose shape is less than
-    half of the smallest mark of the brush is left out: its mark would paint more outside of the shape than inside.
-    wide: "clamp", the nearest width; "passes", passes along the outline, called id, id~2, id~3 ..., for each wider
-    shape that they paint better than strokes at the nearest width do; "auto", the same for a brush, and the lines of a
-    pen as they are; "refuse", Error naming stroke, width and range. is_searched: whether a search paints the sides
-    that strokes at the nearest width leave. Error if nothing is left to paint.
+    A line that was drawn narrower than the brush is painted at the brush's least width. One that was drawn wider is
+    refused when the plan is made. Other widths are changed only where strokes carry an outline. A stroke whose
+    shape is less than half of the smallest mark of the brush is left out: its mark would paint more outside of the
+    shape than inside.
+
+    wide: "clamp" paints wide shapes at the nearest width. "passes" fills them with passes along the outline, called
+    id, id~2, id~3 ..., if these paint the shape better than strokes at the nearest width do. "auto" does the same
+    for a brush, and leaves the lines of a pen as they are. "refuse" raises an Error with stroke, width and range.
+    is_searched: whether a search paints the sides that strokes at the nearest width leave. Raises Error if nothing
+    is left to paint.
     """
     need(brush, _core.Brush, "a brush")
     need_one_of(wide, WIDE, "what becomes of wide shapes")
@@ -38,9 +43,11 @@ def within_reach(
     least, greatest = brush.half_width_range_mm()
     reach = f"[{2 * least:.3g}, {2 * greatest:.3g}] mm of brush {brush.name}"
     strokes, notices = _without_slivers(strokes, least, brush) if wide != "refuse" else (strokes, [])
-    least = max(least, POINT_MM)
+    least = max(least, MIN_HALF_WIDTH_MM)
     beyond = {
-        k: _beyond(stroke, least, greatest) if stroke.wanted_mm or brush.width_follows_depth() else None
+        k: _find_out_of_reach(stroke, least, greatest)
+        if stroke.wanted_mm or brush.width_follows_depth()
+        else None
         for k, stroke in enumerate(strokes)
     }
     if wide == "refuse":
@@ -49,15 +56,19 @@ def within_reach(
             sentence = f"width {2 * worst:.3g} mm of its {whose} is outside the range {reach}"
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
-    filled = _filled(strokes, _wide(strokes, beyond, greatest), brush) if wide in ("auto", "passes") else {}
+    filled = (
+        _fill_in_passes(strokes, _find_wide_strokes(strokes, beyond, greatest), brush)
+        if wide in ("auto", "passes")
+        else {}
+    )
     painted, targets = [], []
     for k, stroke in enumerate(strokes):
-        made, its_targets, how = filled.get(k) or ([stroke], [stroke], "")
+        passes, its_targets, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
-            made, how = [_clamped(stroke, least, greatest)], "painted at the nearest width"
+            passes, how = [_clamp_widths(stroke, least, greatest)], "painted at the nearest width"
             if is_searched and wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
                 how += ", and its sides by strokes of their own"
-        if beyond[k] and (k in filled or _shows(beyond[k][1], least, greatest)):
+        if beyond[k] and (k in filled or _is_visible_change(beyond[k][1], least, greatest)):
             what, worst = beyond[k]
             notices.append(
                 Notice(
@@ -68,18 +79,21 @@ def within_reach(
                     advice="--wide passes fills it" if wide == "clamp" and worst > greatest else "",
                 )
             )
-        painted += made
+        painted += passes
         targets += its_targets
     return painted, targets, notices
 
 
-def _shows(half: float, least: float, greatest: float) -> bool:
-    """Whether one sees that half a width was brought within the range."""
-    return not least - UNSEEN_MM <= half <= greatest + UNSEEN_MM
+def _is_visible_change(half: float, least: float, greatest: float) -> bool:
+    """Return whether it is visible that half a width was brought within the range."""
+    return not least - MAX_UNSEEN_MM <= half <= greatest + MAX_UNSEEN_MM
 
 
 def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Notice]]:
-    """The strokes but those of shapes that are less than half of the smallest mark of the brush."""
+    """Return the strokes without those of tiny shapes, and notices about these.
+
+    A shape is tiny if it is less than half of the smallest mark of the brush.
+    """
     dab_mm2 = np.pi * least**2
     areas = [_core.area(stroke.wanted_mm) if stroke.wanted_mm and dab_mm2 else np.inf for stroke in strokes]
     notices = [
@@ -101,13 +115,19 @@ def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Not
 
 
 def is_within_reach(half: float, greatest: float) -> bool:
-    """Whether half the width of a line is at most the brush's greatest, or exceeds it by less than one sees."""
-    return half <= greatest + UNSEEN_MM
+    """Return whether half a line's width is at most the brush's greatest.
+
+    A difference that one does not see is allowed.
+    """
+    return half <= greatest + MAX_UNSEEN_MM
 
 
-def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
-    """What is out of reach, in words, and half the worst width; None for a line that was drawn visibly too wide, which
-    is refused."""
+def _find_out_of_reach(stroke, least: float, greatest: float) -> tuple[str, float] | None:
+    """Return in words what is out of reach, and half the worst width.
+
+    Returns None if nothing is. Also returns None for a line that was drawn visibly too wide, which is refused
+    later.
+    """
     halves = np.array([half for _, half in stroke.half_width])
     is_narrow, is_wide = halves < least - 1e-9, halves > greatest + 1e-9
     off = is_narrow | is_wide
@@ -120,30 +140,38 @@ def _beyond(stroke, least: float, greatest: float) -> tuple[str, float] | None:
     return what, worst
 
 
-def _wide(strokes: list, beyond: dict, greatest: float) -> list[int]:
-    """The strokes of shapes that are wider than the brush, of elements where one of them is so by more than hardly."""
+def _find_wide_strokes(strokes: list, beyond: dict, greatest: float) -> list[int]:
+    """Return the numbers of strokes of shapes that are wider than the brush.
+
+    At least one stroke of the element is wider by _MIN_PASSES_RATIO.
+    """
     wider = {
-        k: found[1] for k, found in beyond.items() if found and found[1] > greatest and strokes[k].wanted_mm
+        k: out_of_reach[1]
+        for k, out_of_reach in beyond.items()
+        if out_of_reach and out_of_reach[1] > greatest and strokes[k].wanted_mm
     }
-    elements = {strokes[k].origin.element for k, half in wider.items() if half > greatest * _WORTH_PASSES}
+    elements = {strokes[k].origin.element for k, half in wider.items() if half > greatest * _MIN_PASSES_RATIO}
     return [k for k in wider if strokes[k].origin.element in elements]
 
 
-def _filled(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
-    """For each stroke of a shape that is filled in passes: these, what they should become, how in words."""
+def _fill_in_passes(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
+    """Return the passes of each stroke of a shape that is filled in passes.
+
+    Each value is the passes, their targets, and how they are painted, in words.
+    """
     if not wider:
         return {}
-    from .fillings import fillings  # with shapely, which is slow to load
+    from .fillings import find_wide_shapes  # with shapely, which is slow to load
 
     done: dict[int, tuple] = {}
-    for shape in fillings(strokes, wider, *brush.half_width_range_mm()):
-        filling = _best(shape, strokes, brush)
+    for shape in find_wide_shapes(strokes, wider, *brush.half_width_range_mm()):
+        filling = _choose_passes(shape, strokes, brush)
         for k in shape.wide if filling else ():
-            passes = [_like(strokes[k], line, lane) for lane, line in enumerate(filling, start=1)]
+            passes = [_make_pass(strokes[k], line, lane) for lane, line in enumerate(filling, start=1)]
             how, filling = (
                 "painted in passes side by side",
                 [],
-            )  # the first stroke of the shape has all of them
+            )  # the first stroke of the shape has all passes
             if passes:
                 its_targets = [
                     passes[0].replaced(wanted_mm=shape.first_share(passes[:1], passes)),
@@ -155,15 +183,18 @@ def _filled(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
     return done
 
 
-def _best(shape, strokes: list, brush) -> list:
-    """The passes along an outline whose mark overlaps most with it; none where that of its strokes at the nearest
-    width does, which have the direction of writing. A pen's edges are those of its outermost ring."""
+def _choose_passes(shape, strokes: list, brush) -> list:
+    """Return the passes along an outline whose mark overlaps most with the shape.
+
+    None are returned where the mark of its strokes at the nearest width overlaps more: these have the direction of
+    writing. A pen's edges are those of its outermost ring.
+    """
     best, most = [], -1.0
     if brush.width_follows_depth():
-        clamped_to_reach = [_clamped(strokes[k], *brush.half_width_range_mm()) for k in shape.wide]
+        clamped_to_reach = [_clamp_widths(strokes[k], *brush.half_width_range_mm()) for k in shape.wide]
         most = _mark_overlap([*shape.narrow, *clamped_to_reach], shape.rings, brush)
     for lines in shape.along:
-        passes = [_like(strokes[shape.wide[0]], line) for line in lines]
+        passes = [_make_pass(strokes[shape.wide[0]], line) for line in lines]
         overlap = _mark_overlap([*passes, *shape.narrow], shape.rings, brush)
         if overlap > most:
             best, most = lines, overlap
@@ -171,17 +202,20 @@ def _best(shape, strokes: list, brush) -> list:
 
 
 def _mark_overlap(strokes: list, rings: list, brush) -> float:
-    """How much the marks of strokes, compensated in closed form, overlap with a shape; 0 where they are refused."""
+    """Return how much the marks of strokes overlap with a shape.
+
+    The strokes are compensated in closed form. The overlap is 0 where they are refused.
+    """
     try:
         return trial_overlap(strokes, rings, brush)
     except Error:
         return 0.0
 
 
-def _like(stroke, line, lane: int = 1):
-    of = stroke.origin
+def _make_pass(stroke, line, lane: int = 1):
+    origin = stroke.origin
     return stroke.replaced(
-        id=_core.StrokeId(of.element, of.part, of.repeat, lane),
+        id=_core.StrokeId(origin.element, origin.part, origin.repeat, lane),
         middle_mm=line.middle_mm,
         closed=line.closed,
         half_width=line.half_width,
@@ -191,8 +225,8 @@ def _like(stroke, line, lane: int = 1):
     )
 
 
-def _clamped(stroke, least: float, greatest: float):
-    """The stroke with its widths cut to the range, a knot where they leave it."""
+def _clamp_widths(stroke, least: float, greatest: float):
+    """Return the stroke with its widths cut to the range, a knot where they leave it."""
     at, half = np.array(stroke.half_width).T
     knots = [(at[0], half[0])]
     for a0, h0, a1, h1 in zip(at[:-1], half[:-1], at[1:], half[1:], strict=True):

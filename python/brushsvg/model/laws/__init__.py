@@ -1,8 +1,8 @@
-"""The brush's laws, one function each: Lemma 1, Theorems 1 to 4, the loose rule, and laws fitted to what was measured.
+"""The brush's laws, one function each.
 
-Numbers in brackets are equations of the article: docs/reference/equations.md, which also says where the print is wrong.
-Lengths in mm, angles in rad. Where a shape is given as (...), arguments are numbers or arrays that broadcast as
-numpy's do.
+Lemma 1, Theorems 1 to 4, the loose rule, and laws fitted to measurements. Numbers in brackets are equations of the
+article: docs/reference/equations.md, which also says where the print is wrong. Lengths are in mm, angles in rad.
+Where a shape is given as (...), arguments are numbers or arrays that broadcast as in numpy.
 """
 
 from ..._core import LawFit, Profile

@@ -1,4 +1,4 @@
-"""Laws of the depth through what was measured, as sections 3.2 and 3.3 fit theirs."""
+"""Laws of depth through measured values, fitted as in sections 3.2 and 3.3."""
 
 from __future__ import annotations
 
@@ -20,15 +20,17 @@ def fit_law(
     floor_mm: float | None = None,
     absolute: bool = False,
 ) -> _core.LawFit:
-    """A polynomial of the depth through measured values: (25) with degree 4, (24) with degree 3 and floor 0, (26) with
-    degree 1 through zero.
+    """Fit a polynomial of the depth to measured values.
 
-    depth_mm, value_mm: (n,), in [0, 1000] and [-1e6, 1e6]; n greater than the number of coefficients. through_zero:
-    no constant term. floor_mm: the law is never less, None where there is no floor. absolute: least absolute
-    residuals, which outliers move less (section 3.3), else least squares. Returns a LawFit: law (a Profile with
-    half_interval_95 and rmse_mm), covariance, residual_mm, r_squared, degrees_of_freedom, held.
+    This fits (25) with degree 4, (24) with degree 3 and floor 0, and (26) with degree 1 through zero.
 
-    Raises Error for other numbers and for values that leave the law open.
+    depth_mm, value_mm: (n,), in [0, 1000] and [-1e6, 1e6]; n is greater than the number of coefficients. degree: of
+    the polynomial. through_zero: no constant term. floor_mm: the law is never less; None where there is no floor.
+    absolute: least absolute residuals, which outliers move less (section 3.3), otherwise least squares. Returns a
+    LawFit: law (a Profile with half_interval_95 and rmse_mm), covariance, residual_mm, r_squared,
+    degrees_of_freedom, held.
+
+    Raises Error for other numbers and for values that leave the law undetermined.
     """
     need_fits()
     depth = numbers(depth_mm, "the depth [mm]", 0.0, DEEPEST_MM)
@@ -49,7 +51,7 @@ def fit_law(
 
 
 def need_fits() -> None:
-    """Error where the library was built without Ceres."""
+    """Raise Error if the library was built without Ceres."""
     if not hasattr(_core, "fit_law"):
         raise Error(
             "this brushsvg was built without fits; build it with Ceres (libceres-dev)", code="package-missing"

@@ -1,4 +1,7 @@
-"""Arguments as arrays of numbers within their ranges; anything else is refused in a sentence."""
+"""Arguments as arrays of numbers within their ranges.
+
+Anything else is refused with a sentence.
+"""
 
 from __future__ import annotations
 
@@ -6,20 +9,24 @@ import numpy as np
 
 from ...errors import Error
 
-FARTHEST_MM = 1e6  # a longer way is damage
+FARTHEST_MM = 1e6  # a longer way is a damaged number
 DEEPEST_MM = 1000.0
 
 
 def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
-    """The same as floats. Error for what is no number, or outside of [least, greatest]."""
+    """Return the given numbers as floats.
+
+    Raises Error for values that are no numbers, or outside of [least, greatest]. what: names the argument in the
+    message.
+    """
     try:
-        found = np.asarray(given)
+        array = np.asarray(given)
     except ValueError:  # rows of different lengths
         raise Error(f"{what} is no number and no array of them", code="wrong-type") from None
-    if found.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf":
         raise Error(f"{what} is no number and no array of them", code="wrong-type")
-    found = found.astype(float)
-    outside = found[~((found >= least) & (found <= greatest))]
+    array = array.astype(float)
+    outside = array[~((array >= least) & (array <= greatest))]
     if outside.size:
         raise Error(
             f"{what}, {outside[0]:g}, is outside the range [{least:g}, {greatest:g}]",
@@ -27,11 +34,14 @@ def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
             range=(least, greatest),
             code="out-of-range",
         )
-    return found
+    return array
 
 
 def together(*arrays: np.ndarray) -> list[np.ndarray]:
-    """Broadcast against each other. Error where their shapes do not fit."""
+    """Broadcast arrays against each other.
+
+    Raises Error where their shapes do not fit.
+    """
     try:
         return list(np.broadcast_arrays(*arrays))
     except ValueError:
@@ -40,7 +50,7 @@ def together(*arrays: np.ndarray) -> list[np.ndarray]:
 
 
 def frozen(array) -> np.ndarray:
-    """An array of its own that cannot be written to."""
+    """Return a copy of an array that cannot be written to."""
     array = np.array(array)
     array.setflags(write=False)
     return array

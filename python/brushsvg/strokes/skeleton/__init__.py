@@ -1,4 +1,4 @@
-"""Filled outlines to the strokes that a brush would paint them with."""
+"""Strokes with which a brush would paint filled outlines."""
 
 from .fill_rule import filled
 from .shape_to_strokes import OutlineStroke, outline_strokes
