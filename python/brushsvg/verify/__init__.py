@@ -1,1 +1,1 @@
-"""A program back to a plan, held against what it should be."""
+"""Read robot programs back into plans and compare them with the expected plans and programs."""
