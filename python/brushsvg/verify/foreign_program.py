@@ -278,8 +278,8 @@ def _table_range(cell: Cell) -> tuple[float, float]:
 def _advise_own_table(values: list[float]) -> str:
     values_text = " and ".join(f"S{value:g}" for value in dict.fromkeys((values[0], values[-1])))
     return (
-        f"write a cell of your own with  brushsvg cell new -o mine.toml --like {SERVO_VALUE_CELL}  and put the heights of "
-        f"{values_text} into its [servo] table, then give --cell mine.toml"
+        f"write a cell of your own with  brushsvg cell new -o mine.toml --like {SERVO_VALUE_CELL}  and put the "
+        f"heights of {values_text} into its [servo] table, then give --cell mine.toml"
     )
 
 

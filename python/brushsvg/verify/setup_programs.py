@@ -15,7 +15,7 @@ from ..machine.realised.distortion import true_mm
 from ..machine.setup_programs import ONE_STROKE_DEPTH_MM, border, first_run, paper_height
 from .against_regenerated import differing_line
 from .readback import Readback
-from .readback.header import Made
+from .readback.header import ProgramHeader
 from .simulate_program import Problems, slack_mm, walk_sections
 
 
@@ -31,7 +31,7 @@ class SetupCheck:
 
 
 def look_at_border(
-    text: str, read: Readback, made: Made, brush, cell: Cell, sheet_mm, z_offset_mm: float
+    text: str, read: Readback, made: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> SetupCheck:
     """Check an air run around the border that its header names.
 
@@ -47,7 +47,7 @@ def look_at_border(
     return _check_setup_program(text, read, expected, sections, cell, cell.heights.safe_mm, "safe height")
 
 
-def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) -> SetupCheck:
+def look_at_heights(text: str, read: Readback, made: ProgramHeader, brush, cell: Cell) -> SetupCheck:
     """Check a program that finds the paper, by strokes at the heights that its header names.
 
     Each of these strokes may be the first on the paper. Raises Error when the strokes do not fit on the sheet or go
@@ -63,7 +63,7 @@ def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) ->
     )
 
 
-def look_at_first_run(text: str, read: Readback, made: Made, brush, cell: Cell) -> SetupCheck:
+def look_at_first_run(text: str, read: Readback, made: ProgramHeader, brush, cell: Cell) -> SetupCheck:
     """Check all steps of a first run.
 
     Raises Error when it leaves the workspace or does not fit on the sheet.
