@@ -10,7 +10,7 @@ import shapely
 
 from ..geometry.cubics import flattened
 from .edge_offsets import area
-from .photographs import BLUR_MM, Comparison, TargetStroke
+from .photographs import EDGE_BLUR_MM, Comparison, TargetStroke
 
 REACH_MM = 6.0  # beyond the end of a middle line, or within it
 ALONG_MM = 0.05
@@ -87,7 +87,7 @@ def _beyond(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target, other
     if drawn_end is None or is_painted is None:
         return None
     until = end + max(drawn_end, is_painted) * ahead
-    if shapely.distance(shapely.Point(until), others) < BLUR_MM:
+    if shapely.distance(shapely.Point(until), others) < EDGE_BLUR_MM:
         return None
     return is_painted - drawn_end
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import Error, Notice
 from ..geometry.rotation import rotation
-from .corrections import LEAST_MARKS, MOST_DEG, MOST_MM, MOST_WIDER_MM, Correction, way_of
+from .corrections import MAX_SHIFT_MM, MAX_TURN_DEG, MAX_WIDER_MM, MIN_MARKS, Correction, way_of
 from .offset_width import refuse_width
 from .photographs import Compared, Comparison
 
@@ -56,13 +56,13 @@ def next_corrections(
             notices.append(refused.notice())
             correction = replace(correction, wider_mm=0.0)
         far_mm, far_deg = math.hypot(*correction.shift_mm), abs(correction.turn_deg)
-        if far_mm <= MOST_MM and far_deg <= MOST_DEG:
+        if far_mm <= MAX_SHIFT_MM and far_deg <= MAX_TURN_DEG:
             made[row.stroke] = correction
             continue
         made.pop(row.stroke, None)
         sentence = (
-            f"it would be moved {far_mm:.2f} mm and {far_deg:.1f} degrees, outside the ranges [0, {MOST_MM:g}] "
-            f"mm and [0, {MOST_DEG:g}] degrees of a correction: look for what moves it so far"
+            f"it would be moved {far_mm:.2f} mm and {far_deg:.1f} degrees, outside the ranges [0, {MAX_SHIFT_MM:g}] "
+            f"mm and [0, {MAX_TURN_DEG:g}] degrees of a correction: look for what moves it so far"
         )
         notices.append(Notice(row.stroke, sentence, code="correction-too-far"))
     return made, notices
@@ -94,7 +94,7 @@ def _repeats(displacement_mm: np.ndarray, found: Comparison) -> float:
     """Return the share of a stroke's displacement that repeats: that of all strokes by their spread, more for one that
     is displaced more than chance does."""
     by_chance = 2 * AT_RANDOM_MM**2
-    known = max(sum(row.placed.found for row in found.strokes), LEAST_MARKS)
+    known = max(sum(row.placed.found for row in found.strokes), MIN_MARKS)
     spread = found.spread_mm**2 * 2 * known / (2 * known - 3)  # shift and turn of the sheet were fitted
     of_all, its_own = (
         1 - by_chance / max(square, by_chance) for square in (spread, displacement_mm @ displacement_mm / 2)
@@ -130,4 +130,4 @@ def _width(row: Compared, before_mm: float) -> float:
     if row.like < WIDTH_LIKE or abs(off) <= 2 * EDGE_MM:
         return before_mm
     share = min(1 - (2 * EDGE_MM / off) ** 2, MOST_SHARE)
-    return min(max(before_mm - share * off, -MOST_WIDER_MM), MOST_WIDER_MM)
+    return min(max(before_mm - share * off, -MAX_WIDER_MM), MAX_WIDER_MM)

@@ -11,7 +11,7 @@ from ..reporting.label_space import LabelSpace
 from ..reporting.worst_areas import WorstArea
 from .attribution.faults import Faults
 from .job_page import JobPage
-from .photographs import LEVEL, Comparison, TargetStroke
+from .photographs import EDGE_LEVEL, Comparison, TargetStroke
 
 LONG_SIDE_PX = 2400
 TARGET, PREDICTED, TEXT = (190, 190, 190), (40, 40, 220), (30, 30, 30)  # blue, green, red
@@ -57,7 +57,7 @@ def comparison_png(
     for stroke in strokes:
         cv2.fillPoly(marks, lines([*stroke.predicted, *(stroke.target or ())]), 1, cv2.LINE_8, 4)
     marks |= cv2.warpAffine(
-        (found.painted > LEVEL).astype(np.uint8),
+        (found.painted > EDGE_LEVEL).astype(np.uint8),
         _to_canvas(found.canvas, left, top, fine),
         size,
         flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,

@@ -15,11 +15,11 @@ from ..reporting.report_text import Report, overlap_reasons, percent, place_line
 from ..reporting.worst_areas import WorstArea, worst_areas
 from .attribution.faults import Faults
 from .attribution.report import fix_first, in_json, in_words
-from .corrections import FORMAT, RESIDUAL, Correction
+from .corrections import FORMAT, RESIDUAL_KEY, Correction
 from .corrections import as_json as in_file
 from .ends import UNSEEN, Ends
 from .next_corrections import displacement_mm
-from .photographs import BLOT_MM, MOSTLY, Compared, Comparison, TargetStroke
+from .photographs import MAX_EDGE_DISTANCE_MM, MAX_MISSING_SHARE, Compared, Comparison, TargetStroke
 
 LEAST_BLOT_MM2 = 1.0
 HEAD = ("stroke", "drawn", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
@@ -72,7 +72,7 @@ def report(
     as_painted, placed, each = found.overlaps
     what = "the drawing" if found.overlap_target is not None else "the prediction"
     against, low = overlap_reasons(as_painted, f"paint and {what.removeprefix('the ')}")
-    gone = sum(not row.placed.found and row.missing > MOSTLY for row in found.strokes)
+    gone = sum(not row.placed.found and row.missing > MAX_MISSING_SHARE for row in found.strokes)
     but = [*low, f"{plural(gone, 'mark')} {'is' if gone == 1 else 'are'} missing" if gone else ""]
     but += ["something covers part of the sheet"] if found.has_things else []
     rows = {row.stroke: row for row in found.strokes}
@@ -90,7 +90,9 @@ def report(
         fix_first(faults, any_alone),
     ]
     if found.elsewhere_mm2 > LEAST_BLOT_MM2:
-        lines.append(f"Paint further than {BLOT_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2.")
+        lines.append(
+            f"Paint further than {MAX_EDGE_DISTANCE_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2."
+        )
     details = [
         *table(HEAD, (_row(stroke, ends.get(stroke.stroke, UNSEEN)) for stroke in found.strokes)),
         "",
@@ -203,7 +205,7 @@ def as_json(
     if residual:
         machine, left = residual
         rows = [{"stroke": name, "correction": in_file(each)} for name, each in left.items()]
-        made[RESIDUAL] = {"machine_sha256": machine, "strokes": rows}
+        made[RESIDUAL_KEY] = {"machine_sha256": machine, "strokes": rows}
     return json.dumps(_rounded(made), indent=1, ensure_ascii=False) + "\n"
 
 

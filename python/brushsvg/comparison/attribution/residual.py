@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..photographs import BLUR_MM, Comparison, TargetStroke, without
+from ..photographs import EDGE_BLUR_MM, Comparison, TargetStroke, subtract_displacements
 from ..placing import NOWHERE, Canvas, Placed, place
 from .model import FaultModel
 
@@ -23,7 +23,7 @@ def subtract_faults(
     fault_values = np.array([certain.get(number.name, 0.0) for number in model.numbers])
     straight, moved = (model.rings(numbers) for numbers in (np.zeros_like(fault_values), fault_values))
     done = {name: _does(straight.get(name), moved.get(name), found.canvas) for name in names}
-    return without(found, done)
+    return subtract_displacements(found, done)
 
 
 def _does(straight, moved, canvas: Canvas) -> Placed:
@@ -31,7 +31,7 @@ def _does(straight, moved, canvas: Canvas) -> Placed:
     if not straight or not moved:
         return NOWHERE
     points = np.vstack([*straight, *moved])
-    low, high = points.min(axis=0) - 4 * BLUR_MM, points.max(axis=0) + 4 * BLUR_MM
+    low, high = points.min(axis=0) - 4 * EDGE_BLUR_MM, points.max(axis=0) + 4 * EDGE_BLUR_MM
     small = Canvas((*low.tolist(), *high.tolist()), min(canvas.px_per_mm, FINE_PX_PER_MM))
     painted = small.filled(moved)
     return place(painted, np.ones_like(painted), straight, small)
