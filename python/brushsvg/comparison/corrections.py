@@ -17,7 +17,7 @@ from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from ..machine.cells.cell import Machine
 from ..machine.realised.retimed import on_way
-from .offset_width import wider
+from .offset_width import offset_edges
 
 FORMAT = "brushsvg/comparison"
 RESIDUAL_KEY = "beside_machine"  # key of the file: the corrections that remain once the cell is corrected
@@ -25,17 +25,13 @@ MIN_MARKS = 3  # fewer marks do not separate the sheet's place from the places o
 CORRECTIONS_KEY = "corrections"  # key of a corrected plan, for its corrections and the uncorrected plan
 CORRECTION_KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
 MAX_WIDER_MM = 1.0  # displacement of each edge: a mark that is wider by more is another brush's
-MAX_SHIFT_MM, MAX_TURN_DEG = (
-    3.0,
-    3.0,
-)  # a larger displacement or turn of a mark has another cause, which must be found
-SAME_PATH_MM = (
-    0.1  # deviation of a stroke's beginning and path, also in depth, within which it is the same stroke
-)
+# A larger displacement or turn of a mark has another cause, which must be found.
+MAX_SHIFT_MM, MAX_TURN_DEG = 3.0, 3.0
+# Deviation of a stroke's beginning and path, also in depth, within which it is the same stroke.
+SAME_PATH_MM = 0.1
 PATH_PLACES = 9  # number of places along a path, at equal lengths
-OTHER_BRUSH_MM = (
-    5.0  # replaces SAME_MM for a plan for another brush; twice this brush's lag applies where that is longer
-)
+# Replaces SAME_PATH_MM for a plan for another brush. Twice this brush's lag applies where that is longer.
+OTHER_BRUSH_MM = 5.0
 
 
 @dataclass(frozen=True)
@@ -188,7 +184,7 @@ def _correct_pass(a_pass, correction: Correction, brush):
     if correction.way_mm and not correction.replanned:
         _refuse_other_way(a_pass, np.array(correction.way_mm))
     if correction.wider_mm:
-        a_pass = wider(a_pass, correction.wider_mm, brush)
+        a_pass = offset_edges(a_pass, correction.wider_mm, brush)
         poses = np.array(a_pass.poses_mm, dtype=float)
     poses[:, :2] = correction.moved(poses[:, :2])
     arcs = [

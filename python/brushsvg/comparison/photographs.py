@@ -22,7 +22,7 @@ from ..photo.photo import read_photo, refuse_twice
 from ..photo.whole_page import refuse_cropped, refuse_unsure
 from .corrections import MIN_MARKS
 from .job_page import JobPage, box_ring
-from .placing import NOWHERE, Canvas, Placed, grown, place
+from .placing import NOWHERE, Canvas, Placed, grow_rings, locate_mark
 
 SEARCH_MARGIN_MM = 6.0  # distance around a predicted mark within which its paint is searched
 EDGE_BLUR_MM = 0.6  # distance from another mark within which its blurred edge still shows
@@ -30,10 +30,8 @@ MAX_EDGE_DISTANCE_MM = 1.5  # distance from a located mark beyond which paint is
 MAX_PX_PER_MM = 12.0
 MIN_OVERLAP = 0.3  # overlap of paint with its prediction, at its place: less is another job, or chance
 PRINT_MARGIN_MM = 0.5  # margin around printed lines
-MIN_PAINTED_SHARE, MAX_MISSING_SHARE = (
-    0.3,
-    0.7,
-)  # smallest painted share of a located mark; share without paint above which a mark is missing
+# Smallest painted share of a located mark; share without paint above which a mark is missing.
+MIN_PAINTED_SHARE, MISSING_MARK_SHARE = 0.3, 0.7
 EDGE_LEVEL = 0.5  # share of the usual paint at which paint has its edge
 # Share of a mark without paint, beyond the share of most marks. Above it, a mark's middle is that of its painted part.
 MAX_EXCESS_MISSING_SHARE = 0.1
@@ -223,7 +221,7 @@ def _locate_sheet(painted, strokes: list[TargetStroke], canvas: Canvas) -> tuple
     small = Canvas(canvas.window_mm, coarse)
     rows, columns = small.shape
     less = cv2.resize(painted, (columns, rows), interpolation=cv2.INTER_AREA)
-    found = place(less, np.ones_like(less), rings, small)
+    found = locate_mark(less, np.ones_like(less), rings, small)
     return replace(found, wider_mm=0.0) if found.found else NOWHERE, middle
 
 
@@ -307,7 +305,7 @@ def _refuse_other_job(overlap: float, name: str) -> None:
 
 
 def _missing_mark_notices(found: list[_LocatedStroke]) -> list[Notice]:
-    rows = [seen.row for seen in found if not seen.row.placed.found and seen.row.missing > MAX_MISSING_SHARE]
+    rows = [seen.row for seen in found if not seen.row.placed.found and seen.row.missing > MISSING_MARK_SHARE]
     sentence = "no paint is found where its mark should be"
     return [Notice(row.stroke, sentence, code="mark-missing") for row in rows]
 
@@ -415,9 +413,9 @@ def _locate_stroke(
     )
     attributed = np.where(nearer, part / strength, 0.0)
     free = (their_away > EDGE_BLUR_MM) & nearer
-    found = place(attributed, free, rings, small)
+    found = locate_mark(attributed, free, rings, small)
     if not found.found:  # a dab has no direction
-        found = place(attributed, free, rings, small, turns=False)
+        found = locate_mark(attributed, free, rings, small, turns=False)
     inner = centroid(rings)
 
     def locate(each, at):
@@ -440,7 +438,7 @@ def _locate_stroke(
         whole,
         (float(start[0]), float(start[1])),
         float((at_last & ~(part / strength > EDGE_LEVEL)).sum()) / float(max(at_last.sum(), 1)),
-        _overlap(small.filled(locate(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
+        _overlap(small.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
     )
     return _LocatedStroke(stroke, row, lambda each: locate(each, found))
 

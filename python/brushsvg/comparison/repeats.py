@@ -15,13 +15,12 @@ from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from ..reporting.report_text import Report, plural, table, verdict
 from .corrections import MIN_MARKS
-from .next_corrections import UNSEEN
+from .next_corrections import MAX_MISSING_FOR_PLACE
 from .photographs import Comparison
 
 FORMAT = "brushsvg/repeatability"
-MAX_COPY_DEVIATION_MM = (
-    0.2  # deviation of the paths of two copies of a stroke, which differ by the simplification of their poses
-)
+# Deviation of the paths of two copies of a stroke, which differ by the simplification of their poses.
+MAX_COPY_DEVIATION_MM = 0.2
 PATH_PLACES = 65  # number of places at which paths are compared
 MIN_DEGREES_OF_FREEDOM = 4  # degrees of freedom of a spread: with fewer it is almost unknown
 MIN_SPREAD_MM = 1e-9  # spread below which photographs show the same sheet: no two sheets repeat so well
@@ -151,7 +150,7 @@ def _places_by_stroke(found: Comparison) -> dict[str, tuple[float, float, float]
         raise Error(sentence, code="marks-missing")
     sheet, out = found.common, {}
     for row in found.strokes:
-        if row.placed.found and row.missing <= UNSEEN:
+        if row.placed.found and row.missing <= MAX_MISSING_FOR_PLACE:
             middle = np.array([row.middle_mm])
             beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
             x, y = (beyond @ rotation(-sheet.turn_rad))[0].tolist()
@@ -244,7 +243,7 @@ def report(title: str, found: Repeats) -> Report:
         *(_describe_hysteresis(approach) for approach in found.approaches),
     ]
     if count:
-        why = f"not found, or more than {100 * UNSEEN:g} % of the mark without paint"
+        why = f"not found, or more than {100 * MAX_MISSING_FOR_PLACE:g} % of the mark without paint"
         lines.append(f"{plural(count, 'stroke')} not seen twice ({why}): {', '.join(found.once)}.")
     return Report(verdict([], reservations), tuple(lines), tuple(_detail_lines(found)))
 
@@ -284,8 +283,8 @@ def _describe_hysteresis(approach: Approach) -> str:
         return f"Too few strokes are approached from either side in {approach.axis} to show a hysteresis."
     certain = "" if abs(approach.value_mm) > approach.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{approach.axis} are {approach.value_mm:+.3f} +- {approach.half_mm:.3f} mm "
-        f"further that way than those approached towards -{approach.axis}{certain}."
+        f"Strokes that are approached towards +{approach.axis} are {approach.value_mm:+.3f} +- "
+        f"{approach.half_mm:.3f} mm further that way than those approached towards -{approach.axis}{certain}."
     )
 
 

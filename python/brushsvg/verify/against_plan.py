@@ -149,9 +149,8 @@ def _max_servo_step_mm(a_pass, cell: Cell) -> float:
     return max(cell.servo.step_mm, float((np.abs(ways[:, 2]) / parts).max(initial=0.0)))
 
 
-MAX_TILT_DEVIATION_DEG = (
-    0.5  # deviation of the brush from its planned direction: smaller ones do not show in a mark
-)
+# Deviation of the brush from its planned direction: smaller ones do not show in a mark.
+MAX_TILT_DEVIATION_DEG = 0.5
 
 
 def _check_tool_axes(a_pass, lines: np.ndarray, planned) -> Problems:

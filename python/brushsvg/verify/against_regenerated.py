@@ -266,9 +266,8 @@ def _header_key(act: Act) -> str:
 
 
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")
-PLACE_TOLERANCE_MM = (
-    2.05e-3  # deviation of a place: simulate_program.MAX_ROUNDING_LIFT_MM plus the last written digit
-)
+# Deviation of a place: simulate_program.MAX_ROUNDING_LIFT_MM plus the last written digit.
+PLACE_TOLERANCE_MM = 2.05e-3
 WAIT_TOLERANCE_S = 0.0031
 LIFT_WAIT_TOLERANCE_S = 0.05  # change of a lift's wait by rounded heights; also used as a share of the wait
 SPEED_TOLERANCE_MM_S = 0.011  # mm/s, rounding of a speed that is written in steps of 0.01

@@ -13,10 +13,8 @@ from ..machine.posts.gcode_servo import height_at
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
 
-LANGUAGES_WITH_DURATIONS = (
-    "ebb",
-    "ros2",
-)  # the other languages state only maximum speeds
+# Languages whose lines state durations; the lines of all others state only maximum speeds.
+LANGUAGES_WITH_DURATIONS = ("ebb", "ros2")
 SPEED_ROUNDING_MM_S = 0.011  # rounding of a speed that is written in steps of 0.01
 MAX_PAUSE_S = 0.01  # rounded places and times change the time of a part by up to 0.003 s
 

@@ -33,9 +33,8 @@ MAX_ROUNDING_LIFT_MM = 2e-3  # height by which the rounding of a program may lif
 MAX_CHORD_RAD = 0.02
 TILT_ROUNDING_DEG = 0.01  # rounding error of a tilt
 TURN_SPEED_TOLERANCE = 0.05  # share by which rounded places may speed up the tool's turn on a short move
-MAX_HALF_ARC_RAD = (
-    3.0  # both halves of an arc must turn by less than this: its poses are less than half a turn apart
-)
+# Both halves of an arc must turn by less than this: its poses are less than half a turn apart.
+MAX_HALF_ARC_RAD = 3.0
 Problems = list[Notice]
 
 

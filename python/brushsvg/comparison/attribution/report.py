@@ -1,4 +1,4 @@
-"""Report the causes of the differences, in words and as JSON."""
+"""Report the causes of differences, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from ...machine.cells.cell import Machine
 from ...reporting.report_text import table
 from ..job_marks import PAINT_A_CHART
 from .corrected_cell import as_table
-from .faults import DRY, OWN, Faults, Found
+from .faults import MISSING_PAINT, OWN_PLACE, Faults, Found
 from .model import BRUSH, MACHINE, PAPER, SHEET
 
 REMEDIES = {
@@ -14,14 +14,17 @@ REMEDIES = {
     MACHINE: "give convert the cell of --corrected-cell, or fix the machine",
     PAPER: "give convert the cell of --corrected-cell, or level the paper",
     BRUSH: "update the brush: calibrate --plan --prior",
-    OWN: "correct each stroke: convert --corrections; several sheets show which part repeats (compare --sheets)",
-    DRY: "let the brush fetch paint earlier: [paint] of the cell",
+    OWN_PLACE: "correct each stroke: convert --corrections; several sheets show which part repeats (compare --sheets)",
+    MISSING_PAINT: "let the brush fetch paint earlier: [paint] of the cell",
 }
 NONE_ALONE = f"no stroke of this sheet is separate and complete enough to learn from; {PAINT_A_CHART}"
 
 
 def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
-    """The cause that costs most, and what helps. any_alone: whether a brush could learn from a stroke of this sheet."""
+    """Return a sentence on the cause that costs most, with its remedy.
+
+    any_alone: whether a brush could learn from a stroke of this sheet.
+    """
     if faults is None:
         return "No cause is named: too few strokes, or too few edges away from other paint."
     if faults.first is None:
@@ -31,8 +34,11 @@ def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
     return f"Fix first: {faults.first}, which gains {gain:.3f}: {how}."
 
 
-def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
-    """Every cause with its gain, every number, and the table for a cell. machine: of the cell, for the next job."""
+def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
+    """Return lines with every cause and its gain, every number, and the table for a cell.
+
+    machine: the machine of the cell for the next job.
+    """
     if faults is None:
         return []
     gains = [
@@ -47,7 +53,7 @@ def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
         head,
         *rows,
         "",
-        *(f"  {_number(one)}" for one in faults.found),
+        *(f"  {_describe_number(one)}" for one in faults.found),
         f"  each stroke's own place: {faults.own_mm:.2f} mm (rms); one sheet does not show which part repeats",
         f"  edges beyond all that: {faults.rest_mm:.3f} mm (rms)",
     ]
@@ -62,14 +68,14 @@ def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
     return lines
 
 
-def _number(one: Found) -> str:
+def _describe_number(one: Found) -> str:
     small = one.number.unit in ("mm per mm", "mm in x per mm in y", "")
     digits = 5 if small else 3
     value = f"{one.value:+.{digits}f} +- {one.half:.{digits}f} {one.number.unit}".rstrip()
     return f"{one.number.cause}: {one.number.name} {value}"
 
 
-def in_json(faults: Faults | None) -> dict | None:
+def faults_as_json(faults: Faults | None) -> dict | None:
     if faults is None:
         return None
     return {

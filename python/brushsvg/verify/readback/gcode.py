@@ -54,10 +54,8 @@ LASTING_MODES = {
     "G91.1",
     "G94",
 }  # modes that end no motion
-UNKNOWN_TO_GRBL = {
-    "G64",
-    "G90.1",
-}  # grbl answers them with an error, and senders then stop with the brush pressed
+# Grbl answers these codes with an error, and senders then stop with the brush pressed.
+UNKNOWN_TO_GRBL = {"G64", "G90.1"}
 PRINTER_WORDS = {
     "G0": "XYZF",
     "G1": "XYZF",
