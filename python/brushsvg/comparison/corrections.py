@@ -74,13 +74,19 @@ class SheetBefore:
 
 
 def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
-    """Return nine places (x, y, z) [mm] of the TCP at equal lengths along a pass, from the first to the last pose."""
+    """Return nine places (x, y, z) [mm] of the TCP along a pass.
+
+    The places are at equal lengths, from the first to the last pose.
+    """
     places = evenly(np.array(a_pass.poses_mm, dtype=float), PATH_PLACES)
     return tuple(tuple(place) for place in places.tolist())
 
 
 def machine_sha256(machine: Machine | None) -> str:
-    """Return a fingerprint of the machine errors that a cell compensates; None compensates nothing."""
+    """Return a fingerprint of the machine errors that a cell compensates.
+
+    A machine of None has no errors.
+    """
     table = asdict(machine or Machine())
     known = {key: value for key, value in table.items() if value or not key.startswith("field")}
     return hashlib.sha256(json.dumps(known).encode()).hexdigest()
@@ -106,10 +112,11 @@ def select_for_machine(
 
 
 def corrected(plan, corrections: tuple[Correction, ...], brush):
-    """Return the plan, made for this brush, with its strokes corrected and the corrections recorded in it.
+    """Return the plan with its strokes corrected, for this brush.
 
-    Corrections that the plan already has are replaced. Raises Error for corrections of another job or another brush.
-    Corrections of a sheet must not repeat what the brush has already learnt from that sheet.
+    The plan must be made for this brush. The corrections are recorded in it. Corrections that the plan already has are
+    replaced. Raises Error for corrections of another job or another brush. Corrections of a sheet must not repeat what
+    the brush has already learnt from that sheet.
     """
     if not corrections:
         return plan
@@ -141,7 +148,7 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
 
 
 def as_json(correction: Correction | None) -> dict | None:
-    """Return a correction as it is written in the files of `compare` and in corrected plans."""
+    """Return a correction as files of `compare` and corrected plans contain it."""
     return {key: getattr(correction, key) for key in CORRECTION_KEYS} if correction else None
 
 
@@ -195,7 +202,10 @@ def _correct_pass(a_pass, correction: Correction, brush):
 
 
 def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
-    """Raise Error where the brush is displaced, deeper or higher than when the sheet was painted."""
+    """Raise Error where the brush moves differently than on the painted sheet.
+
+    It may be displaced, deeper or higher.
+    """
     difference_mm = np.array(way_of(a_pass)) - known_mm
     displacement_mm, deeper_mm = np.hypot(*difference_mm.T[:2]).max(), np.abs(difference_mm[:, 2]).max()
     if max(displacement_mm, deeper_mm) > SAME_PATH_MM:

@@ -1,4 +1,4 @@
-"""Measure the offset of the edges of paint from a model, along the model's outlines."""
+"""Measure the offset of the edges of paint from a model's outlines."""
 
 from __future__ import annotations
 
@@ -41,7 +41,10 @@ class Outline:
 
 
 def polygon_of(rings: list[np.ndarray]):
-    """Return the polygon of rings: outer rings are counter-clockwise, holes clockwise."""
+    """Return the polygon of rings.
+
+    Outer rings are counter-clockwise, holes clockwise.
+    """
     outer = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) > 0]
     holes = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) <= 0]
     return unary_union(outer).difference(unary_union(holes))
@@ -85,7 +88,10 @@ def _sample_ring(ring: np.ndarray):
 
 
 def signed_offsets_mm(outline: Outline, rings_of: list[list[np.ndarray]]) -> np.ndarray:
-    """Return (n,) the signed distance [mm] of other outlines of the same strokes from each place, positive outward."""
+    """Return (n,) the distance [mm] of other outlines from each place.
+
+    The other outlines are of the same strokes. The distance is positive outward.
+    """
     out = np.zeros(len(outline.at))
     for k, rings in enumerate(rings_of):
         here = outline.stroke == k
@@ -105,11 +111,12 @@ def measure_paint_edges(
     canvas: Canvas,
     reach_mm: float,
 ) -> np.ndarray:
-    """Measure where the paint ends relative to each place of an outline, by its profile across the edge.
+    """Measure where the paint ends relative to each place of an outline.
 
-    Returns (n,) the distance [mm] from place to edge of paint, positive outward. The distance is nan where there is no
-    edge within reach, where the paint inside is dry, where the outline turns sharply, or where the paint may be of
-    another stroke. neighbours: rings of strokes that have no outline here.
+    The edge is found in a profile across the outline. Returns (n,) the distance [mm] from place to edge of paint,
+    positive outward. The distance is nan where there is no edge within reach, where the paint inside is dry, where the
+    outline turns sharply, or where the paint may be of another stroke. neighbours: rings of strokes that have no
+    outline here.
     """
     t = np.arange(-reach_mm - INSIDE_DEPTHS_MM[1], reach_mm + 1e-9, PROFILE_STEP_MM)
     left, _, _, top = canvas.window_mm

@@ -1,4 +1,4 @@
-"""Find where along its way the paint of a stroke begins and ends, relative to the target."""
+"""Find where the paint of a stroke begins and ends, relative to the target."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ EDGE_LEVEL = 0.5
 
 @dataclass(frozen=True)
 class Ends:
-    """How much later along its path the paint of a stroke begins and ends than its target [mm].
+    """How much later than its target the paint of a stroke begins and ends [mm].
 
-    Negative values are earlier; None where the paint runs into other paint, or where no paint is found. first_mm,
-    last_mm: the ends (x, y) of the middle line.
+    Later is further along the stroke's path. Negative values are earlier; None where the paint runs into other paint,
+    or where no paint is found. first_mm, last_mm: the ends (x, y) of the middle line.
     """
 
     began_mm: float | None
@@ -35,7 +35,10 @@ class Ends:
     last_mm: tuple[float, float] = (0.0, 0.0)
 
     def near(self, place_mm: tuple[float, float]) -> dict[str, float]:
-        """Return the values of "began" and "ended" that are known and whose end is within reach of a place."""
+        """Return the values of "began" and "ended" near a place.
+
+        Only known values are returned, for ends within reach of the place.
+        """
         ends = (("began", self.began_mm, self.first_mm), ("ended", self.ended_mm, self.last_mm))
         return {what: mm for what, mm, at in ends if mm is not None and math.dist(at, place_mm) <= SEARCH_MM}
 
@@ -44,10 +47,10 @@ UNKNOWN_ENDS = Ends(None, None)
 
 
 def ends_of(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, Ends]:
-    """Return where the paint of each stroke begins and ends; rings and dabs have no ends and are left out.
+    """Return where the paint of each stroke begins and ends.
 
-    drawn: strokes with their middle lines, empty for a plan without its drawing. The pose of the sheet is corrected by
-    the places of its marks.
+    Rings and dabs have no ends and are left out. drawn: strokes with their middle lines, empty for a plan without its
+    drawing. The pose of the sheet is corrected by the places of its marks.
     """
     lines_mm = {
         each.id: flattened(each.middle_mm.reshape(-1, 4, 2), FLATTENING_TOLERANCE_MM)
@@ -84,7 +87,10 @@ def _end_and_direction(way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _overshoot_mm(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target, others) -> float | None:
-    """Return how far along a ray the paint ends beyond the edge of the target [mm]; None where that is unknown."""
+    """Return how far along a ray the paint ends beyond the target's edge [mm].
+
+    Returns None where that is unknown.
+    """
     end, ahead = ray
     if not ahead.any():  # a dab has no direction
         return None
@@ -107,7 +113,10 @@ def _overshoot_mm(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target,
 
 
 def _find_fall(share: np.ndarray, t: np.ndarray) -> float | None:
-    """Return the place `t` nearest to 0 at which a profile falls below EDGE_LEVEL; None where it never does."""
+    """Return the place nearest to 0 at which a profile falls below EDGE_LEVEL.
+
+    Returns None where it never does. t: (n,) places of the profile [mm].
+    """
     falls = np.flatnonzero((share[:-1] >= EDGE_LEVEL) & (share[1:] < EDGE_LEVEL))
     if not len(falls):
         return None

@@ -1,4 +1,4 @@
-"""Find the outlines of marks in a painted job, for strokes whose paint is separate from other paint."""
+"""Find the outlines of marks whose paint is separate from other paint."""
 
 from __future__ import annotations
 

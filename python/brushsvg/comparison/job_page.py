@@ -52,7 +52,7 @@ def job_page(plan, title: str = "") -> JobPage:
     """Compose the page of a job.
 
     The markers, from the chart's dictionary, identify the plan, so that the page of another job is not mistaken for
-    this one. Raises Error for a tilted brush, because photographs of a job only apply to an upright brush.
+    this one. Raises Error for a tilted brush: what is learnt from photographs of a job holds only for an upright brush.
     """
     _core.refuse_tilted(plan.passes, "jobs are compared with photographs of a brush held upright")
     sheet = plan.sheet_mm
@@ -106,7 +106,10 @@ def _place_bar(page, side: float) -> Bar:
 
 
 def _tick_boxes(sheet, frame: float):
-    """Yield boxes of lines that end at the sheet's corners; the lower left two meet at the robot's origin."""
+    """Yield boxes of lines that end at the sheet's corners.
+
+    The lower left two lines meet at the robot's origin.
+    """
     half = TICK_WIDTH_MM / 2
     for x, out_x in ((frame, -1), (frame + sheet[0], 1)):
         for y, out_y in ((frame, -1), (frame + sheet[1], 1)):

@@ -85,7 +85,7 @@ def _uninformative_error(marks: JobMarks, name: str) -> Error:
 
 
 def _left_out_notices(found: Comparison, marks: JobMarks, strokes: list[TargetStroke]):
-    """Yield the notices of the comparison, and the reason for each stroke that is left out."""
+    """Yield the notices of the comparison, and why each stroke was left out."""
     touching = "its paint is one with that of other strokes: it is left out"
     dry = f"its mark is not found, or more than {100 * MAX_MISSING_FOR_OUTLINE:g} % of it has no paint: it is left out"
     yield from found.notices

@@ -78,9 +78,9 @@ def next_corrections(
 
 
 def displacement_mm(row: Compared, found: Comparison) -> np.ndarray:
-    """Return (2,) the displacement [mm] of a stroke from its prediction, beyond the pose of the sheet.
+    """Return (2,) the displacement [mm] of a stroke from its prediction.
 
-    The directions are those of the sheet itself.
+    The displacement is beyond the pose of the sheet. The directions are those of the sheet itself.
     """
     middle, sheet = np.array([row.middle_mm]), found.common
     beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)

@@ -1,4 +1,7 @@
-"""Move the edges of a pass outward or inward, within the range in which the brush's laws were measured."""
+"""Move the edges of a pass outward or inward.
+
+They move only as far as the brush's laws were measured.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +16,11 @@ DEPTH_SAMPLES = 400  # number of depths at which the law of width is sampled to 
 
 
 def offset_edges(a_pass, by_mm: float, brush):
-    """Return the pass with its edges moved outward by by_mm, or inward where it is negative.
+    """Return the pass with its edges moved outward by by_mm.
 
-    The offset holds where the pass has its average width; elsewhere the width changes by the same share. The brush goes
-    deeper, and the tool moves ahead by the additional lag, so that the brush drags along the same line. Raises Error
-    where the brush cannot paint this width.
+    A negative by_mm moves them inward. The offset holds where the pass has its average width; elsewhere the width
+    changes by the same share. The brush goes deeper, and the tool moves ahead by the additional lag, so that the brush
+    drags along the same line. Raises Error where the brush cannot paint this width.
     """
     refuse_width(a_pass, by_mm, brush)
     a_pass = with_chords(a_pass)
@@ -36,7 +39,7 @@ def offset_edges(a_pass, by_mm: float, brush):
 
 
 def refuse_width(a_pass, by_mm: float, brush) -> None:
-    """Raise Error where the brush cannot paint a stroke with its edges moved outward by by_mm."""
+    """Raise Error where the brush cannot paint a stroke wider by by_mm per edge."""
     if not brush.width_follows_depth():
         raise Error(
             f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected",
@@ -61,9 +64,9 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
 
 
 def measured_depths_mm(brush) -> tuple[float, float]:
-    """Return the range of depths [mm] in which the brush's lag and width were measured.
+    """Return the depths [mm] in which the brush's lag and width were measured.
 
-    A law without a measured range does not limit the depths of the brush.
+    The depths are a range (least, deepest). A law without a measured range does not limit the depths of the brush.
     """
     least, deepest = brush.depth_range_mm
     for law in (brush.lag, brush.half_width):

@@ -1,6 +1,7 @@
-"""Compare photographs of a painted job with its target and prediction, stroke by stroke.
+"""Compare photographs of a painted job with its target and prediction.
 
-Measures overlap, displacement, width, missing paint and paint outside of all marks.
+The comparison is made stroke by stroke. Measures overlap, displacement, width, missing paint and paint outside of all
+marks.
 """
 
 from __future__ import annotations
@@ -42,10 +43,10 @@ MIN_SAME_SHEET_OVERLAP = 0.9  # smallest overlap of the paint in two photographs
 
 @dataclass(frozen=True)
 class TargetStroke:
-    """One stroke with its target and its predicted mark, as rings (n, 2) on the sheet [mm].
+    """One stroke with its target and its predicted mark.
 
-    The target is None where only a plan is known. is_drawn: whether the stroke is part of the drawing; strokes in the
-    margin count in no figure of the sheet.
+    Both are rings (n, 2) on the sheet [mm]. The target is None where only a plan is known. is_drawn: whether the stroke
+    is part of the drawing; strokes in the margin count in no figure of the sheet.
     """
 
     stroke: str
@@ -124,7 +125,10 @@ def compare_photos(page: JobPage, strokes: list[TargetStroke], photos: list[tupl
 
 
 def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparison, list[TargetStroke]]:
-    """Return the comparison and the strokes without strokes that are not part of the drawing."""
+    """Return the comparison and the strokes without strokes in the margin.
+
+    Only strokes of the drawing remain.
+    """
     drawn = [stroke for stroke in strokes if stroke.is_drawn]
     names = {stroke.stroke for stroke in drawn}
     return replace(found, strokes=tuple(row for row in found.strokes if row.stroke in names)), drawn
@@ -133,16 +137,19 @@ def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparis
 def compare_sheets(
     page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]
 ) -> list[Comparison]:
-    """Compare photographs that each show another sheet. Raises the errors of `compare_photos`."""
+    """Compare photographs that each show another sheet.
+
+    Raises the errors of `compare_photos`.
+    """
     refuse_twice(photos)
     return [compare_photos(page, strokes, [photo]) for photo in photos]
 
 
 def compare_paint(strokes: list[TargetStroke], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:
-    """Compare paint from any source with a job; the result has no view, flat or paint.
+    """Compare paint from any source with a job.
 
-    painted: for each pixel of the canvas, the share of the usual paint; name: name of the picture, for errors. Raises
-    Error for paint that cannot be of this job.
+    The result has no view, flat or paint. painted: for each pixel of the canvas, the share of the usual paint; name:
+    name of the picture, for errors. Raises Error for paint that cannot be of this job.
     """
     if all(not stroke.predicted for stroke in strokes):
         raise Error("there is nothing to paint", code="nothing-to-paint")
@@ -227,7 +234,10 @@ def _locate_sheet(painted, strokes: list[TargetStroke], canvas: Canvas) -> tuple
 
 @dataclass(frozen=True)
 class _LocatedStroke:
-    """A stroke that paints, with its figures and a function that moves rings to the place of its mark."""
+    """A stroke that paints, with its figures.
+
+    locate: moves rings to the place of its mark.
+    """
 
     stroke: TargetStroke
     row: Compared
@@ -235,7 +245,10 @@ class _LocatedStroke:
 
 
 def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
-    """Compute the comparison. All strokes have rows; the figures of the sheet count only strokes of the drawing."""
+    """Compute the comparison.
+
+    All strokes have rows, but only strokes of the drawing count in the figures of the sheet.
+    """
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
     is_painted = painted > EDGE_LEVEL
     located = []
@@ -321,7 +334,7 @@ def _thing_notices(things: np.ndarray, canvas: Canvas) -> list[Notice]:
 
 
 def subtract_displacements(found: Comparison, done: dict[str, Placed]) -> Comparison:
-    """Return the comparison with marks at the places that they would have without the known displacements.
+    """Return the comparison without known displacements of marks.
 
     done: displacements by stroke. A mark whose displacement is unknown counts as not found.
     """
@@ -340,7 +353,10 @@ def _subtract_displacement(row: Compared, done: Placed) -> Compared:
 
 
 def _find_things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
-    """Return a mask of the pieces of paint outside of all marks that are too large for stray paint."""
+    """Return a mask of the pieces of paint that are too large for stray paint.
+
+    Only paint outside of all marks is considered.
+    """
     _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(astray), connectivity=8)
     large = stats[:, cv2.CC_STAT_AREA] > MIN_THING_AREA_MM2 * canvas.px_per_mm**2
     large[0] = False
@@ -348,15 +364,19 @@ def _find_things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
 
 
 def _unless_covered(seen: _LocatedStroke, near: np.ndarray, canvas: Canvas) -> Compared:
-    """Return the figures of a stroke; it counts as not found if its mark is near a thing."""
+    """Return the figures of a stroke, as not found if a thing covers its mark.
+
+    A thing near the mark counts as covering it.
+    """
     covered = near.any() and (_mask(seen.locate(seen.stroke.predicted), canvas) & near).any()
     return replace(seen.row, placed=NOWHERE) if covered else seen.row
 
 
 def _fit_sheet_pose(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
-    """Return the pose that brings all predicted middles nearest to the marks (Kabsch), and the rms residual [mm].
+    """Return the pose of the sheet, and the rms residual [mm].
 
-    Marks that are much drier than the best ones seem displaced, and are left out where enough others remain.
+    The pose brings all predicted middles nearest to the marks (Kabsch). Marks that are much drier than the best ones
+    seem displaced, and are left out where enough others remain.
     """
     known = [row for row in rows if row.placed.found]
     if len(known) < MIN_MARKS:

@@ -51,7 +51,10 @@ NOWHERE = Placed((0.0, 0.0), 0.0, 0.0, False)
 
 @dataclass(frozen=True)
 class Canvas:
-    """Pixels over a window (left, bottom, right, top) [mm] of the sheet, with row 0 at the top."""
+    """Pixels over a window of the sheet, with row 0 at the top.
+
+    window_mm: left, bottom, right and top [mm].
+    """
 
     window_mm: tuple[float, float, float, float]
     px_per_mm: float
@@ -62,7 +65,10 @@ class Canvas:
         return round((top - bottom) * self.px_per_mm), round((right - left) * self.px_per_mm)
 
     def filled(self, rings: list[np.ndarray]) -> np.ndarray:
-        """Return the share of each pixel that the rings cover together, except for holes (clockwise rings)."""
+        """Return the share of each pixel that the rings cover together.
+
+        Clockwise rings are holes.
+        """
         rows, columns = self.shape
         left, _, _, top = self.window_mm
         window = (left, top - rows / self.px_per_mm, columns / self.px_per_mm, rows / self.px_per_mm)
@@ -77,7 +83,10 @@ class Canvas:
 
 
 def grow_rings(rings: list[np.ndarray], by_mm: float) -> list[np.ndarray]:
-    """Return rings with their edges moved outward by by_mm; an empty list where nothing remains."""
+    """Return rings with their edges moved outward by by_mm.
+
+    The list is empty where nothing remains.
+    """
     if abs(by_mm) < 1e-6:
         return rings
     outer = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) > 0]

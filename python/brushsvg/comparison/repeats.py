@@ -1,4 +1,4 @@
-"""Measure how well a studio repeats the same strokes, on several sheets or several times on one."""
+"""Measure how well a studio repeats strokes, on several sheets or on one."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Approach:
-    """The hysteresis of an axis, by the direction from which the tool approaches strokes.
+    """The hysteresis of an axis, by the direction of approach to strokes.
 
     value_mm: how much further along the axis strokes are that are approached in its positive direction than those
     approached in its negative one; half_mm: half its 95 % interval. Both are None where there are too few strokes of
@@ -85,7 +85,7 @@ class Repeats:
 
 
 def repeats(plan, sheets: list[Comparison]) -> Repeats:
-    """Measure the repeatability over sheets, or over the copies of strokes on one sheet.
+    """Measure the repeatability over sheets, or over copies on one sheet.
 
     sheets: comparisons of sheets that were painted with the same plan. Raises Error where nothing was painted twice.
     """
@@ -139,9 +139,10 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
 
 
 def _places_by_stroke(found: Comparison) -> dict[str, tuple[float, float, float]]:
-    """Return, by stroke, x and y beyond the sheet's place in the sheet's own directions, and the excess width [mm].
+    """Return, by stroke, its place beyond the sheet's pose and its excess width.
 
-    Raises Error where too few marks are found to determine the pose of the sheet.
+    The place is x and y [mm] in the sheet's own directions; the excess width of an edge is in mm as well. Raises Error
+    where too few marks are found to determine the pose of the sheet.
     """
     if found.spread_mm is None:
         sentence = (
@@ -173,14 +174,20 @@ def _group_copies(plan) -> list[list[str]]:
 
 
 def _path_from_start(poses_mm: np.ndarray) -> np.ndarray:
-    """Return places (n, 3) at equal lengths along a path, in x and y relative to its beginning."""
+    """Return places (n, 3) at equal lengths along a path.
+
+    x and y are relative to the beginning of the path.
+    """
     way = evenly(poses_mm, PATH_PLACES)
     way[:, :2] -= poses_mm[0, :2]
     return way
 
 
 def _measure_hysteresis(plan, places, axis: int) -> Approach:
-    """Return the hysteresis of an axis; a stroke is approached from the end of the stroke before it."""
+    """Return the hysteresis of an axis.
+
+    A stroke is approached from the end of the stroke before it.
+    """
     ways: dict[bool, list[float]] = {True: [], False: []}
     for before, a_pass in zip(plan.passes[:-1], plan.passes[1:], strict=True):
         way = a_pass.poses_mm[0][axis] - before.poses_mm[-1][axis]
@@ -198,7 +205,10 @@ def _measure_hysteresis(plan, places, axis: int) -> Approach:
 
 
 def _chi_square_quantile(freedom: int, deviate: float) -> float:
-    """Return the chi-square quantile at a normal deviate (approximation of Wilson and Hilferty)."""
+    """Return the chi-square quantile at a normal deviate.
+
+    The approximation is that of Wilson and Hilferty.
+    """
     part = 2.0 / (9.0 * freedom)
     return freedom * max(1.0 - part + deviate * math.sqrt(part), 0.05) ** 3
 
@@ -210,7 +220,10 @@ def histogram(found: Repeats) -> list[tuple[float, int]]:
 
 
 def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
-    """Return the edges (n + 1,) of bins [mm], from 0, and the number of displacements (n,) in each."""
+    """Return the edges of bins [mm], and the number of displacements in each bin.
+
+    The edges (n + 1,) start at 0; the numbers are (n,).
+    """
     step = max(0.01, round(BIN_SHARE * float(np.quantile(found.away_mm, 0.9)), 2))
     edges = np.arange(math.ceil(float(found.away_mm.max()) / step) + 1) * step
     return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]

@@ -1,7 +1,7 @@
-"""Draw how well a studio repeats: all sheets in one, displacements of marks, effects of the approach.
+"""Draw how well a studio repeats.
 
-The picture follows figure 18 of the article, in which one inscription was painted four times. As in that figure, the
-axis of counts is logarithmic.
+The picture has all sheets in one, displacements of marks, and effects of the approach. The picture follows figure 18 of
+the article, in which one inscription was painted four times. As in that figure, the axis of counts is logarithmic.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def _draw_histogram(axes, found: Repeats) -> None:
 
 
 def _draw_hysteresis(axes, found: Repeats) -> None:
-    """Draw each stroke's mean along an axis, by the direction from which the tool approaches it."""
+    """Draw each stroke's mean along an axis, by direction of approach."""
     labels = []
     for number, approach in enumerate(found.approaches):
         for side, values in enumerate((approach.minus_mm, approach.plus_mm)):

@@ -47,9 +47,9 @@ MIN_EXPLAINING_MISSING_SHARE = 0.1  # smallest share of a mark without paint tha
 
 
 def places_of(found: Comparison, strokes: list[TargetStroke]) -> list[tuple[str, WorstArea]]:
-    """Return the areas where paint differs most from the drawing, each with its stroke.
+    """Return the areas where paint differs most from the drawing.
 
-    Without a drawing, paint is compared with the prediction.
+    Each area comes with the name of its stroke. Without a drawing, paint is compared with the prediction.
     """
     painting = [stroke for stroke in strokes if stroke.predicted]
     has_target = found.overlap_target is not None
@@ -137,7 +137,10 @@ def _describe_sheet(found: Comparison) -> str:
 
 
 def _explain_area(row: Compared | None, area: WorstArea, ends: Ends) -> str:
-    """Return the best explanation of a difference: missing paint of its stroke, or the largest displacement."""
+    """Return the best explanation of a difference.
+
+    It is missing paint of the stroke, or the largest displacement.
+    """
     if row is None:
         return ""
     if area.is_missing and row.missing > MIN_EXPLAINING_MISSING_SHARE:

@@ -1,1 +1,1 @@
-"""Read robot programs back into plans and compare them with the expected plans and programs."""
+"""Read programs back and compare them with plans and regenerated programs."""

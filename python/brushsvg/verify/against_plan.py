@@ -55,9 +55,10 @@ def with_plan(
 
 
 def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
-    """Return, for each pass, the index in `due` of the load with its name, in order where several share it.
+    """Match the passes of a program to the loads of its plan by their names.
 
-    The index is None where no load has the name. Also returns notices for strokes that are unknown, missing or out of
+    Returns, for each pass, the index in `due` of its load. Where several loads share a name, they match in order. The
+    index is None where no load has the name. Also returns notices for strokes that are unknown, missing or out of
     order.
     """
     names = [spelled(a_pass.stroke).rstrip(" ") for a_pass in passes]
@@ -103,7 +104,7 @@ def _is_same_name(written: str, name: str) -> bool:
 
 
 def _check_pass(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
-    """Report where a pass does not follow the planned path, in the planned order, or runs too fast.
+    """Report where a pass leaves the planned path or its order, or runs too fast.
 
     lines: (n,) line of the program for each pose of the pass.
     """
@@ -139,7 +140,7 @@ def _check_pass(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
 
 
 def _max_servo_step_mm(a_pass, cell: Cell) -> float:
-    """Return the largest height change [mm] of a servo in one part of a straight move.
+    """Return the largest height change [mm] of a servo in one part of a move.
 
     A steep move has no room for more parts. A move whose ends were rounded to whole units may have room for fewer.
     """
@@ -183,7 +184,7 @@ def _tool_axes(a_pass) -> np.ndarray:
 
 
 def _path_shares(poses: np.ndarray) -> np.ndarray:
-    """Return (n,) the share of the path length, from 0 to 1, at each of its poses (n, 3)."""
+    """Return (n,) the share of the path length, from 0 to 1, at each pose (n, 3)."""
     along = np.cumsum(np.linalg.norm(np.diff(poses, axis=0, prepend=poses[:1]), axis=1))
     return along / max(along[-1], 1e-9)
 
@@ -199,7 +200,7 @@ ARC_SAMPLES = 17  # places at which two circles are compared
 
 
 def _pose_distance_mm(a_pass, planned) -> float:
-    """Return the largest distance [mm] between two passes, from their poses and circles one by one.
+    """Return the largest distance [mm] between the poses and circles of two passes.
 
     Returns inf where their poses or circles do not correspond.
     """
@@ -217,7 +218,7 @@ def _pose_distance_mm(a_pass, planned) -> float:
 
 
 def _sample_arc(a_pass, arc) -> np.ndarray:
-    """Return places (n, 2), evenly spaced along a circle from its first pose to its last.
+    """Return places (n, 2) evenly spaced along a circle.
 
     Comparing places is better than comparing centres, because the centre of a flat circle is ill-determined. Rounding
     three of its places by a thousandth of a millimetre moves the centre by a millimetre, but not the path.
@@ -229,7 +230,10 @@ def _sample_arc(a_pass, arc) -> np.ndarray:
 
 
 def _poses_outside_arcs(a_pass) -> tuple[np.ndarray, dict[int, object]]:
-    """Return the poses (n, 3) that are not inside an arc, and the arcs, by the index of their first pose."""
+    """Return the poses (n, 3) that are not inside an arc, and the arcs.
+
+    The key of an arc is the index of its first pose among the returned ones.
+    """
     poses = np.asarray(a_pass.poses_mm)
     inner = np.zeros(len(poses), dtype=bool)
     for arc in a_pass.arcs:
@@ -239,7 +243,10 @@ def _poses_outside_arcs(a_pass) -> tuple[np.ndarray, dict[int, object]]:
 
 
 def _with_arc_points(a_pass) -> tuple[np.ndarray, np.ndarray]:
-    """Return the poses with chord points added along circles, and for each point the pose that it leads to."""
+    """Return the poses with chord points added along circles.
+
+    Also returns, for each point, the index of the pose that it leads to.
+    """
     poses = np.asarray(a_pass.poses_mm)
     centres = {k: (*arc.centre_mm, arc.direction) for arc in a_pass.arcs for k in range(arc.first, arc.last)}
     if not centres:
@@ -253,11 +260,11 @@ def _with_arc_points(a_pass) -> tuple[np.ndarray, np.ndarray]:
 
 
 def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) -> int | None:
-    """Return the first point of `found` at which it departs from `reference`, or None where it never departs.
+    """Return the first point of `found` at which it departs from `reference`.
 
-    The paths (n, 3) and (m, 3) [mm] consist of straight moves. They match if one can go along both at once, from start
-    to end, never backwards on either, and never further apart than the limit. Otherwise the returned index is the end
-    of the first move of `found` on which this is no longer possible.
+    Returns None where it never departs. The paths (n, 3) and (m, 3) [mm] consist of straight moves. They match if one
+    can go along both at once, from start to end, never backwards on either, and never further apart than the limit.
+    Otherwise the returned index is the end of the first move of `found` on which this is no longer possible.
 
     The decision is exact, after Alt and Godau. One move of each path makes a cell, in which the pairs of places within
     the limit form a convex region. A cell is entered from the previous move of `found` or from the previous move of
@@ -318,7 +325,10 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
 
 
 def _part_within_limit(point: list, begin: list, end: list, limit_mm: float) -> tuple[float, float] | None:
-    """Return the part of a move, as shares from 0 to 1, that is within the limit of a point, or None."""
+    """Return the part of a move that is within the limit of a point, or None.
+
+    The part is given as shares of the move, from 0 to 1.
+    """
     ax, ay, az = begin[0] - point[0], begin[1] - point[1], begin[2] - point[2]
     bx, by, bz = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
     square, along = bx * bx + by * by + bz * bz, ax * bx + ay * by + az * bz
@@ -339,7 +349,7 @@ def _with_midpoints(poses: np.ndarray) -> np.ndarray:
 
 
 def _max_distance_mm(points: np.ndarray, path: np.ndarray) -> float:
-    """Return the largest distance [mm] of points (n, 3) from a path (m, 3) of straight moves.
+    """Return the largest distance [mm] of points (n, 3) from a path (m, 3).
 
     The search is quick where both go the same way. A few points are compared with the moves that come next, and with
     other moves only where these could be nearer.
@@ -371,7 +381,10 @@ BOX_SIZE = 64  # points or moves; a smaller number makes more boxes, a larger on
 
 
 def _max_distance_to_all_mm(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[float, int]:
-    """Return the largest distance [mm] by comparing every point with every move, and the move nearest to the last."""
+    """Return the largest distance [mm] by comparing every point with every move.
+
+    Also returns the index of the move that is nearest to the last point.
+    """
     nearest, at_last = np.full(len(points), np.inf), 0
     for first in range(0, len(starts), 4096):  # this number only limits the memory
         steps = ends[first : first + 4096] - starts[first : first + 4096]
@@ -386,7 +399,7 @@ def _max_distance_to_all_mm(points: np.ndarray, starts: np.ndarray, ends: np.nda
 
 
 def _check_station_visits(ran: SimulatedProgram, due, planned_visits) -> Problems:
-    """Report the first stroke before which the program visits other paint stations than the cell requires."""
+    """Report the first stroke with other paint stations than the cell requires."""
     for a_pass, found, required in zip(due, ran.visits, planned_visits, strict=True):
         if found != required:
             stations = [

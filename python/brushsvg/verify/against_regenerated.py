@@ -1,4 +1,4 @@
-"""Compare a program that was read back, line by line, with what brushsvg would write for the same moves."""
+"""Compare a program line by line with what brushsvg would write."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def again(
     header_notes: HeaderNotes | None = None,
     speeds_mm_s: list[float] | None = None,
 ) -> Program | None:
-    """Return the program that brushsvg would write for the strokes and visits that were read.
+    """Return the program that brushsvg would write for the strokes that were read.
 
-    Returns None where a stroke is not exactly one touch. The program has a header only if `header_notes` is given.
-    speeds_mm_s: planned speeds of the strokes, where known.
+    The visits to stations are also those that were read. Returns None where a stroke is not exactly one touch. The
+    program has a header only if `header_notes` is given. speeds_mm_s: planned speeds of the strokes, where known.
     """
     if not ran.visits or len(ran.visits) != len(ran.plan.passes):
         return None
@@ -72,12 +72,12 @@ class HeaderNotes:
 def differing_line(
     text: str, read: Readback, program: Program, cell: Cell, least_time_s: float | None = None
 ) -> str | None:
-    """Describe the first line that does something else than what brushsvg would write; None where there is none.
+    """Describe the first line that differs from what brushsvg would write.
 
-    The notation of numbers does not matter. Places may differ by less than a brush shows, feeds may be lower, and
-    lines without effect may be missing or repeated. A servo's paths in paint have heights rounded to whole values, so
-    only their ends are compared. least_time_s: duration of the program before its feeds were lowered; None: the feeds
-    are as planned.
+    Returns None where no line does something else. The notation of numbers does not matter. Places may differ by less
+    than a brush shows, feeds may be lower, and lines without effect may be missing or repeated. A servo's paths in
+    paint have heights rounded to whole values, so only their ends are compared. least_time_s: duration of the program
+    before its feeds were lowered; None: the feeds are as planned.
     """
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     regenerated = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
@@ -146,7 +146,7 @@ def differing_line(
 
 
 def _acts_of_lift(acts: list[Act], lifts: list[Act], number: int) -> list[Act]:
-    """Return the acts that were joined into a servo's lift, and the act that follows it."""
+    """Return the acts that were joined into a servo's lift, and the next act."""
     before = max((act.line for act in lifts[:number]), default=0)
     lines = [act.line for act in acts]
     return acts[bisect_right(lines, before) : bisect_right(lines, lifts[number].line) + 1]
@@ -180,9 +180,9 @@ def _first_differing_acts(found: list[Act], reference: list[Act], rules: _ActCom
 
 
 def _acts_by_servo_value(acts: list[Act]) -> dict[float, list[Act]]:
-    """Group the acts of a lift by the servo value that holds; each group includes the act that sets the next value.
+    """Group the acts of a lift by the servo value that holds.
 
-    The key is None before the first value.
+    Each group includes the act that sets the next value. The key is None before the first value.
     """
     at: dict[float, list[Act]] = {}
     value = None
@@ -237,7 +237,10 @@ def _describe_difference(
 
 
 def _excerpt(line: str, place: int) -> str:
-    """Return 60 letters of a line around a place, from the line's beginning where they include the place."""
+    """Return 60 letters of a line around a place.
+
+    They start at the line's beginning where they then include the place.
+    """
     first = max(0, place - 30) if place > 50 else 0
     return ("..." if first else "") + line.strip()[first : first + 60]
 
@@ -246,7 +249,7 @@ _HEADER_LINE = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =|l
 
 
 def _sort_header(acts: list[Act]) -> list[Act]:
-    """Return the acts with the lines of the header sorted by their first words, without repetitions.
+    """Return the acts with the header sorted by first words, without repetitions.
 
     Declarations are kept even if they are repeated, because controllers refuse to load a repeated declaration.
     """
@@ -260,7 +263,7 @@ def _sort_header(acts: list[Act]) -> list[Act]:
 
 
 def _header_key(act: Act) -> str:
-    """Return the key of a line of a header: its first word, or the name that it declares."""
+    """Return the first word of a header line, or the name that it declares."""
     word = act.text.partition(":")[0]
     return word if word.startswith("local ") else word[:8]
 
@@ -281,7 +284,7 @@ BLEND_TOLERANCE_MM, BLEND_TOLERANCE_SHARE, BLEND_TOLERANCE_PER_MM = 1e-2, 0.05, 
 
 
 class _ActComparison:
-    """Tolerant comparison of acts: whether two acts do the same on a machine of this cell."""
+    """Tolerant comparison of two acts on a machine of a cell."""
 
     def __init__(
         self,
@@ -347,18 +350,18 @@ class _ActComparison:
         )
 
     def is_same_rotation(self, found: tuple, reference: tuple) -> bool:
-        """Return whether two rotations of the tool are equal to within what a brush shows; () is upright."""
+        """Return whether no brush shows a difference of two rotations; () is upright."""
         if not found and not reference:
             return True
         a, b = (np.reshape(turned or self.upright, (3, 3)) for turned in (found, reference))
         return bool(apart_deg(a, b) <= ROTATION_TOLERANCE_DEG)
 
     def keep_rotation(self, a: Act, b: Act, held: tuple) -> bool:
-        """Return whether two moves keep the tool's rotation at the place where they begin."""
+        """Return whether two moves keep the tool's rotation where they begin."""
         return self.is_same_rotation(a.turned, held) and self.is_same_rotation(b.turned, held)
 
     def begins_with_other_lift(self, ours: list[Act], theirs: list[Act]) -> bool:
-        """Return whether a lift begins `ours` where `theirs` has a different lift, or none."""
+        """Return whether `ours` begins with a lift that `theirs` does not begin with."""
         return bool(ours) and ours[0].kind == "lift" and not (theirs and self.is_same(ours[0], theirs[0]))
 
     def is_rounding_lift(self, lift: Act) -> bool:
@@ -378,7 +381,7 @@ class _ActComparison:
         )
 
     def is_idle(self, act: Act, here: tuple) -> bool:
-        """Return whether a move stays where the tool is, or moves it less than a brush shows."""
+        """Return whether a move stays at a place, or moves less than a brush shows."""
         if act.kind != "move" or len(act.place) != len(here):
             return False
         return act.place == here or math.dist(act.place, here) <= self.place_tolerance_mm / 2
@@ -402,7 +405,10 @@ class _ActComparison:
         return bool(0 <= along <= length and off <= self.place_tolerance_mm / 2)
 
     def _are_places_close(self, found: tuple, reference: tuple) -> bool:
-        """Return whether two places are close; coordinates that were never named (NaN) are equal."""
+        """Return whether two places are close.
+
+        Coordinates that were never named (NaN) are equal.
+        """
         return len(found) == len(reference) and all(
             abs(x - y) <= self.place_tolerance_mm or (math.isnan(x) and math.isnan(y))
             for x, y in zip(found, reference, strict=True)
@@ -424,7 +430,10 @@ class _ActComparison:
         return (1e-4,)
 
     def _is_same_statement(self, found: str, reference: str) -> bool:
-        """Return whether two texts say the same: times and lengths of headers, and the numbers of statements."""
+        """Return whether two texts say the same.
+
+        Times and lengths of headers and the numbers of statements may differ by rounding.
+        """
         if (about := _ABOUT_LINE.fullmatch(found)) and (found[:6] == reference[:6]):
             value, unit = _parse_about(about)
             least, most = self.length_mm if about[4] else self.time_s
@@ -453,11 +462,11 @@ _ABOUT_LINE = re.compile(
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
-    """Return (least, most) of the length [mm] and of the time [s] that a header may state.
+    """Return the ranges of length [mm] and time [s] that a header may state.
 
-    A header may differ by one unit of its last digit less and two more: circles that were written as lines took rests.
-    The stepped heights of a servo make a path longer than planned, but not shorter than its projection onto the paper.
-    Each stroke may have lost a step and a value at both ends.
+    Each range is (least, most). A header may differ by one unit of its last digit less and two more: circles that were
+    written as lines took rests. The stepped heights of a servo make a path longer than planned, but not shorter than
+    its projection onto the paper. Each stroke may have lost a step and a value at both ends.
     """
     length_mm, time_s = painting_mm(program), duration_s(program)
     least_mm, most_mm = length_mm * (1 - LENGTH_TOLERANCE_SHARE), length_mm * (1 + LENGTH_TOLERANCE_SHARE)
@@ -478,7 +487,7 @@ LENGTH_TOLERANCE_SHARE, TIME_TOLERANCE_SHARE = 1e-3, 1e-2
 
 
 def _parse_about(found: re.Match) -> tuple[float, float]:
-    """Return the seconds or millimetres of a header, and the unit that they are rounded to."""
+    """Return the seconds or millimetres of a header, and their rounding unit."""
     if found[4]:
         return float(found[4]), 1.0
     seconds = sum(int(found[k] or 0) * unit for k, unit in ((1, 3600), (2, 60), (3, 1)))

@@ -1,4 +1,7 @@
-"""Predict what a brush paints with a plotter's G-code from other software, which ignores the lag of a brush."""
+"""Predict what a brush paints with a plotter's G-code from other software.
+
+Such programs ignore the lag of a brush.
+"""
 
 from __future__ import annotations
 
@@ -119,7 +122,10 @@ def _check_workspace_limits(ways: list[Way], cell: Cell, sheet_mm) -> list[Notic
 
 
 def _check_brush_lifted(ways: list[Way], height_mm: float) -> list[Notice]:
-    """Report a program that leaves the brush on the paper. height_mm: height of the brush after the last line."""
+    """Report a program that leaves the brush on the paper.
+
+    height_mm: height of the brush after the last line.
+    """
     if not height_mm < 0:
         return []
     sentence = (
@@ -129,7 +135,10 @@ def _check_brush_lifted(ways: list[Way], height_mm: float) -> list[Notice]:
 
 
 def _touches_to_passes(ways: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
-    """Return a pass for each time that the brush is at or below the paper, and a notice for each rapid move there."""
+    """Return a pass for each touch of the paper, and a notice for each rapid move.
+
+    A touch is a time that the brush is at or below the paper. Rapid moves are reported only there.
+    """
     passes, careless = [], []
     poses: list[np.ndarray] = []
     speeds: list[float] = []
@@ -138,7 +147,9 @@ def _touches_to_passes(ways: list[Way], cell: Cell) -> tuple[list, list[Notice]]
     def finish_pass() -> None:
         if poses and min(pose[2] for pose in poses) < 0:
             over = [np.array([*pose[:2], 0.0]) for pose in (poses[0], poses[-1])]
-            way = poses if len(poses) > 1 else [over[0], *poses, over[1]]  # a servo's dot
+            way = (
+                poses if len(poses) > 1 else [over[0], *poses, over[1]]
+            )  # a servo's dot goes straight down and up
             passes.append(_core.Pass(name, np.array(way), max(speeds, default=cell.speeds.press_mm_s)))
         poses.clear()
         speeds.clear()
@@ -192,7 +203,10 @@ def _part_on_paper(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
 
 
 def _refuse_inverted(ways: list[Way]) -> None:
-    """Raise Error where Z counts downwards, unlike in any cell: drawing and travel would be exchanged."""
+    """Raise Error where Z counts downwards, unlike in any cell.
+
+    Drawing and travel would be exchanged.
+    """
     try:
         pen = read_pen(ways, "z") if ways else None
     except Error:  # nothing shows the direction of Z
@@ -203,7 +217,10 @@ def _refuse_inverted(ways: list[Way]) -> None:
 
 
 def _heights_over_paper(way: Way, lift: Lift | None, paper_z_mm: float) -> np.ndarray:
-    """Return (n, 3) the points of a way relative to the paper; a servo's pen is at the height of its value."""
+    """Return (n, 3) the points of a way relative to the paper.
+
+    The pen of a servo is at the height of its value.
+    """
     points = way.points_mm - (0.0, 0.0, paper_z_mm)
     if lift:
         points[:, 2] = lift(way.power)
@@ -211,9 +228,10 @@ def _heights_over_paper(way: Way, lift: Lift | None, paper_z_mm: float) -> np.nd
 
 
 def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
-    """Return a function from servo value to height above the paper [mm]; None for a pen that moves by Z.
+    """Return a function from servo value to height above the paper [mm].
 
-    A missing value means that the pen is up. Raises Error where the cell does not define the heights.
+    Returns None for a pen that moves by Z. A missing value means that the pen is up. Raises Error where the cell does
+    not define the heights.
     """
     up_and_down = cell.pen.servo_values if cell.pen else ()
     if pen_kind(ways) == "z":

@@ -1,4 +1,4 @@
-"""Find pauses in the paint, in programs of languages that state the duration of each move."""
+"""Find pauses in the paint of programs that state durations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MAX_PAUSE_S = 0.01  # rounded places and times change the time of a part by up t
 
 
 def stops(read: Readback, program: Program) -> list[Notice]:
-    """Report the first part of a stroke that takes longer than the rest of the stroke.
+    """Report the first part of a stroke that is slower than the rest of it.
 
     read: the program as read back; program: the program that brushsvg would write. A stroke may be slower as a whole,
     so its parts are compared with the median slowdown. Moves faster than the brush may touch are in the air.
@@ -57,11 +57,12 @@ def stops(read: Readback, program: Program) -> list[Notice]:
 
 
 def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Program) -> np.ndarray:
-    """Return the longest time [s] of each part if the servo lifts or lowers the brush as far as the program allows.
+    """Return the longest time [s] of each part with the lift that it allows.
 
-    A part has one servo value, the value at its middle. The program does not state the change of height along a part:
-    it is at most the change from the middle of the previous part to the middle of the next one. The tip is assumed to
-    move over this distance at its maximum speed.
+    In this time the servo lifts or lowers the brush as far as the program allows. A part has one servo value, the value
+    at its middle. The program does not state the change of height along a part: it is at most the change from the
+    middle of the previous part to the middle of the next one. The tip is assumed to move over this distance at its
+    maximum speed.
     """
     heights_mm = np.array([height_at(program.cell.servo, act.same[0]) for act in acts])
     steps_mm = np.abs(np.diff(heights_mm, append=heights_mm[-1]))
@@ -87,7 +88,10 @@ def _moves_by_stroke(acts: list[Act], touching_mm_s: float) -> list[tuple[str, l
 
 
 def _distances_and_times(acts: list[Act]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance along the stroke [mm] and the time [s] at the end of each act, from the end of the first."""
+    """Return the distance along the stroke [mm] and the time [s] of each act.
+
+    Both are at the end of an act, and count from the end of the first act.
+    """
     ways_mm = np.array([np.linalg.norm(np.subtract(b.place, a.place)) for a, b in pairwise(acts)])
     speeds = np.array([act.at_most[1] for act in acts[1:]])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(ways_mm)), where=speeds > 0)

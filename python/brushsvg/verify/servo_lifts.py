@@ -1,4 +1,7 @@
-"""Undo the steps of a servo in a program that was read back, to recover its paths and lifts as planned."""
+"""Undo the steps of a servo in a program that was read back.
+
+The result has paths and lifts as planned.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +74,10 @@ IN_PAINT_TEXT = "in paint"
 
 
 def _safe_value(acts: list[Act]) -> float | None:
-    """Return the servo value at which the brush is safe, the value of the first lift; None without lifts."""
+    """Return the servo value at which the brush is safe.
+
+    This is the value of the first lift, None without lifts.
+    """
     return next((act.same[0] for act in acts if act.kind == "lift"), None)
 
 
@@ -81,9 +87,10 @@ def drop_rounding_lifts(
     is_rounding_lift: Callable[[Act], bool],
     is_same: Callable[[Act, Act], bool],
 ) -> tuple[list[Act], list[Act]]:
-    """Return the acts of two programs without lifts in paint that only one of them has and that rounding explains.
+    """Return the acts of two programs without lifts that rounding explains.
 
-    is_none: whether rounding alone explains a lift; is_same: whether two lifts are the same.
+    Only lifts in paint that one program alone has are dropped. is_none: whether rounding alone explains a lift;
+    is_same: whether two lifts are the same.
     """
     lift_rows = [[k for k, act in enumerate(acts) if act.kind == "lift"] for acts in (ours, theirs)]
     dropped: tuple[set, set] = (set(), set())
@@ -128,7 +135,7 @@ def join_paths(acts: list[Act]) -> list[Act]:
 
 
 def projected_length_mm(program: Program) -> float:
-    """Return the length [mm] of the tool's path on the paper, projected onto the paper."""
+    """Return the length [mm] of the tool's path, projected onto the paper."""
     total_mm, here = 0.0, None
     for move in (move for section in program.sections() for move in section.moves):
         if move.meaning == "paint":

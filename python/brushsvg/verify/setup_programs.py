@@ -1,4 +1,4 @@
-"""Check the programs that run before the first job: air runs, paper heights and first runs."""
+"""Check programs that run before a job: air runs, paper heights, first runs."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ def look_at_border(
 
 
 def look_at_heights(text: str, read: Readback, made: ProgramHeader, brush, cell: Cell) -> SetupCheck:
-    """Check a program that finds the paper, by strokes at the heights that its header names.
+    """Check a program that finds the paper by strokes at several heights.
 
-    Each of these strokes may be the first on the paper. Raises Error when the strokes do not fit on the sheet or go
-    deeper than the brush or the cell allows.
+    Its header names the heights. Each of these strokes may be the first on the paper. Raises Error when the strokes do
+    not fit on the sheet or go deeper than the brush or the cell allows.
     """
     sheet_mm = made.sheet_mm
     highest_mm, lowest_mm, step_mm = made.heights_mm

@@ -58,7 +58,10 @@ class SimulatedProgram:
 
 
 def slack_mm(cell: Cell) -> float:
-    """Return the height error [mm] that rounding alone may cause, by program units or a servo's whole values."""
+    """Return the height error [mm] that rounding alone may cause.
+
+    It comes from the program's units, or from a servo's whole values.
+    """
     return max(MAX_ROUNDING_LIFT_MM, 1.1 * unit_mm(cell)) + (value_mm(cell) / 2 if cell.servo else 0.0)
 
 
@@ -122,7 +125,10 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
 
 
 def _clamp_to_deepest(poses_mm, brush, slack: float) -> np.ndarray:
-    """Return poses (n, 3) [mm], with those that rounding put below the brush's greatest depth raised to it."""
+    """Return poses (n, 3) [mm] raised to the brush's greatest depth.
+
+    Only poses that rounding put below it are changed.
+    """
     poses, deepest_mm = np.array(poses_mm), brush.depth_range_mm[1]
     just_over = (poses[:, 2] < -deepest_mm) & (poses[:, 2] >= -deepest_mm - slack)
     poses[just_over, 2] = -deepest_mm
@@ -130,7 +136,10 @@ def _clamp_to_deepest(poses_mm, brush, slack: float) -> np.ndarray:
 
 
 def _servo_rests_after(step: Step, cell: Cell) -> bool:
-    """Return whether a servo rests after a step: a second wait follows the wait for the servo's own travel."""
+    """Return whether a servo rests after a step.
+
+    In a rest, a second wait follows the wait for the servo's own travel.
+    """
     return bool(cell.servo) and step.waits > 1 and step.wait_s >= cell.servo.settle_s
 
 
@@ -154,9 +163,10 @@ def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
 def walk_sections(
     read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, paper_mm: float = 0.0
 ) -> Iterator[tuple[ReadSection, Track, Problems]]:
-    """Yield each section, its track in the paper frame, and a notice for each unsafe or out-of-bounds step.
+    """Yield each section with its track and its notices.
 
-    paper_mm: greatest height of the paper above its assumed place. Every move below this height has to be slow.
+    The track is in the paper frame. A notice reports an unsafe or out-of-bounds step. paper_mm: greatest height of the
+    paper above its assumed place. Every move below this height has to be slow.
     """
     frame = np.eye(4) if read.in_paper_frame else robot_from_paper(cell, z_offset_mm)
     here, here_low, ends = None, None, []  # the tool's place as commanded, and its true place over the paper
@@ -206,7 +216,10 @@ def _with_rounding_allowance(cell: Cell) -> Cell:
 def _check_workspace_limits(
     section: ReadSection, track: Track, here: np.ndarray | None, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> Problems:
-    """Report the workspace limits that a section, or the move to it, breaks, also in the air."""
+    """Report the workspace limits that a section breaks, also in the air.
+
+    The move to the section is included.
+    """
     slack, points = slack_mm(cell), track.points
     if not len(points):
         return []
@@ -223,7 +236,7 @@ def _check_workspace_limits(
 
 
 def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
-    """Return, for each stroke's section, the stations that the program visits before it.
+    """Return, for each stroke, the stations that the program visits before it.
 
     Raises Error for a station that the cell does not have.
     """
@@ -269,7 +282,7 @@ class Track:
 
 
 def _true_track(track: Track, cell: Cell) -> Track:
-    """Return the true track of the tool when the machine is commanded along this track."""
+    """Return the true track of the tool for a commanded track."""
     if cell.machine is None:
         return track
     centres = [None] * len(track.centres)
@@ -282,7 +295,10 @@ def _true_track(track: Track, cell: Cell) -> Track:
 
 
 def _match_stroke_title(section: ReadSection) -> re.Match | None:
-    """Match the title of a stroke's section: groups 1 and 2 are its number and the count of strokes."""
+    """Match the title of a stroke's section.
+
+    Groups 1 and 2 of the match are the stroke's number and the count of strokes.
+    """
     return re.match(r"stroke (\d{1,6}) of (\d{1,7}): ", section.title)
 
 
@@ -388,7 +404,7 @@ def _insert_paper_crossings(track: Track, here: np.ndarray | None, slack: float)
 
 
 def _find_touches(track: Track, slack: float) -> Iterator[slice]:
-    """Yield the points of each touch, a time that the brush is on the paper, as a slice."""
+    """Yield the points of each touch of the paper as a slice."""
     edges = np.flatnonzero(np.diff(np.r_[False, track.points[:, 2] <= slack, False]))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         yield slice(int(first), int(last))
@@ -425,9 +441,10 @@ def _touch_to_pass(section: ReadSection, track: Track, on: slice, cell: Cell, le
 
 
 def _tool_axes_of_touch(section: ReadSection, track: Track, on: slice, frame: np.ndarray) -> np.ndarray:
-    """Return tool axes (n, 3) at the poses of one touch, in the paper frame; (0, 3) where the brush is upright.
+    """Return tool axes (n, 3) at the poses of one touch, in the paper frame.
 
-    frame: (4, 4) pose of the paper in the frame of the program. Raises Error where the brush is tilted too far.
+    The result is (0, 3) where the brush is upright. frame: (4, 4) pose of the paper in the frame of the program. Raises
+    Error where the brush is tilted too far.
     """
     steps = [section.steps[number] for number in track.step[on]]
     if not any(step.axis for step in steps):
@@ -446,7 +463,10 @@ def _tool_axes_of_touch(section: ReadSection, track: Track, on: slice, frame: np
 
 
 def _connected_arcs(arcs: list) -> list[list[int]]:
-    """Return the first and last pose of each chain of arcs, in which each arc begins at the end of the previous one."""
+    """Return the first and last pose of each chain of arcs.
+
+    In a chain, each arc begins at the end of the previous one.
+    """
     chains: list[list[int]] = []
     for arc in arcs:
         if chains and chains[-1][1] == arc.first:
@@ -457,7 +477,10 @@ def _connected_arcs(arcs: list) -> list[list[int]]:
 
 
 def _arcs_of_touch(owner: np.ndarray, centres: list) -> list:
-    """Return the arcs among the poses of one touch. owner: (n,) step of each pose; centres: by step."""
+    """Return the arcs among the poses of one touch.
+
+    owner: (n,) step of each pose; centres: by step.
+    """
     rows = []
     for number in dict.fromkeys(owner.tolist()):
         on = np.flatnonzero(owner == number)
@@ -470,7 +493,10 @@ def _arcs_of_touch(owner: np.ndarray, centres: list) -> list:
 def _check_moves(
     section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
 ) -> Iterator[Notice]:
-    """Report moves that are too fast while the brush touches, or that go sideways too low in the air."""
+    """Report moves that are too fast or too low.
+
+    Moves are too fast while the brush touches, or too low when they go sideways in the air.
+    """
     if not len(track.points):
         return
     slack, safe = slack_mm(cell), cell.heights.safe_mm
@@ -520,7 +546,10 @@ def _speed_notice(step: Step, limit: float) -> Notice:
 def _check_backlash(
     read: Readback, section: ReadSection, low: Track, frame: np.ndarray, brush, cell: Cell, paper_mm: float
 ) -> Iterator[Notice]:
-    """Report axes that take up their backlash too fast while the brush touches, or not before it touches."""
+    """Report axes that take up their backlash too fast or too late.
+
+    It is too fast while the brush touches, and too late after the brush touches.
+    """
     top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
     places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)
     places = moved(np.linalg.inv(frame), places)
@@ -540,7 +569,7 @@ def _check_backlash(
 def _check_servo_tip_speed(
     steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
 ) -> Iterator[Notice]:
-    """Report where the tip of a servo's brush is faster than the limit, from the steps of one touch.
+    """Report where the tip of a servo's brush is too fast in one touch.
 
     The feed of a servo is the speed of the path without the lift. Its heights change in steps of at least one value.
     Over any number of moves, the tip may be at most two steps and one value ahead of the distance that the limit
@@ -579,9 +608,10 @@ def _check_servo_tip_speed(
 
 
 def _max_servo_lead_mm(cell: Cell) -> float:
-    """Return how far [mm] rounded heights, which change in steps, may be ahead of the true ones.
+    """Return how far [mm] rounded heights may be ahead of the true ones.
 
-    A lift begins at the height that the servo held during the last part of the previous path.
+    Rounded heights change in steps. A lift begins at the height that the servo held during the last part of the
+    previous path.
     """
     return 2 * max(cell.servo.step_mm, value_mm(cell)) + value_mm(cell) + 1e-6
 
@@ -589,7 +619,7 @@ def _max_servo_lead_mm(cell: Cell) -> float:
 def _check_servo_lifts(
     steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, paper_mm: float
 ) -> Iterator[Notice]:
-    """Report where a servo lifts or lowers a standing brush too far at once, or too fast.
+    """Report lifts of a standing brush that are too far at once, or too fast.
 
     Checked between the clearance and the paper. The step may be no larger than brushsvg writes, and no faster than the
     cell presses. `_check_servo_tip_speed` compares lifts that are entirely in the paint with the brush's limit.

@@ -1,4 +1,7 @@
-"""Correct the cell's machine for the next job by its certain faults, in addition to those compensated before."""
+"""Correct the cell's machine for the next job by its certain faults.
+
+They are added to the faults that the cell already compensates.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,10 @@ def key_of(name: str) -> str:
 
 
 def certain_of(faults: Faults) -> dict[str, float]:
-    """Return the value of each number of the machine and the paper by its name, 0 where it is not certain."""
+    """Return the value of each number of machine and paper by its name.
+
+    A value that is not certain is 0.
+    """
     return {
         one.number.name: one.value if abs(one.value) > MIN_CERTAINTY * one.half else 0.0
         for one in faults.found
@@ -42,9 +48,9 @@ def certain_of(faults: Faults) -> dict[str, float]:
 def sure(
     faults: Faults, before: Machine | None, along: AxesAlongPaper, left_out: Container[str] = ()
 ) -> dict[str, float]:
-    """Return the part of each number that goes into a cell, by its name; 0 where it is not certain.
+    """Return the part of each number that goes into a cell, by its name.
 
-    left_out: keys of the table that this machine cannot compensate.
+    The part is 0 where the number is not certain. left_out: keys of the table that this machine cannot compensate.
     """
     certain = {name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()}
     for paper, name in enumerate("xy"):
@@ -61,9 +67,10 @@ def corrected_machine(
     along: AxesAlongPaper = (0, 1),
     left_out: Container[str] = (),
 ) -> Machine | None:
-    """Return the machine that compensates the certain faults as well; None where nothing is certain.
+    """Return the machine that also compensates the certain faults.
 
-    before: machine errors that the cell of the painted job compensated; the certain faults are added to them.
+    Returns None where nothing is certain. before: machine errors that the cell of the painted job compensated; the
+    certain faults are added to them.
     """
     certain = sure(faults, before, along, left_out)
     if not any(certain.values()):
@@ -101,7 +108,10 @@ def _round_all(values) -> tuple[float, ...]:
 
 
 def as_table(machine: Machine) -> list[str]:
-    """Return the lines of a cell's table [machine], without the parts that have no error."""
+    """Return the lines of a cell's table [machine].
+
+    Parts without an error are left out.
+    """
     lines = ["[machine]"]
     if any(machine.lean_mm_per_mm):
         lines.append(f"lean_mm_per_mm = {_format_pair(machine.lean_mm_per_mm)}")

@@ -1,8 +1,8 @@
-"""Attribute the difference of paint and prediction to causes, by their effects on the edges of all marks.
+"""Attribute the difference of paint and prediction to causes.
 
-The method is least squares, repeated at its result until it converges. The model is linear in the numbers of the
-sheet, the machine, the paper and the brush. Each stroke also has a displacement of its own, and all edges share an
-offset for the uncertainty of reading edges.
+Each cause has its own effect on the edges of all marks. The method is least squares, repeated at its result until it
+converges. The model is linear in the numbers of the sheet, the machine, the paper and the brush. Each stroke also has a
+displacement of its own, and all edges share an offset for the uncertainty of reading edges.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ OWN_PLACE_SIGMAS_MM = (0.02, 0.2, 1.0)  # standard deviation of own places: smal
 EDGE_SIGMA_MM = 0.03  # standard deviation of the common offset of edges by their reading
 MIN_EDGE_SIGMA_MM = 0.01  # smallest standard deviation of edges: no photograph is read better
 # A brush never matches its model exactly. A misfit displaces whole sides of a mark, which the fit attributes to some
-# number. Two simulators of the same brush differ by MISFIT_MM (standard deviation), over lengths of MISFIT_LONG_MM.
+# number. Two simulators of the same brush differ by MISFIT_SIGMA_MM, over lengths of MISFIT_LENGTH_MM.
 MISFIT_SIGMA_MM, MISFIT_LENGTH_MM = 0.03, 6.0
 MIN_EDGES = 60  # with fewer edges, the numbers depend on their priors
 # Fewer strokes do not separate a common place from their own places. Of more strokes, only the largest are used.
@@ -174,10 +174,10 @@ def _fit(model: FaultModel, names, found: Comparison, neighbours):
 
 
 def _solve_step(slopes, offsets, stroke, prior, now):
-    """Solve one least-squares step; return the step, its covariance and the residuals (n,) [mm].
+    """Solve one step of least squares.
 
-    Edges have Huber's weights. Their number is reduced to the number of independent ones, and the misfit of the model
-    is added to their variance.
+    Returns the step, its covariance and the residuals (n,) [mm]. Edges have Huber's weights. Their number is reduced to
+    the number of independent ones, and the misfit of the model is added to their variance.
     """
     weight, independent_share = np.ones(len(offsets)), 1.0
     scale = max(1.4826 * float(np.median(np.abs(offsets - np.median(offsets)))), MIN_EDGE_SIGMA_MM)
@@ -202,7 +202,10 @@ def _rings_with_own_places(model, names, fault_values, own) -> list[list[np.ndar
 
 
 def _jacobian(model, names, fault_values, own, outline: Outline, rings) -> np.ndarray:
-    """Return the Jacobian (n, numbers + 2 * strokes + 1): the outward shift of each edge [mm] per unit of a number."""
+    """Return the outward shift of each edge [mm] per unit of each number.
+
+    The shape is (n, numbers + 2 * strokes + 1).
+    """
     base = signed_offsets_mm(outline, rings)
     lever = np.radians(outline.at - model.middle_mm - fault_values[:2])
     turned = outline.normal[:, 1] * lever[:, 0] - outline.normal[:, 0] * lever[:, 1]
@@ -260,7 +263,10 @@ def _gains_of_causes(
 
 
 def _gain_interval(outline, slopes, numbers, of_cause, samples) -> tuple[float, float]:
-    """Return the 2.5 and 97.5 % quantiles of the deviation of the gain, by the area between edges."""
+    """Return the 95
+
+    interval of the gain, relative to the gain itself.
+    """
 
     def gain(sample):
         edges, corrected = slopes[:, :-1] @ sample[:-1], slopes[:, :-1] @ np.where(of_cause, 0.0, sample)[:-1]
@@ -308,7 +314,10 @@ def _overlap(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def _inseparable_causes(model: FaultModel, covariance, slopes) -> tuple[tuple[str, str], ...]:
-    """Return pairs of causes for which knowing one removes most of the uncertainty of the other."""
+    """Return pairs of causes that are hard to separate.
+
+    Knowing one cause removes most of the uncertainty of the other.
+    """
     causes = (SHEET, MACHINE, PAPER, BRUSH, OWN_PLACE)
     count = len(model.numbers)
     columns_of = {

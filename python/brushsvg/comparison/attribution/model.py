@@ -1,4 +1,4 @@
-"""Predict a job's marks with errors of the sheet, the machine, the paper and the brush."""
+"""Predict a job's marks with faults of sheet, machine, paper and brush."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class FaultModel:
 
     @cached_property
     def _depths_mm(self) -> tuple[float, float]:
-        """Return the usual depth, and the distance from it at which the bend of a law counts in full.
+        """Return the usual depth, and the distance at which a law's bend counts fully.
 
         The distance is to the deepest pose or to the paper, the larger of the two [mm].
         """
@@ -115,7 +115,10 @@ class FaultModel:
         return min(max(share, MIN_LAW_SIGMA), LAW_SIZE_SIGMA)
 
     def rings(self, fault_values: np.ndarray) -> dict[str, list[np.ndarray]]:
-        """Return the rings of each stroke on the sheet [mm]; strokes that would not be painted are left out."""
+        """Return the rings of each stroke on the sheet [mm].
+
+        Strokes that would not be painted are left out.
+        """
         shift, turn = fault_values[:2], np.radians(fault_values[2])
         scale, skew, lean, backlash = (
             1 + fault_values[3:5],
@@ -161,7 +164,10 @@ class FaultModel:
 
 
 def _trace_outline(mark, brush):
-    """Return the rings of one stroke, without computing the area that all paint covers together."""
+    """Return the rings of one stroke.
+
+    The area that all paint covers together is not computed.
+    """
     alone = _core.Marks()
     alone.passes = [mark]
     _core.trace_outlines(alone, brush)

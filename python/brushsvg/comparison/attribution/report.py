@@ -35,9 +35,9 @@ def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
 
 
 def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
-    """Return lines with every cause and its gain, every number, and the table for a cell.
+    """Return lines with the gain of every cause, and every number.
 
-    machine: the machine of the cell for the next job.
+    They end with the table for a cell. machine: the machine of the cell for the next job.
     """
     if faults is None:
         return []

@@ -14,7 +14,7 @@ MAX_PX_PER_MM = 8.0
 def subtract_faults(
     found: Comparison, certain: dict[str, float], plan, brush, strokes: list[TargetStroke]
 ) -> Comparison:
-    """Return the comparison without the effect of the faults that a corrected cell compensates.
+    """Return the comparison without the faults that a corrected cell compensates.
 
     certain: these faults, from `corrected_cell.sure`; plan: as it was sent to the machine; strokes: the strokes that
     were compared.
@@ -30,7 +30,7 @@ def subtract_faults(
 
 
 def _displacement_by_faults(straight, moved, canvas: Canvas) -> Placed:
-    """Return the place of the mark of a stroke with faults, relative to its mark without them."""
+    """Return the place of a mark with faults, relative to the one without."""
     if not straight or not moved:
         return NOWHERE
     points = np.vstack([*straight, *moved])

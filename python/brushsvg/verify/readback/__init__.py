@@ -1,4 +1,4 @@
-"""Read back programs that brushsvg wrote, into the steps that a machine would run.
+"""Read back programs of brushsvg into the steps that a machine would run.
 
 Only the statements that brushsvg writes are understood; all others are refused.
 """
@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 
 
 class Step(NamedTuple):
-    """One move to a point [mm], in the frame of the program; a coordinate that was never named is NaN.
+    """One move to a point [mm], in the frame of the program.
 
-    line: line of the file, from 1; centre: centre of its circle, with the turn (1 counter-clockwise), or None;
-    blend_mm: how far before the point the next move may begin; via: the point of the circle that the program names, in
-    the frame of the program; wait_s, waits: total time and number of the waits after the move. A servo's own movement
-    takes no other time. axis: (3,) unit vector from the tip up along a tilted brush, in the frame of the program; ()
-    upright. took_s: duration, where the program states it; 0 where the program states the speed instead.
+    A coordinate that was never named is NaN. line: line of the file, from 1; centre: centre of its circle, with the
+    turn (1 counter-clockwise), or None; blend_mm: how far before the point the next move may begin; via: the point of
+    the circle that the program names, in the frame of the program; wait_s, waits: total time and number of the waits
+    after the move. A servo's own movement takes no other time. axis: (3,) unit vector from the tip up along a tilted
+    brush, in the frame of the program; () upright. took_s: duration, where the program states it; 0 where the program
+    states the speed instead.
     """
 
     line: int
@@ -123,9 +124,10 @@ class Readback:
 
 
 def add_circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_mm_s: float) -> None:
-    """Add a step along a circle from the current place through `via` (3,) to `end` (3,) [mm].
+    """Add a step along a circle from the current place.
 
-    Raises Error without a current place, and for three points on one line.
+    The circle goes through `via` (3,) to `end` (3,) [mm]. Raises Error without a current place, and for three points on
+    one line.
     """
     steps = out.section().steps
     if not steps:

@@ -83,9 +83,10 @@ def _drop_default_settings(acts: list[Act]) -> list[Act]:
 
 
 def _sort_settings(acts: list[Act]) -> list[Act]:
-    """Sort the settings before the first move, without repetitions: their order has no effect.
+    """Sort the settings before the first move, without repetitions.
 
-    Raises Error where a frame is changed after it was chosen, since the manual does not define the effect.
+    The order of settings has no effect. Raises Error where a frame is changed after it was chosen, since the manual
+    does not define the effect.
     """
     ready = next((k for k, act in enumerate(acts) if not _PREPARATION.match(act.text)), len(acts))
     head = acts[:ready]
@@ -105,7 +106,10 @@ def _sort_settings(acts: list[Act]) -> list[Act]:
 
 
 def _has_setting_in_function(head: list[Act]) -> bool:
-    """Return whether a setting is inside a function, which runs only when it is called."""
+    """Return whether a setting is inside a function.
+
+    A function runs only when it is called.
+    """
     lines = [act.text for act in head if not act.text.startswith("(")]
     first = next((k for k, line in enumerate(lines) if line.startswith("function")), len(lines))
     last = next((k for k, line in enumerate(lines) if k > first and line == "end"), len(lines))

@@ -1,4 +1,4 @@
-"""Read back TP programs for FANUC that brushsvg wrote: the main program and the programs that it calls."""
+"""Read back TP programs for FANUC: a main program and those that it calls."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
 
 
 def _instructions_in_order(text: str, cell: Cell) -> NumberedLines:
-    """Return the instructions in running order, with places instead of the numbers of points."""
+    """Return the instructions in running order, with places for point numbers."""
     programs = _split_programs(text)
     if not programs or next(iter(programs)) != MAIN:
         raise Error(f"it does not begin with the program {MAIN}", code="line-unread")
@@ -184,7 +184,7 @@ def _parse_speed_mm_s(speed: str) -> float:
 
 
 def _parse_points(lines: NumberedLines, cell: Cell) -> dict[int, tuple[str, str]]:
-    """Return the place and the angles of each point by its number, as they are written."""
+    """Return the place and angles of each point by its number, as written."""
     points: dict[int, tuple[str, str]] = {}
     pending, first = "", 0
     for number, line in lines:
@@ -210,7 +210,10 @@ def _parse_points(lines: NumberedLines, cell: Cell) -> dict[int, tuple[str, str]
 
 
 def _with_setup_as_frames(lines: NumberedLines) -> NumberedLines:
-    """Replace the lines that set frame and tool by a register with one line per frame; join continued remarks."""
+    """Replace the lines that set frame and tool by one line per frame.
+
+    These lines set a register first. Continued remarks are joined.
+    """
     out: NumberedLines = []
     held: dict[int, str] | None = None
     choices: NumberedLines = []

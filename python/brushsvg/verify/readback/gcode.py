@@ -1,4 +1,7 @@
-"""Read back G-code that brushsvg wrote: straight moves, circles, dwells, stops and servo values."""
+"""Read back G-code that brushsvg wrote.
+
+It consists of straight moves, circles, dwells, stops and servo values.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +74,7 @@ REQUIRED_MODES = {"G21": "millimetres", "G90": "absolute places"}
 
 @lru_cache(maxsize=10_000)  # the steps of a servo are a few different lines, repeated many times
 def _words(line: str) -> tuple[tuple[str, float], ...]:
-    """Return the letters and numbers of a line; () for a line that does not consist of words."""
+    """Return the letters and numbers of a line; () for a line without words."""
     if not _CODE.fullmatch(line):
         return ()
     return tuple((letter, float(value) + 0.0) for letter, value in _WORD.findall(line))
@@ -158,7 +161,10 @@ class _Reader:
             )
 
     def _read_printer_line(self, number: int, line: str) -> None:
-        """Read a line for a printer's firmware, which obeys only the first G or M code of a line, without memory."""
+        """Read a line for the firmware of a printer.
+
+        Such firmware obeys only the first G or M code of a line, and does not remember it.
+        """
         words = (
             () if line[1:2] == "-" else _words(line)
         )  # other controllers read G-0 as G0, this firmware does not
@@ -193,7 +199,10 @@ class _Reader:
         self.seen |= {first} - {"M400"}  # M400 sets no mode
 
     def _move_pen(self, number: int, line: str, values: dict[str, float]) -> None:
-        """Move the pen up or down at once; the firmware runs moves that it still holds after the pen."""
+        """Move the pen up or down at once.
+
+        The firmware would run moves that it still holds after the pen.
+        """
         ups = [float(round(value)) for value in self.pen.servo_values]
         if values.get("P") != self.pen.servo_number or values.get("S") not in ups:
             sentence = f"line {number}: {line[:40]!r} is neither up nor down of the cell's pen"
@@ -278,7 +287,10 @@ class _Reader:
         self.seen |= set(codes)
 
     def _check_servo_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
-        """Raise Error for codes that end G1, without which grbl switches the servo off, so that the brush falls."""
+        """Raise Error for codes that end G1.
+
+        Without G1, grbl switches the servo off, and the brush falls.
+        """
         if first == "G0" or ("G80" in codes and "G1" in self.seen):
             raise Error(
                 f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall",
@@ -393,9 +405,9 @@ class _Reader:
         self.out.acts.append(Act(number, "lift", same=(self.value,)))
 
     def _find_unused_motion(self, codes: list[str]) -> str:
-        """Return the motion code that a line of modes sets without using it; "" where there is none.
+        """Return the motion code that a line of modes sets without using it.
 
-        For LinuxCNC the result is always "", because it stops at such a line.
+        The result is empty where there is none. For LinuxCNC the result is always "", because it stops at such a line.
         """
         if self.dialect.comment is comment:
             return ""

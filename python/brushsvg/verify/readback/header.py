@@ -1,4 +1,4 @@
-"""Read the header of a program that brushsvg wrote, which records how the program was made."""
+"""Read how a program was made from the header that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from ...errors import Error
 
 @dataclass(frozen=True)
 class ProgramHeader:
-    """How a program was made, from its header; tolerance_mm is None where the header does not state it.
+    """How a program was made, from its header.
 
-    strokes: number of strokes of the job; notes: the lines about its planning, as they are written. border_mm: left,
-    bottom, right and top of the border that an air run follows; heights_mm: highest, lowest and step of the strokes
-    that find the paper; first_mm: highest, lowest and step of a first run. These three are None for programs that
-    paint.
+    tolerance_mm is None where the header does not state it. strokes: number of strokes of the job; notes: the lines
+    about its planning, as they are written. border_mm: left, bottom, right and top of the border that an air run
+    follows; heights_mm: highest, lowest and step of the strokes that find the paper; first_mm: highest, lowest and step
+    of a first run. These three are None for programs that paint.
     """
 
     title: str
@@ -133,7 +133,10 @@ def _damaged_error(word: str, text: str) -> Error:
 
 
 def _header_lines(text: str) -> dict[str, str]:
-    """Return the lines at the top of a program by their first word: title, brush, sheet, cell, ..."""
+    """Return the lines at the top of a program by their first word.
+
+    These are title, brush, sheet, cell and others.
+    """
     text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # join continued remarks of TP
     line_pattern = re.compile(
         r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;|CO \"(\w+): (.*)\";"

@@ -18,10 +18,10 @@ _COMMENT = re.compile(r'CO "([^"]*)";')
 
 
 def read_hpgl(text: str, cell: Cell) -> Readback:
-    """Read an HP-GL program as steps in the plotter frame, with the raised pen at the safe height.
+    """Read an HP-GL program as steps in the plotter frame.
 
-    Raises Error with the line for a statement that brushsvg does not write, and for a place without a pen, a speed or
-    an IN before it.
+    The raised pen is at the safe height. Raises Error with the line for a statement that brushsvg does not write, and
+    for a place without a pen, a speed or an IN before it.
     """
     reader = _Reader(cell)
     for number, line in enumerate(text.splitlines(), 1):

@@ -48,7 +48,7 @@ _INITIALISATION = "bas(#initmov, 0)"  # sets all motion parameters
 
 
 def read_krl(text: str, cell: Cell) -> Readback:
-    """Read the main program, with the programs that it calls, as steps in the paper frame.
+    """Read the main program and those that it calls as steps in the paper frame.
 
     Line numbers continue through the programs. Raises Error with the line for a statement that brushsvg does not write.
     """
@@ -107,7 +107,10 @@ def _lines_in_order(text: str) -> NumberedLines:
 
 
 def _split_programs(text: str) -> tuple[NumberedLines, dict[str, NumberedLines]]:
-    """Return the lines of the main program, with the remarks above it, and the lines of the others by their names."""
+    """Return the lines of the main program, and of the others by their names.
+
+    The lines of the main program include the remarks above it.
+    """
     main: NumberedLines = []
     others: dict[str, NumberedLines] = {}
     lines, names = main, set()

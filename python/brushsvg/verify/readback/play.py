@@ -22,9 +22,10 @@ MAX_CHORD_RAD = 0.02
 
 
 def with_backlash(read: Readback, cell: Cell) -> Readback:
-    """Return the program with the true places of the tool instead of the commanded ones, in its steps and its acts.
+    """Return the program with the true places of the tool.
 
-    Steps on which the tool stands while an axis takes up its backlash go to `taking_up` of their section.
+    They replace the commanded places in its steps and its acts. Steps on which the tool stands while an axis takes up
+    its backlash go to `taking_up` of their section.
     """
     half = half_mm(cell)
     if not half.any():
@@ -62,7 +63,7 @@ class _BacklashAxes:
         self.run_steps: dict[int, list[Step | None]] = defaultdict(list)
 
     def go(self, step: Step) -> tuple[list[Step], list[Step]]:
-        """Return the steps that a commanded step becomes, and the steps on which the tool stands."""
+        """Return the steps that a step becomes, and those on which the tool stands."""
         commanded, slide = self.commanded, self.slide
         steps = list(self._along_circle(step) if step.centre else self._straight(step))
         if (np.abs(self.far_side - self.slide) > self.near_mm).any():
@@ -81,9 +82,9 @@ class _BacklashAxes:
         return goes, stands
 
     def is_superfluous_lift(self, steps: list[Step], step: Step) -> bool:
-        """Return whether a servo's last step is only the height of a path on which the tool stands.
+        """Return whether a servo's last step is only the height of a standing path.
 
-        Such a step is superfluous, because the next path has its own height.
+        The tool stands on this path. Such a step is superfluous, because the next path has its own height.
         """
         if len(steps) < 2 or steps[-1].line != step.line:
             return False
@@ -115,7 +116,10 @@ class _BacklashAxes:
         return np.round(np.clip(slide, commanded[:2] - self.half, commanded[:2] + self.half), 9) + 0.0
 
     def _along_circle(self, step: Step) -> Iterator[Step]:
-        """Yield a circle where both axes push in one direction all along it, otherwise straight moves close to it."""
+        """Yield a circle, or straight moves close to it.
+
+        It stays a circle where both axes push in one direction all along it.
+        """
         begin, end = self.commanded, np.array([step.x, step.y, step.z])
         x, y, turn = step.centre
         first, last = (math.atan2(place[1] - y, place[0] - x) for place in (begin, end))
@@ -159,7 +163,10 @@ def _run_section(section: ReadSection, axes: _BacklashAxes) -> None:
 
 
 def _acts_at_true_places(acts: list[Act], axes: _BacklashAxes) -> list[Act]:
-    """Return the acts with the places of their line's steps, without acts on which the tool stands."""
+    """Return the acts with the places of their steps.
+
+    Acts on which the tool stands are left out.
+    """
     out = []
     for act in reversed(acts):
         run_steps = axes.run_steps.get(act.line)

@@ -1,4 +1,4 @@
-"""Read back poses with times for ROS 2 that brushsvg wrote, as a table or as JSON."""
+"""Read back poses with times for ROS 2, as a table or as JSON."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ SPEED_TOLERANCE_SHARE, SPEED_TOLERANCE_MM_S = 1e-3, 0.01  # change of a speed by
 
 
 def as_table(text: str) -> str:
-    """Convert JSON to the lines of a table, with the same line numbers. Raises Error for invalid JSON."""
+    """Convert JSON to the lines of a table, with the same line numbers.
+
+    Raises Error for invalid JSON.
+    """
     try:
         json.loads(text)
     except ValueError as mistake:
@@ -43,7 +46,10 @@ def as_table(text: str) -> str:
 
 
 def _table_line(line: str) -> str:
-    """Return the line of the table for a line of JSON, or the line itself if it has no counterpart."""
+    """Return the table line for a line of JSON.
+
+    A line without a counterpart is returned unchanged.
+    """
     try:
         row = json.loads(line.removesuffix(",") if line.endswith(",") else line.removesuffix("]}"))
     except ValueError:
@@ -96,9 +102,10 @@ def read_ros2(text: str, cell: Cell) -> Readback:
 def _tips_and_rotations(
     rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool
 ) -> tuple[np.ndarray, list]:
-    """Return the places of the brush's tip (n, 3) [mm], and the tool's rotations (3, 3), None where it is upright.
+    """Return the places of the brush's tip (n, 3) [mm], and the tool's rotations.
 
-    Raises Error where the tool is tilted although no line says so, and for a quaternion that is not of length 1.
+    A rotation is (3, 3), or None where the tool is upright. Raises Error where the tool is tilted although no line says
+    so, and for a quaternion that is not of length 1.
     """
     sizes = np.linalg.norm(rows[:, 4:8], axis=1, keepdims=True)
     off = np.abs(sizes[:, 0] - 1) > QUATERNION_LENGTH_TOLERANCE
@@ -193,7 +200,10 @@ class _RowReader:
     def _is_same_rotation(
         self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = TILT_TOLERANCE_DEG
     ) -> bool:
-        """Return whether two rotations of the tool are equal to within what a brush shows; None is upright."""
+        """Return whether no brush shows a difference of two rotations.
+
+        None is upright.
+        """
         a, b = (self.upright if each is None else each for each in (a, b))
         return bool(apart_deg(a, b) <= most_deg)
 

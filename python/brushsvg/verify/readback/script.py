@@ -1,4 +1,4 @@
-"""Read back scripts of robot arms that brushsvg wrote, line by line, with the line patterns of each language."""
+"""Read back scripts of robot arms, with the line patterns of each language."""
 
 from __future__ import annotations
 
@@ -118,7 +118,10 @@ class _Reader:
         return line.lower() if self.script.any_case else line
 
     def _values(self, number: int, kind: str, line: str, found: re.Match) -> dict[str, float]:
-        """Return the numbers of a line by their names, in mm and s; the tool's rotation goes to `self.turned`."""
+        """Return the numbers of a line by their names, in mm and s.
+
+        The tool's rotation goes to `self.turned`.
+        """
         texts = {name: text for name, text in found.groupdict().items() if text is not None}
         if kind != "move" or "x" in texts:
             self.turned = ()
