@@ -45,7 +45,7 @@ def join_lifts(acts: list[Act]) -> list[Act]:
     """Join all that a servo does at one place into one lift.
 
     The `same` of a lift holds its last value, the sum of its waits [s], and its least and greatest value, including the
-    value at which it begins. The `text` of a lift is IN_PAINT where it begins in the paint.
+    value at which it begins. The `text` of a lift is IN_PAINT_TEXT where it begins in the paint.
     """
     out: list[Act] = []
     value, place = 0.0, ()
@@ -89,7 +89,7 @@ def drop_rounding_lifts(
 ) -> tuple[list[Act], list[Act]]:
     """Return the acts of two programs without lifts that rounding explains.
 
-    Only lifts in paint that one program alone has are dropped. is_none: whether rounding alone explains a lift;
+    Only lifts in paint that one program alone has are dropped. is_rounding_lift: whether rounding alone explains a lift;
     is_same: whether two lifts are the same.
     """
     lift_rows = [[k for k, act in enumerate(acts) if act.kind == "lift"] for acts in (ours, theirs)]

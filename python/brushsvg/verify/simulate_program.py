@@ -621,7 +621,7 @@ def _check_servo_lifts(
 ) -> Iterator[Notice]:
     """Report lifts of a standing brush that are too far at once, or too fast.
 
-    Checked between the clearance and the paper. The step may be no larger than brushsvg writes, and no faster than the
+    Lifts are checked between the clearance and the paper. The step may be no larger than brushsvg writes, and no faster than the
     cell presses. `_check_servo_tip_speed` compares lifts that are entirely in the paint with the brush's limit.
     """
     slow_mm = slow_below_mm(paper_mm, cell) if paper_mm else cell.heights.clearance_mm

@@ -263,9 +263,9 @@ def _gains_of_causes(
 
 
 def _gain_interval(outline, slopes, numbers, of_cause, samples) -> tuple[float, float]:
-    """Return the 95
+    """Return the 95 % interval of the gain, relative to the gain itself.
 
-    interval of the gain, relative to the gain itself.
+    Its ends are the 2.5 and 97.5 % quantiles of the samples. Gains follow from the area between edges.
     """
 
     def gain(sample):

@@ -46,8 +46,8 @@ class _BacklashAxes:
 
     near_mm: effect of rounding on places; step_mm: height step of a servo; commanded: (3,) last commanded place [mm];
     slide: (2,) place of the axes; far_side: (2,) place of the axes if they began on the other side of their backlash;
-    unsure: lines after which the two differ; stood: whether the tool stood still on the last step; gone: by line, the
-    steps that its own steps became, None for a step on which the tool stands.
+    unsure: lines after which slide and far_side differ; stood: whether the tool stood on the last step; run_steps: by
+    line, the steps that its own steps became, None for a step on which the tool stands.
     """
 
     def __init__(self, known: list[Step], half: np.ndarray, near_mm: float, step_mm: float):
