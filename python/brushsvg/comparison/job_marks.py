@@ -45,14 +45,14 @@ def job_marks(found: Comparison, page: JobPage, strokes: list[TargetStroke]) -> 
     ]
     fine = found.flat.px_per_mm
     canvas = Canvas((0.0, 0.0, *page.size_mm), fine)
-    count, part = cv2.connectedComponents(np.uint8(found.paint > SEEN), connectivity=8)
-    sizes = np.bincount(part.ravel(), minlength=count)
+    count, pieces = cv2.connectedComponents(np.uint8(found.paint > SEEN), connectivity=8)
+    sizes = np.bincount(pieces.ravel(), minlength=count)
     owners: list[list[int]] = [[] for _ in range(count)]
     for number, row in rows.items():
         middle = np.array(row.middle_mm)
         rings = [row.placed.moved(ring, middle) + page.frame_mm for ring in strokes[number].predicted]
-        mark = canvas.filled(rings)[: part.shape[0], : part.shape[1]] > 0.5
-        shared = np.bincount(part[: mark.shape[0], : mark.shape[1]][mark], minlength=count)
+        mark = canvas.filled(rings)[: pieces.shape[0], : pieces.shape[1]] > 0.5
+        shared = np.bincount(pieces[: mark.shape[0], : mark.shape[1]][mark], minlength=count)
         has_part = (shared > MIN_COVERED_SHARE * mark.sum()) | (shared > MIN_INSIDE_SHARE * sizes)
         for each in np.flatnonzero(has_part[1:]) + 1:
             owners[each].append(number)
@@ -63,10 +63,10 @@ def job_marks(found: Comparison, page: JobPage, strokes: list[TargetStroke]) -> 
         own = [each for each, numbers in enumerate(owners) if numbers == [number]]
         if number in connected or number in dry or not own:
             continue
-        rings[number] = [ring - page.frame_mm for ring in _outline_rings(found, part, own, usual)]
+        rings[number] = [ring - page.frame_mm for ring in _outline_rings(found, pieces, own, usual)]
     touching = sorted(connected)
-    left = set(painting) - set(rings) - connected
-    return JobMarks({k: v for k, v in rings.items() if v}, touching, sorted(left))
+    left_out = set(painting) - set(rings) - connected
+    return JobMarks({k: v for k, v in rings.items() if v}, touching, sorted(left_out))
 
 
 def _outline_rings(found: Comparison, part, own: list[int], usual: float) -> list[np.ndarray]:

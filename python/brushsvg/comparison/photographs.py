@@ -400,9 +400,9 @@ def _mask(rings: list[np.ndarray], canvas: Canvas) -> np.ndarray:
     return canvas.filled(rings) > 0.5 if rings else np.zeros(canvas.shape, bool)
 
 
-def _overlap(one: np.ndarray, other: np.ndarray) -> float:
-    union = float((one | other).sum())
-    return float((one & other).sum()) / union if union else 1.0
+def _overlap(mask_a: np.ndarray, mask_b: np.ndarray) -> float:
+    union = float((mask_a | mask_b).sum())
+    return float((mask_a & mask_b).sum()) / union if union else 1.0
 
 
 def _locate_stroke(
@@ -419,32 +419,36 @@ def _locate_stroke(
     fine = canvas.px_per_mm
     c0, r0 = int(low[0] * fine), int((canvas.window_mm[3] - high[1]) * fine)
     c1, r1 = int(np.ceil(high[0] * fine)), int(np.ceil((canvas.window_mm[3] - low[1]) * fine))
-    part = painted[r0:r1, c0:c1]
-    window = (c0 / fine, canvas.window_mm[3] - r0 / fine - part.shape[0] / fine)
-    small = Canvas((*window, window[0] + part.shape[1] / fine, window[1] + part.shape[0] / fine), fine)
-    near = [ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()]
-    mine = small.filled(rings) > 0.5
-    their_away = _distance_mm(small.filled(near) > 0.5, fine)
-    nearer = (_distance_mm(mine, fine) <= their_away) | mine
+    window_paint = painted[r0:r1, c0:c1]
+    window = (c0 / fine, canvas.window_mm[3] - r0 / fine - window_paint.shape[0] / fine)
+    local_canvas = Canvas(
+        (*window, window[0] + window_paint.shape[1] / fine, window[1] + window_paint.shape[0] / fine), fine
+    )
+    nearby_rings = [
+        ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()
+    ]
+    mark = local_canvas.filled(rings) > 0.5
+    their_away = _distance_mm(local_canvas.filled(nearby_rings) > 0.5, fine)
+    nearer = (_distance_mm(mark, fine) <= their_away) | mark
     strength = (
-        float(np.median(part[mine & (part > PALEST_PAINT_SHARE)]))
-        if (mine & (part > PALEST_PAINT_SHARE)).any()
+        float(np.median(window_paint[mark & (window_paint > PALEST_PAINT_SHARE)]))
+        if (mark & (window_paint > PALEST_PAINT_SHARE)).any()
         else 1.0
     )
-    attributed = np.where(nearer, part / strength, 0.0)
+    attributed = np.where(nearer, window_paint / strength, 0.0)
     free = (their_away > EDGE_BLUR_MM) & nearer
-    found = locate_mark(attributed, free, rings, small)
+    found = locate_mark(attributed, free, rings, local_canvas)
     if not found.found:  # a dab has no direction
-        found = locate_mark(attributed, free, rings, small, turns=False)
+        found = locate_mark(attributed, free, rings, local_canvas, turns=False)
     inner = centroid(rings)
 
     def locate(each, at):
         return [at.moved(common.moved(ring, middle), inner) for ring in each]
 
     is_mine = attributed > EDGE_LEVEL
-    at_last = small.filled(locate(stroke.predicted, found)) > 0.5
+    at_last = local_canvas.filled(locate(stroke.predicted, found)) > 0.5
     if not found.found or (at_last & is_mine).sum() < MIN_PAINTED_SHARE * at_last.sum():
-        found, at_last = NOWHERE, mine
+        found, at_last = NOWHERE, mark
     is_painted[r0:r1, c0:c1] |= is_mine & (_distance_mm(at_last, fine) < MAX_EDGE_DISTANCE_MM)
     start = centroid(stroke.predicted)
     shift = locate([start[None]], found)[0][0] - start
@@ -453,12 +457,14 @@ def _locate_stroke(
     )
     row = Compared(
         stroke.stroke,
-        _overlap(small.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
-        _overlap(small.filled(stroke.predicted) > 0.5, is_mine),
+        _overlap(local_canvas.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
+        _overlap(local_canvas.filled(stroke.predicted) > 0.5, is_mine),
         whole,
         (float(start[0]), float(start[1])),
-        float((at_last & ~(part / strength > EDGE_LEVEL)).sum()) / float(max(at_last.sum(), 1)),
-        _overlap(small.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
+        float((at_last & ~(window_paint / strength > EDGE_LEVEL)).sum()) / float(max(at_last.sum(), 1)),
+        _overlap(
+            local_canvas.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine
+        ),
     )
     return _LocatedStroke(stroke, row, lambda each: locate(each, found))
 

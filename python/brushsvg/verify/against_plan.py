@@ -65,16 +65,20 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
     required = [spelled(each.stroke) for each in due]
     if len(names) == len(required) and all(map(_is_same_name, names, required)):
         return list(range(len(due))), []
-    left = dict(enumerate(required))
+    unmatched = dict(enumerate(required))
     by_name: dict[str, list[int]] = {}
-    for number, name in reversed(left.items()):
+    for number, name in reversed(unmatched.items()):
         by_name.setdefault(name.rstrip(" "), []).append(number)
     partners: list[int | None] = []
     for name in names:
         numbers = by_name.get(name)
-        number = numbers.pop() if numbers else next((k for k in left if _is_same_name(name, left[k])), None)
+        number = (
+            numbers.pop()
+            if numbers
+            else next((k for k in unmatched if _is_same_name(name, unmatched[k])), None)
+        )
         if number is not None:
-            left.pop(number, None)
+            unmatched.pop(number, None)
             partners.append(number)
         else:
             partners.append(None)
@@ -85,11 +89,11 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
     ]
     problems += [
         Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted")
-        for k in left
+        for k in unmatched
     ]
-    found = [k for k in partners if k is not None]
-    if not problems and found != sorted(found):
-        at = next(place for place, k in enumerate(found) if k != place)
+    matched = [k for k in partners if k is not None]
+    if not problems and matched != sorted(matched):
+        at = next(place for place, k in enumerate(matched) if k != place)
         sentence = f"it is painted where the drawing asks for {required[at]}"
         problems.append(Notice(names[at], sentence, code="stroke-order"))
     return partners, problems
@@ -356,22 +360,25 @@ def _max_distance_mm(points: np.ndarray, path: np.ndarray) -> float:
     """
     starts, ends = (path[:-1], path[1:]) if len(path) > 1 else (path, path)
     boxes = range(0, len(starts), BOX_SIZE)
-    both = [np.vstack([starts[k : k + BOX_SIZE], ends[k : k + BOX_SIZE]]) for k in boxes]
-    lows, highs = np.array([box.min(axis=0) for box in both]), np.array([box.max(axis=0) for box in both])
+    box_ends = [np.vstack([starts[k : k + BOX_SIZE], ends[k : k + BOX_SIZE]]) for k in boxes]
+    lows, highs = (
+        np.array([box.min(axis=0) for box in box_ends]),
+        np.array([box.max(axis=0) for box in box_ends]),
+    )
     box_of = np.arange(len(starts)) // BOX_SIZE
     farthest, here = 0.0, 0
     for first in range(0, len(points), BOX_SIZE):
-        some = points[first : first + BOX_SIZE]
+        box_points = points[first : first + BOX_SIZE]
         next_ = slice(max(0, here - BOX_SIZE), here + 3 * BOX_SIZE)
-        away, at = _max_distance_to_all_mm(some, starts[next_], ends[next_])
+        away, at = _max_distance_to_all_mm(box_points, starts[next_], ends[next_])
         here = next_.start + at
         if away <= farthest:
             continue
         least = np.linalg.norm(
-            np.maximum(0, np.maximum(lows - some.max(axis=0), some.min(axis=0) - highs)), axis=1
+            np.maximum(0, np.maximum(lows - box_points.max(axis=0), box_points.min(axis=0) - highs)), axis=1
         )
         others = np.flatnonzero((least <= away + 1e-9)[box_of])
-        away, at = _max_distance_to_all_mm(some, starts[others], ends[others])
+        away, at = _max_distance_to_all_mm(box_points, starts[others], ends[others])
         here = int(others[at])
         farthest = max(farthest, away)
     return farthest

@@ -53,11 +53,11 @@ def again(
         ]
     loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
-    made = unchecked_program(loads, brush, cell, job, written_of(loads, cell, job, was_read=True))
+    program = unchecked_program(loads, brush, cell, job, written_of(loads, cell, job, was_read=True))
     if header_notes is None:
-        return made
+        return program
     return replace(
-        made, header=header_of(header_notes.title, brush.name, loads, header_notes.notes, made, job)
+        program, header=header_of(header_notes.title, brush.name, loads, header_notes.notes, program, job)
     )
 
 

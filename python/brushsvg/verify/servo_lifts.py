@@ -89,8 +89,8 @@ def drop_rounding_lifts(
 ) -> tuple[list[Act], list[Act]]:
     """Return the acts of two programs without lifts that rounding explains.
 
-    Only lifts in paint that one program alone has are dropped. is_rounding_lift: whether rounding alone explains a lift;
-    is_same: whether two lifts are the same.
+    Only lifts in paint that one program alone has are dropped. is_rounding_lift: whether rounding alone explains a
+    lift; is_same: whether two lifts are the same.
     """
     lift_rows = [[k for k, act in enumerate(acts) if act.kind == "lift"] for acts in (ours, theirs)]
     dropped: tuple[set, set] = (set(), set())

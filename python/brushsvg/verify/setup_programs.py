@@ -31,47 +31,47 @@ class SetupCheck:
 
 
 def look_at_border(
-    text: str, read: Readback, made: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
+    text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> SetupCheck:
     """Check an air run around the border that its header names.
 
     Raises Error when a corner is outside the workspace.
     """
-    expected = border(made.border_mm, brush, cell, sheet_mm, z_offset_mm)
-    job, notes = Job(z_offset_mm), made.notes
+    expected = border(origin.border_mm, brush, cell, sheet_mm, z_offset_mm)
+    job, notes = Job(z_offset_mm), origin.notes
     header = border_header(
-        made.title, brush.name, made.strokes, sheet_mm, notes, made.border_mm, expected, job
+        origin.title, brush.name, origin.strokes, sheet_mm, notes, origin.border_mm, expected, job
     )
     expected = replace(expected, header=header)
     sections = [*walk_sections(read, brush, cell, sheet_mm, z_offset_mm)]
     return _check_setup_program(text, read, expected, sections, cell, cell.heights.safe_mm, "safe height")
 
 
-def look_at_heights(text: str, read: Readback, made: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+def look_at_heights(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
     """Check a program that finds the paper by strokes at several heights.
 
     Its header names the heights. Each of these strokes may be the first on the paper. Raises Error when the strokes do
     not fit on the sheet or go deeper than the brush or the cell allows.
     """
-    sheet_mm = made.sheet_mm
-    highest_mm, lowest_mm, step_mm = made.heights_mm
+    sheet_mm = origin.sheet_mm
+    highest_mm, lowest_mm, step_mm = origin.heights_mm
     expected = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    expected = replace(expected, header=height_header(brush.name, sheet_mm, made.heights_mm, expected))
+    expected = replace(expected, header=height_header(brush.name, sheet_mm, origin.heights_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     return _check_setup_program(
         text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke"
     )
 
 
-def look_at_first_run(text: str, read: Readback, made: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+def look_at_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
     """Check all steps of a first run.
 
     Raises Error when it leaves the workspace or does not fit on the sheet.
     """
-    sheet_mm = made.sheet_mm
-    highest_mm, lowest_mm, step_mm = made.first_mm
+    sheet_mm = origin.sheet_mm
+    highest_mm, lowest_mm, step_mm = origin.first_mm
     expected = first_run(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    expected = replace(expected, header=first_header(brush.name, sheet_mm, made.first_mm, expected))
+    expected = replace(expected, header=first_header(brush.name, sheet_mm, origin.first_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     deepest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)
     return _check_setup_program(
@@ -83,12 +83,12 @@ def _check_setup_program(
     text: str, read: Readback, expected: Program, sections, cell: Cell, lowest_mm: float, limit_name: str
 ) -> SetupCheck:
     problems: Problems = []
-    for section, track, said in sections:
-        problems += [replace(each, where=section.title) for each in said]
+    for section, track, notices in sections:
+        problems += [replace(each, where=section.title) for each in notices]
         heights = true_mm(track.points, cell.machine)[:, 2]
-        at = int(np.argmin(heights)) if len(heights) else None
-        if at is not None and heights[at] < lowest_mm - slack_mm(cell):
-            line, height_mm = section.steps[track.step[at]].line, heights[at]
+        lowest = int(np.argmin(heights)) if len(heights) else None
+        if lowest is not None and heights[lowest] < lowest_mm - slack_mm(cell):
+            line, height_mm = section.steps[track.step[lowest]].line, heights[lowest]
             sentence = f"line {line}: height {height_mm:.2f} mm is below the {limit_name}, {lowest_mm:g} mm"
             problems.append(Notice(section.title, sentence, code="too-low"))
     if changed := differing_line(text, read, expected, cell):

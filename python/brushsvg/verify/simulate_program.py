@@ -71,7 +71,7 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
     Raises Error for poses deeper than the brush allows.
     """
     problems: Problems = []
-    programmed, cut, lines, rests = [], [], [], []
+    programmed, run_passes, lines, rests = [], [], [], []
     slack = slack_mm(cell)
     leans = not read.in_paper_frame and not is_upright(robot_from_paper(cell, z_offset_mm))
     here = None
@@ -103,24 +103,26 @@ def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -
             # The simulation checks the depths of the planned poses themselves.
             is_allowed = poses[:, 2].min(initial=0.0) >= -brush.depth_range_mm[1]
             run_mm = _clamp_to_deepest(run.poses_mm, brush, np.inf if is_allowed else slack)
-            cut.append(_core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes))
+            run_passes.append(
+                _core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes)
+            )
             lines.append(np.array([section.steps[number].line for number in track.step[touch]]))
             rests.append(
                 np.array([_servo_rests_after(section.steps[number], cell) for number in track.step[touch]])
             )
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), programmed)
-    ran = _core.Plan(brush.name, "", tuple(sheet_mm), cut)
-    marks = _core.simulate(ran, brush, may_rise=True)
+    run_plan = _core.Plan(brush.name, "", tuple(sheet_mm), run_passes)
+    marks = _core.simulate(run_plan, brush, may_rise=True)
     visited = _visits_before_strokes(read, cell)
     if brush.paint:
         # Where visits belong to no stroke, each stroke begins freshly dipped, as in predictions.
-        is_counted = cell.reload and len(visited) == len(cut)
-        dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(cut))]
+        is_counted = cell.reload and len(visited) == len(run_passes)
+        dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(run_passes))]
         _core.narrow(marks, brush.paint, dips)
     problems += broken_limits(programmed, sheet_mm, brush, _with_rounding_allowance(cell))
     problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return SimulatedProgram(
-        plan, ran, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests)
+        plan, run_plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests)
     )
 
 
@@ -243,12 +245,12 @@ def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
     by_title = {
         _comparable_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()
     }
-    found, waiting = [], []
+    visits, pending_stations = [], []
     for section in read.sections:
         if section.title.startswith("paint: "):
-            taken = re.fullmatch(r"paint: pen ([0-9a-f]{6})", section.title)
-            if taken and not cell.reload and may_pause(cell):
-                waiting.append(pen(taken[1]))
+            pen_title = re.fullmatch(r"paint: pen ([0-9a-f]{6})", section.title)
+            if pen_title and not cell.reload and may_pause(cell):
+                pending_stations.append(pen(pen_title[1]))
                 continue
             if (title := _comparable_title(section.title)) not in by_title:
                 name = _section_name(section)
@@ -256,11 +258,11 @@ def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
                     f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits",
                     code="station-unknown",
                 )
-            waiting.append(by_title[title])
+            pending_stations.append(by_title[title])
         elif _match_stroke_title(section):
-            found.append(tuple(waiting))
-            waiting = []
-    return tuple(found)
+            visits.append(tuple(pending_stations))
+            pending_stations = []
+    return tuple(visits)
 
 
 def _comparable_title(text: str) -> str:
@@ -621,8 +623,9 @@ def _check_servo_lifts(
 ) -> Iterator[Notice]:
     """Report lifts of a standing brush that are too far at once, or too fast.
 
-    Lifts are checked between the clearance and the paper. The step may be no larger than brushsvg writes, and no faster than the
-    cell presses. `_check_servo_tip_speed` compares lifts that are entirely in the paint with the brush's limit.
+    Lifts are checked between the clearance and the paper. A step may be no larger than brushsvg writes, and no faster
+    than the cell presses. `_check_servo_tip_speed` compares lifts that are entirely in the paint with the brush's
+    limit.
     """
     slow_mm = slow_below_mm(paper_mm, cell) if paper_mm else cell.heights.clearance_mm
     paper, clearance = paper_mm + slack_mm(cell), slow_mm - value_mm(cell)

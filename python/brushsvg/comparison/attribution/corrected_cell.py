@@ -39,9 +39,9 @@ def certain_of(faults: Faults) -> dict[str, float]:
     A value that is not certain is 0.
     """
     return {
-        one.number.name: one.value if abs(one.value) > MIN_CERTAINTY * one.half else 0.0
-        for one in faults.found
-        if one.number.cause in (MACHINE, PAPER)
+        fault.number.name: fault.value if abs(fault.value) > MIN_CERTAINTY * fault.half else 0.0
+        for fault in faults.found
+        if fault.number.cause in (MACHINE, PAPER)
     }
 
 

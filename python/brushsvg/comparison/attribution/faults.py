@@ -156,12 +156,12 @@ def _fit(model: FaultModel, names, found: Comparison, neighbours):
         measured = ~np.isnan(offsets)
         if measured.sum() < MIN_EDGES:
             return None
-        now = np.concatenate([fault_values, own.ravel(), [0.0]])
+        estimate = np.concatenate([fault_values, own.ravel(), [0.0]])
         for _ in range(2):
             sigmas = [number.sigma for number in numbers]
             prior = np.array([*sigmas, *[sigma_own] * own.size, EDGE_SIGMA_MM]) ** -2.0
             step, covariance, residual = _solve_step(
-                slopes[measured], offsets[measured], outline.stroke[measured], prior, now
+                slopes[measured], offsets[measured], outline.stroke[measured], prior, estimate
             )
             moved = (own.ravel() + step[count:-1]).reshape(-1, 2)
             spread = np.diag(covariance)[count:-1].reshape(-1, 2)
@@ -173,7 +173,7 @@ def _fit(model: FaultModel, names, found: Comparison, neighbours):
     return fault_values, own, covariance, outline, slopes, residual, int(measured.sum())
 
 
-def _solve_step(slopes, offsets, stroke, prior, now):
+def _solve_step(slopes, offsets, stroke, prior, estimate):
     """Solve one step of least squares.
 
     Returns the step, its covariance and the residuals (n,) [mm]. Edges have Huber's weights. Their number is reduced to
@@ -185,7 +185,7 @@ def _solve_step(slopes, offsets, stroke, prior, now):
     for _ in range(5):
         weights = weight / (scale**2 / independent_share + misfit)
         information = (slopes.T * weights) @ slopes + np.diag(prior)
-        step = np.linalg.solve(information, slopes.T @ (weights * offsets) - prior * now)
+        step = np.linalg.solve(information, slopes.T @ (weights * offsets) - prior * estimate)
         residual = offsets - slopes @ step
         scale = max(1.4826 * float(np.median(np.abs(residual))), MIN_EDGE_SIGMA_MM)
         weight = np.minimum(1.0, HUBER_TUNING * scale / np.maximum(np.abs(residual), 1e-9))
@@ -308,9 +308,9 @@ def _missing_paint_gain(model, names, fault_values, own, found: Comparison, whol
     return Share(MISSING_PAINT, gain, low, high if gain else 0.0)
 
 
-def _overlap(one: np.ndarray, other: np.ndarray) -> float:
-    union = float((one | other).sum())
-    return float((one & other).sum()) / union if union else 1.0
+def _overlap(mask_a: np.ndarray, mask_b: np.ndarray) -> float:
+    union = float((mask_a | mask_b).sum())
+    return float((mask_a & mask_b).sum()) / union if union else 1.0
 
 
 def _inseparable_causes(model: FaultModel, covariance, slopes) -> tuple[tuple[str, str], ...]:
@@ -326,22 +326,22 @@ def _inseparable_causes(model: FaultModel, covariance, slopes) -> tuple[tuple[st
     columns_of[OWN_PLACE] = np.arange(count, len(covariance) - 1)
 
     def doubt(cause, block):
-        some = slopes[:, columns_of[cause]]
-        return float(np.mean(np.einsum("ij,jk,ik->i", some, block, some)))
+        columns = slopes[:, columns_of[cause]]
+        return float(np.mean(np.einsum("ij,jk,ik->i", columns, block, columns)))
 
     pairs = []
-    for a, one in enumerate(causes):
-        for other in causes[a + 1 :]:
-            for first, second in ((one, other), (other, one)):
+    for a, cause_a in enumerate(causes):
+        for cause_b in causes[a + 1 :]:
+            for first, second in ((cause_a, cause_b), (cause_b, cause_a)):
                 i, j = columns_of[first], columns_of[second]
                 mine = covariance[np.ix_(i, i)]
                 cross = covariance[np.ix_(i, j)]
-                left = mine - cross @ np.linalg.solve(covariance[np.ix_(j, j)], cross.T)
+                remaining = mine - cross @ np.linalg.solve(covariance[np.ix_(j, j)], cross.T)
                 before = doubt(first, mine)
                 if (
                     before > MIN_DOUBT_MM**2
-                    and doubt(first, left) < MAX_INSEPARABLE_SHARE * before
-                    and (one, other) not in pairs
+                    and doubt(first, remaining) < MAX_INSEPARABLE_SHARE * before
+                    and (cause_a, cause_b) not in pairs
                 ):
-                    pairs.append((one, other))
+                    pairs.append((cause_a, cause_b))
     return tuple(pairs)

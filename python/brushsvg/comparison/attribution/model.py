@@ -62,14 +62,14 @@ class FaultModel:
 
         The distance is to the deepest pose or to the paper, the larger of the two [mm].
         """
-        depths = -np.concatenate([np.array(one.poses_mm)[:, 2] for one in self.plan.passes])
+        depths = -np.concatenate([np.array(a_pass.poses_mm)[:, 2] for a_pass in self.plan.passes])
         usual = float(np.median(depths[depths > 0.1])) if (depths > 0.1).any() else 1.0
         return usual, max(float(depths.max()) - usual, usual)
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
         half = 0.5 * np.array(self.plan.sheet_mm)
-        deepest = max(float(-np.array(one.poses_mm)[:, 2].min()) for one in self.plan.passes)
+        deepest = max(float(-np.array(a_pass.poses_mm)[:, 2].min()) for a_pass in self.plan.passes)
         deepest_lag = self.brush.lag(deepest)
         deepest_half_width = self.brush.half_width(deepest)
         law_sigmas = {law: self._law_sigma(law) for law in ("lag", "half_width")} if self.learned else {}
@@ -144,7 +144,7 @@ class FaultModel:
         run = as_run(self.plan.passes, machine, np.maximum(backlash, 0.0), deepest)
         if (backlash < 0).any():  # no backlash: only a derivative at 0 uses negative values
             run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
-        examined = [one for one in run if one.stroke in self.names]
+        examined = [a_pass for a_pass in run if a_pass.stroke in self.names]
         usual, spread = self._depths_mm
         factors = {
             name: (1 + even - slope * usual / spread, slope / spread)

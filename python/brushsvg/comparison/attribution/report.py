@@ -43,7 +43,7 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
         return []
     gains = [
         (f"  {share.cause}", f"{share.gain + 0.0:+.3f}", f"({share.low:+.3f} to {share.high:+.3f})")
-        for share in sorted(faults.shares, key=lambda one: -one.gain)
+        for share in sorted(faults.shares, key=lambda share: -share.gain)
     ]
     head, *rows = table(("  fixing this cause alone", "gains", "95 %"), gains)
     lines = [
@@ -53,12 +53,14 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
         head,
         *rows,
         "",
-        *(f"  {_describe_number(one)}" for one in faults.found),
+        *(f"  {_describe_number(fault)}" for fault in faults.found),
         f"  each stroke's own place: {faults.own_mm:.2f} mm (rms); one sheet does not show which part repeats",
         f"  edges beyond all that: {faults.rest_mm:.3f} mm (rms)",
     ]
-    for one, other in faults.alike:
-        lines.append(f"Hard to separate on these marks: {one}, and {other}; their sum is surer than either.")
+    for cause, other in faults.alike:
+        lines.append(
+            f"Hard to separate on these marks: {cause}, and {other}; their sum is surer than either."
+        )
     if machine:
         lines += [
             "",
@@ -68,11 +70,11 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
     return lines
 
 
-def _describe_number(one: Found) -> str:
-    small = one.number.unit in ("mm per mm", "mm in x per mm in y", "")
+def _describe_number(fault: Found) -> str:
+    small = fault.number.unit in ("mm per mm", "mm in x per mm in y", "")
     digits = 5 if small else 3
-    value = f"{one.value:+.{digits}f} +- {one.half:.{digits}f} {one.number.unit}".rstrip()
-    return f"{one.number.cause}: {one.number.name} {value}"
+    value = f"{fault.value:+.{digits}f} +- {fault.half:.{digits}f} {fault.number.unit}".rstrip()
+    return f"{fault.number.cause}: {fault.number.name} {value}"
 
 
 def faults_as_json(faults: Faults | None) -> dict | None:
@@ -82,17 +84,18 @@ def faults_as_json(faults: Faults | None) -> dict | None:
         "overlap": faults.overlap,
         "mend_first": faults.first,
         "causes": [
-            {"cause": one.cause, "gain": one.gain, "gain_95": [one.low, one.high]} for one in faults.shares
+            {"cause": item.cause, "gain": item.gain, "gain_95": [item.low, item.high]}
+            for item in faults.shares
         ],
         "numbers": [
             {
-                "cause": one.number.cause,
-                "name": one.number.name,
-                "value": round(one.value, 6),
-                "half_95": round(one.half, 6),
-                "unit": one.number.unit,
+                "cause": item.number.cause,
+                "name": item.number.name,
+                "value": round(item.value, 6),
+                "half_95": round(item.half, 6),
+                "unit": item.number.unit,
             }
-            for one in faults.found
+            for item in faults.found
         ],
         "own_places_mm": faults.own_mm,
         "rest_mm": faults.rest_mm,

@@ -143,4 +143,4 @@ def _header_lines(text: str) -> dict[str, str]:
     )
     lines = (line_pattern.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     found = ([each for each in line.groups() if each is not None] for line in lines if line)
-    return {word: said[0] if said else "" for word, *said in found}
+    return {word: texts[0] if texts else "" for word, *texts in found}
