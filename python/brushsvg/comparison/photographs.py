@@ -1,7 +1,6 @@
 """Compare photographs of a painted job with its target and prediction.
 
-The comparison is made stroke by stroke. Measures overlap, displacement, width, missing paint and paint outside of all
-marks.
+For each stroke, it measures overlap, displacement, width and missing paint. It also finds paint outside of all marks.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Draw how well a studio repeats.
 
-The picture has all sheets in one, displacements of marks, and effects of the approach. The picture follows figure 18 of
-the article, in which one inscription was painted four times. As in that figure, the axis of counts is logarithmic.
+The picture shows all sheets in one, displacements of marks, and effects of the approach. It follows figure 18 of the
+article, in which one inscription was painted four times. As in that figure, the axis of counts is logarithmic.
 """
 
 from __future__ import annotations

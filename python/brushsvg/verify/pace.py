@@ -57,7 +57,7 @@ def stops(read: Readback, program: Program) -> list[Notice]:
 
 
 def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Program) -> np.ndarray:
-    """Return the longest time [s] of each part with the lift that it allows.
+    """Return the longest time [s] that each part may take with its possible lift.
 
     In this time the servo lifts or lowers the brush as far as the program allows. A part has one servo value, the value
     at its middle. The program does not state the change of height along a part: it is at most the change from the

@@ -495,9 +495,9 @@ def _arcs_of_touch(owner: np.ndarray, centres: list) -> list:
 def _check_moves(
     section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
 ) -> Iterator[Notice]:
-    """Report moves that are too fast or too low.
+    """Report moves that are too fast while the brush touches, or too low in the air.
 
-    Moves are too fast while the brush touches, or too low when they go sideways in the air.
+    A move is too low in the air if it goes sideways below the safe height.
     """
     if not len(track.points):
         return
@@ -550,7 +550,7 @@ def _check_backlash(
 ) -> Iterator[Notice]:
     """Report axes that take up their backlash too fast or too late.
 
-    It is too fast while the brush touches, and too late after the brush touches.
+    An axis must take up its backlash before the brush touches. While the brush touches, its speed is limited.
     """
     top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
     places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)

@@ -1,6 +1,6 @@
 """Read back G-code that brushsvg wrote.
 
-It consists of straight moves, circles, dwells, stops and servo values.
+The programs consist of straight moves, circles, dwells, stops and servo values.
 """
 
 from __future__ import annotations
