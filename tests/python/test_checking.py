@@ -16,7 +16,7 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.verify import simulate_program
-from brushsvg.verify.against_regenerated import _Alike
+from brushsvg.verify.against_regenerated import _ActComparison
 from brushsvg.verify.readback import Act, read_program
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -933,21 +933,21 @@ def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
 
 def test_a_blend_may_differ_by_what_rounded_moves_turn():
     """It hangs on the angle between two moves: a thousandth of a millimetre turns one of a millimetre much."""
-    like = _Alike(replace(find_cell("ur5e"), decimals=3))
+    like = _ActComparison(replace(find_cell("ur5e"), decimals=3))
 
     def blend(mm):
         return Act(1, "move", "movep", (10.0, 20.0, -3.0), (20.0, 500.0), (mm,))
 
     assert like.is_same(blend(0.573), blend(0.540))
     assert not like.is_same(blend(0.900), blend(0.540))
-    like = _Alike(replace(find_cell("ur5e"), decimals=5))
+    like = _ActComparison(replace(find_cell("ur5e"), decimals=5))
     assert not like.is_same(blend(0.573), blend(0.540))
 
 
 @pytest.mark.parametrize("load_kg", ["-0.5", "0.0", "1.4"])
 def test_what_a_brush_weighs_is_not_rounded(load_kg):
     """It has one decimal, ten of which would be another load, or one with which no ABB robot moves."""
-    like = _Alike(find_cell("irb120"))
+    like = _ActComparison(find_cell("irb120"))
     reported = "local pers tooldata brush := [[0.000, 150.000], [{}, [0, 0, 50]]];"
     said = [Act(1, "text", reported.format(text)) for text in ("0.5", "0.500", load_kg)]
     assert like.is_same(said[1], said[0]) and not like.is_same(said[2], said[0])

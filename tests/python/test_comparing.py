@@ -10,7 +10,7 @@ from hypothesis import strategies as some
 
 from brushsvg import _core
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.verify.against_plan import IN_A_BOX, _farthest, _strayed, follows
+from brushsvg.verify.against_plan import BOX_SIZE, _check_pass, _max_distance_mm, find_departure
 
 
 def by_every_move(points, path):
@@ -28,7 +28,7 @@ def by_every_move(points, path):
 @settings(deadline=None, derandomize=True)
 @given(
     some.integers(0, 10_000),
-    some.sampled_from([1, 2, 3, IN_A_BOX, IN_A_BOX + 1, 300]),
+    some.sampled_from([1, 2, 3, BOX_SIZE, BOX_SIZE + 1, 300]),
     some.sampled_from([1, 2, 100, 300]),
     some.sampled_from([0.0, 1e-3, 0.5, 30.0]),
     some.sampled_from(["along", "back", "anywhere"]),
@@ -42,7 +42,7 @@ def test_the_farthest_point_is_found_without_looking_at_every_move(seed, moves, 
     at = np.sort(random.integers(0, moves, points))
     requested = path[{"along": at, "back": at[::-1], "anywhere": random.permutation(at)}[how]]
     requested = requested + away_mm * random.choice([-1, 0, 1], (points, 3))
-    assert _farthest(requested, path) == pytest.approx(by_every_move(requested, path), abs=1e-9)
+    assert _max_distance_mm(requested, path) == pytest.approx(by_every_move(requested, path), abs=1e-9)
 
 
 def test_a_detour_in_the_middle_of_many_poses_is_found():
@@ -50,7 +50,7 @@ def test_a_detour_in_the_middle_of_many_poses_is_found():
     path = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
     requested = path.copy()
     requested[3333, 2] += 0.3
-    assert _farthest(requested, path) == pytest.approx(by_every_move(requested[3333:3334], path))
+    assert _max_distance_mm(requested, path) == pytest.approx(by_every_move(requested[3333:3334], path))
 
 
 ARC = np.array([(0, 0, -2), (5, 0, -2), (10, 5, -2), (5, 10, -2), (0, 10, -2)], dtype=float)
@@ -63,7 +63,7 @@ def turned(poses, centre_mm, direction=1):
 
 
 def strayed(a_pass, expected):
-    return _strayed(a_pass, np.arange(1, 1 + len(a_pass.poses_mm)), expected, find_cell())
+    return _check_pass(a_pass, np.arange(1, 1 + len(a_pass.poses_mm)), expected, find_cell())
 
 
 def test_a_circle_is_the_same_with_fewer_poses_on_it():
@@ -178,7 +178,7 @@ def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves,
     }[how]
     found = found + away_mm * random.uniform(-1, 1, found.shape)
     leash = leash_mm(dense(found), dense(requested))
-    at = follows(found, requested, limit_mm)
+    at = find_departure(found, requested, limit_mm)
     if at is None:
         assert leash <= limit_mm + STEP_MM
     else:
@@ -188,14 +188,14 @@ def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves,
 def test_the_place_where_a_path_leaves_the_other_is_reported():
     requested = np.array([(x, 0.0, -1.0) for x in range(10)])
     scrubbed = np.vstack([requested[:6], requested[3:5][::-1], requested[3:]])
-    assert follows(scrubbed, requested, 0.02) in (6, 7)
-    assert follows(requested[::-1], requested, 0.02) == 0
-    assert follows(requested[:-1], requested, 0.02) == len(requested) - 2
-    assert follows(np.vstack([requested, requested[-2:]]), requested, 0.02) in (
+    assert find_departure(scrubbed, requested, 0.02) in (6, 7)
+    assert find_departure(requested[::-1], requested, 0.02) == 0
+    assert find_departure(requested[:-1], requested, 0.02) == len(requested) - 2
+    assert find_departure(np.vstack([requested, requested[-2:]]), requested, 0.02) in (
         len(requested),
         len(requested) + 1,
     )
-    assert follows(requested[::3], requested, 0.02) is None
+    assert find_departure(requested[::3], requested, 0.02) is None
 
 
 def test_long_paths_take_no_more_than_what_is_next_to_them(monkeypatch):
@@ -206,7 +206,9 @@ def test_long_paths_take_no_more_than_what_is_next_to_them(monkeypatch):
     requested = np.column_stack([10 * np.sin(7 * t), t, -2 + np.cos(t)])
     found = np.repeat(requested, 2, axis=0)
     counted = []
-    within = against_plan._within
-    monkeypatch.setattr(against_plan, "_within", lambda *some_: counted.append(1) or within(*some_))
-    assert follows(found, requested, 0.02) is None
+    within = against_plan._part_within_limit
+    monkeypatch.setattr(
+        against_plan, "_part_within_limit", lambda *some_: counted.append(1) or within(*some_)
+    )
+    assert find_departure(found, requested, 0.02) is None
     assert len(counted) < 8 * len(found)

@@ -1,6 +1,6 @@
 """The ends of a photographed stroke explain paint near them, and nothing in the middle of the stroke."""
 
-from brushsvg.comparison.ends import UNSEEN, Ends
+from brushsvg.comparison.ends import UNKNOWN_ENDS, Ends
 
 EARLY = Ends(None, -0.3, (10.0, 20.0), (60.0, 20.0))
 
@@ -18,4 +18,4 @@ def test_both_ends_of_a_line_that_comes_back_to_its_start_are_named_there():
 
 
 def test_of_a_stroke_without_known_ends_nothing_is_named():
-    assert UNSEEN.near((0.0, 0.0)) == {}
+    assert UNKNOWN_ENDS.near((0.0, 0.0)) == {}

@@ -32,7 +32,7 @@ from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.readback import Act, read_program
-from brushsvg.verify.readback.dobot import _is_in_function
+from brushsvg.verify.readback.dobot import _has_setting_in_function
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 NAMES = {
@@ -423,5 +423,5 @@ def test_rapidchecker_knows_the_grammar(tmp_path, broken):
 def test_settings_within_a_function_of_dobots_are_not_sorted():
     texts = ["(title: a)", "function paint()", "User(1)", "end"]
     acts = [Act(k, "text", text) for k, text in enumerate(texts, 1)]
-    assert _is_in_function(acts) and not _is_in_function(acts[:2])
-    assert not _is_in_function([acts[0], acts[2], acts[1], acts[3]])
+    assert _has_setting_in_function(acts) and not _has_setting_in_function(acts[:2])
+    assert not _has_setting_in_function([acts[0], acts[2], acts[1], acts[3]])

@@ -20,9 +20,9 @@ from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
-from brushsvg.verify.against_regenerated import _Alike
+from brushsvg.verify.against_regenerated import _ActComparison
 from brushsvg.verify.readback import Act, read_program
-from brushsvg.verify.servo_lifts import without_none
+from brushsvg.verify.servo_lifts import drop_rounding_lifts
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes_servo.ngc"
 CELL = find_cell("grbl-servo")
@@ -175,7 +175,7 @@ def test_the_output_is_never_switched_off():
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     """Where the line before it was held, rounded heights do not show to the value: a lift that begins four values
     later waits a tenth of a millimetre less, and was taken for one that was changed."""
-    like = _Alike(CELL)
+    like = _ActComparison(CELL)
 
     def lift(waits_s):
         return Act(1, "lift", same=(510.0, waits_s, 500.0, 510.0))
@@ -189,7 +189,9 @@ def test_lifts_that_are_none_are_left_out_up_to_the_end_of_either_program():
         return Act(1, "lift", same=(value,))
 
     def without(ours, theirs):
-        return without_none(ours, theirs, lambda act: act.same == (0.0,), lambda a, b: a.same == b.same)
+        return drop_rounding_lifts(
+            ours, theirs, lambda act: act.same == (0.0,), lambda a, b: a.same == b.same
+        )
 
     ours, theirs = [lift(5.0), lift(0.0), lift(6.0), lift(0.0)], [lift(5.0), lift(6.0)]
     assert without(ours, theirs) == ([lift(5.0), lift(6.0), lift(0.0)], theirs)

@@ -30,7 +30,7 @@ from brushsvg.machine.program import out_of_arm, walked
 from brushsvg.machine.realised.tilt import broken_limits, in_steps
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
-from brushsvg.verify.against_regenerated import _Alike
+from brushsvg.verify.against_regenerated import _ActComparison
 from brushsvg.verify.readback import Act, read_program
 from brushsvg.verify.simulate_program import run as played
 
@@ -741,16 +741,16 @@ def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
 
 
 def test_a_tool_held_otherwise_by_more_than_a_brush_shows_is_not_the_same():
-    like = _Alike(brushsvg.find_cell("ur5e"), upright=np.eye(3))
+    like = _ActComparison(brushsvg.find_cell("ur5e"), upright=np.eye(3))
 
     def turned(deg):
         return tuple(Rotation.from_euler("z", deg, degrees=True).as_matrix().ravel())
 
-    assert like.is_held(turned(0.4), ()) and not like.is_held(turned(0.7), ())
+    assert like.is_same_rotation(turned(0.4), ()) and not like.is_same_rotation(turned(0.7), ())
 
 
 def test_a_paper_that_leans_otherwise_is_not_the_same():
-    like = _Alike(brushsvg.find_cell("ur5e"))
+    like = _ActComparison(brushsvg.find_cell("ur5e"))
     ours = Act(1, "text", "paper = p[0.1, 0.2, 0.3, 0.000000, 0.000000, 0.000000]")
     hardly, more = (
         ours._replace(text=ours.text.replace("0.3, 0.000000", f"0.3, {a}")) for a in ("0.000008", "0.000015")

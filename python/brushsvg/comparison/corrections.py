@@ -1,4 +1,4 @@
-"""Corrections that a painted job teaches for the next one: by how much each stroke is moved."""
+"""Corrections of the strokes of a plan, from the photograph of a painted job."""
 
 from __future__ import annotations
 
@@ -17,29 +17,33 @@ from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from ..machine.cells.cell import Machine
 from ..machine.realised.retimed import on_way
-from .offset_width import wider
+from .offset_width import offset_edges
 
 FORMAT = "brushsvg/comparison"
-RESIDUAL = "beside_machine"  # of the file: what is left of each stroke once the cell is corrected
-LEAST_MARKS = 3  # fewer do not separate a sheet's place from their own
-MARK = "corrections"  # key of a corrected plan: the corrections and the plan before
-KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
-MOST_WIDER_MM = 1.0  # of each edge: a mark that is off by more is another brush's
-MOST_MM, MOST_DEG = 3.0, 3.0  # a mark that is further off has a cause to be found
-SAME_MM = 0.1  # where the same stroke begins, and where its way leads, in depth as well: less is within a correction
-PLACES = 9  # of a way, equal lengths apart
-OTHER_LAG_MM = (
-    5.0  # the same where it was planned for another brush, or twice this brush's lag where that is longer
-)
+RESIDUAL_KEY = "beside_machine"  # key of the file: the corrections that remain once the cell is corrected
+MIN_MARKS = 3  # fewer marks do not separate the sheet's place from the places of its strokes
+CORRECTIONS_KEY = "corrections"  # key of a corrected plan, for its corrections and the uncorrected plan
+CORRECTION_KEYS = ("start_mm", "middle_mm", "shift_mm", "turn_deg", "wider_mm", "way_mm")
+MAX_WIDER_MM = 1.0  # displacement of each edge: a mark that is wider by more is another brush's
+# A larger displacement or turn of a mark has another cause, which must be found.
+MAX_SHIFT_MM, MAX_TURN_DEG = 3.0, 3.0
+# Deviation of a stroke's beginning and path, also in depth, within which it is the same stroke.
+SAME_PATH_MM = 0.1
+PATH_PLACES = 9  # number of places along a path, at equal lengths
+# Replaces SAME_PATH_MM for a plan for another brush. Twice this brush's lag applies where that is longer.
+OTHER_BRUSH_MM = 5.0
 
 
 @dataclass(frozen=True)
 class Correction:
-    """A stroke, whose way begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
-    shifted by shift_mm, its edges moved out by wider_mm: what is left once the brush of brush_sha256 and the machine
-    of machine_sha256 ("" where that is not known) are known. replanned: the sheet was painted by a plan for another
-    brush, so that strokes began elsewhere. way_mm: places of the TCP as it was planned, see `way_of`, () where that is
-    not known."""
+    """The correction of one stroke.
+
+    The stroke, whose path begins at start_mm of the sheet, is turned counter-clockwise by turn_deg about middle_mm and
+    shifted by shift_mm. Its edges are moved outward by wider_mm. The correction is the residual for the brush of
+    brush_sha256 and the machine of machine_sha256 ("" where it is unknown). replanned: the sheet was painted with a
+    plan for another brush, so that strokes began elsewhere. way_mm: planned places of the TCP, see `way_of`; () where
+    they are unknown.
+    """
 
     stroke: str
     start_mm: tuple[float, float]
@@ -60,21 +64,29 @@ class Correction:
 
 @dataclass(frozen=True)
 class SheetBefore:
-    """The contents of a file that `compare` wrote of a sheet. displacement_mm: by stroke its displacement there,
-    without those that the file does not have."""
+    """The contents of a file that `compare` wrote about a sheet.
+
+    displacement_mm: displacement of each stroke that the file lists.
+    """
 
     corrections: tuple[Correction, ...] = ()
     displacement_mm: dict[str, float] = field(default_factory=dict)
 
 
 def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
-    """Nine places (x, y, z) [mm] of its TCP, equal lengths apart, the first and the last pose among them."""
-    places = evenly(np.array(a_pass.poses_mm, dtype=float), PLACES)
+    """Return nine places (x, y, z) [mm] of the TCP along a pass.
+
+    The places are at equal lengths, from the first to the last pose.
+    """
+    places = evenly(np.array(a_pass.poses_mm, dtype=float), PATH_PLACES)
     return tuple(tuple(place) for place in places.tolist())
 
 
 def machine_sha256(machine: Machine | None) -> str:
-    """Of what a cell undoes of its machine; None undoes nothing."""
+    """Return a fingerprint of the machine errors that a cell compensates.
+
+    A machine of None has no errors.
+    """
     table = asdict(machine or Machine())
     known = {key: value for key, value in table.items() if value or not key.startswith("field")}
     return hashlib.sha256(json.dumps(known).encode()).hexdigest()
@@ -85,7 +97,7 @@ def select_for_machine(
 ) -> tuple[Correction, ...]:
     """Return the corrections that belong to this machine.
 
-    Error if they belong to other cells: they would correct again what a corrected cell already undoes.
+    Raises Error if all belong to other cells: they would correct again what a corrected cell already compensates.
     """
     sha256 = machine_sha256(machine)
     found = tuple(each for each in corrections if each.machine_sha256 in ("", sha256))
@@ -100,9 +112,12 @@ def select_for_machine(
 
 
 def corrected(plan, corrections: tuple[Correction, ...], brush):
-    """The plan, made for this brush, with its strokes moved, and a note of that. Corrections that it has already are
-    replaced. Error for corrections of another job, or of another brush: what a brush has learnt from a sheet,
-    corrections of that sheet would undo again."""
+    """Return the plan with its strokes corrected, for this brush.
+
+    The plan must be made for this brush. The corrections are recorded in it. Corrections that the plan already has are
+    replaced. Raises Error for corrections of another job or another brush. Corrections of a sheet must not repeat what
+    the brush has already learnt from that sheet.
+    """
     if not corrections:
         return plan
     plan, _ = uncorrected(plan)
@@ -116,62 +131,67 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
             "brush_sha256",
             code="corrections-of-another-brush",
         )
-    left = {each.stroke: each for each in corrections}
+    remaining = {each.stroke: each for each in corrections}
     passes = []
     for a_pass in plan.passes:
-        correction = left.pop(a_pass.stroke, None)
-        passes.append(_corrected(a_pass, correction, brush) if correction else a_pass)
-    if left:
-        raise _of_another_job(next(iter(left)), "there is no such stroke")
-    said = {
+        correction = remaining.pop(a_pass.stroke, None)
+        passes.append(_correct_pass(a_pass, correction, brush) if correction else a_pass)
+    if remaining:
+        raise _other_job_error(next(iter(remaining)), "there is no such stroke")
+    record = {
         "machine_sha256": corrections[0].machine_sha256,
         "strokes": [{"stroke": each.stroke, "correction": as_json(each)} for each in corrections],
         "plan": json.loads(_core.write_plan(plan)),
     }
-    extra = json.dumps(json.loads(plan.extra or "{}") | {MARK: said})
+    extra = json.dumps(json.loads(plan.extra or "{}") | {CORRECTIONS_KEY: record})
     return _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes, extra)
 
 
 def as_json(correction: Correction | None) -> dict | None:
-    """A correction as the files of `compare` and corrected plans hold it."""
-    return {key: getattr(correction, key) for key in KEYS} if correction else None
+    """Return a correction as files of `compare` and corrected plans contain it."""
+    return {key: getattr(correction, key) for key in CORRECTION_KEYS} if correction else None
 
 
 def is_corrected(plan) -> bool:
-    return MARK in json.loads(plan.extra or "{}")
+    return CORRECTIONS_KEY in json.loads(plan.extra or "{}")
 
 
 def uncorrected(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
     """Return the plan without its corrections, and the corrections.
 
-    Error for a plan of an earlier version, which says only how many strokes were corrected.
+    Raises Error for a plan of an earlier version, which states only how many strokes were corrected.
     """
     if not is_corrected(plan):
         return plan, ()
-    said = json.loads(plan.extra)[MARK]
-    if isinstance(said, int):
+    record = json.loads(plan.extra)[CORRECTIONS_KEY]
+    if isinstance(record, int):
         sentence = "its strokes were corrected by a version of brushsvg that did not keep the corrections"
         raise Error(
-            sentence, MARK, code="corrections-twice", advice="give the drawing or the plan without them"
+            sentence,
+            CORRECTIONS_KEY,
+            code="corrections-twice",
+            advice="give the drawing or the plan without them",
         )
-    (said, before) = json_fields.objects([said, said.get("plan") if isinstance(said, dict) else None], MARK)
+    (record, before) = json_fields.objects(
+        [record, record.get("plan") if isinstance(record, dict) else None], CORRECTIONS_KEY
+    )
     before = _core.read_plan(json.dumps(before))
     if sorted(each.stroke for each in before.passes) != sorted(each.stroke for each in plan.passes):
-        raise Error("these must be the strokes of the plan", f"{MARK}.plan", code="wrong-type")
-    return before, _strokes(said, f"{MARK}.", {})
+        raise Error("these must be the strokes of the plan", f"{CORRECTIONS_KEY}.plan", code="wrong-type")
+    return before, _read_corrections(record, f"{CORRECTIONS_KEY}.", {})
 
 
-def _corrected(a_pass, correction: Correction, brush):
+def _correct_pass(a_pass, correction: Correction, brush):
     poses = np.array(a_pass.poses_mm, dtype=float)
     away_mm = math.dist(poses[0, :2], correction.start_mm)
-    # a plan for a brush that trails by nothing, or three times as far, begins up to two lags elsewhere
+    # A plan for a brush with no lag, or with three times the lag, begins up to two lags elsewhere.
     deepest_mm = min(max(-poses[:, 2].min(), brush.depth_range_mm[0]), brush.depth_range_mm[1])
-    if away_mm > (max(OTHER_LAG_MM, 2 * brush.lag(deepest_mm)) if correction.replanned else SAME_MM):
-        raise _of_another_job(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
+    if away_mm > (max(OTHER_BRUSH_MM, 2 * brush.lag(deepest_mm)) if correction.replanned else SAME_PATH_MM):
+        raise _other_job_error(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
     if correction.way_mm and not correction.replanned:
         _refuse_other_way(a_pass, np.array(correction.way_mm))
     if correction.wider_mm:
-        a_pass = wider(a_pass, correction.wider_mm, brush)
+        a_pass = offset_edges(a_pass, correction.wider_mm, brush)
         poses = np.array(a_pass.poses_mm, dtype=float)
     poses[:, :2] = correction.moved(poses[:, :2])
     arcs = [
@@ -182,22 +202,25 @@ def _corrected(a_pass, correction: Correction, brush):
 
 
 def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
-    """Warn where the brush is moved, or deeper or less deep than when the sheet was painted."""
-    off = np.array(way_of(a_pass)) - known_mm
-    displacement_mm, deeper_mm = np.hypot(*off.T[:2]).max(), np.abs(off[:, 2]).max()
-    if max(displacement_mm, deeper_mm) > SAME_MM:
+    """Raise Error where the brush moves differently than on the painted sheet.
+
+    It may be displaced, deeper or higher.
+    """
+    difference_mm = np.array(way_of(a_pass)) - known_mm
+    displacement_mm, deeper_mm = np.hypot(*difference_mm.T[:2]).max(), np.abs(difference_mm[:, 2]).max()
+    if max(displacement_mm, deeper_mm) > SAME_PATH_MM:
         how = (
             f"{displacement_mm:.2f} mm to the side"
             if displacement_mm > deeper_mm
             else f"{deeper_mm:.2f} mm higher or lower"
         )
-        raise _of_another_job(
+        raise _other_job_error(
             a_pass.stroke,
             f"the brush is up to {how} of where it was, for example by another width or tolerance",
         )
 
 
-def _of_another_job(stroke: str, why: str) -> Error:
+def _other_job_error(stroke: str, why: str) -> Error:
     return Error(
         f"the corrections are of another job, or of other flags: {why}",
         stroke,
@@ -206,41 +229,47 @@ def _of_another_job(stroke: str, why: str) -> Error:
 
 
 def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
-    """What `compare -o FILE.json` wrote. Error, with the path in `file` and the key in `where`, when a value is
-    damaged, or when it holds no corrections."""
+    """Read a file that `compare -o FILE.json` wrote.
+
+    Raises Error, with the path in `file` and the key in `where`, when a value is damaged or when the file has no
+    corrections.
+    """
     try:
         content = json_fields.document(read_bytes(path), FORMAT)
-        sha256, planned = (_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
+        sha256, planned = (_read_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
         of_brush = {"brush_sha256": sha256, "replanned": bool(planned) and planned != sha256}
-        found = _strokes(content, "", of_brush)
-        if content.get(RESIDUAL) is not None:
-            (corrected,) = json_fields.objects([content[RESIDUAL]], RESIDUAL)
-            found += _strokes(corrected, f"{RESIDUAL}.", of_brush)
+        found = _read_corrections(content, "", of_brush)
+        if content.get(RESIDUAL_KEY) is not None:
+            (after_cell,) = json_fields.objects([content[RESIDUAL_KEY]], RESIDUAL_KEY)
+            found += _read_corrections(after_cell, f"{RESIDUAL_KEY}.", of_brush)
         if not found:
-            raise Error(_why_none(content["strokes"]), "strokes", code="corrections-missing")
+            raise Error(_explain_no_corrections(content["strokes"]), "strokes", code="corrections-missing")
     except Error as refusal:
         refusal.file = os.fspath(path)
         raise
-    return SheetBefore(found, _displacement_mm(content["strokes"]))
+    return SheetBefore(found, _read_displacements_mm(content["strokes"]))
 
 
-def _why_none(rows: list[dict]) -> str:
-    seen = sum(row.get("found") is True for row in rows)
-    if 0 < seen < LEAST_MARKS:
+def _explain_no_corrections(rows: list[dict]) -> str:
+    found_count = sum(row.get("found") is True for row in rows)
+    if 0 < found_count < MIN_MARKS:
         return (
-            f"it corrects no stroke: {seen} of its marks {'was' if seen == 1 else 'were'} found, and at least "
-            f"{LEAST_MARKS} are needed to separate a stroke's own place from the sheet's"
+            f"it corrects no stroke: {found_count} of its marks {'was' if found_count == 1 else 'were'} found, "
+            f"and at least {MIN_MARKS} are needed to separate a stroke's own place from the sheet's"
         )
-    if seen:
-        return f"it corrects no stroke: of {seen} marks none is seen well enough, and near enough to its prediction"
+    if found_count:
+        return (
+            f"it corrects no stroke: of {found_count} marks none is seen well enough, and near enough to its "
+            "prediction"
+        )
     return "it corrects no stroke: the photograph did not show the places of marks"
 
 
-def _strokes(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
+def _read_corrections(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
     rows = json_fields.objects(content.get("strokes"), f"{at}strokes")
-    machine = _sha256(content, "machine_sha256", at)
+    machine = _read_sha256(content, "machine_sha256", at)
     found = tuple(
-        replace(_read(row, f"{at}strokes[{k}]"), **of_brush, machine_sha256=machine)
+        replace(_read_correction(row, f"{at}strokes[{k}]"), **of_brush, machine_sha256=machine)
         for k, row in enumerate(rows)
         if row.get("correction") is not None
     )
@@ -250,45 +279,45 @@ def _strokes(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
     return found
 
 
-def _sha256(content: dict, key: str, at: str = "") -> str:
-    said = content.get(key, "")
-    if not isinstance(said, str):
+def _read_sha256(content: dict, key: str, at: str = "") -> str:
+    value = content.get(key, "")
+    if not isinstance(value, str):
         raise Error("this must be a text", f"{at}{key}", code="wrong-type")
-    return said
+    return value
 
 
-def _displacement_mm(rows: list[dict]) -> dict[str, float]:
-    said = [(row.get("stroke"), row.get("aside_mm")) for row in rows]
+def _read_displacements_mm(rows: list[dict]) -> dict[str, float]:
+    pairs = [(row.get("stroke"), row.get("aside_mm")) for row in rows]
     return {
         name: float(mm)
-        for name, mm in said
+        for name, mm in pairs
         if isinstance(name, str) and isinstance(mm, int | float) and not isinstance(mm, bool)
     }
 
 
-def _read(row: dict, where: str) -> Correction:
-    (said,) = json_fields.objects([row["correction"]], f"{where}.correction")
+def _read_correction(row: dict, where: str) -> Correction:
+    (values,) = json_fields.objects([row["correction"]], f"{where}.correction")
     stroke, at = row.get("stroke"), f"{where}.correction"
     if not isinstance(stroke, str):
         raise Error("this must be the name of a stroke", f"{where}.stroke", code="wrong-type")
-    places = (json_fields.numbers(said.get(key), f"{at}.{key}", 2) for key in ("start_mm", "middle_mm"))
-    shift_mm = json_fields.numbers(said.get("shift_mm"), f"{at}.shift_mm", 2)
-    json_fields.number(math.hypot(*shift_mm), f"{at}.shift_mm", 0.0, MOST_MM)
-    turn_deg = json_fields.number(said.get("turn_deg"), f"{at}.turn_deg", -MOST_DEG, MOST_DEG)
-    wider_mm = json_fields.number(said.get("wider_mm", 0.0), f"{at}.wider_mm", -MOST_WIDER_MM, MOST_WIDER_MM)
+    places = (json_fields.numbers(values.get(key), f"{at}.{key}", 2) for key in ("start_mm", "middle_mm"))
+    shift_mm = json_fields.numbers(values.get("shift_mm"), f"{at}.shift_mm", 2)
+    json_fields.number(math.hypot(*shift_mm), f"{at}.shift_mm", 0.0, MAX_SHIFT_MM)
+    turn_deg = json_fields.number(values.get("turn_deg"), f"{at}.turn_deg", -MAX_TURN_DEG, MAX_TURN_DEG)
+    wider_mm = json_fields.number(values.get("wider_mm", 0.0), f"{at}.wider_mm", -MAX_WIDER_MM, MAX_WIDER_MM)
     return Correction(
         stroke,
         *places,
         shift_mm,
         turn_deg,
         wider_mm=wider_mm,
-        way_mm=_way(said.get("way_mm"), f"{at}.way_mm"),
+        way_mm=_read_path(values.get("way_mm"), f"{at}.way_mm"),
     )
 
 
-def _way(said, at: str) -> tuple[tuple[float, ...], ...]:
-    if said is None:  # of a file from before it was written
+def _read_path(places, at: str) -> tuple[tuple[float, ...], ...]:
+    if places is None:  # files of earlier versions have no path
         return ()
-    if not isinstance(said, list) or len(said) != PLACES:
-        raise Error(f"this must be a list of {PLACES} places", at, code="wrong-type")
-    return tuple(json_fields.numbers(place, f"{at}[{k}]", 3) for k, place in enumerate(said))
+    if not isinstance(places, list) or len(places) != PATH_PLACES:
+        raise Error(f"this must be a list of {PATH_PLACES} places", at, code="wrong-type")
+    return tuple(json_fields.numbers(place, f"{at}[{k}]", 3) for k, place in enumerate(places))

@@ -1,4 +1,4 @@
-"""Find where along its way the paint of a stroke begins and ends, relative to the target."""
+"""Find where the paint of a stroke begins and ends, relative to the target."""
 
 from __future__ import annotations
 
@@ -9,21 +9,25 @@ import numpy as np
 import shapely
 
 from ..geometry.cubics import flattened
-from .edge_offsets import area
-from .photographs import BLUR_MM, Comparison, TargetStroke
+from .edge_offsets import polygon_of
+from .photographs import EDGE_BLUR_MM, Comparison, TargetStroke
 
-REACH_MM = 6.0  # beyond the end of a middle line, or within it
-ALONG_MM = 0.05
-WIDE_MM = 0.4  # a strip about the middle line: hairs that stand out next to it are no end
-FLAT_MM = 0.02
-DIRECTION_MM = 1.5  # of the middle line, that gives its direction at its end
-LEVEL = 0.5
+SEARCH_MM = 6.0  # search distance before and beyond the end of a middle line
+PROFILE_STEP_MM = 0.05
+# Half width of a strip around the middle line: single hairs next to the strip are no end.
+STRIP_HALF_WIDTH_MM = 0.4
+FLATTENING_TOLERANCE_MM = 0.02
+DIRECTION_LENGTH_MM = 1.5  # length of the middle line that gives the direction at its end
+EDGE_LEVEL = 0.5
 
 
 @dataclass(frozen=True)
 class Ends:
-    """By how many mm later on its way than the target the paint of a stroke begins and ends; below 0: earlier. None
-    where it runs into other paint, or none is found. first_mm, last_mm: the ends (x, y) of its middle line."""
+    """How much later than its target the paint of a stroke begins and ends [mm].
+
+    Later is further along the stroke's path. Negative values are earlier; None where the paint runs into other paint,
+    or where no paint is found. first_mm, last_mm: the ends (x, y) of the middle line.
+    """
 
     began_mm: float | None
     ended_mm: float | None
@@ -31,79 +35,98 @@ class Ends:
     last_mm: tuple[float, float] = (0.0, 0.0)
 
     def near(self, place_mm: tuple[float, float]) -> dict[str, float]:
-        """Those of "began" and "ended" that are known and within reach of a place."""
+        """Return the values of "began" and "ended" near a place.
+
+        Only known values are returned, for ends within reach of the place.
+        """
         ends = (("began", self.began_mm, self.first_mm), ("ended", self.ended_mm, self.last_mm))
-        return {what: mm for what, mm, at in ends if mm is not None and math.dist(at, place_mm) <= REACH_MM}
+        return {what: mm for what, mm, at in ends if mm is not None and math.dist(at, place_mm) <= SEARCH_MM}
 
 
-UNSEEN = Ends(None, None)
+UNKNOWN_ENDS = Ends(None, None)
 
 
 def ends_of(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, Ends]:
-    """By stroke; of rings and dabs, which have no ends, nothing is said. drawn: strokes with their middle lines, none
-    of a plan without its drawing. The sheet is at the place of its marks."""
+    """Return where the paint of each stroke begins and ends.
+
+    Rings and dabs have no ends and are left out. drawn: strokes with their middle lines, empty for a plan without its
+    drawing. The pose of the sheet is corrected by the places of its marks.
+    """
     lines_mm = {
-        each.id: flattened(each.middle_mm.reshape(-1, 4, 2), FLAT_MM) for each in drawn if not each.closed
+        each.id: flattened(each.middle_mm.reshape(-1, 4, 2), FLATTENING_TOLERANCE_MM)
+        for each in drawn
+        if not each.closed
     }
-    shapes = {stroke.stroke: area(stroke.predicted) for stroke in strokes if stroke.predicted}
+    shapes = {stroke.stroke: polygon_of(stroke.predicted) for stroke in strokes if stroke.predicted}
     seen = {row.stroke for row in found.strokes if row.placed.found}
-    made = {}
+    ends = {}
     for stroke in strokes:
         name = stroke.stroke
         if name not in shapes or name not in lines_mm or not stroke.target:
             continue
         others = shapely.unary_union([shape for other, shape in shapes.items() if other != name])
-        target = area(stroke.target)
-        away = (_beyond(found, _ray(way), target, others) for way in (lines_mm[name][::-1], lines_mm[name]))
-        before, behind = away if name in seen else (None, None)
+        target = polygon_of(stroke.target)
+        overshoots = (
+            _overshoot_mm(found, _end_and_direction(way), target, others)
+            for way in (lines_mm[name][::-1], lines_mm[name])
+        )
+        before, behind = overshoots if name in seen else (None, None)
         first, last = (tuple(lines_mm[name][k, :2].tolist()) for k in (0, -1))
-        made[name] = Ends(None if before is None else -before, behind, first, last)
-    return made
+        ends[name] = Ends(None if before is None else -before, behind, first, last)
+    return ends
 
 
-def _ray(way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A place well within a way (n, 2) at its end, and the direction in which it ends."""
-    come = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
-    back = np.array([np.interp(max(come[-1] - DIRECTION_MM, 0.0), come, way[:, k]) for k in (0, 1)])
+def _end_and_direction(way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the end of a path (n, 2), and the direction in which it ends."""
+    travelled_mm = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
+    back = np.array(
+        [np.interp(max(travelled_mm[-1] - DIRECTION_LENGTH_MM, 0.0), travelled_mm, way[:, k]) for k in (0, 1)]
+    )
     ahead = way[-1] - back
     return way[-1], ahead / max(float(np.hypot(*ahead)), 1e-9)
 
 
-def _beyond(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target, others) -> float | None:
-    """How far along a ray the paint ends beyond the target's edge."""
+def _overshoot_mm(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target, others) -> float | None:
+    """Return how far along a ray the paint ends beyond the target's edge [mm].
+
+    Returns None where that is unknown.
+    """
     end, ahead = ray
-    if not ahead.any():  # a dab has no way
+    if not ahead.any():  # a dab has no direction
         return None
     across = np.array([-ahead[1], ahead[0]])
-    t = np.arange(-REACH_MM, REACH_MM, ALONG_MM)
-    strip = np.linspace(-WIDE_MM, WIDE_MM, 5)
+    t = np.arange(-SEARCH_MM, SEARCH_MM, PROFILE_STEP_MM)
+    strip = np.linspace(-STRIP_HALF_WIDTH_MM, STRIP_HALF_WIDTH_MM, 5)
     places = end + t[:, None, None] * ahead + strip[:, None] * across
     inside = shapely.contains_xy(target, places[..., 0], places[..., 1]).mean(axis=1)
     flat = places.reshape(-1, 2)
     painted = (
-        _paint(found, found.common.moved(flat, found.middle_mm)).reshape(inside.shape[0], -1).mean(axis=1)
+        _paint_at(found, found.common.moved(flat, found.middle_mm)).reshape(inside.shape[0], -1).mean(axis=1)
     )
-    drawn_end, is_painted = _last(inside, t), _last(painted, t)
+    drawn_end, is_painted = _find_fall(inside, t), _find_fall(painted, t)
     if drawn_end is None or is_painted is None:
         return None
     until = end + max(drawn_end, is_painted) * ahead
-    if shapely.distance(shapely.Point(until), others) < BLUR_MM:
+    if shapely.distance(shapely.Point(until), others) < EDGE_BLUR_MM:
         return None
     return is_painted - drawn_end
 
 
-def _last(share: np.ndarray, t: np.ndarray) -> float | None:
-    """Where a profile that is inside near the end of a way first falls below half."""
-    falls = np.flatnonzero((share[:-1] >= LEVEL) & (share[1:] < LEVEL))
+def _find_fall(share: np.ndarray, t: np.ndarray) -> float | None:
+    """Return the place nearest to 0 at which a profile falls below EDGE_LEVEL.
+
+    Returns None where it never does. t: (n,) places of the profile [mm].
+    """
+    falls = np.flatnonzero((share[:-1] >= EDGE_LEVEL) & (share[1:] < EDGE_LEVEL))
     if not len(falls):
         return None
     nearest = falls[np.abs(t[falls]).argmin()]
-    part = (share[nearest] - LEVEL) / max(share[nearest] - share[nearest + 1], 1e-6)
-    return float(t[nearest] + part * ALONG_MM)
+    part = (share[nearest] - EDGE_LEVEL) / max(share[nearest] - share[nearest + 1], 1e-6)
+    return float(t[nearest] + part * PROFILE_STEP_MM)
 
 
-def _paint(found: Comparison, places_mm: np.ndarray) -> np.ndarray:
-    """Share of paint at places (n, 2) of the sheet, 0 beyond it."""
+def _paint_at(found: Comparison, places_mm: np.ndarray) -> np.ndarray:
+    """Return the share of paint at places (n, 2) of the sheet, 0 outside the sheet."""
     fine, (left, _, _, top) = found.canvas.px_per_mm, found.canvas.window_mm
     column = np.floor((places_mm[:, 0] - left) * fine).astype(int)
     row = np.floor((top - places_mm[:, 1]) * fine).astype(int)

@@ -1,4 +1,4 @@
-"""Outlines of the marks of a painted job, each of one stroke alone."""
+"""Find the outlines of marks whose paint is separate from other paint."""
 
 from __future__ import annotations
 
@@ -12,16 +12,22 @@ from .job_page import JobPage
 from .photographs import Comparison, TargetStroke
 from .placing import Canvas
 
-PART = 0.15  # of a mark: a piece of paint that holds so much of it is, or has part in, its paint
-WITHIN = 0.5  # of a piece of paint that is in a mark: then it is of that one
-DRY = 0.3  # share of a mark without paint, beyond which its edges are not the brush's
+# Share of a mark that a piece of paint covers, above which the piece belongs to the mark.
+MIN_COVERED_SHARE = 0.15
+MIN_INSIDE_SHARE = 0.5  # share of a piece of paint inside a mark, above which the piece belongs to the mark
+MAX_MISSING_FOR_OUTLINE = (
+    0.3  # share of a mark without paint, above which its edges are not those of the brush
+)
 PAINT_A_CHART = "paint a chart, whose strokes do not touch: brushsvg chart, then calibrate --chart"
 
 
 @dataclass(frozen=True)
 class JobMarks:
-    """rings: by the number of the stroke, in the frame of the sheet; touching, dry: numbers of those that were left
-    out, since their paint is one with others', or much of it is missing or nowhere near."""
+    """Outlines of the marks of strokes, and the strokes that were left out.
+
+    rings: rings of each stroke by its number, in the frame of the sheet [mm]; touching: numbers of strokes whose paint
+    is connected with that of others; dry: numbers of strokes that lack much of their paint or were not found.
+    """
 
     rings: dict[int, list[np.ndarray]]
     touching: list[int]
@@ -29,37 +35,41 @@ class JobMarks:
 
 
 def job_marks(found: Comparison, page: JobPage, strokes: list[TargetStroke]) -> JobMarks:
-    """strokes: those that were compared."""
+    """Find the outlines of the marks. strokes: the strokes that were compared."""
     painting = [number for number, stroke in enumerate(strokes) if stroke.predicted]
     rows = dict(zip(painting, found.strokes, strict=True))
-    dry = [number for number, row in rows.items() if not row.placed.found or row.missing > DRY]
+    dry = [
+        number
+        for number, row in rows.items()
+        if not row.placed.found or row.missing > MAX_MISSING_FOR_OUTLINE
+    ]
     fine = found.flat.px_per_mm
     canvas = Canvas((0.0, 0.0, *page.size_mm), fine)
-    count, part = cv2.connectedComponents(np.uint8(found.paint > SEEN), connectivity=8)
-    sizes = np.bincount(part.ravel(), minlength=count)
+    count, pieces = cv2.connectedComponents(np.uint8(found.paint > SEEN), connectivity=8)
+    sizes = np.bincount(pieces.ravel(), minlength=count)
     owners: list[list[int]] = [[] for _ in range(count)]
     for number, row in rows.items():
         middle = np.array(row.middle_mm)
         rings = [row.placed.moved(ring, middle) + page.frame_mm for ring in strokes[number].predicted]
-        mark = canvas.filled(rings)[: part.shape[0], : part.shape[1]] > 0.5
-        shared = np.bincount(part[: mark.shape[0], : mark.shape[1]][mark], minlength=count)
-        has_part = (shared > PART * mark.sum()) | (shared > WITHIN * sizes)
+        mark = canvas.filled(rings)[: pieces.shape[0], : pieces.shape[1]] > 0.5
+        shared = np.bincount(pieces[: mark.shape[0], : mark.shape[1]][mark], minlength=count)
+        has_part = (shared > MIN_COVERED_SHARE * mark.sum()) | (shared > MIN_INSIDE_SHARE * sizes)
         for each in np.flatnonzero(has_part[1:]) + 1:
             owners[each].append(number)
-    together = {number for numbers in owners if len(numbers) > 1 for number in numbers}
+    connected = {number for numbers in owners if len(numbers) > 1 for number in numbers}
     usual = float(np.median(found.paint[found.paint > SEEN]))
     rings = {}
     for number in painting:
         own = [each for each, numbers in enumerate(owners) if numbers == [number]]
-        if number in together or number in dry or not own:
+        if number in connected or number in dry or not own:
             continue
-        rings[number] = [ring - page.frame_mm for ring in _rings(found, part, own, usual)]
-    touching = sorted(together)
-    left = set(painting) - set(rings) - together
-    return JobMarks({k: v for k, v in rings.items() if v}, touching, sorted(left))
+        rings[number] = [ring - page.frame_mm for ring in _outline_rings(found, pieces, own, usual)]
+    touching = sorted(connected)
+    left_out = set(painting) - set(rings) - connected
+    return JobMarks({k: v for k, v in rings.items() if v}, touching, sorted(left_out))
 
 
-def _rings(found: Comparison, part, own: list[int], usual: float) -> list[np.ndarray]:
+def _outline_rings(found: Comparison, part, own: list[int], usual: float) -> list[np.ndarray]:
     fine = found.flat.px_per_mm
     mine = np.isin(part, own)
     rows, columns = (np.flatnonzero(mine.any(axis=axis)) for axis in (1, 0))

@@ -1,4 +1,7 @@
-"""The page that a job is painted on: markers in a frame round its sheet, ticks at the sheet's corners for the robot."""
+"""The page that a job is painted on.
+
+It has markers in a frame around the sheet, and ticks at the sheet's corners for the robot.
+"""
 
 from __future__ import annotations
 
@@ -23,15 +26,18 @@ from ..calibration.chart.layout import (
 )
 
 TICK_MM = 4.0
-LINE_MM = 0.3
-BY_TICK_MM = 1.5
-LEAST_LABEL_MM = 25.0
+TICK_WIDTH_MM = 0.3
+LABEL_GAP_MM = 1.5
+MIN_LABEL_MM = 25.0
 
 
 @dataclass(frozen=True)
 class JobPage:
-    """printed: the page, in its own frame; frame_mm: how far its lower left corner is left of the sheet's and below
-    it; ticks: rings (4, 2), in the page's frame."""
+    """The page of a job.
+
+    printed: the page, in its own frame; frame_mm: distance of its lower left corner from that of the sheet, to the left
+    and downward; ticks: rings (4, 2) [mm] in the page's frame.
+    """
 
     printed: Chart
     frame_mm: float
@@ -43,23 +49,26 @@ class JobPage:
 
 
 def job_page(plan, title: str = "") -> JobPage:
-    """Markers that name the plan, of the chart's dictionary: another job's page is not taken for this one. Error for a
-    tilted brush: what is learnt from photographs of a job holds for one that is upright."""
+    """Compose the page of a job.
+
+    The markers, from the chart's dictionary, identify the plan, so that the page of another job is not mistaken for
+    this one. Raises Error for a tilted brush: what is learnt from photographs of a job holds only for an upright brush.
+    """
     _core.refuse_tilted(plan.passes, "jobs are compared with photographs of a brush held upright")
     sheet = plan.sheet_mm
     side = min(max(min(sheet) / 14, MARKERS[0]), MARKERS[1])
     frame = math.ceil(EDGE_MM + (1 + 2 * QUIET) * side)
     page = (sheet[0] + 2 * frame, sheet[1] + 2 * frame)
-    passes = sorted(plan.passes, key=lambda each: each.stroke)  # in any order of painting
+    passes = sorted(plan.passes, key=lambda each: each.stroke)  # the order of painting does not matter
     mark = chart_id(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes))
     base = GROUP * (int(mark, 16) % GROUPS)
     markers = tuple(
         Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
-        for k, (x, y) in _places(page, side)
+        for k, (x, y) in _marker_places(page, side)
     )
-    bar = _bar(page, side)
+    bar = _place_bar(page, side)
     y = bar.at_mm[1]
-    x = frame + BY_TICK_MM  # the lower left tick ends above the bar
+    x = frame + LABEL_GAP_MM  # the lower left tick ends above the bar
     room_mm = bar.at_mm[0] + bar.length_mm - x
     labels = (
         Label(f"brushsvg job {mark}", (x, y - 5.0), room_mm),
@@ -67,15 +76,18 @@ def job_page(plan, title: str = "") -> JobPage:
         Label(title or "untitled", (page[0] / 2 + side, y), page[0] / 2 - 3 * side),
     )
     labels = tuple(
-        label for label in labels if label.width_mm >= LEAST_LABEL_MM
-    )  # smaller, nobody reads them
+        label for label in labels if label.width_mm >= MIN_LABEL_MM
+    )  # smaller labels are unreadable
     empty = _core.Plan(brush=plan.brush, brush_sha256=plan.brush_sha256, sheet_mm=page)
-    ticks = tuple(box_ring(*corners) for corners in _ticks(sheet, frame))
+    ticks = tuple(box_ring(*corners) for corners in _tick_boxes(sheet, frame))
     return JobPage(Chart(empty, (), markers, labels, mark, bar), float(frame), ticks)
 
 
-def _places(page, side: float) -> list[tuple[int, tuple[float, float]]]:
-    """Numbers and upper left corners: corners clockwise from the upper left, then the middle of each long edge."""
+def _marker_places(page, side: float) -> list[tuple[int, tuple[float, float]]]:
+    """Return the numbers and the upper left corners [mm] of the markers.
+
+    Markers are at the corners, clockwise from the upper left, and in the middle of each long edge.
+    """
     left, right, top, bottom = EDGE_MM, page[0] - EDGE_MM - side, page[1] - EDGE_MM, EDGE_MM + side
     across, up = (page[0] - side) / 2, (page[1] + side) / 2
     places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
@@ -86,16 +98,19 @@ def _places(page, side: float) -> list[tuple[int, tuple[float, float]]]:
     return sorted(places)
 
 
-def _bar(page, side: float) -> Bar:
-    """In the lower part of the frame, between two markers."""
+def _place_bar(page, side: float) -> Bar:
+    """Place the bar in the lower part of the frame, between two markers."""
     room = page[0] / 2 - EDGE_MM - (1.5 + 2 * QUIET) * side
     length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
     return Bar((EDGE_MM + (1 + QUIET) * side, EDGE_MM + side / 2), float(max(length, 5)))
 
 
-def _ticks(sheet, frame: float):
-    """Lines that end at the sheet's corners: the robot's origin is where the lower left two meet."""
-    half = LINE_MM / 2
+def _tick_boxes(sheet, frame: float):
+    """Yield boxes of lines that end at the sheet's corners.
+
+    The lower left two lines meet at the robot's origin.
+    """
+    half = TICK_WIDTH_MM / 2
     for x, out_x in ((frame, -1), (frame + sheet[0], 1)):
         for y, out_y in ((frame, -1), (frame + sheet[1], 1)):
             yield min(x, x + out_x * TICK_MM), y - half, max(x, x + out_x * TICK_MM), y + half

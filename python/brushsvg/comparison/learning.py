@@ -1,4 +1,4 @@
-"""A painted job in photographs to the brush that painted it, which was known before."""
+"""Update a known brush from photographs of a job that it painted."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from .. import _core
 from ..calibration.chart.photograph import EDGE_PX
 from ..calibration.prior.from_prior import Updated, marks_with_prior, update_brush
 from ..errors import Error, Notice
-from .job_marks import DRY, PAINT_A_CHART, JobMarks, job_marks
+from .job_marks import MAX_MISSING_FOR_OUTLINE, PAINT_A_CHART, JobMarks, job_marks
 from .job_page import job_page
 from .photographs import Comparison, TargetStroke, compare_photos
 
-ROUNDS = 2  # marks that are not where the prior has them may be found where the updated brush has them
+# Marks that are displaced from the prior's prediction may be found where the updated brush predicts them.
+MAX_ROUNDS = 2
 
 
 @dataclass(frozen=True)
-class Learnt:
+class LearntBrush:
     updated: Updated
     notices: tuple[Notice, ...]
 
@@ -30,29 +31,32 @@ def learn(
     name: str,
     machine: tuple[str, ...] = (),
     displacement_mm: float | None = None,
-) -> Learnt:
-    """plan: as it was painted, corrections and all; brush: as it is known without this job; photos: names and what
-    their files hold, of one sheet; name: of the new brush; machine, displacement_mm: as for update_brush. Error where
-    the photographs are not of this job, or show no stroke without contact to others."""
+) -> LearntBrush:
+    """Update a brush from photographs of one painted sheet of a job.
+
+    plan: as painted, including corrections; brush: as known without this job; photos: names and contents of the files;
+    name: name of the new brush; machine, displacement_mm: see `update_brush`. Raises Error where the photographs are
+    not of this job, or show no stroke that is separate from the others.
+    """
     page, predicted, best = job_page(plan), brush, None
-    for _ in range(ROUNDS):
-        strokes = _strokes(plan, predicted)
+    for _ in range(MAX_ROUNDS):
+        strokes = _predict_strokes(plan, predicted)
         found = compare_photos(page, strokes, photos)
         marks = job_marks(found, page, strokes)
         if best and len(marks.rings) <= len(best[1].rings):
             break
         if not marks.rings:
-            raise _uninformative(marks, photos[0][0])
+            raise _uninformative_error(marks, photos[0][0])
         edge_mm = EDGE_PX / found.view.px_per_mm
-        updated = update_brush(_painted(plan, marks), brush, name, edge_mm, machine, displacement_mm)
+        updated = update_brush(_painted_marks(plan, marks), brush, name, edge_mm, machine, displacement_mm)
         best, predicted = (updated, marks, found), updated.brush
         if not (marks.touching or marks.dry):
             break
     updated, marks, found = best
-    return Learnt(updated, (*_left_out(found, marks, strokes),))
+    return LearntBrush(updated, (*_left_out_notices(found, marks, strokes),))
 
 
-def _strokes(plan, brush: _core.Brush) -> list[TargetStroke]:
+def _predict_strokes(plan, brush: _core.Brush) -> list[TargetStroke]:
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
     return [
@@ -60,7 +64,7 @@ def _strokes(plan, brush: _core.Brush) -> list[TargetStroke]:
     ]
 
 
-def _painted(plan, marks: JobMarks):
+def _painted_marks(plan, marks: JobMarks):
     passes = plan.passes
     return marks_with_prior(
         [
@@ -70,19 +74,20 @@ def _painted(plan, marks: JobMarks):
     )
 
 
-def _uninformative(marks: JobMarks, name: str) -> Error:
+def _uninformative_error(marks: JobMarks, name: str) -> Error:
     touching, dry = len(marks.touching), len(marks.dry)
     sentence = (
         f"no stroke of this job is alone and fully painted: of {touching + dry} {touching} share their paint with "
-        f"others, and {dry} are not found or lack paint on more than {100 * DRY:g} %: nothing is learnt from it"
+        f"others, and {dry} are not found or lack paint on more than {100 * MAX_MISSING_FOR_OUTLINE:g} %: nothing is "
+        "learnt from it"
     )
     return Error(sentence, file=name, code="marks-touch", advice=PAINT_A_CHART)
 
 
-def _left_out(found: Comparison, marks: JobMarks, strokes: list[TargetStroke]):
-    """Of each stroke that is left out, why."""
+def _left_out_notices(found: Comparison, marks: JobMarks, strokes: list[TargetStroke]):
+    """Yield the notices of the comparison, and why each stroke was left out."""
     touching = "its paint is one with that of other strokes: it is left out"
-    dry = f"its mark is not found, or more than {100 * DRY:g} % of it has no paint: it is left out"
+    dry = f"its mark is not found, or more than {100 * MAX_MISSING_FOR_OUTLINE:g} % of it has no paint: it is left out"
     yield from found.notices
     yield from (Notice(strokes[k].stroke, touching, code="marks-touch") for k in marks.touching)
     yield from (Notice(strokes[k].stroke, dry, code="mark-dry") for k in marks.dry)

@@ -1,4 +1,7 @@
-"""Move the edges of a pass out or in, as far as the brush's laws were measured."""
+"""Move the edges of a pass outward or inward.
+
+They move only as far as the brush's laws were measured.
+"""
 
 from __future__ import annotations
 
@@ -9,24 +12,26 @@ from ..errors import Error
 from ..machine.realised.arc_chords import with_chords
 from ..machine.realised.retimed import on_way
 
-DEPTHS = 400  # that the law of width is inverted between
+DEPTH_SAMPLES = 400  # number of depths at which the law of width is sampled to invert it
 
 
-def wider(a_pass, by_mm: float, brush):
-    """Return the pass with its edges moved out by by_mm (below 0: in), where it is as wide as it is on average, and
-    elsewhere by the same share: deeper, and the tool ahead by as much as the brush trails more, so that it drags along
-    the same line.
-    Error where the brush cannot."""
+def offset_edges(a_pass, by_mm: float, brush):
+    """Return the pass with its edges moved outward by by_mm.
+
+    A negative by_mm moves them inward. The offset holds where the pass has its average width; elsewhere the width
+    changes by the same share. The brush goes deeper, and the tool moves ahead by the additional lag, so that the brush
+    drags along the same line. Raises Error where the brush cannot paint this width.
+    """
     refuse_width(a_pass, by_mm, brush)
     a_pass = with_chords(a_pass)
     poses = np.array(a_pass.poses_mm, dtype=float)
     before = np.maximum(-poses[:, 2], 0.0)
-    share = 1 + by_mm / _half_mm(a_pass, brush)
-    _, deepest = measured_mm(brush)
-    depths = np.linspace(0.0, max(deepest, float(before.max())), DEPTHS)
+    share = 1 + by_mm / _mean_half_width_mm(a_pass, brush)
+    _, deepest = measured_depths_mm(brush)
+    depths = np.linspace(0.0, max(deepest, float(before.max())), DEPTH_SAMPLES)
     after = np.interp(share * brush.half_width(before), brush.half_width(depths), depths)
     after[before == 0] = 0.0
-    heading = _headings(a_pass, brush)
+    heading = _headings_rad(a_pass, brush)
     ahead = brush.lag(after) - brush.lag(before)
     poses[:, :2] += ahead[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
     poses[:, 2] = -after
@@ -34,14 +39,14 @@ def wider(a_pass, by_mm: float, brush):
 
 
 def refuse_width(a_pass, by_mm: float, brush) -> None:
-    """Where the brush cannot paint a stroke so much wider."""
+    """Raise Error where the brush cannot paint a stroke wider by by_mm per edge."""
     if not brush.width_follows_depth():
         raise Error(
             f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected",
             a_pass.stroke,
             code="width-correction-refused",
         )
-    half_mm, (least, deepest) = _half_mm(a_pass, brush), measured_mm(brush)
+    half_mm, (least, deepest) = _mean_half_width_mm(a_pass, brush), measured_depths_mm(brush)
     low, high = 2 * float(brush.half_width(least)), 2 * float(brush.half_width(deepest))
     widest_mm = 2 * float(brush.half_width(-np.array(a_pass.poses_mm)[:, 2]).max())
     share = 1 + by_mm / half_mm
@@ -58,8 +63,11 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
     )
 
 
-def measured_mm(brush) -> tuple[float, float]:
-    """Depths at which its lag and its width were measured; of laws that say nothing, all that it may go."""
+def measured_depths_mm(brush) -> tuple[float, float]:
+    """Return the depths [mm] in which the brush's lag and width were measured.
+
+    The depths are a range (least, deepest). A law without a measured range does not limit the depths of the brush.
+    """
     least, deepest = brush.depth_range_mm
     for law in (brush.lag, brush.half_width):
         if law.calibrated_mm:
@@ -67,13 +75,13 @@ def measured_mm(brush) -> tuple[float, float]:
     return least, deepest
 
 
-def _trace(a_pass, brush):
+def _simulate_pass(a_pass, brush):
     return _core.simulate(_core.Plan("", "", (1.0, 1.0), [a_pass]), brush, for_outlines=False).passes[0]
 
 
-def _half_mm(a_pass, brush) -> float:
-    """Half width on average of its way on the paper."""
-    trace = _trace(a_pass, brush)
+def _mean_half_width_mm(a_pass, brush) -> float:
+    """Return the half width of a pass [mm], averaged over its path on the paper."""
+    trace = _simulate_pass(a_pass, brush)
     steps = np.hypot(*np.diff(np.asarray(trace.contact_mm), axis=0).T)
     halves = brush.half_width(np.asarray(trace.depth_mm))
     if not steps.sum():
@@ -81,8 +89,8 @@ def _half_mm(a_pass, brush) -> float:
     return float(np.average((halves[1:] + halves[:-1]) / 2, weights=steps))
 
 
-def _headings(a_pass, brush) -> np.ndarray:
-    """At each pose the direction in which the brush points."""
-    trace = _trace(a_pass, brush)
+def _headings_rad(a_pass, brush) -> np.ndarray:
+    """Return (n,) the direction [rad] in which the brush points at each pose."""
+    trace = _simulate_pass(a_pass, brush)
     heading = np.unwrap(np.asarray(trace.heading_rad))
     return np.interp(np.arange(len(a_pass.poses_mm)), np.asarray(trace.pose), heading)

@@ -1,4 +1,7 @@
-"""What photographs show of a job, stroke by stroke: overlap, displacement, width, what is missing or too much."""
+"""Compare photographs of a painted job with its target and prediction.
+
+For each stroke, it measures overlap, displacement, width and missing paint. It also finds paint outside of all marks.
+"""
 
 from __future__ import annotations
 
@@ -17,31 +20,33 @@ from ..photo.flatten import Flat, flatten
 from ..photo.markers import Printed, View, find_view
 from ..photo.photo import read_photo, refuse_twice
 from ..photo.whole_page import refuse_cropped, refuse_unsure
-from .corrections import LEAST_MARKS
+from .corrections import MIN_MARKS
 from .job_page import JobPage, box_ring
-from .placing import NOWHERE, Canvas, Placed, grown, place
+from .placing import NOWHERE, Canvas, Placed, grow_rings, locate_mark
 
-AROUND_MM = 6.0  # round a predicted mark, where its paint is looked for
-BLUR_MM = 0.6  # beyond another mark its blurred edge still shows
-BLOT_MM = 1.5  # beyond a mark, at its place, what is no edge any more
-FINEST_PX_PER_MM = 12.0
-LEAST_OVERLAP = 0.3  # of paint with its prediction, at its place: less is another job, or chance
-PRINT_MM = 0.5  # round what is printed
-COVERED, MOSTLY = (
-    0.3,
-    0.7,
-)  # share of a mark, at its place, that is painted at least; without paint, it is missing
-LEVEL = 0.5  # of the usual paint: an edge
-DRIER = 0.1  # share of a mark without paint, beyond that of most: its middle is the painted part's
-THING_MM2 = 100.0  # of one piece outside of all marks: a hand, a tool or a large blot
-PALEST = 0.15  # of the usual paint, that of a stroke
-ALIKE = 0.9  # overlap of the paint of two photographs of one sheet, at least
+SEARCH_MARGIN_MM = 6.0  # distance around a predicted mark within which its paint is searched
+EDGE_BLUR_MM = 0.6  # distance from another mark within which its blurred edge still shows
+MAX_EDGE_DISTANCE_MM = 1.5  # distance from a located mark beyond which paint is not part of its edge
+MAX_PX_PER_MM = 12.0
+MIN_OVERLAP = 0.3  # overlap of paint with its prediction, at its place: less is another job, or chance
+PRINT_MARGIN_MM = 0.5  # margin around printed lines
+# Smallest painted share of a located mark; share without paint above which a mark is missing.
+MIN_PAINTED_SHARE, MISSING_MARK_SHARE = 0.3, 0.7
+EDGE_LEVEL = 0.5  # share of the usual paint at which paint has its edge
+# Share of a mark without paint, beyond the share of most marks. Above it, a mark's middle is that of its painted part.
+MAX_EXCESS_MISSING_SHARE = 0.1
+MIN_THING_AREA_MM2 = 100.0  # area of one piece of paint outside of all marks: a hand, a tool or a large blot
+PALEST_PAINT_SHARE = 0.15  # share of the usual paint that the palest stroke has
+MIN_SAME_SHEET_OVERLAP = 0.9  # smallest overlap of the paint in two photographs of one sheet
 
 
 @dataclass(frozen=True)
 class TargetStroke:
-    """One stroke: rings on the sheet of the target (None where only a plan is known), and of the prediction. is_drawn:
-    a stroke of the drawing; others, in the margin, count in no figure of the sheet."""
+    """One stroke with its target and its predicted mark.
+
+    Both are rings (n, 2) on the sheet [mm]. The target is None where only a plan is known. is_drawn: whether the stroke
+    is part of the drawing; strokes in the margin count in no figure of the sheet.
+    """
 
     stroke: str
     target: list[np.ndarray] | None
@@ -51,9 +56,12 @@ class TargetStroke:
 
 @dataclass(frozen=True)
 class Compared:
-    """A stroke as it was painted. overlap_target (None without a drawing), overlap_predicted: intersection over union;
-    placed: relative to the prediction, whose middle is at middle_mm; missing: share of the mark, at its place, without
-    paint; like: overlap of the mark, at its place and width, with its paint."""
+    """A stroke as it was painted.
+
+    overlap_target (None without a drawing), overlap_predicted: intersection over union; placed: place relative to the
+    prediction, whose middle is at middle_mm; missing: share of the located mark without paint; like: overlap of the
+    mark, at its place and width, with its paint.
+    """
 
     stroke: str
     overlap_target: float | None
@@ -66,11 +74,14 @@ class Compared:
 
 @dataclass(frozen=True)
 class Comparison:
-    """common: the pose of the sheet, by the places of all marks, about middle_mm; spread_mm: rms of what is left of
-    their displacements, None of fewer than three marks; elsewhere_mm2: paint outside of all marks. overlaps: of all
-    paint with the target (or, without a drawing, the prediction) as painted, once the sheet's place is put right, and
-    once each stroke's is. paint: share of it on the page, painted: on the sheet, by the pixels of canvas.
-    has_things: something on the sheet is no mark."""
+    """Result of the comparison of a painted sheet with its job.
+
+    common: pose of the sheet about middle_mm, from the places of all marks; spread_mm: rms of the displacements beyond
+    this pose, None for fewer than three marks; elsewhere_mm2: area of paint outside of all marks. overlaps: overlap of
+    all paint with the target (without a drawing: with the prediction), as painted, with the sheet's place corrected,
+    and with the place of each stroke corrected. paint: share of paint on the page; painted: share of paint on the
+    sheet, by the pixels of canvas. has_things: something on the sheet is not a mark.
+    """
 
     strokes: tuple[Compared, ...]
     common: Placed
@@ -90,27 +101,33 @@ class Comparison:
 
 
 def compare_photos(page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]) -> Comparison:
-    """photos: names and what their files hold, of one painted sheet; their paint is averaged. Error in one sentence,
-    with the file, where a photograph cannot be read, is given twice or shows another job."""
+    """Compare photographs of one painted sheet with its job; their paint is averaged.
+
+    photos: names and contents of the files. Raises Error with the file where a photograph cannot be read, is given
+    twice or shows another job.
+    """
     refuse_twice(photos)
     reads = []
     for name, data in photos:
         try:
-            reads.append(_read(page, strokes, data, reads[0][0].px_per_mm if reads else None))
+            reads.append(_read_photo(page, strokes, data, reads[0][0].px_per_mm if reads else None))
         except Error as refusal:
-            raise _of_a_job(refusal, name) from None
+            raise _as_job_error(refusal, name) from None
     flat, view, _ = max(reads, key=lambda each: each[1].residual_mm)
     paint = np.mean([each[2] for each in reads], axis=0).astype(np.float32)
     sheet = (page.size_mm[0] - 2 * page.frame_mm, page.size_mm[1] - 2 * page.frame_mm)
     canvas = Canvas((0.0, 0.0, *sheet), flat.px_per_mm)
-    painted = [_on_sheet(each, flat, page, canvas) for _, _, each in reads]
+    painted = [_sheet_paint(each, flat, page, canvas) for _, _, each in reads]
     _refuse_other_sheets(painted, photos)
     mean = np.mean(painted, axis=0).astype(np.float32)
     return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
 
 
 def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparison, list[TargetStroke]]:
-    """Leave out strokes that are not of the drawing."""
+    """Return the comparison and the strokes without strokes in the margin.
+
+    Only strokes of the drawing remain.
+    """
     drawn = [stroke for stroke in strokes if stroke.is_drawn]
     names = {stroke.stroke for stroke in drawn}
     return replace(found, strokes=tuple(row for row in found.strokes if row.stroke in names)), drawn
@@ -119,34 +136,40 @@ def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparis
 def compare_sheets(
     page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]
 ) -> list[Comparison]:
-    """Each photograph of another sheet. Error as for compare_photos."""
+    """Compare photographs that each show another sheet.
+
+    Raises the errors of `compare_photos`.
+    """
     refuse_twice(photos)
     return [compare_photos(page, strokes, [photo]) for photo in photos]
 
 
 def compare_paint(strokes: list[TargetStroke], painted: np.ndarray, canvas: Canvas, name: str) -> Comparison:
-    """painted: share of the usual paint of each pixel of the canvas, however it was seen; name: of the picture. Without
-    view, flat and paint. Error for what cannot be the paint of this job."""
+    """Compare paint from any source with a job.
+
+    The result has no view, flat or paint. painted: for each pixel of the canvas, the share of the usual paint; name:
+    name of the picture, for errors. Raises Error for paint that cannot be of this job.
+    """
     if all(not stroke.predicted for stroke in strokes):
         raise Error("there is nothing to paint", code="nothing-to-paint")
-    common, middle = _common(painted, strokes, canvas)
-    return _compared(strokes, painted, common, middle, canvas, name)
+    common, middle = _locate_sheet(painted, strokes, canvas)
+    return _compare(strokes, painted, common, middle, canvas, name)
 
 
 def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, bytes]]) -> None:
     for (name, _), each in zip(photos[1:], painted[1:], strict=True):
-        alike = _overlap(painted[0] > LEVEL, each > LEVEL)
-        if alike < ALIKE:
+        overlap = _overlap(painted[0] > EDGE_LEVEL, each > EDGE_LEVEL)
+        if overlap < MIN_SAME_SHEET_OVERLAP:
             raise Error(
-                f"its paint overlaps with that of {photos[0][0]} by {alike:.2f}, less than {ALIKE:g}: photographs of "
-                "one sheet are averaged; compare each sheet by itself",
+                f"its paint overlaps with that of {photos[0][0]} by {overlap:.2f}, less than "
+                f"{MIN_SAME_SHEET_OVERLAP:g}: photographs of one sheet are averaged; compare each sheet by itself",
                 file=name,
-                value=alike,
+                value=overlap,
                 code="photos-differ",
             )
 
 
-def _of_a_job(refusal: Error, name: str) -> Error:
+def _as_job_error(refusal: Error, name: str) -> Error:
     sentence, advice = refusal.sentence, refusal.advice
     if refusal.code == "photo-of-another-chart":
         sentence = "the picture shows the page of another job, or of another plan of this one"
@@ -156,7 +179,7 @@ def _of_a_job(refusal: Error, name: str) -> Error:
     )
 
 
-def _read(
+def _read_photo(
     page: JobPage, strokes: list[TargetStroke], data: bytes, fine: float | None
 ) -> tuple[Flat, View, np.ndarray]:
     printed = page.printed
@@ -170,18 +193,21 @@ def _read(
             stroke_boxes.append(StrokeBox(stroke.stroke, (*points.min(axis=0), *points.max(axis=0))))
     refuse_cropped(pixels, view, stroke_boxes)
     refuse_unsure(pixels, view, corners)
-    flat = flatten(pixels, view, page.size_mm, fine or min(view.px_per_mm, FINEST_PX_PER_MM))
-    dark = [each.mean(axis=0) + (each - each.mean(axis=0)) * 1.4 for each in corners.values()]
-    dark += bar_rings(printed.bar, beyond_mm=PRINT_MM)
-    dark += [box_ring(*ring.min(axis=0) - PRINT_MM, *ring.max(axis=0) + PRINT_MM) for ring in page.ticks]
-    dark += [box_ring(*label_box(label)) for label in printed.labels]
+    flat = flatten(pixels, view, page.size_mm, fine or min(view.px_per_mm, MAX_PX_PER_MM))
+    printed_rings = [each.mean(axis=0) + (each - each.mean(axis=0)) * 1.4 for each in corners.values()]
+    printed_rings += bar_rings(printed.bar, beyond_mm=PRINT_MARGIN_MM)
+    printed_rings += [
+        box_ring(*ring.min(axis=0) - PRINT_MARGIN_MM, *ring.max(axis=0) + PRINT_MARGIN_MM)
+        for ring in page.ticks
+    ]
+    printed_rings += [box_ring(*label_box(label)) for label in printed.labels]
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
-    for ring in dark:
+    for ring in printed_rings:
         cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
     return flat, view, paint_seen(flat, print_, stroke_boxes)
 
 
-def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
+def _sheet_paint(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
     """Return the paint of the sheet's own pixels, 1 for the usual paint."""
     left, up = page.frame_mm, page.size_mm[1] - page.frame_mm
     matrix = np.array(
@@ -194,64 +220,77 @@ def _on_sheet(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
     return np.clip(sheet / usual, 0, 1.2)
 
 
-def _common(painted, strokes: list[TargetStroke], canvas: Canvas) -> tuple[Placed, np.ndarray]:
+def _locate_sheet(painted, strokes: list[TargetStroke], canvas: Canvas) -> tuple[Placed, np.ndarray]:
     rings = [ring for stroke in strokes for ring in stroke.predicted]
     middle = centroid(rings)
     coarse = min(canvas.px_per_mm, 5.0)
     small = Canvas(canvas.window_mm, coarse)
     rows, columns = small.shape
     less = cv2.resize(painted, (columns, rows), interpolation=cv2.INTER_AREA)
-    found = place(less, np.ones_like(less), rings, small)
+    found = locate_mark(less, np.ones_like(less), rings, small)
     return replace(found, wider_mm=0.0) if found.found else NOWHERE, middle
 
 
 @dataclass(frozen=True)
-class _Seen:
-    """A stroke that paints: its figures, and locate, which puts its rings where its mark is."""
+class _LocatedStroke:
+    """A stroke that paints, with its figures.
+
+    locate: moves rings to the place of its mark.
+    """
 
     stroke: TargetStroke
     row: Compared
     locate: Callable[[list[np.ndarray]], list[np.ndarray]]
 
 
-def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
-    """Figures are of the drawing; strokes that are not of it have their rows."""
+def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
+    """Compute the comparison.
+
+    All strokes have rows, but only strokes of the drawing count in the figures of the sheet.
+    """
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
-    is_painted = painted > LEVEL
-    every = []
+    is_painted = painted > EDGE_LEVEL
+    located = []
     for k, stroke in enumerate(strokes):
         if stroke.predicted:
             others = [*chain(*moved[:k], *moved[k + 1 :])]
-            every.append(_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas))
-    found = every
+            located.append(
+                _locate_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas)
+            )
+    found = located
     if not all(stroke.is_drawn for stroke in strokes):
         drawn, others = (
             [rings for rings, stroke in zip(moved, strokes, strict=True) if stroke.is_drawn == is_drawn]
             for is_drawn in (True, False)
         )
         away, away_from_others = (
-            _away(_any([*chain(*each)], canvas), canvas.px_per_mm) for each in (drawn, others)
+            _distance_mm(_mask([*chain(*each)], canvas), canvas.px_per_mm) for each in (drawn, others)
         )
         is_painted, painted = (np.where(away <= away_from_others, each, 0) for each in (is_painted, painted))
         is_painted = is_painted.astype(bool)
-        moved, found = drawn, [seen for seen in every if seen.stroke.is_drawn]
+        moved, found = drawn, [stroke_found for stroke_found in located if stroke_found.stroke.is_drawn]
         strokes = [stroke for stroke in strokes if stroke.is_drawn]
-    predicted = _overlap(_any([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
-    _refuse_other_job(max(predicted, _overlap(_any([*chain(*moved)], canvas), is_painted)), name)
-    sheet, spread_mm = _sheet([seen.row for seen in found], common, middle)
+    predicted = _overlap(_mask([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
+    _refuse_other_job(max(predicted, _overlap(_mask([*chain(*moved)], canvas), is_painted)), name)
+    sheet, spread_mm = _fit_sheet_pose([stroke_found.row for stroke_found in found], common, middle)
     has_target = all(stroke.target is not None for stroke in strokes)
-    whole = [*chain(*(stroke.target if has_target else stroke.predicted for stroke in strokes))]
-    each = [seen.locate(seen.stroke.target if has_target else seen.stroke.predicted) for seen in found]
+    target_rings = [*chain(*(stroke.target if has_target else stroke.predicted for stroke in strokes))]
+    each = [
+        stroke_found.locate(stroke_found.stroke.target if has_target else stroke_found.stroke.predicted)
+        for stroke_found in found
+    ]
     as_painted, placed, each_placed = (
-        _overlap(_any(rings, canvas), is_painted)
-        for rings in (whole, [sheet.moved(ring, middle) for ring in whole], [*chain(*each)])
+        _overlap(_mask(rings, canvas), is_painted)
+        for rings in (target_rings, [sheet.moved(ring, middle) for ring in target_rings], [*chain(*each)])
     )
-    marks = _any([*chain(*(seen.locate(seen.stroke.predicted) for seen in found))], canvas)
-    astray = is_painted & (_away(marks, canvas.px_per_mm) > BLOT_MM)
-    things = _things(astray, canvas)
-    near = _away(things, canvas.px_per_mm) < BLOT_MM + BLUR_MM
+    marks = _mask(
+        [*chain(*(stroke_found.locate(stroke_found.stroke.predicted) for stroke_found in found))], canvas
+    )
+    astray = is_painted & (_distance_mm(marks, canvas.px_per_mm) > MAX_EDGE_DISTANCE_MM)
+    things = _find_things(astray, canvas)
+    near = _distance_mm(things, canvas.px_per_mm) < MAX_EDGE_DISTANCE_MM + EDGE_BLUR_MM
     return Comparison(
-        tuple(_uncovered(seen, near, canvas) for seen in every),
+        tuple(_unless_covered(stroke_found, near, canvas) for stroke_found in located),
         sheet,
         middle,
         spread_mm,
@@ -261,15 +300,15 @@ def _compared(strokes, painted, common, middle, canvas, name) -> Comparison:
         (as_painted, placed, each_placed),
         painted,
         canvas,
-        (*_missing(found), *_covered(things, canvas)),
+        (*_missing_mark_notices(found), *_thing_notices(things, canvas)),
         bool(things.any()),
     )
 
 
 def _refuse_other_job(overlap: float, name: str) -> None:
-    if overlap < LEAST_OVERLAP:
+    if overlap < MIN_OVERLAP:
         raise Error(
-            f"the paint overlaps with what was predicted by {overlap:.2f}, less than {LEAST_OVERLAP:g}: is this the "
+            f"the paint overlaps with what was predicted by {overlap:.2f}, less than {MIN_OVERLAP:g}: is this the "
             "painted page of this job?",
             file=name,
             value=overlap,
@@ -277,13 +316,13 @@ def _refuse_other_job(overlap: float, name: str) -> None:
         )
 
 
-def _missing(found: list[_Seen]) -> list[Notice]:
-    rows = [seen.row for seen in found if not seen.row.placed.found and seen.row.missing > MOSTLY]
+def _missing_mark_notices(found: list[_LocatedStroke]) -> list[Notice]:
+    rows = [seen.row for seen in found if not seen.row.placed.found and seen.row.missing > MISSING_MARK_SHARE]
     sentence = "no paint is found where its mark should be"
     return [Notice(row.stroke, sentence, code="mark-missing") for row in rows]
 
 
-def _covered(things: np.ndarray, canvas: Canvas) -> list[Notice]:
+def _thing_notices(things: np.ndarray, canvas: Canvas) -> list[Notice]:
     if not things.any():
         return []
     sentence = (
@@ -293,15 +332,17 @@ def _covered(things: np.ndarray, canvas: Canvas) -> list[Notice]:
     return [Notice("sheet", sentence, code="photo-covered")]
 
 
-def without(found: Comparison, done: dict[str, Placed]) -> Comparison:
-    """Return the comparison with marks at the places that they would have without the known displacements. Those of an
-    unknown displacement are dropped."""
-    rows = tuple(_undone(row, done.get(row.stroke, NOWHERE)) for row in found.strokes)
-    sheet, spread_mm = _sheet(list(rows), found.common, found.middle_mm)
+def subtract_displacements(found: Comparison, done: dict[str, Placed]) -> Comparison:
+    """Return the comparison without known displacements of marks.
+
+    done: displacements by stroke. A mark whose displacement is unknown counts as not found.
+    """
+    rows = tuple(_subtract_displacement(row, done.get(row.stroke, NOWHERE)) for row in found.strokes)
+    sheet, spread_mm = _fit_sheet_pose(list(rows), found.common, found.middle_mm)
     return replace(found, strokes=rows, common=sheet, spread_mm=spread_mm)
 
 
-def _undone(row: Compared, done: Placed) -> Compared:
+def _subtract_displacement(row: Compared, done: Placed) -> Compared:
     seen = row.placed
     if not (seen.found and done.found):
         return replace(row, placed=NOWHERE)
@@ -310,29 +351,38 @@ def _undone(row: Compared, done: Placed) -> Compared:
     return replace(row, placed=left)
 
 
-def _things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
-    """Return pieces of paint outside of all marks that are too large for stray paint."""
+def _find_things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
+    """Return a mask of the pieces of paint that are too large for stray paint.
+
+    Only paint outside of all marks is considered.
+    """
     _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(astray), connectivity=8)
-    large = stats[:, cv2.CC_STAT_AREA] > THING_MM2 * canvas.px_per_mm**2
+    large = stats[:, cv2.CC_STAT_AREA] > MIN_THING_AREA_MM2 * canvas.px_per_mm**2
     large[0] = False
     return large[labels]
 
 
-def _uncovered(seen: _Seen, near: np.ndarray, canvas: Canvas) -> Compared:
-    """Drop a stroke whose mark is near a thing: it is not found."""
-    covered = near.any() and (_any(seen.locate(seen.stroke.predicted), canvas) & near).any()
+def _unless_covered(seen: _LocatedStroke, near: np.ndarray, canvas: Canvas) -> Compared:
+    """Return the figures of a stroke, as not found if a thing covers its mark.
+
+    A thing near the mark counts as covering it.
+    """
+    covered = near.any() and (_mask(seen.locate(seen.stroke.predicted), canvas) & near).any()
     return replace(seen.row, placed=NOWHERE) if covered else seen.row
 
 
-def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
-    """Return the shift and turn that bring all predicted middles nearest to the marks (Kabsch), and the residuals.
-    Marks that are much drier than the best ones are displaced, and are left out where enough others are."""
+def _fit_sheet_pose(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Placed, float | None]:
+    """Return the pose of the sheet, and the rms residual [mm].
+
+    The pose brings all predicted middles nearest to the marks (Kabsch). Marks that are much drier than the best ones
+    seem displaced, and are left out where enough others remain.
+    """
     known = [row for row in rows if row.placed.found]
-    if len(known) < LEAST_MARKS:
+    if len(known) < MIN_MARKS:
         return common, None
     usual = float(np.quantile([row.missing for row in known], 0.25))
-    whole = [row for row in known if row.missing <= usual + DRIER]
-    known = whole if len(whole) >= LEAST_MARKS else known
+    well_painted = [row for row in known if row.missing <= usual + MAX_EXCESS_MISSING_SHARE]
+    known = well_painted if len(well_painted) >= MIN_MARKS else known
     before = np.array([row.middle_mm for row in known]) - middle
     after = before + np.array([row.placed.shift_mm for row in known])
     here, there = before.mean(axis=0), after.mean(axis=0)
@@ -340,54 +390,65 @@ def _sheet(rows: list[Compared], common: Placed, middle: np.ndarray) -> tuple[Pl
     turn = float(np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b)))
     turned = Placed((0.0, 0.0), turn, 0.0, True)
     shift = there - turned.moved(here[None], np.zeros(2))[0]
-    left = after - shift - turned.moved(before, np.zeros(2))
-    spread_mm = float(np.sqrt(np.square(left).sum(axis=1).mean()))
+    residual = after - shift - turned.moved(before, np.zeros(2))
+    spread_mm = float(np.sqrt(np.square(residual).sum(axis=1).mean()))
     return Placed((float(shift[0]), float(shift[1])), turn, 0.0, True), spread_mm
 
 
-def _any(rings: list[np.ndarray], canvas: Canvas) -> np.ndarray:
+def _mask(rings: list[np.ndarray], canvas: Canvas) -> np.ndarray:
     return canvas.filled(rings) > 0.5 if rings else np.zeros(canvas.shape, bool)
 
 
-def _overlap(one: np.ndarray, other: np.ndarray) -> float:
-    union = float((one | other).sum())
-    return float((one & other).sum()) / union if union else 1.0
+def _overlap(mask_a: np.ndarray, mask_b: np.ndarray) -> float:
+    union = float((mask_a | mask_b).sum())
+    return float((mask_a & mask_b).sum()) / union if union else 1.0
 
 
-def _stroke(
+def _locate_stroke(
     stroke: TargetStroke, rings, others, painted, is_painted, common: Placed, middle, canvas: Canvas
-) -> _Seen:
-    """rings: its mark with the sheet's place put right, others: those of all other strokes. is_painted gets the part
-    whose paint is paler than that of others."""
+) -> _LocatedStroke:
+    """Locate the mark of one stroke and compute its figures.
+
+    rings: predicted mark with the sheet's place corrected; others: rings of all other strokes. Adds to `is_painted` the
+    paint of this stroke that is paler than the usual paint.
+    """
     points = np.vstack(rings)
-    low = np.maximum(points.min(axis=0) - AROUND_MM, canvas.window_mm[:2])
-    high = np.minimum(points.max(axis=0) + AROUND_MM, canvas.window_mm[2:])
+    low = np.maximum(points.min(axis=0) - SEARCH_MARGIN_MM, canvas.window_mm[:2])
+    high = np.minimum(points.max(axis=0) + SEARCH_MARGIN_MM, canvas.window_mm[2:])
     fine = canvas.px_per_mm
     c0, r0 = int(low[0] * fine), int((canvas.window_mm[3] - high[1]) * fine)
     c1, r1 = int(np.ceil(high[0] * fine)), int(np.ceil((canvas.window_mm[3] - low[1]) * fine))
-    part = painted[r0:r1, c0:c1]
-    window = (c0 / fine, canvas.window_mm[3] - r0 / fine - part.shape[0] / fine)
-    small = Canvas((*window, window[0] + part.shape[1] / fine, window[1] + part.shape[0] / fine), fine)
-    near = [ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()]
-    mine = small.filled(rings) > 0.5
-    their_away = _away(small.filled(near) > 0.5, fine)
-    nearer = (_away(mine, fine) <= their_away) | mine
-    strength = float(np.median(part[mine & (part > PALEST)])) if (mine & (part > PALEST)).any() else 1.0
-    attributed = np.where(nearer, part / strength, 0.0)
-    free = (their_away > BLUR_MM) & nearer
-    found = place(attributed, free, rings, small)
+    window_paint = painted[r0:r1, c0:c1]
+    window = (c0 / fine, canvas.window_mm[3] - r0 / fine - window_paint.shape[0] / fine)
+    local_canvas = Canvas(
+        (*window, window[0] + window_paint.shape[1] / fine, window[1] + window_paint.shape[0] / fine), fine
+    )
+    nearby_rings = [
+        ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()
+    ]
+    mark = local_canvas.filled(rings) > 0.5
+    their_away = _distance_mm(local_canvas.filled(nearby_rings) > 0.5, fine)
+    nearer = (_distance_mm(mark, fine) <= their_away) | mark
+    strength = (
+        float(np.median(window_paint[mark & (window_paint > PALEST_PAINT_SHARE)]))
+        if (mark & (window_paint > PALEST_PAINT_SHARE)).any()
+        else 1.0
+    )
+    attributed = np.where(nearer, window_paint / strength, 0.0)
+    free = (their_away > EDGE_BLUR_MM) & nearer
+    found = locate_mark(attributed, free, rings, local_canvas)
     if not found.found:  # a dab has no direction
-        found = place(attributed, free, rings, small, turns=False)
+        found = locate_mark(attributed, free, rings, local_canvas, turns=False)
     inner = centroid(rings)
 
     def locate(each, at):
         return [at.moved(common.moved(ring, middle), inner) for ring in each]
 
-    is_mine = attributed > LEVEL
-    at_last = small.filled(locate(stroke.predicted, found)) > 0.5
-    if not found.found or (at_last & is_mine).sum() < COVERED * at_last.sum():
-        found, at_last = NOWHERE, mine
-    is_painted[r0:r1, c0:c1] |= is_mine & (_away(at_last, fine) < BLOT_MM)
+    is_mine = attributed > EDGE_LEVEL
+    at_last = local_canvas.filled(locate(stroke.predicted, found)) > 0.5
+    if not found.found or (at_last & is_mine).sum() < MIN_PAINTED_SHARE * at_last.sum():
+        found, at_last = NOWHERE, mark
+    is_painted[r0:r1, c0:c1] |= is_mine & (_distance_mm(at_last, fine) < MAX_EDGE_DISTANCE_MM)
     start = centroid(stroke.predicted)
     shift = locate([start[None]], found)[0][0] - start
     whole = Placed(
@@ -395,18 +456,20 @@ def _stroke(
     )
     row = Compared(
         stroke.stroke,
-        _overlap(small.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
-        _overlap(small.filled(stroke.predicted) > 0.5, is_mine),
+        _overlap(local_canvas.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
+        _overlap(local_canvas.filled(stroke.predicted) > 0.5, is_mine),
         whole,
         (float(start[0]), float(start[1])),
-        float((at_last & ~(part / strength > LEVEL)).sum()) / float(max(at_last.sum(), 1)),
-        _overlap(small.filled(locate(grown(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
+        float((at_last & ~(window_paint / strength > EDGE_LEVEL)).sum()) / float(max(at_last.sum(), 1)),
+        _overlap(
+            local_canvas.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine
+        ),
     )
-    return _Seen(stroke, row, lambda each: locate(each, found))
+    return _LocatedStroke(stroke, row, lambda each: locate(each, found))
 
 
-def _away(mask: np.ndarray, px_per_mm: float) -> np.ndarray:
-    """mm from each pixel to the mask."""
+def _distance_mm(mask: np.ndarray, px_per_mm: float) -> np.ndarray:
+    """Return the distance [mm] of each pixel from the mask; inf for an empty mask."""
     if not mask.any():
         return np.full(mask.shape, np.inf, np.float32)
     return cv2.distanceTransform(np.uint8(~mask), cv2.DIST_L2, 5) / px_per_mm

@@ -1,4 +1,4 @@
-"""How well a studio repeats: the same strokes on several sheets, or several times on one."""
+"""Measure how well a studio repeats strokes, on several sheets or on one."""
 
 from __future__ import annotations
 
@@ -14,28 +14,30 @@ from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from ..reporting.report_text import Report, plural, table, verdict
-from .corrections import LEAST_MARKS
-from .next_corrections import UNSEEN
+from .corrections import MIN_MARKS
+from .next_corrections import MAX_MISSING_FOR_PLACE
 from .photographs import Comparison
 
 FORMAT = "brushsvg/repeatability"
-SAME_MM = (
-    0.2  # copies of a stroke have the same way but for its place, and for the simplification of its poses
-)
-ALONG = 65  # places at which ways are compared
-LEAST_FREEDOM = 4  # values to spare for a spread: fewer say next to nothing
-ALIKE_MM = 1e-9  # no two sheets repeat so well
-BIN_SHARE = 0.25  # width of a column of the histogram over the spread
-BAR = 40
-GOOD_MM = 0.1  # of a displacement: it costs 0.06 of the overlap of a line of 3 mm
-MOST_WORST = 5
+# Deviation of the paths of two copies of a stroke, which differ by the simplification of their poses.
+MAX_COPY_DEVIATION_MM = 0.2
+PATH_PLACES = 65  # number of places at which paths are compared
+MIN_DEGREES_OF_FREEDOM = 4  # degrees of freedom of a spread: with fewer it is almost unknown
+MIN_SPREAD_MM = 1e-9  # spread below which photographs show the same sheet: no two sheets repeat so well
+BIN_SHARE = 0.25  # width of a column of the histogram, as a share of the spread
+MAX_BAR_LENGTH = 40
+MAX_GOOD_DISPLACEMENT_MM = 0.1  # displacement that costs 0.06 of the overlap of a line of 3 mm
+MAX_WORST_STROKES = 5
 
 
 @dataclass(frozen=True)
 class Spread:
-    """A stroke, or copies of one: how many were seen, their mean displacement beyond the sheet's place, and how far
-    they are from it: rms in x and y together over the square root of two, and the farthest; wider_mm: rms of how much
-    wider they are than on average."""
+    """The spread of a stroke, or of the copies of one.
+
+    count: number of marks that were seen; mean_mm: mean displacement beyond the sheet's place; spread_mm: rms distance
+    from the mean, in x and y together, divided by the square root of two; farthest_mm: largest distance from the mean;
+    wider_mm: standard deviation of the width of each edge.
+    """
 
     stroke: str
     count: int
@@ -47,9 +49,12 @@ class Spread:
 
 @dataclass(frozen=True)
 class Approach:
-    """By how much strokes that begin in the positive direction of an axis are further along it than those that begin
-    in the negative one, with half its 95 % interval; None where there are too few of either. plus_mm, minus_mm: mean
-    place along the axis of each stroke, by that direction."""
+    """The hysteresis of an axis, by the direction of approach to strokes.
+
+    value_mm: how much further along the axis strokes are that are approached in its positive direction than those
+    approached in its negative one; half_mm: half its 95 % interval. Both are None where there are too few strokes of
+    either kind. plus_mm, minus_mm: mean place of each stroke along the axis, by direction of approach.
+    """
 
     axis: str
     value_mm: float | None
@@ -60,9 +65,13 @@ class Approach:
 
 @dataclass(frozen=True)
 class Repeats:
-    """displacement_mm: standard deviation in x and in y of the place of the same stroke, with its 95 % interval;
-    away_mm: (n,) of each one, how far from its mean; over_sheets: else over copies on one, which their places
-    move, too; once: strokes that were seen once or not at all, which have no figures."""
+    """How well the same strokes repeat.
+
+    displacement_mm: standard deviation, in x and in y, of the place of the same stroke, with the 95 % interval from
+    low_mm to high_mm; away_mm: (n,) distance of each mark from its mean; over_sheets: whether the spread is over
+    several sheets. Otherwise it is over copies on one sheet, whose different places add to the spread. once: strokes
+    that were seen once or not at all, which have no figures.
+    """
 
     rows: tuple[Spread, ...]
     displacement_mm: float
@@ -76,12 +85,15 @@ class Repeats:
 
 
 def repeats(plan, sheets: list[Comparison]) -> Repeats:
-    """sheets: comparisons of sheets that were painted by the same plan. Error where nothing was painted twice."""
-    places = [_places(found) for found in sheets]
-    names = [one.stroke for one in plan.passes]
+    """Measure the repeatability over sheets, or over copies on one sheet.
+
+    sheets: comparisons of sheets that were painted with the same plan. Raises Error where nothing was painted twice.
+    """
+    places = [_places_by_stroke(found) for found in sheets]
+    names = [a_pass.stroke for a_pass in plan.passes]
     over_sheets = len(sheets) > 1
-    groups = [[name] for name in names] if over_sheets else _copies(plan)
-    rows, once, away, squares, seen, used = [], [], [], 0.0, 0, 0
+    groups = [[name] for name in names] if over_sheets else _group_copies(plan)
+    rows, once, away, squares, mark_count, group_count = [], [], [], 0.0, 0, 0
     for group in groups:
         values = [each[name] for each in places for name in group if name in each]
         if len(values) < 2:
@@ -89,8 +101,8 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
             continue
         at = np.array([value[:2] for value in values])
         off = at - at.mean(axis=0)
-        far = np.hypot(*off.T)
-        wide = np.array([value[2] for value in values])
+        distances_mm = np.hypot(*off.T)
+        widths_mm = np.array([value[2] for value in values])
         count = len(values)
         rows.append(
             Spread(
@@ -98,43 +110,48 @@ def repeats(plan, sheets: list[Comparison]) -> Repeats:
                 count,
                 tuple(at.mean(axis=0).tolist()),
                 math.sqrt(float(np.square(off).sum()) / (2 * (count - 1))),
-                float(far.max()),
-                float(wide.std(ddof=1)),
+                float(distances_mm.max()),
+                float(widths_mm.std(ddof=1)),
             )
         )
-        away.append(far)
+        away.append(distances_mm)
         squares += float(np.square(off).sum())
-        seen += count
-        used += 1
-    # two means of each group, and of each sheet but one a shift and a turn
-    freedom = 2 * (seen - used) - 3 * (len(sheets) - 1)
-    if freedom < LEAST_FREEDOM:
-        what = "on these sheets" if over_sheets else "on this sheet, where copies of a stroke are looked for"
+        mark_count += count
+        group_count += 1
+    # Each group costs the two coordinates of its mean, and each sheet but one costs a shift and a turn.
+    freedom = 2 * (mark_count - group_count) - 3 * (len(sheets) - 1)
+    if freedom < MIN_DEGREES_OF_FREEDOM:
+        where = "on these sheets" if over_sheets else "on this sheet, where copies of a stroke are looked for"
         sentence = (
-            f"too few strokes are seen more than once {what}: {seen} marks of {used} strokes show no spread"
+            f"too few strokes are seen more than once {where}: {mark_count} marks of {group_count} strokes "
+            "show no spread"
         )
         raise Error(sentence, code="too-few-repeats")
     sigma = math.sqrt(squares / freedom)
-    if sigma < ALIKE_MM:
+    if sigma < MIN_SPREAD_MM:
         sentence = "marks are alike to the last digit: photographs of two sheets are needed, not of one twice"
         raise Error(sentence, code="too-few-repeats")
-    low, high = (sigma * math.sqrt(freedom / _chi_square(freedom, side)) for side in (1.96, -1.96))
-    approaches = tuple(_approach(plan, places, axis) for axis in (0, 1))
+    low, high = (sigma * math.sqrt(freedom / _chi_square_quantile(freedom, side)) for side in (1.96, -1.96))
+    approaches = tuple(_measure_hysteresis(plan, places, axis) for axis in (0, 1))
     return Repeats(
         tuple(rows), sigma, low, high, np.concatenate(away), approaches, len(sheets), over_sheets, tuple(once)
     )
 
 
-def _places(found: Comparison) -> dict[str, tuple[float, float, float]]:
-    """By stroke x and y beyond the sheet's place, in the sheet's own directions, and how much wider it is."""
+def _places_by_stroke(found: Comparison) -> dict[str, tuple[float, float, float]]:
+    """Return, by stroke, its place beyond the sheet's pose and its excess width.
+
+    The place is x and y [mm] in the sheet's own directions; the excess width of an edge is in mm as well. Raises Error
+    where too few marks are found to determine the pose of the sheet.
+    """
     if found.spread_mm is None:
         sentence = (
-            f"fewer than {LEAST_MARKS} of its marks are found, which do not determine the pose of the sheet"
+            f"fewer than {MIN_MARKS} of its marks are found, which do not determine the pose of the sheet"
         )
         raise Error(sentence, code="marks-missing")
     sheet, out = found.common, {}
     for row in found.strokes:
-        if row.placed.found and row.missing <= UNSEEN:
+        if row.placed.found and row.missing <= MAX_MISSING_FOR_PLACE:
             middle = np.array([row.middle_mm])
             beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
             x, y = (beyond @ rotation(-sheet.turn_rad))[0].tolist()
@@ -142,33 +159,39 @@ def _places(found: Comparison) -> dict[str, tuple[float, float, float]]:
     return out
 
 
-def _copies(plan) -> list[list[str]]:
-    """Names of strokes that are the same but for their place."""
+def _group_copies(plan) -> list[list[str]]:
+    """Return groups of names of strokes that are the same except for their place."""
     groups: list[tuple[np.ndarray, list[str]]] = []
-    for one in plan.passes:
-        way = _along(np.array(one.poses_mm))
+    for a_pass in plan.passes:
+        way = _path_from_start(np.array(a_pass.poses_mm))
         for known, names in groups:
-            if np.abs(known - way).max() < SAME_MM:
-                names.append(one.stroke)
+            if np.abs(known - way).max() < MAX_COPY_DEVIATION_MM:
+                names.append(a_pass.stroke)
                 break
         else:
-            groups.append((way, [one.stroke]))
+            groups.append((way, [a_pass.stroke]))
     return [names for _, names in groups]
 
 
-def _along(poses_mm: np.ndarray) -> np.ndarray:
-    """(n, 3) from its beginning, at places that part the way into equal lengths."""
-    way = evenly(poses_mm, ALONG)
+def _path_from_start(poses_mm: np.ndarray) -> np.ndarray:
+    """Return places (n, 3) at equal lengths along a path.
+
+    x and y are relative to the beginning of the path.
+    """
+    way = evenly(poses_mm, PATH_PLACES)
     way[:, :2] -= poses_mm[0, :2]
     return way
 
 
-def _approach(plan, places, axis: int) -> Approach:
-    """The way to a stroke's beginning: from where the one before it ended."""
+def _measure_hysteresis(plan, places, axis: int) -> Approach:
+    """Return the hysteresis of an axis.
+
+    A stroke is approached from the end of the stroke before it.
+    """
     ways: dict[bool, list[float]] = {True: [], False: []}
-    for before, one in zip(plan.passes[:-1], plan.passes[1:], strict=True):
-        way = one.poses_mm[0][axis] - before.poses_mm[-1][axis]
-        values = [each[one.stroke][axis] for each in places if one.stroke in each]
+    for before, a_pass in zip(plan.passes[:-1], plan.passes[1:], strict=True):
+        way = a_pass.poses_mm[0][axis] - before.poses_mm[-1][axis]
+        values = [each[a_pass.stroke][axis] for each in places if a_pass.stroke in each]
         if values and abs(way) > 1.0:
             ways[way > 0].append(float(np.mean(values)))
     name = "xy"[axis]
@@ -181,36 +204,47 @@ def _approach(plan, places, axis: int) -> Approach:
     return Approach(name, float(up.mean() - down.mean()), float(half), up, down)
 
 
-def _chi_square(freedom: int, deviate: float) -> float:
-    """The quantile of a normal deviate (Wilson and Hilferty)."""
+def _chi_square_quantile(freedom: int, deviate: float) -> float:
+    """Return the chi-square quantile at a normal deviate.
+
+    The approximation is that of Wilson and Hilferty.
+    """
     part = 2.0 / (9.0 * freedom)
     return freedom * max(1.0 - part + deviate * math.sqrt(part), 0.05) ** 3
 
 
 def histogram(found: Repeats) -> list[tuple[float, int]]:
-    """Return (upper edge in mm, how many displacements are below it and above the one before)."""
+    """Return the upper edge [mm] of each bin, and the number of displacements in it."""
     edges, counts = bins_of(found)
     return list(zip(edges[1:].tolist(), counts.tolist(), strict=True))
 
 
 def bins_of(found: Repeats) -> tuple[np.ndarray, np.ndarray]:
-    """Return edges (n + 1,) of bins in mm, from 0, and how many displacements (n,) are in each."""
+    """Return the edges of bins [mm], and the number of displacements in each bin.
+
+    The edges (n + 1,) start at 0; the numbers are (n,).
+    """
     step = max(0.01, round(BIN_SHARE * float(np.quantile(found.away_mm, 0.9)), 2))
     edges = np.arange(math.ceil(float(found.away_mm.max()) / step) + 1) * step
     return edges, np.histogram(found.away_mm, np.concatenate([[0.0], edges[1:] + 1e-9]))[0]
 
 
 def report(title: str, found: Repeats) -> Report:
-    """What `brushsvg compare --sheets` prints. Good: a stroke repeats to 0.1 mm, and every stroke was seen twice."""
+    """Return the report of `brushsvg compare --sheets`.
+
+    The verdict is good if strokes repeat to 0.1 mm and every stroke was seen twice.
+    """
     count = len(found.once)
-    but = [
-        f"strokes repeat only to {found.displacement_mm:.2f} mm" if found.displacement_mm >= GOOD_MM else "",
+    reservations = [
+        f"strokes repeat only to {found.displacement_mm:.2f} mm"
+        if found.displacement_mm >= MAX_GOOD_DISPLACEMENT_MM
+        else "",
         f"{plural(count, 'stroke')} {'was' if count == 1 else 'were'} not seen twice" if count else "",
     ]
     over = (
         f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
     )
-    worst = sorted(found.rows, key=lambda row: -row.spread_mm)[:MOST_WORST]
+    worst = sorted(found.rows, key=lambda row: -row.spread_mm)[:MAX_WORST_STROKES]
     lines = [
         f"{title}: {plural(len(found.rows), 'stroke')} on {over}: the same stroke is displaced by "
         f"{found.displacement_mm:.3f} mm in x and in y (standard deviation, 95 % interval {found.low_mm:.3f} to "
@@ -219,15 +253,15 @@ def report(title: str, found: Repeats) -> Report:
             f"{row.stroke} spreads by {row.spread_mm:.3f} mm, {row.farthest_mm:.2f} mm at most"
             for row in worst
         ),
-        *(_approach_words(one) for one in found.approaches),
+        *(_describe_hysteresis(approach) for approach in found.approaches),
     ]
     if count:
-        why = f"not found, or more than {100 * UNSEEN:g} % of the mark without paint"
+        why = f"not found, or more than {100 * MAX_MISSING_FOR_PLACE:g} % of the mark without paint"
         lines.append(f"{plural(count, 'stroke')} not seen twice ({why}): {', '.join(found.once)}.")
-    return Report(verdict([], but), tuple(lines), tuple(_details(found)))
+    return Report(verdict([], reservations), tuple(lines), tuple(_detail_lines(found)))
 
 
-def _details(found: Repeats) -> list[str]:
+def _detail_lines(found: Repeats) -> list[str]:
     head = ("stroke", "seen", "mean x", "mean y", "spread", "farthest", "wider")
     rows = []
     for row in found.rows:
@@ -245,7 +279,9 @@ def _details(found: Repeats) -> list[str]:
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0
     for edge, count in bins:
-        lines.append(f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(BAR * count / most)}")
+        lines.append(
+            f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(MAX_BAR_LENGTH * count / most)}"
+        )
         before = edge
     return [
         *lines,
@@ -255,18 +291,18 @@ def _details(found: Repeats) -> list[str]:
     ]
 
 
-def _approach_words(one: Approach) -> str:
-    if one.value_mm is None:
-        return f"Too few strokes are approached from either side in {one.axis} to show a hysteresis."
-    certain = "" if abs(one.value_mm) > one.half_mm else ", which may be chance"
+def _describe_hysteresis(approach: Approach) -> str:
+    if approach.value_mm is None:
+        return f"Too few strokes are approached from either side in {approach.axis} to show a hysteresis."
+    certain = "" if abs(approach.value_mm) > approach.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{one.axis} are {one.value_mm:+.3f} +- {one.half_mm:.3f} mm further that "
-        f"way than those approached towards -{one.axis}{certain}."
+        f"Strokes that are approached towards +{approach.axis} are {approach.value_mm:+.3f} +- "
+        f"{approach.half_mm:.3f} mm further that way than those approached towards -{approach.axis}{certain}."
     )
 
 
 def as_json(title: str, found: Repeats) -> str:
-    made = {
+    content = {
         "format": FORMAT,
         "version": 1,
         "title": title,
@@ -274,8 +310,10 @@ def as_json(title: str, found: Repeats) -> str:
         "displacement_mm": round(found.displacement_mm, 4),
         "displacement_95_mm": [round(found.low_mm, 4), round(found.high_mm, 4)],
         "hysteresis_mm": {
-            one.axis: None if one.value_mm is None else [round(one.value_mm, 4), round(one.half_mm, 4)]
-            for one in found.approaches
+            approach.axis: None
+            if approach.value_mm is None
+            else [round(approach.value_mm, 4), round(approach.half_mm, 4)]
+            for approach in found.approaches
         },
         "not_seen_twice": list(found.once),
         "histogram": [{"to_mm": round(edge, 4), "count": count} for edge, count in histogram(found)],
@@ -291,11 +329,14 @@ def as_json(title: str, found: Repeats) -> str:
             for row in found.rows
         ],
     }
-    return json.dumps(made, indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
 def read_displacement_mm(path: str) -> float:
-    """The standard deviation in a file that `compare --sheets` wrote. Error naming file and key."""
+    """Read the standard deviation [mm] from a file that `compare --sheets` wrote.
+
+    Raises Error with the file and the key.
+    """
     try:
         content = json_fields.document(read_bytes(path), FORMAT)
         return json_fields.number(content.get("displacement_mm"), "displacement_mm", 1e-3, 10.0)

@@ -1,4 +1,4 @@
-"""A comparison for people and as JSON."""
+"""Report a comparison as text and as JSON."""
 
 from __future__ import annotations
 
@@ -14,34 +14,43 @@ from ..machine.cells.cell import Machine
 from ..reporting.report_text import Report, overlap_reasons, percent, place_line, plural, table, verdict
 from ..reporting.worst_areas import WorstArea, worst_areas
 from .attribution.faults import Faults
-from .attribution.report import fix_first, in_json, in_words
-from .corrections import FORMAT, RESIDUAL, Correction
-from .corrections import as_json as in_file
-from .ends import UNSEEN, Ends
+from .attribution.report import fault_lines, faults_as_json, fix_first
+from .corrections import FORMAT, RESIDUAL_KEY, Correction
+from .corrections import as_json as correction_as_json
+from .ends import UNKNOWN_ENDS, Ends
 from .next_corrections import displacement_mm
-from .photographs import BLOT_MM, MOSTLY, Compared, Comparison, TargetStroke
+from .photographs import MAX_EDGE_DISTANCE_MM, MISSING_MARK_SHARE, Compared, Comparison, TargetStroke
 
-LEAST_BLOT_MM2 = 1.0
-HEAD = ("stroke", "drawn", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
-WORSE = " (less: the place comes from the middles of marks, which missing paint, the brush and the machine move, too)"
+MIN_STRAY_PAINT_MM2 = 1.0
+TABLE_HEAD = ("stroke", "drawn", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
+WORSE_PLACE_NOTE = (
+    " (less: the place comes from the middles of marks, which missing paint, the brush and the machine move, "
+    "too)"
+)
 
 
 @dataclass(frozen=True)
 class Made:
-    """Fingerprints of what a sheet was made with: the brush that predicted, the one that the plan was made for, where
-    it is known, and the machine that the cell undid."""
+    """Fingerprints of the parts with which a sheet was made.
+
+    brush: the brush that predicted the marks; plan_brush: the brush that the plan was made for, where it is known;
+    machine: the machine errors that the cell compensated.
+    """
 
     brush: str
     plan_brush: str
     machine: str
 
 
-SEEN_MM = 0.2  # a displacement that explains a place at least
-SEEN_SHARE = 0.1  # of a mark without paint, that does
+MIN_EXPLAINING_DISPLACEMENT_MM = 0.2  # smallest displacement that explains a difference of paint and drawing
+MIN_EXPLAINING_MISSING_SHARE = 0.1  # smallest share of a mark without paint that explains one
 
 
 def places_of(found: Comparison, strokes: list[TargetStroke]) -> list[tuple[str, WorstArea]]:
-    """Where paint differs most from the drawing, or from the prediction without one, each with its stroke."""
+    """Return the areas where paint differs most from the drawing.
+
+    Each area comes with the name of its stroke. Without a drawing, paint is compared with the prediction.
+    """
     painting = [stroke for stroke in strokes if stroke.predicted]
     has_target = found.overlap_target is not None
     target = [*chain(*((stroke.target if has_target else stroke.predicted) or () for stroke in strokes))]
@@ -63,46 +72,62 @@ def report(
     machine: Machine | None = None,
     any_alone: bool = True,
 ) -> Report:
-    """What `brushsvg compare` prints. ends: by stroke; places: see places_of; machine: of the cell, as the next job
-    should have it; any_alone: see in_words.
+    """Return the report of `brushsvg compare`.
 
-    Do not use: paint and drawing overlap by less than 0.70. Usable, but: by less than 0.95; marks are missing; the
-    sheet is partly covered.
+    ends: by stroke; places: see `places_of`; machine: the cell's machine, as the next job should have it; any_alone:
+    see `fix_first`.
+
+    The verdict is "do not use" if paint and drawing overlap by less than 0.70. It is "usable, but" if they overlap by
+    less than 0.95, if marks are missing, or if the sheet is partly covered.
     """
     as_painted, placed, each = found.overlaps
     what = "the drawing" if found.overlap_target is not None else "the prediction"
     against, low = overlap_reasons(as_painted, f"paint and {what.removeprefix('the ')}")
-    gone = sum(not row.placed.found and row.missing > MOSTLY for row in found.strokes)
-    but = [*low, f"{plural(gone, 'mark')} {'is' if gone == 1 else 'are'} missing" if gone else ""]
-    but += ["something covers part of the sheet"] if found.has_things else []
+    missing_count = sum(not row.placed.found and row.missing > MISSING_MARK_SHARE for row in found.strokes)
+    reservations = [
+        *low,
+        f"{plural(missing_count, 'mark')} {'is' if missing_count == 1 else 'are'} missing"
+        if missing_count
+        else "",
+    ]
+    reservations += ["something covers part of the sheet"] if found.has_things else []
     rows = {row.stroke: row for row in found.strokes}
     lines = [
         f"{title}: {percent(as_painted)} of paint and {what.removeprefix('the ')} coincide (overlap {as_painted:.3f}; "
         f"{placed:.3f} with the sheet's place corrected, {each:.3f} with each stroke's)"
-        f"{WORSE if round(placed, 3) < round(as_painted, 3) else ''}",
-        _sheet(found),
+        f"{WORSE_PLACE_NOTE if round(placed, 3) < round(as_painted, 3) else ''}",
+        _describe_sheet(found),
         *(
             place_line(
-                number, name, area.at_mm, area.words, _why(rows.get(name), area, ends.get(name, UNSEEN))
+                number,
+                name,
+                area.at_mm,
+                area.words,
+                _explain_area(rows.get(name), area, ends.get(name, UNKNOWN_ENDS)),
             )
             for number, (name, area) in enumerate(places, 1)
         ),
         fix_first(faults, any_alone),
     ]
-    if found.elsewhere_mm2 > LEAST_BLOT_MM2:
-        lines.append(f"Paint further than {BLOT_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2.")
+    if found.elsewhere_mm2 > MIN_STRAY_PAINT_MM2:
+        lines.append(
+            f"Paint further than {MAX_EDGE_DISTANCE_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2."
+        )
     details = [
-        *table(HEAD, (_row(stroke, ends.get(stroke.stroke, UNSEEN)) for stroke in found.strokes)),
+        *table(
+            TABLE_HEAD,
+            (_table_row(stroke, ends.get(stroke.stroke, UNKNOWN_ENDS)) for stroke in found.strokes),
+        ),
         "",
         "Drawn, predicted: overlap of the stroke's paint with them, intersection over union. x, y, off: displacement",
         "from the prediction in mm; turn in degrees; wider: of each edge, in mm; began, ended: how much later on its",
         "way than drawn, in mm; missing: share of the mark without paint; -: cannot be separated from its neighbours.",
-        *in_words(faults, machine),
+        *fault_lines(faults, machine),
     ]
-    return Report(verdict(against, but), tuple(lines), tuple(details))
+    return Report(verdict(against, reservations), tuple(lines), tuple(details))
 
 
-def _sheet(found: Comparison) -> str:
+def _describe_sheet(found: Comparison) -> str:
     common, spread, middle = found.common, found.spread_mm, found.middle_mm
     beyond = f"; beyond that, strokes are displaced by {spread:.2f} mm (rms)" if spread is not None else ""
     return (
@@ -111,11 +136,14 @@ def _sheet(found: Comparison) -> str:
     )
 
 
-def _why(row: Compared | None, area: WorstArea, ends: Ends) -> str:
-    """What explains a place best, by what is known of its stroke: missing paint, else the largest displacement."""
+def _explain_area(row: Compared | None, area: WorstArea, ends: Ends) -> str:
+    """Return the best explanation of a difference.
+
+    It is missing paint of the stroke, or the largest displacement.
+    """
     if row is None:
         return ""
-    if area.is_missing and row.missing > SEEN_SHARE:
+    if area.is_missing and row.missing > MIN_EXPLAINING_MISSING_SHARE:
         return f"{percent(row.missing)} of its mark has no paint"
     causes = []
     if row.placed.found:
@@ -127,23 +155,23 @@ def _why(row: Compared | None, area: WorstArea, ends: Ends) -> str:
     for what, mm in ends.near(area.at_mm).items():
         causes += [(abs(mm), f"it {what} too {'late' if mm > 0 else 'early'}, by")]
     most, words = max(causes, default=(0.0, ""))
-    return f"{words} {most:.2f} mm" if most > SEEN_MM else ""
+    return f"{words} {most:.2f} mm" if most > MIN_EXPLAINING_DISPLACEMENT_MM else ""
 
 
-def _row(one: Compared, ends: Ends) -> tuple[str, ...]:
-    x, y = one.placed.shift_mm
-    placed = (x, y, math.hypot(x, y), math.degrees(one.placed.turn_rad), one.placed.wider_mm)
+def _table_row(row: Compared, ends: Ends) -> tuple[str, ...]:
+    x, y = row.placed.shift_mm
+    placed = (x, y, math.hypot(x, y), math.degrees(row.placed.turn_rad), row.placed.wider_mm)
     formats = ("+.2f", "+.2f", ".2f", "+.1f", "+.2f")
     return (
-        one.stroke,
-        "-" if one.overlap_target is None else f"{one.overlap_target:.3f}",
-        f"{one.overlap_predicted:.3f}",
+        row.stroke,
+        "-" if row.overlap_target is None else f"{row.overlap_target:.3f}",
+        f"{row.overlap_predicted:.3f}",
         *(
-            f"{round(value, int(how[-2])) + 0.0:{how}}" if one.placed.found else "-"
+            f"{round(value, int(how[-2])) + 0.0:{how}}" if row.placed.found else "-"
             for value, how in zip(placed, formats, strict=True)
         ),
         *("-" if mm is None else f"{round(mm, 2) + 0.0:+.2f}" for mm in (ends.began_mm, ends.ended_mm)),
-        f"{100 * one.missing:.0f} %",
+        f"{100 * row.missing:.0f} %",
     )
 
 
@@ -158,11 +186,11 @@ def as_json(
 ) -> str:
     """Return the comparison as the text of a JSON file.
 
-    corrections: of the strokes that should be displaced next time; faults: None if no cause is known; residual: the
-    fingerprint of the corrected cell's machine, and the corrections that are left with it.
+    corrections: corrections of strokes for the next sheet; faults: None if no cause is known; residual: fingerprint of
+    the corrected cell's machine, and the corrections that remain with this cell.
     """
     _, placed, each = found.overlaps
-    made = {
+    content = {
         "format": FORMAT,
         "version": 1,
         "title": title,
@@ -181,30 +209,30 @@ def as_json(
             "strokes_aside_mm": found.spread_mm,
         },
         "elsewhere_mm2": found.elsewhere_mm2,
-        "faults": in_json(faults),
+        "faults": faults_as_json(faults),
         "strokes": [
             {
-                "stroke": one.stroke,
-                "overlap_wanted": one.overlap_target,
-                "overlap_predicted": one.overlap_predicted,
-                "found": one.placed.found,
-                "shift_mm": list(one.placed.shift_mm) if one.placed.found else None,
-                "aside_mm": float(np.hypot(*displacement_mm(one, found))) if one.placed.found else None,
-                "turn_deg": math.degrees(one.placed.turn_rad) if one.placed.found else None,
-                "wider_mm": one.placed.wider_mm if one.placed.found else None,
-                "began_mm": ends.get(one.stroke, UNSEEN).began_mm,
-                "ended_mm": ends.get(one.stroke, UNSEEN).ended_mm,
-                "missing": one.missing,
-                "correction": in_file(corrections.get(one.stroke)),
+                "stroke": row.stroke,
+                "overlap_wanted": row.overlap_target,
+                "overlap_predicted": row.overlap_predicted,
+                "found": row.placed.found,
+                "shift_mm": list(row.placed.shift_mm) if row.placed.found else None,
+                "aside_mm": float(np.hypot(*displacement_mm(row, found))) if row.placed.found else None,
+                "turn_deg": math.degrees(row.placed.turn_rad) if row.placed.found else None,
+                "wider_mm": row.placed.wider_mm if row.placed.found else None,
+                "began_mm": ends.get(row.stroke, UNKNOWN_ENDS).began_mm,
+                "ended_mm": ends.get(row.stroke, UNKNOWN_ENDS).ended_mm,
+                "missing": row.missing,
+                "correction": correction_as_json(corrections.get(row.stroke)),
             }
-            for one in found.strokes
+            for row in found.strokes
         ],
     }
     if residual:
         machine, left = residual
-        rows = [{"stroke": name, "correction": in_file(each)} for name, each in left.items()]
-        made[RESIDUAL] = {"machine_sha256": machine, "strokes": rows}
-    return json.dumps(_rounded(made), indent=1, ensure_ascii=False) + "\n"
+        rows = [{"stroke": name, "correction": correction_as_json(each)} for name, each in left.items()]
+        content[RESIDUAL_KEY] = {"machine_sha256": machine, "strokes": rows}
+    return json.dumps(_rounded(content), indent=1, ensure_ascii=False) + "\n"
 
 
 def _rounded(value):

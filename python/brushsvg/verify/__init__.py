@@ -1,1 +1,1 @@
-"""A program back to a plan, held against what it should be."""
+"""Read programs back and compare them with plans and regenerated programs."""

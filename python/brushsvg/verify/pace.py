@@ -1,4 +1,4 @@
-"""Where a program that says when the tool is where stands still in the paint."""
+"""Find pauses in the paint of programs that state durations."""
 
 from __future__ import annotations
 
@@ -13,41 +13,42 @@ from ..machine.posts.gcode_servo import height_at
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
 
-TIMED = ("ebb", "ros2")  # languages whose lines say how long they take; others say how fast they are at most
-FASTER_MM_S = 0.011  # of a speed that is written in steps of 0.01
-STANDS_S = 0.01  # rounded places and times make up to 0.003 s of a part's time
+# Languages whose lines state durations; the lines of all others state only maximum speeds.
+LANGUAGES_WITH_DURATIONS = ("ebb", "ros2")
+SPEED_ROUNDING_MM_S = 0.011  # rounding of a speed that is written in steps of 0.01
+MAX_PAUSE_S = 0.01  # rounded places and times change the time of a part by up to 0.003 s
 
 
 def stops(read: Readback, program: Program) -> list[Notice]:
-    """A notice for the first part of a stroke that takes longer than the rest of it does.
+    """Report the first part of a stroke that is slower than the rest of it.
 
-    read: the program that was read; program: what brushsvg would write. A stroke may be slower as a whole: its parts
-    are held against the median of how much slower they are. What is faster than the brush may touch is in the air.
+    read: the program as read back; program: the program that brushsvg would write. A stroke may be slower as a whole,
+    so its parts are compared with the median slowdown. Moves faster than the brush may touch are in the air.
     """
     language, touching_mm_s = program.cell.language, program.touching_mm_s
-    if language not in TIMED:
+    if language not in LANGUAGES_WITH_DURATIONS:
         return []
     text = "".join(text_of(POSTS[language], program))
     found, expected = read.acts, read_program(text, POSTS[language].extensions[0], program.cell).acts
     for (name, ours), (_, theirs) in zip(
-        _strokes(found, touching_mm_s), _strokes(expected, touching_mm_s), strict=False
+        _moves_by_stroke(found, touching_mm_s), _moves_by_stroke(expected, touching_mm_s), strict=False
     ):
-        (along, when_s), (expected_mm, expected_s) = _times(ours), _times(theirs)
+        (along, when_s), (expected_mm, expected_s) = _distances_and_times(ours), _distances_and_times(theirs)
         if not (along[-1:] > 0 and expected_mm[-1:] > 0):
             continue
-        at_mm = along / along[-1] * expected_mm[-1]
-        least_s = np.diff(np.interp(at_mm, expected_mm, expected_s))
+        along_expected_mm = along / along[-1] * expected_mm[-1]
+        least_s = np.diff(np.interp(along_expected_mm, expected_mm, expected_s))
         took_s = np.diff(when_s)
         slower = max(1.0, float(np.median(took_s[least_s > 0] / least_s[least_s > 0])))
-        # paths of other length have their corners elsewhere by as much
+        # Where the path lengths differ, corners are displaced by up to the difference.
         off_mm = abs(along[-1] - expected_mm[-1])
-        most_s = np.interp(at_mm[1:] + off_mm, expected_mm, expected_s) - np.interp(
-            at_mm[:-1] - off_mm, expected_mm, expected_s
+        most_s = np.interp(along_expected_mm[1:] + off_mm, expected_mm, expected_s) - np.interp(
+            along_expected_mm[:-1] - off_mm, expected_mm, expected_s
         )
         if language == "ebb":
-            most_s = np.maximum(most_s, _with_lift_s(ours, np.diff(along), program))
+            most_s = np.maximum(most_s, _longest_times_with_lift_s(ours, np.diff(along), program))
         late_s = took_s - slower * most_s
-        if late_s[worst := int(late_s.argmax())] > STANDS_S:
+        if late_s[worst := int(late_s.argmax())] > MAX_PAUSE_S:
             sentence = (
                 f"line {ours[worst + 1].line}: the brush stands still in the paint for {late_s[worst]:.3f} s"
             )
@@ -55,19 +56,21 @@ def stops(read: Readback, program: Program) -> list[Notice]:
     return []
 
 
-def _with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Program) -> np.ndarray:
-    """The time [s] of each part along which the servo lifts or lowers the brush as much as its program may mean.
+def _longest_times_with_lift_s(acts: list[Act], ways_mm: np.ndarray, program: Program) -> np.ndarray:
+    """Return the longest time [s] that each part may take with its possible lift.
 
-    A part has one value of the servo, that of its middle. How far the height changes along it is not in the program:
-    at most from the middle of the part before to that of the next. Over this way the tip is as fast as it may be.
+    In this time the servo lifts or lowers the brush as far as the program allows. A part has one servo value, the value
+    at its middle. The program does not state the change of height along a part: it is at most the change from the
+    middle of the previous part to the middle of the next one. The tip is assumed to move over this distance at its
+    maximum speed.
     """
     heights_mm = np.array([height_at(program.cell.servo, act.same[0]) for act in acts])
     steps_mm = np.abs(np.diff(heights_mm, append=heights_mm[-1]))
     return np.hypot(ways_mm, steps_mm[:-1] + steps_mm[1:]) / program.touching_mm_s
 
 
-def _strokes(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:
-    """The name of each stroke, and the acts that say when it is where on the paper."""
+def _moves_by_stroke(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]]]:
+    """Return the name of each stroke, and its moves on the paper."""
     found: list[tuple[str, list[Act]]] = []
     is_stroke = False
     for act in acts:
@@ -75,13 +78,20 @@ def _strokes(acts: list[Act], touching_mm_s: float) -> list[tuple[str, list[Act]
             is_stroke = act.text.startswith("(stroke ")
             if is_stroke:
                 found.append((act.text.strip("()").partition(": ")[2], []))
-        elif is_stroke and act.kind in ("way", "move") and act.at_most[0] <= touching_mm_s + FASTER_MM_S:
+        elif (
+            is_stroke
+            and act.kind in ("way", "move")
+            and act.at_most[0] <= touching_mm_s + SPEED_ROUNDING_MM_S
+        ):
             found[-1][1].append(act)
     return found
 
 
-def _times(acts: list[Act]) -> tuple[np.ndarray, np.ndarray]:
-    """How far along a stroke [mm], and when [s], each act ends; from where the first one does."""
+def _distances_and_times(acts: list[Act]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distance along the stroke [mm] and the time [s] of each act.
+
+    Both are at the end of an act, and count from the end of the first act.
+    """
     ways_mm = np.array([np.linalg.norm(np.subtract(b.place, a.place)) for a, b in pairwise(acts)])
     speeds = np.array([act.at_most[1] for act in acts[1:]])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(ways_mm)), where=speeds > 0)

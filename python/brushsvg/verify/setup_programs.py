@@ -1,4 +1,4 @@
-"""Programs before the first stroke, looked at before a machine moves: air runs, and strokes that find the paper."""
+"""Check programs that run before a job: air runs, paper heights, first runs."""
 
 from __future__ import annotations
 
@@ -15,66 +15,82 @@ from ..machine.realised.distortion import true_mm
 from ..machine.setup_programs import ONE_STROKE_DEPTH_MM, border, first_run, paper_height
 from .against_regenerated import differing_line
 from .readback import Readback
-from .readback.header import Made
-from .simulate_program import Problems, slack_mm, walked
+from .readback.header import ProgramHeader
+from .simulate_program import Problems, slack_mm, walk_sections
 
 
 @dataclass(frozen=True)
-class Looked:
-    """problems: a notice for each dangerous step; time_s: its duration."""
+class SetupCheck:
+    """Result of the check of a setup program.
+
+    problems: one notice for each dangerous step; time_s: duration of the program [s].
+    """
 
     problems: Problems
     time_s: float
 
 
 def look_at_border(
-    text: str, read: Readback, made: Made, brush, cell: Cell, sheet_mm, z_offset_mm: float
-) -> Looked:
-    """An air run round what its header says. Error when a corner is outside the workspace."""
-    again = border(made.border_mm, brush, cell, sheet_mm, z_offset_mm)
-    job, notes = Job(z_offset_mm), made.notes
-    header = border_header(made.title, brush.name, made.strokes, sheet_mm, notes, made.border_mm, again, job)
-    again = replace(again, header=header)
-    sections = [*walked(read, brush, cell, sheet_mm, z_offset_mm)]
-    return _looked(text, read, again, sections, cell, cell.heights.safe_mm, "safe height")
+    text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
+) -> SetupCheck:
+    """Check an air run around the border that its header names.
 
-
-def look_at_heights(text: str, read: Readback, made: Made, brush, cell: Cell) -> Looked:
-    """Strokes at the heights that its header says, each of which may be the first on the paper.
-
-    Error when they do not fit on the sheet or go deeper than brush or cell allow.
+    Raises Error when a corner is outside the workspace.
     """
-    sheet_mm = made.sheet_mm
-    highest_mm, lowest_mm, step_mm = made.heights_mm
-    again = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    again = replace(again, header=height_header(brush.name, sheet_mm, made.heights_mm, again))
-    sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
-    return _looked(text, read, again, sections, cell, lowest_mm, "height of the lowest stroke")
+    expected = border(origin.border_mm, brush, cell, sheet_mm, z_offset_mm)
+    job, notes = Job(z_offset_mm), origin.notes
+    header = border_header(
+        origin.title, brush.name, origin.strokes, sheet_mm, notes, origin.border_mm, expected, job
+    )
+    expected = replace(expected, header=header)
+    sections = [*walk_sections(read, brush, cell, sheet_mm, z_offset_mm)]
+    return _check_setup_program(text, read, expected, sections, cell, cell.heights.safe_mm, "safe height")
 
 
-def look_at_first_run(text: str, read: Readback, made: Made, brush, cell: Cell) -> Looked:
-    """A first run: the same for all that it does. Error when it leaves the workspace or does not fit on the sheet."""
-    sheet_mm = made.sheet_mm
-    highest_mm, lowest_mm, step_mm = made.first_mm
-    again = first_run(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    again = replace(again, header=first_header(brush.name, sheet_mm, made.first_mm, again))
-    sections = [*walked(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
+def look_at_heights(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+    """Check a program that finds the paper by strokes at several heights.
+
+    Its header names the heights. Each of these strokes may be the first on the paper. Raises Error when the strokes do
+    not fit on the sheet or go deeper than the brush or the cell allows.
+    """
+    sheet_mm = origin.sheet_mm
+    highest_mm, lowest_mm, step_mm = origin.heights_mm
+    expected = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    expected = replace(expected, header=height_header(brush.name, sheet_mm, origin.heights_mm, expected))
+    sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
+    return _check_setup_program(
+        text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke"
+    )
+
+
+def look_at_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+    """Check all steps of a first run.
+
+    Raises Error when it leaves the workspace or does not fit on the sheet.
+    """
+    sheet_mm = origin.sheet_mm
+    highest_mm, lowest_mm, step_mm = origin.first_mm
+    expected = first_run(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    expected = replace(expected, header=first_header(brush.name, sheet_mm, origin.first_mm, expected))
+    sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     deepest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)
-    return _looked(text, read, again, sections, cell, deepest_mm, "height of the deepest stroke")
+    return _check_setup_program(
+        text, read, expected, sections, cell, deepest_mm, "height of the deepest stroke"
+    )
 
 
-def _looked(
-    text: str, read: Readback, again: Program, sections, cell: Cell, lowest_mm: float, what: str
-) -> Looked:
+def _check_setup_program(
+    text: str, read: Readback, expected: Program, sections, cell: Cell, lowest_mm: float, limit_name: str
+) -> SetupCheck:
     problems: Problems = []
-    for section, track, said in sections:
-        problems += [replace(each, where=section.title) for each in said]
+    for section, track, notices in sections:
+        problems += [replace(each, where=section.title) for each in notices]
         heights = true_mm(track.points, cell.machine)[:, 2]
-        at = int(np.argmin(heights)) if len(heights) else None
-        if at is not None and heights[at] < lowest_mm - slack_mm(cell):
-            line, height_mm = section.steps[track.step[at]].line, heights[at]
-            sentence = f"line {line}: height {height_mm:.2f} mm is below the {what}, {lowest_mm:g} mm"
+        lowest = int(np.argmin(heights)) if len(heights) else None
+        if lowest is not None and heights[lowest] < lowest_mm - slack_mm(cell):
+            line, height_mm = section.steps[track.step[lowest]].line, heights[lowest]
+            sentence = f"line {line}: height {height_mm:.2f} mm is below the {limit_name}, {lowest_mm:g} mm"
             problems.append(Notice(section.title, sentence, code="too-low"))
-    if changed := differing_line(text, read, again, cell):
+    if changed := differing_line(text, read, expected, cell):
         problems.append(Notice("", changed, code="program-changed"))
-    return Looked(problems, duration_s(again))
+    return SetupCheck(problems, duration_s(expected))

@@ -1,4 +1,4 @@
-"""How long a program takes with the feeds that stand in it."""
+"""Duration of a program at the feeds that it contains."""
 
 from __future__ import annotations
 
@@ -9,14 +9,17 @@ from .readback import Readback, Step
 
 
 def time_as_run_s(read: Readback, cell: Cell) -> float:
-    """From the first place that it names on, rapid moves as fast as the cell travels, at full speed all the time: a
-    circle that was written as many lines starts and stops at none of them."""
+    """Return the duration of a program [s] at full speed, without acceleration.
+
+    The time counts from the first place that the program names. Rapid moves are as fast as the cell travels. A circle
+    that is written as many lines starts and stops at none of them.
+    """
     total_s, here = 0.0, None
     for step in (step for section in read.sections for step in section.steps):
         there = (step.x, step.y, step.z)
         known = here is not None and all(map(math.isfinite, (*here, *there)))
         if cell.servo and known and here[:2] == there[:2]:
-            known = False  # takes what is waited for
+            known = False  # a lift takes exactly its wait
         length_mm = _length_mm(here, there, step) if known else 0.0
         speed_mm_s = cell.speeds.travel_mm_s if step.rapid else step.speed_mm_s
         if length_mm > 0 and 0 < speed_mm_s < math.inf:

@@ -1,1 +1,1 @@
-"""The causes of errors: brush, machine or paper."""
+"""Attribute errors to their causes: brush, machine or paper."""

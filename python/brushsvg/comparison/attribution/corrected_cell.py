@@ -1,4 +1,7 @@
-"""Correct the cell's machine for the next job: by its certain faults, in addition to those undone before."""
+"""Correct the cell's machine for the next job by its certain faults.
+
+They are added to the faults that the cell already compensates.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +14,12 @@ from ...machine.cells.cell import LEAST_BACKLASH_MM, Machine
 from .faults import Faults
 from .model import MACHINE, PAPER
 
-SURE = 1.0  # half intervals from 0, from where on a number goes into a cell
-# Which of the machine's axes go along x and y of the paper; None: backlash stays.
-Along = tuple[int, int] | None
+MIN_CERTAINTY = 1.0  # smallest distance from 0, in half intervals, at which a number goes into a cell
+# The machine's axes along x and y of the paper; None: backlash is not changed.
+AxesAlongPaper = tuple[int, int] | None
 
 
-KEYS = {  # of a table machine, by the first word of a number's name
+KEY_OF_NAME = {  # keys of the table [machine], by the first word of a number's name
     "lean": "lean_mm_per_mm",
     "scale": "scale",
     "skew": "skew",
@@ -27,28 +30,33 @@ KEYS = {  # of a table machine, by the first word of a number's name
 
 
 def key_of(name: str) -> str:
-    return KEYS[name.partition(" ")[0]]
+    return KEY_OF_NAME[name.partition(" ")[0]]
 
 
 def certain_of(faults: Faults) -> dict[str, float]:
-    """By the name of each number of the machine and the paper its value, 0 where it is not certain."""
+    """Return the value of each number of machine and paper by its name.
+
+    A value that is not certain is 0.
+    """
     return {
-        one.number.name: one.value if abs(one.value) > SURE * one.half else 0.0
-        for one in faults.found
-        if one.number.cause in (MACHINE, PAPER)
+        fault.number.name: fault.value if abs(fault.value) > MIN_CERTAINTY * fault.half else 0.0
+        for fault in faults.found
+        if fault.number.cause in (MACHINE, PAPER)
     }
 
 
 def sure(
-    faults: Faults, before: Machine | None, along: Along, left_out: Container[str] = ()
+    faults: Faults, before: Machine | None, along: AxesAlongPaper, left_out: Container[str] = ()
 ) -> dict[str, float]:
-    """Return by the name of each number the part that goes into a cell: 0 where it is not certain. left_out: keys of
-    the table that this machine cannot undo."""
+    """Return the part of each number that goes into a cell, by its name.
+
+    The part is 0 where the number is not certain. left_out: keys of the table that this machine cannot compensate.
+    """
     certain = {name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()}
     for paper, name in enumerate("xy"):
-        was = before.backlash_mm[along[paper]] if before and along else 0.0
-        now = was + certain.get(f"backlash in {name}", 0.0) if along else was
-        certain[f"backlash in {name}"] = (now if now >= LEAST_BACKLASH_MM else 0.0) - was
+        previous_mm = before.backlash_mm[along[paper]] if before and along else 0.0
+        total_mm = previous_mm + certain.get(f"backlash in {name}", 0.0) if along else previous_mm
+        certain[f"backlash in {name}"] = (total_mm if total_mm >= LEAST_BACKLASH_MM else 0.0) - previous_mm
     return certain
 
 
@@ -56,10 +64,14 @@ def corrected_machine(
     faults: Faults,
     middle_mm,
     before: Machine | None,
-    along: Along = (0, 1),
+    along: AxesAlongPaper = (0, 1),
     left_out: Container[str] = (),
 ) -> Machine | None:
-    """before: what the painted job's cell undid; the rest comes on top. None where nothing is certain."""
+    """Return the machine that also compensates the certain faults.
+
+    Returns None where nothing is certain. before: machine errors that the cell of the painted job compensated; the
+    certain faults are added to them.
+    """
     certain = sure(faults, before, along, left_out)
     if not any(certain.values()):
         return None
@@ -70,42 +82,45 @@ def corrected_machine(
     lean, tilt, scale = (
         np.array([certain[f"{name} in {axis}"] for axis in "xy"]) for name in ("lean", "tilt", "scale")
     )
-    was, beyond = _axes(before.scale, before.skew), _axes(1 + scale, certain["skew"])
-    now = beyond @ was
+    previous_axes, beyond = _axis_matrix(before.scale, before.skew), _axis_matrix(1 + scale, certain["skew"])
+    new_axes = beyond @ previous_axes
     height_mm = before.height_mm + certain["height"] - tilt @ np.asarray(middle_mm)
     return Machine(
-        _rounded(beyond @ before.lean_mm_per_mm + lean),
-        _rounded(np.diag(now)),
-        round(float(now[0, 1]), 5),
+        _round_all(beyond @ before.lean_mm_per_mm + lean),
+        _round_all(np.diag(new_axes)),
+        round(float(new_axes[0, 1]), 5),
         round(float(height_mm), 3),
-        _rounded(np.array(before.tilt_mm_per_mm) + tilt @ was),
+        _round_all(np.array(before.tilt_mm_per_mm) + tilt @ previous_axes),
         before.map_mm,
         tuple(round(float(value), 3) for value in backlash),
-        tuple(map(_rounded, beyond @ before.field_mm)) if before.field_mm else (),
+        tuple(map(_round_all, beyond @ before.field_mm)) if before.field_mm else (),
         before.field_middle_mm,
         before.field_reach_mm,
     )
 
 
-def _axes(scale, skew: float) -> np.ndarray:
+def _axis_matrix(scale, skew: float) -> np.ndarray:
     return np.array([[scale[0], skew], [0.0, scale[1]]])
 
 
-def _rounded(values) -> tuple[float, ...]:
+def _round_all(values) -> tuple[float, ...]:
     return tuple(round(float(value), 5) for value in values)
 
 
 def as_table(machine: Machine) -> list[str]:
-    """The lines of a cell's table [machine]; parts that are as they should be are left out."""
+    """Return the lines of a cell's table [machine].
+
+    Parts without an error are left out.
+    """
     lines = ["[machine]"]
     if any(machine.lean_mm_per_mm):
-        lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}")
+        lines.append(f"lean_mm_per_mm = {_format_pair(machine.lean_mm_per_mm)}")
     if machine.skew or machine.scale != (1.0, 1.0):
-        lines += [f"scale = {_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
+        lines += [f"scale = {_format_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
     if machine.height_mm or any(machine.tilt_mm_per_mm):
         lines += [
             f"height_mm = {machine.height_mm:.3f}",
-            f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}",
+            f"tilt_mm_per_mm = {_format_pair(machine.tilt_mm_per_mm)}",
         ]
     if machine.map_mm:
         rows = ", ".join("[{:.3f}, {:.3f}, {:.4f}]".format(*row) for row in machine.map_mm)
@@ -117,5 +132,5 @@ def as_table(machine: Machine) -> list[str]:
     return lines
 
 
-def _pair(values) -> str:
+def _format_pair(values) -> str:
     return "[{:.5f}, {:.5f}]".format(*values)

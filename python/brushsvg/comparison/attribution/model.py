@@ -1,4 +1,4 @@
-"""Predict a job's marks with errors of the sheet, the machine, the paper and the brush."""
+"""Predict a job's marks with faults of sheet, machine, paper and brush."""
 
 from __future__ import annotations
 
@@ -17,19 +17,21 @@ from ...model.confidence import law_band
 from ...model.perturbed import with_factors
 
 SHEET, MACHINE, PAPER, BRUSH = "place of the sheet", "machine", "height and tilt of the paper", "brush"
-OTHER_OF_MAKE, OTHER_BENT = (
-    0.15,
-    0.1,
-)  # of a law, standard deviation between brushes of one make; how it bends
-SUREST = 0.005  # of a law: on the paper as it is no brush is surer
-AT_ONCE = min(8, os.cpu_count() or 1)
-ROUGHLY_MM = 0.02  # between rows of a mark: with 0.1 outlines are rough by as much as a number moves them
+# Relative standard deviation of a law between brushes of one make: of its size, and of its bend with depth.
+LAW_SIZE_SIGMA, LAW_BEND_SIGMA = 0.15, 0.1
+MIN_LAW_SIGMA = 0.005  # smallest relative standard deviation of a law: on real paper no brush is more certain
+MAX_THREADS = min(8, os.cpu_count() or 1)
+MARK_ROW_SPACING_MM = (
+    0.02  # distance between rows of a mark: with 0.1 outlines are as rough as a number moves them
+)
 
 
 @dataclass(frozen=True)
 class Number:
-    """One number that may be off, 0 where it is not. sigma: standard deviation beforehand; step: that moves edges by
-    about 0.1 mm."""
+    """One number that may be wrong; 0 means no fault.
+
+    sigma: prior standard deviation; step: change that moves edges by about 0.1 mm.
+    """
 
     cause: str
     name: str
@@ -40,10 +42,13 @@ class Number:
 
 @dataclass(frozen=True)
 class FaultModel:
-    """plan: as commanded; names: of the examined strokes; the frame is the sheet's; turn, height and
-    tilt are about the middle of the marks, scale and skew about the work zero, which is the sheet's corner. learned:
-    the brush was made from these marks and its laws are as sure as its file says; else it may be another of its
-    make."""
+    """A model of the marks of a job under faults.
+
+    plan: as commanded; names: names of the examined strokes. The frame is that of the sheet. Turn, height and tilt are
+    about the middle of the marks; scale and skew are about the work zero, which is the sheet's corner. learned: the
+    brush was made from these marks, and its laws are as certain as its file says; otherwise the brush may be another
+    one of its make.
+    """
 
     plan: object
     brush: object
@@ -53,19 +58,25 @@ class FaultModel:
 
     @cached_property
     def _depths_mm(self) -> tuple[float, float]:
-        """The usual depth, and how far from it a law is off by another number: as the deepest one, or as the paper."""
-        depths = -np.concatenate([np.array(one.poses_mm)[:, 2] for one in self.plan.passes])
+        """Return the usual depth, and the distance at which a law's bend counts fully.
+
+        The distance is to the deepest pose or to the paper, the larger of the two [mm].
+        """
+        depths = -np.concatenate([np.array(a_pass.poses_mm)[:, 2] for a_pass in self.plan.passes])
         usual = float(np.median(depths[depths > 0.1])) if (depths > 0.1).any() else 1.0
         return usual, max(float(depths.max()) - usual, usual)
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
         half = 0.5 * np.array(self.plan.sheet_mm)
-        deepest = max(float(-np.array(one.poses_mm)[:, 2].min()) for one in self.plan.passes)
-        at = self.brush.lag(deepest)
-        wide = self.brush.half_width(deepest)
-        sure = {law: self._sure_of(law) for law in ("lag", "half_width")} if self.learned else {}
-        lag, width = min(0.1, 0.15 / max(at, 0.5)), min(0.1, 0.1 / max(wide, 0.5))
+        deepest = max(float(-np.array(a_pass.poses_mm)[:, 2].min()) for a_pass in self.plan.passes)
+        deepest_lag = self.brush.lag(deepest)
+        deepest_half_width = self.brush.half_width(deepest)
+        law_sigmas = {law: self._law_sigma(law) for law in ("lag", "half_width")} if self.learned else {}
+        lag_step, width_step = (
+            min(0.1, 0.15 / max(deepest_lag, 0.5)),
+            min(0.1, 0.1 / max(deepest_half_width, 0.5)),
+        )
         return (
             Number(SHEET, "shift in x", "mm", 2.0, 0.1),
             Number(SHEET, "shift in y", "mm", 2.0, 0.1),
@@ -80,23 +91,34 @@ class FaultModel:
             Number(PAPER, "height", "mm", 0.3, 0.1),
             Number(PAPER, "tilt in x", "mm per mm", 1.0 / half[0], 0.1 / half[0]),
             Number(PAPER, "tilt in y", "mm per mm", 1.0 / half[1], 0.1 / half[1]),
-            Number(BRUSH, "lag", "of it", sure.get("lag", OTHER_OF_MAKE), lag),
-            Number(BRUSH, "lag, deepest against usual", "of it", sure.get("lag", OTHER_BENT), lag),
-            Number(BRUSH, "width", "of it", sure.get("half_width", OTHER_OF_MAKE), width),
-            Number(BRUSH, "width, deepest against usual", "of it", sure.get("half_width", OTHER_BENT), width),
+            Number(BRUSH, "lag", "of it", law_sigmas.get("lag", LAW_SIZE_SIGMA), lag_step),
+            Number(
+                BRUSH, "lag, deepest against usual", "of it", law_sigmas.get("lag", LAW_BEND_SIGMA), lag_step
+            ),
+            Number(BRUSH, "width", "of it", law_sigmas.get("half_width", LAW_SIZE_SIGMA), width_step),
+            Number(
+                BRUSH,
+                "width, deepest against usual",
+                "of it",
+                law_sigmas.get("half_width", LAW_BEND_SIGMA),
+                width_step,
+            ),
         )
 
-    def _sure_of(self, law: str) -> float:
-        """Standard deviation of a law at the usual depth, as a share of it."""
+    def _law_sigma(self, law: str) -> float:
+        """Return the relative standard deviation of a law at the usual depth."""
         usual = self._depths_mm[0]
         band = law_band(self.brush, law, np.array([usual]))
         if band is None:
-            return OTHER_OF_MAKE
+            return LAW_SIZE_SIGMA
         share = float(band[0][0]) / _core.deviations_of_95() / max(getattr(self.brush, law)(usual), 1e-6)
-        return min(max(share, SUREST), OTHER_OF_MAKE)
+        return min(max(share, MIN_LAW_SIGMA), LAW_SIZE_SIGMA)
 
     def rings(self, fault_values: np.ndarray) -> dict[str, list[np.ndarray]]:
-        """By stroke, on the sheet; strokes that would not be painted are left out."""
+        """Return the rings of each stroke on the sheet [mm].
+
+        Strokes that would not be painted are left out.
+        """
         shift, turn = fault_values[:2], np.radians(fault_values[2])
         scale, skew, lean, backlash = (
             1 + fault_values[3:5],
@@ -115,14 +137,14 @@ class FaultModel:
             tuple(lean.tolist()),
             tuple(scale.tolist()),
             float(skew),
-            float(height - tilt @ middle),  # true_mm has them from the sheet's corner
+            float(height - tilt @ middle),  # true_mm measures height and tilt from the sheet's corner
             tuple(tilt.tolist()),
         )
         deepest = self.brush.depth_range_mm[1]
         run = as_run(self.plan.passes, machine, np.maximum(backlash, 0.0), deepest)
-        if (backlash < 0).any():  # as far the other way: only a derivative at 0 asks for it
+        if (backlash < 0).any():  # no backlash: only a derivative at 0 uses negative values
             run = as_run(self.plan.passes, machine, (0.0, 0.0), deepest)
-        requested = [one for one in run if one.stroke in self.names]
+        examined = [a_pass for a_pass in run if a_pass.stroke in self.names]
         usual, spread = self._depths_mm
         factors = {
             name: (1 + even - slope * usual / spread, slope / spread)
@@ -130,19 +152,22 @@ class FaultModel:
         }
         brush = with_factors(self.brush, factors)
         marks = _core.simulate(
-            _core.Plan("", "", self.plan.sheet_mm, requested), brush, ROUGHLY_MM, may_rise=True
+            _core.Plan("", "", self.plan.sheet_mm, examined), brush, MARK_ROW_SPACING_MM, may_rise=True
         )
         turned = rotation(turn)
-        with ThreadPoolExecutor(AT_ONCE) as pool:  # without the interpreter's lock
-            outlines = list(pool.map(lambda mark: _traced(mark, brush), marks.passes))
+        with ThreadPoolExecutor(MAX_THREADS) as pool:  # tracing releases the interpreter's lock
+            outlines = list(pool.map(lambda mark: _trace_outline(mark, brush), marks.passes))
         return {
             mark.stroke: [(np.array(ring) - middle) @ turned + middle + shift for ring in outline]
             for mark, outline in zip(marks.passes, outlines, strict=True)
         }
 
 
-def _traced(mark, brush):
-    """Return the rings of one stroke: the area that all paint covers together is not computed."""
+def _trace_outline(mark, brush):
+    """Return the rings of one stroke.
+
+    The area that all paint covers together is not computed.
+    """
     alone = _core.Marks()
     alone.passes = [mark]
     _core.trace_outlines(alone, brush)

@@ -1,4 +1,4 @@
-"""Report the causes of the differences, in words and as JSON."""
+"""Report the causes of differences, in words and as JSON."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from ...machine.cells.cell import Machine
 from ...reporting.report_text import table
 from ..job_marks import PAINT_A_CHART
 from .corrected_cell import as_table
-from .faults import DRY, OWN, Faults, Found
+from .faults import MISSING_PAINT, OWN_PLACE, Faults, Found
 from .model import BRUSH, MACHINE, PAPER, SHEET
 
 REMEDIES = {
@@ -14,14 +14,17 @@ REMEDIES = {
     MACHINE: "give convert the cell of --corrected-cell, or fix the machine",
     PAPER: "give convert the cell of --corrected-cell, or level the paper",
     BRUSH: "update the brush: calibrate --plan --prior",
-    OWN: "correct each stroke: convert --corrections; several sheets show which part repeats (compare --sheets)",
-    DRY: "let the brush fetch paint earlier: [paint] of the cell",
+    OWN_PLACE: "correct each stroke: convert --corrections; several sheets show which part repeats (compare --sheets)",
+    MISSING_PAINT: "let the brush fetch paint earlier: [paint] of the cell",
 }
 NONE_ALONE = f"no stroke of this sheet is separate and complete enough to learn from; {PAINT_A_CHART}"
 
 
 def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
-    """The cause that costs most, and what helps. any_alone: whether a brush could learn from a stroke of this sheet."""
+    """Return a sentence on the cause that costs most, with its remedy.
+
+    any_alone: whether a brush could learn from a stroke of this sheet.
+    """
     if faults is None:
         return "No cause is named: too few strokes, or too few edges away from other paint."
     if faults.first is None:
@@ -31,13 +34,16 @@ def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
     return f"Fix first: {faults.first}, which gains {gain:.3f}: {how}."
 
 
-def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
-    """Every cause with its gain, every number, and the table for a cell. machine: of the cell, for the next job."""
+def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
+    """Return lines with the gain of every cause, and every number.
+
+    They end with the table for a cell. machine: the machine of the cell for the next job.
+    """
     if faults is None:
         return []
     gains = [
         (f"  {share.cause}", f"{share.gain + 0.0:+.3f}", f"({share.low:+.3f} to {share.high:+.3f})")
-        for share in sorted(faults.shares, key=lambda one: -one.gain)
+        for share in sorted(faults.shares, key=lambda share: -share.gain)
     ]
     head, *rows = table(("  fixing this cause alone", "gains", "95 %"), gains)
     lines = [
@@ -47,12 +53,14 @@ def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
         head,
         *rows,
         "",
-        *(f"  {_number(one)}" for one in faults.found),
+        *(f"  {_describe_number(fault)}" for fault in faults.found),
         f"  each stroke's own place: {faults.own_mm:.2f} mm (rms); one sheet does not show which part repeats",
         f"  edges beyond all that: {faults.rest_mm:.3f} mm (rms)",
     ]
-    for one, other in faults.alike:
-        lines.append(f"Hard to separate on these marks: {one}, and {other}; their sum is surer than either.")
+    for cause, other in faults.alike:
+        lines.append(
+            f"Hard to separate on these marks: {cause}, and {other}; their sum is surer than either."
+        )
     if machine:
         lines += [
             "",
@@ -62,31 +70,32 @@ def in_words(faults: Faults | None, machine: Machine | None) -> list[str]:
     return lines
 
 
-def _number(one: Found) -> str:
-    small = one.number.unit in ("mm per mm", "mm in x per mm in y", "")
+def _describe_number(fault: Found) -> str:
+    small = fault.number.unit in ("mm per mm", "mm in x per mm in y", "")
     digits = 5 if small else 3
-    value = f"{one.value:+.{digits}f} +- {one.half:.{digits}f} {one.number.unit}".rstrip()
-    return f"{one.number.cause}: {one.number.name} {value}"
+    value = f"{fault.value:+.{digits}f} +- {fault.half:.{digits}f} {fault.number.unit}".rstrip()
+    return f"{fault.number.cause}: {fault.number.name} {value}"
 
 
-def in_json(faults: Faults | None) -> dict | None:
+def faults_as_json(faults: Faults | None) -> dict | None:
     if faults is None:
         return None
     return {
         "overlap": faults.overlap,
         "mend_first": faults.first,
         "causes": [
-            {"cause": one.cause, "gain": one.gain, "gain_95": [one.low, one.high]} for one in faults.shares
+            {"cause": item.cause, "gain": item.gain, "gain_95": [item.low, item.high]}
+            for item in faults.shares
         ],
         "numbers": [
             {
-                "cause": one.number.cause,
-                "name": one.number.name,
-                "value": round(one.value, 6),
-                "half_95": round(one.half, 6),
-                "unit": one.number.unit,
+                "cause": item.number.cause,
+                "name": item.number.name,
+                "value": round(item.value, 6),
+                "half_95": round(item.half, 6),
+                "unit": item.number.unit,
             }
-            for one in faults.found
+            for item in faults.found
         ],
         "own_places_mm": faults.own_mm,
         "rest_mm": faults.rest_mm,

@@ -4,34 +4,37 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..photographs import BLUR_MM, Comparison, TargetStroke, without
-from ..placing import NOWHERE, Canvas, Placed, place
+from ..photographs import EDGE_BLUR_MM, Comparison, TargetStroke, subtract_displacements
+from ..placing import NOWHERE, Canvas, Placed, locate_mark
 from .model import FaultModel
 
-FINE_PX_PER_MM = 8.0
+MAX_PX_PER_MM = 8.0
 
 
 def subtract_faults(
     found: Comparison, certain: dict[str, float], plan, brush, strokes: list[TargetStroke]
 ) -> Comparison:
-    """Return the comparison without the effect of the faults that a corrected cell undoes.
+    """Return the comparison without the faults that a corrected cell compensates.
 
-    certain: these faults, from `corrected_cell.sure`; plan: as it was sent to the machine; strokes: those compared.
+    certain: these faults, from `corrected_cell.sure`; plan: as it was sent to the machine; strokes: the strokes that
+    were compared.
     """
     names = tuple(stroke.stroke for stroke in strokes if stroke.predicted)
     model = FaultModel(plan, brush, names, found.middle_mm)
     fault_values = np.array([certain.get(number.name, 0.0) for number in model.numbers])
     straight, moved = (model.rings(numbers) for numbers in (np.zeros_like(fault_values), fault_values))
-    done = {name: _does(straight.get(name), moved.get(name), found.canvas) for name in names}
-    return without(found, done)
+    displacements = {
+        name: _displacement_by_faults(straight.get(name), moved.get(name), found.canvas) for name in names
+    }
+    return subtract_displacements(found, displacements)
 
 
-def _does(straight, moved, canvas: Canvas) -> Placed:
-    """Return the place of a mark, relative to its prediction."""
+def _displacement_by_faults(straight, moved, canvas: Canvas) -> Placed:
+    """Return the place of a mark with faults, relative to the one without."""
     if not straight or not moved:
         return NOWHERE
     points = np.vstack([*straight, *moved])
-    low, high = points.min(axis=0) - 4 * BLUR_MM, points.max(axis=0) + 4 * BLUR_MM
-    small = Canvas((*low.tolist(), *high.tolist()), min(canvas.px_per_mm, FINE_PX_PER_MM))
+    low, high = points.min(axis=0) - 4 * EDGE_BLUR_MM, points.max(axis=0) + 4 * EDGE_BLUR_MM
+    small = Canvas((*low.tolist(), *high.tolist()), min(canvas.px_per_mm, MAX_PX_PER_MM))
     painted = small.filled(moved)
-    return place(painted, np.ones_like(painted), straight, small)
+    return locate_mark(painted, np.ones_like(painted), straight, small)

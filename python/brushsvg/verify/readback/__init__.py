@@ -1,4 +1,7 @@
-"""Programs read back, as we write them and no further: what a machine would do, step by step."""
+"""Read back programs of brushsvg into the steps that a machine would run.
+
+Only the statements that brushsvg writes are understood; all others are refused.
+"""
 
 from __future__ import annotations
 
@@ -19,13 +22,14 @@ if TYPE_CHECKING:
 
 
 class Step(NamedTuple):
-    """One move to a point [mm], in the frame of the program; NaN is a coordinate that was never named.
+    """One move to a point [mm], in the frame of the program.
 
-    line: of the file, from 1; centre: of the circle it runs on, with its turn (1 counter-clockwise), or None;
-    blend_mm: how far before the point the next move may begin; via: a point of the circle that was named, in the
-    frame of the program; wait_s: what is waited for behind it, in so many waits. What a servo does alone takes no time
-    but that. axis: (3,) the unit vector from the tip up along a tilted brush, in the frame of the program; () upright.
-    took_s: its duration, where the program gives it; 0: it gives the speed.
+    A coordinate that was never named is NaN. line: line of the file, from 1; centre: centre of its circle, with the
+    turn (1 counter-clockwise), or None; blend_mm: how far before the point the next move may begin; via: the point of
+    the circle that the program names, in the frame of the program; wait_s, waits: total time and number of the waits
+    after the move. A servo's own movement takes no other time. axis: (3,) unit vector from the tip up along a tilted
+    brush, in the frame of the program; () upright. took_s: duration, where the program states it; 0 where the program
+    states the speed instead.
     """
 
     line: int
@@ -44,13 +48,13 @@ class Step(NamedTuple):
 
 
 class Act(NamedTuple):
-    """What a line of a program does or says, however it is written.
+    """The effect of one line of a program, independent of its notation.
 
-    line: of the file, from 1; kind: move, circle, way (a servo's move), lift (of a servo), wait or text, which says
-    something, or is a statement; place: where it goes [mm]; at_most: its speed [mm/s] and acceleration [mm/s^2],
-    where it names them; of a timed move its limit, its speed, and what rounding or one more step adds to that [mm/s];
-    same: other numbers; turned: (9,) the tool's rotation there, row by row, in the frame of the program, where the move
-    names one that is not upright. Of a rapid move the speed is inf.
+    line: line of the file, from 1; kind: move, circle, way (a servo's move), lift (of a servo), wait or text (a remark
+    or a statement); place: destination [mm]; at_most: speed [mm/s] and acceleration [mm/s^2], where the line names
+    them. The speed of a rapid move is inf. The `at_most` of a timed move holds its limit, its speed, and the speed that
+    rounding or one more step adds [mm/s]. same: other numbers; turned: (9,) the tool's rotation at the destination, row
+    by row, in the frame of the program, where the move names one that is not upright.
     """
 
     line: int
@@ -64,8 +68,11 @@ class Act(NamedTuple):
 
 @dataclass
 class ReadSection:
-    """What stands under one of our comments, in a line of the file, from 1. taking_up: steps on which the tool stands,
-    since an axis only takes up its play."""
+    """The steps under one title comment of brushsvg.
+
+    line: line of the title in the file, from 1; taking_up: steps on which the tool stands, since an axis only takes up
+    its backlash.
+    """
 
     title: str
     line: int = 0
@@ -75,12 +82,15 @@ class ReadSection:
 
 @dataclass
 class Readback:
-    """joint_mm: how far every corner may be cut; acts: all that the program does, in order; modes: what it sets before
-    it first moves; rises_mm: heights to which it goes straight from any place; unsure: lines behind which an
-    axis may be anywhere in its backlash, as it was before the program.
+    """A program that was read back.
 
-    in_paper_frame: points are the paper's; else the robot's. blends_by_radius: each move says how far before its end
-    the next one may begin; else joint_mm holds for all corners. tilts: its header says that the brush is tilted.
+    joint_mm: distance by which every corner may be cut; acts: everything that the program does, in order; modes: the
+    modes that it sets before it first moves; rises_mm: heights to which it goes straight from any place; unsure: lines
+    after which an axis may be anywhere in its backlash, as before the program.
+
+    in_paper_frame: points are in the paper frame, otherwise in the robot frame. blends_by_radius: each move states how
+    far before its end the next one may begin; otherwise joint_mm holds for all corners. tilts: the header says that the
+    brush is tilted.
     """
 
     sections: list[ReadSection] = field(default_factory=list)
@@ -94,24 +104,31 @@ class Readback:
     tilts: bool = False
 
     def section(self) -> ReadSection:
-        """The one being read."""
+        """Return the section that is being read."""
         if not self.sections:
             self.sections.append(ReadSection(""))
         return self.sections[-1]
 
     def comment(self, number: int, text: str) -> None:
-        """Perhaps the title of a section. Blanks at its end are ignored: some languages drop them."""
+        """Record a comment, which may be the title of a section.
+
+        Blanks at its end are ignored, because some languages drop them.
+        """
         text = text.rstrip(" ")
-        text += " " * text.endswith(":")  # of a name without plain letters
+        text += " " * text.endswith(":")  # a name without plain letters leaves only the colon
         self.tilts = self.tilts or text == TILT_LINE
         if text.startswith(("stroke ", "paint: ", "border ")):
             self.sections.append(ReadSection(text, number))
-        if re.match(r"stroke \d|border |\w+: ", text):  # others are somebody's remarks
+        if re.match(r"stroke \d|border |\w+: ", text):  # other comments are somebody's remarks
             self.acts.append(Act(number, "text", f"({text})"))
 
 
-def circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_mm_s: float) -> None:
-    """A step from where the tool is through a point to a point (3,): its centre is as far from all of them."""
+def add_circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_mm_s: float) -> None:
+    """Add a step along a circle from the current place.
+
+    The circle goes through `via` (3,) to `end` (3,) [mm]. Raises Error without a current place, and for three points on
+    one line.
+    """
     steps = out.section().steps
     if not steps:
         raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
@@ -133,7 +150,10 @@ def circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, speed_m
 
 
 def text_of_file(data: bytes) -> str:
-    """Decode bytes with any letters that an editor left, so that they can be named."""
+    """Decode the bytes of a program.
+
+    Letters that an editor left are kept, so that error messages can name them. Raises Error for UTF-16.
+    """
     if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
         raise Error("it is written in UTF-16: brushsvg writes plain 7-bit text", code="line-unread")
     try:
@@ -142,7 +162,7 @@ def text_of_file(data: bytes) -> str:
         return data.decode("latin-1")
 
 
-def _of_letter(letter: str, line: int) -> str:
+def _describe_letter(letter: str, line: int) -> str:
     if letter == "\ufeff":
         return f"line {line} begins with a byte order mark (U+FEFF), which an editor put there: save it without one"
     if letter == "\r":
@@ -152,35 +172,40 @@ def _of_letter(letter: str, line: int) -> str:
 
 
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
-    """What a program of the cell's language does, its places those where a machine with the cell's backlash goes. Error
-    with the line for what brushsvg would not have written."""
+    """Read a program in the cell's language.
+
+    The places are those that a machine with the cell's backlash reaches. Raises Error with the line for a statement
+    that brushsvg would not have written.
+    """
     from ...machine.posts import POSTS
-    from .play import as_gone
+    from .play import with_backlash
 
     post = POSTS.get(cell.language)
     if post is None or suffix not in post.extensions:
-        speaks = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
-        raise Error(f"cell {cell.name} speaks {speaks}, not what ends in {suffix!r}", code="program-format")
+        spoken = f"{post.title} in {' or '.join(post.extensions)}" if post else cell.language
+        raise Error(f"cell {cell.name} speaks {spoken}, not what ends in {suffix!r}", code="program-format")
     if post.line_end != "\n":
         text = text.replace(post.line_end, "\n")
     if post.has_tabs:
         text = text.replace("\t", " ")
-    if odd := re.search(r"[^\n -~]", text):
-        raise Error(_of_letter(odd[0], text.count("\n", 0, odd.start()) + 1), code="line-unread")
+    if bad_letter := re.search(r"[^\n -~]", text):
+        raise Error(
+            _describe_letter(bad_letter[0], text.count("\n", 0, bad_letter.start()) + 1), code="line-unread"
+        )
     for number, line in enumerate(text.splitlines(), 1):
-        if (found := _HUGE.search(line)) and not line.lstrip(" ").startswith(
+        if (found := _HUGE_NUMBER.search(line)) and not line.lstrip(" ").startswith(
             ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(", 'CO "')
         ):
             raise Error(
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
                 code="line-unread",
             )
-    return as_gone(_READERS[cell.language](text, cell), cell)
+    return with_backlash(_READERS[cell.language](text, cell), cell)
 
 
-_HUGE = re.compile(
+_HUGE_NUMBER = re.compile(
     r"(?<![\d.])0*[1-9]\d{9,}"
-)  # no place in mm, no feed in mm/min: nothing can be computed with it
+)  # larger than any place in mm or feed in mm/min, and too large to compute with
 
 
 def _gcode(text: str, cell: Cell) -> Readback:

@@ -1,4 +1,4 @@
-"""Lua for Dobot as brushsvg writes it, read back."""
+"""Read back Lua programs for Dobot that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ...machine.posts.script import down
 from . import Act, Readback
 from .script import Script, read_script
 
-N = r"-?(?:\d+\.?\d*|\.\d+)"  # Lua has no sign for more than nothing
+N = r"-?(?:\d+\.?\d*|\.\d+)"  # Lua has no plus sign before a number
 _WHOLE = r"\d+"
 
 
@@ -43,12 +43,15 @@ _LINES = tuple(
 )
 
 
-_SETTINGS = re.compile(r"SetUser\(|User\(|SetTool\(|Tool\(")
-_PREPARES = re.compile(rf"{_SETTINGS.pattern}|\(|function |return |end")
+_SETTING = re.compile(r"SetUser\(|User\(|SetTool\(|Tool\(")
+_PREPARATION = re.compile(rf"{_SETTING.pattern}|\(|function |return |end")
 
 
 def read_dobot(text: str, cell: Cell) -> Readback:
-    """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
+    """Read a Dobot program as steps in the paper frame.
+
+    Raises Error with the line for a statement that brushsvg does not write.
+    """
     script = Script(
         remark="-- ",
         lines=_LINES,
@@ -59,47 +62,55 @@ def read_dobot(text: str, cell: Cell) -> Readback:
         rotation=rotation,
     )
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
-    out.acts = _with_settings_sorted(_without_held(out.acts))
+    out.acts = _sort_settings(_drop_default_settings(out.acts))
     return out
 
 
-def _without_held(acts: list[Act]) -> list[Act]:
-    """Without what holds whether it is said or not. Error with the line where it is said in the function: Lua lets
-    nothing stand behind its `return`."""
+def _drop_default_settings(acts: list[Act]) -> list[Act]:
+    """Drop statements that only set the default.
+
+    Raises Error with the line for such a statement in the function, because in Lua nothing may follow a `return`.
+    """
     out, in_function = [], False
     for act in acts:
         in_function = act.text.startswith("function ") or (in_function and act.text != "end")
-        is_held = act.text in ("CP(0)", "CP(-0)")
-        if is_held and in_function:
+        is_default = act.text in ("CP(0)", "CP(-0)")
+        if is_default and in_function:
             raise Error(f"line {act.line}: {act.text!r} stands in the function", code="line-unread")
-        if not is_held:
+        if not is_default:
             out.append(act)
     return out
 
 
-def _with_settings_sorted(acts: list[Act]) -> list[Act]:
-    """What is set before the tool moves in one order, and once: in any other it does the same. Error where a frame is
-    changed that was chosen before, of which the manual says nothing."""
-    ready = next((k for k, act in enumerate(acts) if not _PREPARES.match(act.text)), len(acts))
+def _sort_settings(acts: list[Act]) -> list[Act]:
+    """Sort the settings before the first move, without repetitions.
+
+    The order of settings has no effect. Raises Error where a frame is changed after it was chosen, since the manual
+    does not define the effect.
+    """
+    ready = next((k for k, act in enumerate(acts) if not _PREPARATION.match(act.text)), len(acts))
     head = acts[:ready]
-    settings = [act for act in head if _SETTINGS.match(act.text)]
+    settings = [act for act in head if _SETTING.match(act.text)]
     for changes, chooses in (("SetUser(", "User("), ("SetTool(", "Tool(")):
         chosen = min((act.line for act in settings if act.text.startswith(chooses)), default=None)
         for act in settings:
             if act.text.startswith(changes) and chosen and act.line > chosen:
                 sentence = f"line {act.line}: {act.text[:60]!r} changes a frame that was chosen before"
                 raise Error(sentence, code="line-unread")
-    if _is_in_function(head):
+    if _has_setting_in_function(head):
         return acts
-    once = {act.text: act for act in settings}.values()
+    unique = {act.text: act for act in settings}.values()
     remarks = [act for act in head if act.text.startswith("(")]
     rest = [act for act in head if act not in settings and act not in remarks]
-    return [*sorted(once, key=lambda act: act.text), *remarks, *rest, *acts[ready:]]
+    return [*sorted(unique, key=lambda act: act.text), *remarks, *rest, *acts[ready:]]
 
 
-def _is_in_function(head: list[Act]) -> bool:
-    """Whether something is set within a function, which runs when it is called."""
+def _has_setting_in_function(head: list[Act]) -> bool:
+    """Return whether a setting is inside a function.
+
+    A function runs only when it is called.
+    """
     lines = [act.text for act in head if not act.text.startswith("(")]
     first = next((k for k, line in enumerate(lines) if line.startswith("function")), len(lines))
     last = next((k for k, line in enumerate(lines) if k > first and line == "end"), len(lines))
-    return any(_SETTINGS.match(line) for line in lines[first:last])
+    return any(_SETTING.match(line) for line in lines[first:last])

@@ -1,4 +1,4 @@
-"""DRL for Doosan as brushsvg writes it, read back."""
+"""Read back DRL programs for Doosan that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _point(names: str) -> str:
 
 
 _FIXED = "|".join(re.escape(line) for line in (CHECKS + STOPS).splitlines())
-_TURNS = r"(?=[\d.]*[1-9])\d+\.?\d*"  # degrees/s; of 0 or less the script stops
+_TURN_SPEED = r"(?=[\d.]*[1-9])\d+\.?\d*"  # degrees/s; with 0 or less the script stops
 _LINES = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
@@ -34,11 +34,11 @@ _LINES = tuple(
             rf"movel\(tilted\({', '.join(f'(?P<{name}>{N})' for name in 'xyz')}, (?P<turned>{N}, {N}, {N})\)"
             rf"(?:, radius=(?P<blend>{N}))?\)",
         ),
-        ("sets", rf"set_velx\((?P<speed>{N}), {_TURNS}\)"),
+        ("sets", rf"set_velx\((?P<speed>{N}), {_TURN_SPEED}\)"),
         ("circle", rf"movec\({_point('uvw')}, {_point('xyz')}\)"),
         ("wait", rf"wait\((?P<seconds>{N})\)"),
         ("rise", r"    movel\(here\)"),
-        ("sets", rf"set_accx\((?P<acceleration>{N}), {_TURNS}\)"),
+        ("sets", rf"set_accx\((?P<acceleration>{N}), {_TURN_SPEED}\)"),
         ("text", rf"if here\[2\] < (?P<height>{N}):|    here\[2\] = {N}"),
         (
             "text",
@@ -55,17 +55,23 @@ _LINES = tuple(
 )
 
 
-_LOOKS = re.compile(r"(?m)^((?:tip|here) = get_current_posx\(\w+\))\[-0\]")
+_QUERY_MINUS_ZERO = re.compile(r"(?m)^((?:tip|here) = get_current_posx\(\w+\))\[-0\]")
 
 
-def _of_zyz_deg(abc: list[float]) -> np.ndarray:
-    """(3, 3) about z by a, about the new y by b, about the newest z by c."""
+def _rotation_from_zyz_deg(abc: list[float]) -> np.ndarray:
+    """Return the rotation (3, 3) for angles about z, the new y and the newest z.
+
+    abc: the three angles [degrees], in this order.
+    """
     a, b, c = abc
     return rotation((0, 0, a)) @ rotation((0, b, 0)) @ rotation((0, 0, c))
 
 
 def read_doosan(text: str, cell: Cell) -> Readback:
-    """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
+    """Read a DRL program as steps in the paper frame.
+
+    Raises Error with the line for a statement that brushsvg does not write.
+    """
     for number, line in enumerate(text.splitlines()[:2], 1):
         if NAMES_LETTERS.search(line):
             sentence = f"line {number}: {line[:60]!r} makes Python decode the program with another encoding"
@@ -83,11 +89,11 @@ def read_doosan(text: str, cell: Cell) -> Readback:
         units_mm={},
         turned_deg=tuple(zyz_deg(down(cell.tool.spin_deg)).tolist()),
         is_indented=True,
-        rotation=_of_zyz_deg,
+        rotation=_rotation_from_zyz_deg,
     )
-    text = _LOOKS.sub(r"\1[0]", text)  # the same to Python
+    text = _QUERY_MINUS_ZERO.sub(r"\1[0]", text)  # -0 and 0 are the same index in Python
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))
-    out.acts = _with_tip_first(_with_function_first(out.acts))
+    out.acts = _move_tip_query_first(_move_function_first(out.acts))
     steps = [step for section in out.sections for step in section.steps]
     for before, step in itertools.pairwise(steps):
         if 2 * step.blend_mm > math.dist(before[2:5], step[2:5]):
@@ -98,8 +104,11 @@ def read_doosan(text: str, cell: Cell) -> Readback:
     return out
 
 
-def _with_function_first(acts: list[Act]) -> list[Act]:
-    """A function may be said before or behind what is set, as long as nothing has moved."""
+def _move_function_first(acts: list[Act]) -> list[Act]:
+    """Move a function definition before the settings.
+
+    Their order has no effect until something moves.
+    """
     name = next((k for k, act in enumerate(acts) if act.text.startswith("def ")), None)
     if name is None or any(act.kind != "text" for act in acts[:name]):
         return acts
@@ -107,8 +116,11 @@ def _with_function_first(acts: list[Act]) -> list[Act]:
     return [*function, *acts[:name], *acts[name + 2 :]]
 
 
-def _with_tip_first(acts: list[Act]) -> list[Act]:
-    """Of two lines that only look, each may be the first."""
+def _move_tip_query_first(acts: list[Act]) -> list[Act]:
+    """Put the query of the tip before the query of the flange.
+
+    Their order has no effect.
+    """
     for k, act in enumerate(acts[1:], 1):
         if act.text.startswith("tip =") and acts[k - 1].text.startswith("flange ="):
             return [*acts[: k - 1], act, acts[k - 1], *acts[k + 1 :]]

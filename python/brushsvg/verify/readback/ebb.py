@@ -1,4 +1,4 @@
-"""Commands of an EBB as brushsvg writes them, read back."""
+"""Read back commands for an EBB that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ from . import Act, Readback, ReadSection, Step
 _FEED = re.compile(r"# feed (\d{1,7}\.\d) mm/min")
 _SM = re.compile(r"SM,(\d{1,8}),(-?\d{1,8})(?:,(-?\d{1,8}))?", re.IGNORECASE)
 _S2 = re.compile(r"S2,(\d{1,5}),(\d{1,2})(?:,-?0+(?:,(-?0|\d{1,5}))?)?", re.IGNORECASE)
-_READY = ("SR,0,1", "EM,1,1")
-LEAST_STEPS_S = 1.31  # with fewer the board refuses a motor's move
+_SETUP_COMMANDS = ("SR,0,1", "EM,1,1")
+MIN_STEPS_PER_S = 1.31  # at fewer steps per second the board refuses a motor's move
 
 
 def read_ebb(text: str, cell: Cell) -> Readback:
-    """The program as steps in the machine's frame, from its origin on. Error with the line for what brushsvg does not
-    write, for a slice that is faster than it says, or than a motor is, and for steps that do not lead back."""
+    """Read a program as steps in the machine frame, starting at its origin.
+
+    Raises Error with the line for a command that brushsvg does not write, and for a slice that is faster than its feed
+    or than a motor. Also raises Error for steps that do not lead back to the origin.
+    """
     reader = _Reader(cell)
     for number, line in enumerate(text.splitlines(), 1):
         if line := line.strip(" "):
@@ -43,69 +46,70 @@ class _Reader:
         self.mm_from_steps, self.unit_mm = mm_from_steps(cell.motors), unit_mm(cell)
         self.steps = [0, 0]
         self.value: int | None = None
-        self.along: int | None = None  # a value that takes effect with the next move
+        self.pending_value: int | None = None  # a value that takes effect with the next move
         self.feed_mm_s = 0.0
         self.ready: list[str] = []
         self.is_home = self.ended = False
         servo = cell.servo
-        self.range = sorted(round(row[1]) for row in servo.table)
+        self.value_range = sorted(round(row[1]) for row in servo.table)
         self.heights: dict[int, float] = {}
 
     def line(self, number: int, line: str) -> None:
         if self.ended:
-            raise _unread(number, line)
+            raise _unread_error(number, line)
         if line.startswith("#"):
             self._remark(number, line)
         elif found := _SM.fullmatch(line):
             self._move(number, line, *map(int, found.groups("0")))
         elif found := _S2.fullmatch(line):
-            self._set(number, line, *map(int, found.groups("0")))
-        elif self.ready and line == _READY[0]:
-            return  # as it is
-        elif len(self.ready) < len(_READY) and line == _READY[len(self.ready)]:
+            self._set_servo(number, line, *map(int, found.groups("0")))
+        elif self.ready and line == _SETUP_COMMANDS[0]:
+            return  # already set
+        elif len(self.ready) < len(_SETUP_COMMANDS) and line == _SETUP_COMMANDS[len(self.ready)]:
             self.ready.append(line)
             self.out.acts.append(Act(number, "text", line))
         else:
-            raise _unread(number, line)
+            raise _unread_error(number, line)
 
     def _remark(self, number: int, line: str) -> None:
         if found := _FEED.fullmatch(line):
             self.feed_mm_s = float(found[1]) / 60
             return
-        said = line.removeprefix("# ")
-        if comment(said).rstrip("\n") != line:
-            raise _unread(number, line)
-        if said == HOME:
+        text = line.removeprefix("# ")
+        if comment(text).rstrip("\n") != line:
+            raise _unread_error(number, line)
+        if text == HOME:
             self.is_home = True
-            self.out.sections.append(ReadSection(said, number))
-            self.out.acts.append(Act(number, "text", said))
-        elif said == EBB_END:
+            self.out.sections.append(ReadSection(text, number))
+            self.out.acts.append(Act(number, "text", text))
+        elif text == EBB_END:
             self.ended = True
-            if self.along is not None or not self.is_home:
-                raise _unread(number, line)
+            if self.pending_value is not None or not self.is_home:
+                raise _unread_error(number, line)
         else:
-            self.out.comment(number, said)
+            self.out.comment(number, text)
 
-    def _is_ready(self, number: int, line: str) -> None:
-        if len(self.ready) < len(_READY):
-            missing = _READY[len(self.ready)]
+    def _check_ready(self, number: int, line: str) -> None:
+        if len(self.ready) < len(_SETUP_COMMANDS):
+            missing = _SETUP_COMMANDS[len(self.ready)]
             raise Error(f"line {number}: {line!r} stands before {missing}", code="mode-missing")
 
-    def _set(self, number: int, line: str, value: int, pin: int, wait_ms: int) -> None:
-        self._is_ready(number, line)
-        if pin != self.cell.motors.servo_pin or self.along is not None:
-            raise _unread(number, line)
-        if not self.range[0] <= value <= self.range[-1]:
+    def _set_servo(self, number: int, line: str, value: int, pin: int, wait_ms: int) -> None:
+        self._check_ready(number, line)
+        if pin != self.cell.motors.servo_pin or self.pending_value is not None:
+            raise _unread_error(number, line)
+        if not self.value_range[0] <= value <= self.value_range[-1]:
             raise Error(
-                f"line {number}: {line!r} is outside the range [{self.range[0]}, {self.range[-1]}] of the cell's servo",
+                f"line {number}: {line!r} is outside the range [{self.value_range[0]}, {self.value_range[-1]}] "
+                "of the cell's servo",
                 code="servo-out-of-range",
             )
-        if self.value is None:  # before the first move: up from any height
+        if self.value is None:  # before the first move, the servo goes up from any height
             self.value = value
             self.out.rises_mm.append(self._height(value))
             self.out.acts.append(Act(number, "lift", same=(float(value),)))
         elif not wait_ms:
-            self.along = value
+            self.pending_value = value
         else:
             self._lift(number, value)
             self._wait(number, wait_ms)
@@ -137,41 +141,41 @@ class _Reader:
         x, y = (self.mm_from_steps @ self.steps).tolist()
         return x, y
 
-    def _move(self, number: int, line: str, time_ms: int, one: int, two: int) -> None:
-        self._is_ready(number, line)
-        if not time_ms or (self.value is None and (one or two)):
+    def _move(self, number: int, line: str, time_ms: int, steps_1: int, steps_2: int) -> None:
+        self._check_ready(number, line)
+        if not time_ms or (self.value is None and (steps_1 or steps_2)):
             raise Error(
                 f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete"
             )
-        if not one and not two:
-            if self.along is not None:
-                raise _unread(number, line)
+        if not steps_1 and not steps_2:
+            if self.pending_value is not None:
+                raise _unread_error(number, line)
             self._wait(number, time_ms)
             return
-        if self.along is not None:
-            if self.along != self.value:
-                self.value = self.along
+        if self.pending_value is not None:
+            if self.pending_value != self.value:
+                self.value = self.pending_value
                 self._step(number)
-            self.value, self.along = self.along, None
-        for steps in (one, two):
-            if steps and not LEAST_STEPS_S <= 1e3 * abs(steps) / time_ms <= MOST_STEPS_S:
+            self.value, self.pending_value = self.pending_value, None
+        for steps in (steps_1, steps_2):
+            if steps and not MIN_STEPS_PER_S <= 1e3 * abs(steps) / time_ms <= MOST_STEPS_S:
                 raise Error(
                     f"line {number}: {line!r} has {1e3 * abs(steps) / time_ms:.4g} steps in a second, outside the "
-                    f"range [{LEAST_STEPS_S:g}, {MOST_STEPS_S}] of a motor",
+                    f"range [{MIN_STEPS_PER_S:g}, {MOST_STEPS_S}] of a motor",
                     code="speed-out-of-range",
                 )
-        way_mm = float(np.linalg.norm(self.mm_from_steps @ (one, two)))
+        way_mm = float(np.linalg.norm(self.mm_from_steps @ (steps_1, steps_2)))
         speed_mm_s = 1e3 * way_mm / time_ms
         if speed_mm_s > self.feed_mm_s * (1 + 1e-9) + 1e-9:
             raise Error(
                 f"line {number}: speed {speed_mm_s:.1f} mm/s, its limit {self.feed_mm_s:.1f} mm/s",
                 code="speed-out-of-range",
             )
-        self.steps = [self.steps[0] + one, self.steps[1] + two]
+        self.steps = [self.steps[0] + steps_1, self.steps[1] + steps_2]
         self._step(number, time_ms / 1e3)
         at_most = (self.feed_mm_s, speed_mm_s, 1e3 * self.unit_mm / time_ms)
         self.out.acts.append(Act(number, "way", "", self._place(), at_most, (float(self.value),)))
 
 
-def _unread(number: int, line: str) -> Error:
+def _unread_error(number: int, line: str) -> Error:
     return Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")

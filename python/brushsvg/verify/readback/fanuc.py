@@ -1,4 +1,4 @@
-"""TP for FANUC as brushsvg writes it, read back: the main program with those that it calls."""
+"""Read back TP programs for FANUC: a main program and those that it calls."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.fanuc import FANUC_END, INDEX, MAIN, POINT_DECIMALS, cnt_mm
 from ...machine.posts.script import down
 from . import Readback
-from .script import N, Numbered, Script, place, read_script
+from .script import N, NumberedLines, Script, place, read_script
 
 _C = rf"(?:{N}|\({N}\))"
 _ATTRIBUTES = re.compile(
@@ -27,7 +27,7 @@ _POINT = re.compile(
 _SPEED = r"(\d{1,4}(?:mm/sec|cm/min))"
 _LINE = re.compile(rf"L P\[(\d{{1,5}})\] {_SPEED} (?:FINE|CNT(\d{{1,3}}))")
 _CIRCLE = re.compile(r"C P\[(\d{1,5})\]")
-_ONWARD = re.compile(rf"P\[(\d{{1,5}})\] {_SPEED} FINE")
+_CIRCLE_END = re.compile(rf"P\[(\d{{1,5}})\] {_SPEED} FINE")
 _CALL = re.compile(r"CALL (\w{1,32})")
 _SETS = re.compile(rf"PR\[{INDEX},([1-6])\]=({_C})")
 _FRAME = re.compile(rf"(UFRAME|UTOOL)\[{INDEX}\]=PR\[{INDEX}\]")
@@ -53,8 +53,10 @@ _LINES = tuple(
 
 
 def read_fanuc(text: str, cell: Cell) -> Readback:
-    """The programs as steps in the paper's frame. Error with the line for what brushsvg does not write; lines are
-    counted on through the programs."""
+    """Read the programs as steps in the paper frame.
+
+    Line numbers continue through the programs. Raises Error with the line for a statement that brushsvg does not write.
+    """
     script = Script(
         remark="!",
         lines=_LINES,
@@ -65,124 +67,135 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
         rotation=rotation,
     )
     out = Readback(in_paper_frame=True, blends_by_radius=True)
-    read_script("", script, out, _with_setup_as_frames(_in_order(text, cell)))
+    read_script("", script, out, _with_setup_as_frames(_instructions_in_order(text, cell)))
     return out
 
 
-def _in_order(text: str, cell: Cell) -> Numbered:
-    """The instructions as they run, a place instead of a point's number."""
-    found = _programs(text)
-    if not found or next(iter(found)) != MAIN:
+def _instructions_in_order(text: str, cell: Cell) -> NumberedLines:
+    """Return the instructions in running order, with places for point numbers."""
+    programs = _split_programs(text)
+    if not programs or next(iter(programs)) != MAIN:
         raise Error(f"it does not begin with the program {MAIN}", code="line-unread")
-    lines, taken = [], [MAIN]
-    for number, line in _with_places(*found[MAIN], cell):
+    lines, called = [], [MAIN]
+    for number, line in _resolve_points(*programs[MAIN], cell):
         call = _CALL.fullmatch(line)
         if not call:
             lines.append((number, line))
             continue
-        if call[1] not in found or call[1] in taken:
+        if call[1] not in programs or call[1] in called:
             raise Error(
                 f"line {number}: it calls {call[1]!r}, which is missing or was called before",
                 code="line-unread",
             )
-        taken.append(call[1])
-        lines += _with_places(*found[call[1]], cell)
-    if left := [name for name in found if name not in taken]:
-        raise Error(f"program {left[0]!r} is not called", code="line-unread")
+        called.append(call[1])
+        lines += _resolve_points(*programs[call[1]], cell)
+    if uncalled := [name for name in programs if name not in called]:
+        raise Error(f"program {uncalled[0]!r} is not called", code="line-unread")
     if any(_CALL.fullmatch(line) for _, line in lines):
         raise Error("a program that is called calls others", code="line-unread")
     return lines
 
 
-def _programs(text: str) -> dict[str, tuple[Numbered, Numbered]]:
+def _split_programs(text: str) -> dict[str, tuple[NumberedLines, NumberedLines]]:
     """Return the instructions and points of each program, in a dictionary of names."""
-    found: dict[str, tuple[Numbered, Numbered]] = {}
-    name, where, has_group = "", "out", False
+    programs: dict[str, tuple[NumberedLines, NumberedLines]] = {}
+    name, part, has_group = "", "out", False
     for number, raw in enumerate(text.splitlines(), 1):
         line = " ".join(raw.split())
         if not line:
             continue
         begins = re.fullmatch(r"/PROG (\w{1,32})", line)
-        if begins and where == "out" and begins[1] not in found:
-            name, where, has_group = begins[1], "name", False
-            found[name] = ([], [])
-        elif where == "name" and line == "/ATTR":
-            where = "head"
-        elif where == "head" and _ATTRIBUTES.fullmatch(line):
+        if begins and part == "out" and begins[1] not in programs:
+            name, part, has_group = begins[1], "name", False
+            programs[name] = ([], [])
+        elif part == "name" and line == "/ATTR":
+            part = "head"
+        elif part == "head" and _ATTRIBUTES.fullmatch(line):
             has_group = has_group or bool(_GROUP.fullmatch(line))
             if line == "/MN" and not has_group:
                 raise Error(f"line {number}: no DEFAULT_GROUP says which arm moves", code="line-unread")
-            where = "instructions" if line == "/MN" else where
-        elif where == "instructions" and line == "/POS":
-            where = "points"
-        elif where == "instructions" and (one := re.fullmatch(r" *\d*: ?(.*?) *;?", raw.rstrip(" "))):
+            part = "instructions" if line == "/MN" else part
+        elif part == "instructions" and line == "/POS":
+            part = "points"
+        elif part == "instructions" and (
+            instruction_match := re.fullmatch(r" *\d*: ?(.*?) *;?", raw.rstrip(" "))
+        ):
             is_open = not raw.rstrip(" ").endswith(";")
-            said = one[1] if one[1].startswith("!") else " ".join(one[1].split())
-            if is_open != bool(_CIRCLE.fullmatch(said)):
+            instruction = (
+                instruction_match[1]
+                if instruction_match[1].startswith("!")
+                else " ".join(instruction_match[1].split())
+            )
+            if is_open != bool(_CIRCLE.fullmatch(instruction)):
                 raise Error(f"line {number}: {line[:60]!r} ends too early or too late", code="line-unread")
-            found[name][0].append((number, said))
-        elif where == "points" and line == "/END":
-            where = "out"
-        elif where == "points":
-            found[name][1].append((number, line))
+            programs[name][0].append((number, instruction))
+        elif part == "points" and line == "/END":
+            part = "out"
+        elif part == "points":
+            programs[name][1].append((number, line))
         else:
             raise Error(
                 f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread"
             )
-    if where != "out":
+    if part != "out":
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
-    return found
+    return programs
 
 
-def _with_places(lines: Numbered, said: Numbered, cell: Cell) -> Iterator[tuple[int, str]]:
-    points = _points(said, cell)
+def _resolve_points(
+    lines: NumberedLines, point_lines: NumberedLines, cell: Cell
+) -> Iterator[tuple[int, str]]:
+    points = _parse_points(point_lines, cell)
 
-    def at(number: int, name: str) -> tuple[str, str]:
+    def point(number: int, name: str) -> tuple[str, str]:
         if int(name) not in points:
             raise Error(f"line {number}: there is no point P[{name}]", code="line-incomplete")
         return points[int(name)]
 
-    opened = None
+    open_circle_point = None
     for number, line in lines:
-        move, circle, onward = _LINE.fullmatch(line), _CIRCLE.fullmatch(line), _ONWARD.fullmatch(line)
-        if bool(onward) != (opened is not None):
+        move, circle, onward = _LINE.fullmatch(line), _CIRCLE.fullmatch(line), _CIRCLE_END.fullmatch(line)
+        if bool(onward) != (open_circle_point is not None):
             raise Error(f"line {number}: a circle is written in two lines", code="line-unread")
         if move:
-            to, turned = at(number, move[1])
-            speed, percent = _mm_s(move[2]), int(move[3] or 0)
+            to, turned = point(number, move[1])
+            speed, percent = _parse_speed_mm_s(move[2]), int(move[3] or 0)
             if percent > 100:
                 raise Error(f"line {number}: CNT{percent} is outside the range [0, 100]", code="line-unread")
             blend = cnt_mm(percent, speed, cell.blending.ramp_s)
             yield number, f"L {to} turned {turned} at {speed:.6f} blend {blend:.6f}"
         elif circle:
-            opened = circle[1]
+            open_circle_point = circle[1]
         elif onward:
-            (via, via_turned), (to, turned) = at(number, opened), at(number, onward[1])
-            yield number, f"C {via} turned {via_turned} to {to} turned {turned} at {_mm_s(onward[2]):.6f}"
-            opened = None
+            (via, via_turned), (to, turned) = point(number, open_circle_point), point(number, onward[1])
+            yield (
+                number,
+                f"C {via} turned {via_turned} to {to} turned {turned} at {_parse_speed_mm_s(onward[2]):.6f}",
+            )
+            open_circle_point = None
         else:
             yield number, line
-    if opened is not None:
+    if open_circle_point is not None:
         raise Error("a circle has no end", code="line-incomplete")
 
 
-def _mm_s(speed: str) -> float:
+def _parse_speed_mm_s(speed: str) -> float:
     return float(speed[:-6]) / (6 if speed.endswith("cm/min") else 1)
 
 
-def _points(said: Numbered, cell: Cell) -> dict[int, tuple[str, str]]:
-    """Place and angles of each point, as they are written."""
+def _parse_points(lines: NumberedLines, cell: Cell) -> dict[int, tuple[str, str]]:
+    """Return the place and angles of each point by its number, as written."""
     points: dict[int, tuple[str, str]] = {}
-    held, first = "", 0
-    for number, line in said:
-        first = first if held else number
-        held = f"{held} {line}".strip()
+    pending, first = "", 0
+    for number, line in lines:
+        first = first if pending else number
+        pending = f"{pending} {line}".strip()
         if not line.endswith("};"):
             continue
-        found = _POINT.fullmatch(held)
+        found = _POINT.fullmatch(pending)
         if not found or int(found[1]) in points:
             raise Error(
-                f"line {first}: {held[:60]!r} is not a point that brushsvg writes", code="line-unread"
+                f"line {first}: {pending[:60]!r} is not a point that brushsvg writes", code="line-unread"
             )
         if found[2] != cell.tool.configuration:
             sentence = (
@@ -190,17 +203,20 @@ def _points(said: Numbered, cell: Cell) -> dict[int, tuple[str, str]]:
             )
             raise Error(sentence, code="line-unread")
         points[int(found[1])] = (", ".join(found.groups()[2:5]), ", ".join(found.groups()[5:]))
-        held = ""
-    if held:
-        raise Error(f"line {first}: {held[:60]!r} is not a point that brushsvg writes", code="line-unread")
+        pending = ""
+    if pending:
+        raise Error(f"line {first}: {pending[:60]!r} is not a point that brushsvg writes", code="line-unread")
     return points
 
 
-def _with_setup_as_frames(lines: Numbered) -> Numbered:
-    """Instead of the lines that set frame and tool by a register, what they are set to; remarks that go on as one."""
-    out: Numbered = []
+def _with_setup_as_frames(lines: NumberedLines) -> NumberedLines:
+    """Replace the lines that set frame and tool by one line per frame.
+
+    These lines set a register first. Continued remarks are joined.
+    """
+    out: NumberedLines = []
     held: dict[int, str] | None = None
-    choices: Numbered = []
+    choices: NumberedLines = []
     known: set[str] = set()
     for number, line in lines:
         if line.startswith("!+") and out and out[-1][1].startswith("!"):
@@ -224,13 +240,13 @@ def _with_setup_as_frames(lines: Numbered) -> Numbered:
         elif line.startswith("!") or not line:
             out.append((number, line))
         else:
-            out += _settled(choices)
+            out += _sort_settings(choices)
             choices = []
             out.append((number, line))
-    return [each for each in out + _settled(choices) if each[1]]
+    return [each for each in out + _sort_settings(choices) if each[1]]
 
 
-def _settled(choices: Numbered) -> Numbered:
-    """What is set before a move in one order, and once, the last value of each."""
+def _sort_settings(choices: NumberedLines) -> NumberedLines:
+    """Return the settings before a move, sorted, with only the last value of each."""
     last = {line.partition(" ")[0]: (number, line) for number, line in choices}
     return [last[name] for name in sorted(last)]

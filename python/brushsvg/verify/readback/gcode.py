@@ -1,4 +1,7 @@
-"""G-code as brushsvg writes it, read back: straight moves, circles, dwells, stops, a servo's values."""
+"""Read back G-code that brushsvg wrote.
+
+The programs consist of straight moves, circles, dwells, stops and servo values.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +19,21 @@ _VALUE = r"(?:[GM]-?|[A-FH-LN-Z][+-]?)(?:\d+\.?\d*|\.\d+)"
 _CODE = re.compile(rf"(?:{_VALUE}(?: +|$))+")
 _WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
 _END = re.compile(r"M(?:0?2|30)")
-WAYS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF"}  # and the words that they may have
-INSTEAD = {
+MOTION_WORDS = {
+    "G0": "XYZF",
+    "G1": "XYZF",
+    "G2": "XYZIJF",
+    "G3": "XYZIJF",
+}  # motion codes, and the words that may follow them
+REPLACED_MODES = {
     "G18": ["G17"],
     "G19": ["G17"],
     "G90.1": ["G91.1"],
     "G61": ["G64"],
     "G64": ["G61"],
-}  # what ends what holds
+}  # the modes that each mode replaces
 MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61", "G18", "G19", "G90.1"}
-ALONE = {
+EXCLUSIVE_CODES = {
     "G0",
     "G1",
     "G2",
@@ -37,13 +45,21 @@ ALONE = {
     "M2",
     "M3",
     "M5",
-}  # no other word of command with them
-STANDING = {"G17", "G18", "G19", "G21", "G40", "G90", "G90.1", "G91.1", "G94"}  # modes that end no motion
-UNKNOWN_TO_GRBL = {
-    "G64",
+}  # codes that must be the only G or M code of their line
+LASTING_MODES = {
+    "G17",
+    "G18",
+    "G19",
+    "G21",
+    "G40",
+    "G90",
     "G90.1",
-}  # it answers them with an error, and senders then stop with the brush pressed
-FOR_PRINTERS = {
+    "G91.1",
+    "G94",
+}  # modes that end no motion
+# Grbl answers these codes with an error, and senders then stop with the brush pressed.
+UNKNOWN_TO_GRBL = {"G64", "G90.1"}
+PRINTER_WORDS = {
     "G0": "XYZF",
     "G1": "XYZF",
     "G2": "XYZIJF",
@@ -53,19 +69,22 @@ FOR_PRINTERS = {
     "G90": "",
     "M400": "",
 }
-NEEDED = {"G21": "millimetres", "G90": "absolute places"}
+REQUIRED_MODES = {"G21": "millimetres", "G90": "absolute places"}
 
 
-@lru_cache(maxsize=10_000)  # a servo's steps are few lines, each many times
+@lru_cache(maxsize=10_000)  # the steps of a servo are a few different lines, repeated many times
 def _words(line: str) -> tuple[tuple[str, float], ...]:
-    """Letters and numbers of a line; () for what is no line of words."""
+    """Return the letters and numbers of a line; () for a line without words."""
     if not _CODE.fullmatch(line):
         return ()
     return tuple((letter, float(value) + 0.0) for letter, value in _WORD.findall(line))
 
 
 def read_gcode(text: str, cell: Cell) -> Readback:
-    """The program as steps. Error with the line for words that brushsvg does not write, or a missing G21, G90, M2."""
+    """Read a G-code program as steps.
+
+    Raises Error with the line for words that brushsvg does not write, and for a missing G21, G90 or M2.
+    """
     return _Reader(cell).read(text)
 
 
@@ -74,17 +93,17 @@ class _Reader:
         self.out = Readback()
         self.dialect = DIALECTS[cell.language]
         self.remark = re.compile(self.dialect.remark)
-        self.words = dict.fromkeys(MODES | set(NEEDED) | {"M0", "M2"}, "") | WAYS
+        self.words = dict.fromkeys(MODES | set(REQUIRED_MODES) | {"M0", "M2"}, "") | MOTION_WORDS
         self.words |= {"G4": "P", "G64": "P", "": "F"} | (
             {"M3": "SF", "G1": "XYSF"} if cell.servo else {"M5": ""}
         )
         if not self.dialect.has_blocks:
-            self.words = dict(FOR_PRINTERS)
+            self.words = dict(PRINTER_WORDS)
             if cell.pen:
                 self.words |= {"G0": "XYF", "G1": "XYF", "G2": "", "G3": "", "M280": "PS"}
         self.pen, self.heights, self.press_mm_s = cell.pen, cell.heights, cell.speeds.press_mm_s
-        self.stands = True  # behind M400, and before any move
-        self.known = ALONE | MODES | set(NEEDED)
+        self.stands = True  # whether the tool stands: after M400, and before any move
+        self.known = EXCLUSIVE_CODES | MODES | set(REQUIRED_MODES)
         if cell.language != "linuxcnc":
             self.known -= UNKNOWN_TO_GRBL
         self.for_circles = {"G17", "G91.1"} if cell.language == "linuxcnc" else {"G17"}
@@ -104,22 +123,22 @@ class _Reader:
 
     def read(self, text: str) -> Readback:
         for number, line in enumerate(text.splitlines(), 1):
-            self._count(number, line)
+            self._check_length(number, line)
             line = line.rstrip(" ")
             if line and self.ended:
                 if _END.fullmatch(line) and not self.ends_by_words:
-                    continue  # ends what has ended
+                    continue  # a second end has no effect
                 raise Error(
                     f"line {number}: {line[:40]!r} stands behind the end of the program", code="line-unread"
                 )
-            if said := self.remark.fullmatch(line):
-                self._comment(number, line, said[1])
-                self.ended = self.ends_by_words and said[1] == HELD_UP
+            if comment_match := self.remark.fullmatch(line):
+                self._comment(number, line, comment_match[1])
+                self.ended = self.ends_by_words and comment_match[1] == HELD_UP
             elif line and self.dialect.has_blocks:
-                self._line(number, line)
+                self._read_block(number, line)
             elif line:
-                self._word_of_command(number, line)
-        for mode, meaning in NEEDED.items():
+                self._read_printer_line(number, line)
+        for mode, meaning in REQUIRED_MODES.items():
             if mode not in self.seen:
                 raise Error(
                     f"{mode} is missing: nothing says that its numbers are {meaning}", code="mode-missing"
@@ -131,9 +150,9 @@ class _Reader:
             )
         return self.out
 
-    def _count(self, number: int, line: str) -> None:
-        """Error for a line that the controller does not read whole."""
-        # grbl drops blanks before it counts
+    def _check_length(self, number: int, line: str) -> None:
+        """Raise Error for a line that is longer than the controller reads."""
+        # grbl drops blanks before it counts letters.
         size = len(line) if self.dialect.counts_blanks else len(line.replace(" ", ""))
         if size > self.dialect.longest:
             raise Error(
@@ -141,9 +160,14 @@ class _Reader:
                 code="line-unread",
             )
 
-    def _word_of_command(self, number: int, line: str) -> None:
-        """A line of a printer's firmware, which reads its first word of command alone, and forgets it."""
-        words = () if line[1:2] == "-" else _words(line)  # G-0 is G0 to others, to these no command
+    def _read_printer_line(self, number: int, line: str) -> None:
+        """Read a line for the firmware of a printer.
+
+        Such firmware obeys only the first G or M code of a line, and does not remember it.
+        """
+        words = (
+            () if line[1:2] == "-" else _words(line)
+        )  # other controllers read G-0 as G0, this firmware does not
         first = f"{words[0][0]}{words[0][1]:g}" if words else ""
         stop = self.dialect.stops[-1]
         if line == stop or (first == stop and len(words) == 1):
@@ -165,17 +189,20 @@ class _Reader:
                 f"line {number}: {line[:40]!r} is a circle, which brushsvg does not write for the cell's firmware",
                 code="line-unread",
             )
-        if first in WAYS:
+        if first in MOTION_WORDS:
             self._move(number, line, first, values)
         elif first == "G4":
             self._wait(number, line, values.get("P", -1.0) / self.dialect.per_s)
         elif first == "M280":
-            self._pen(number, line, values)
-        self.stands = first == "M400" or (self.stands and first not in WAYS)
-        self.seen |= {first} - {"M400"}  # which sets nothing
+            self._move_pen(number, line, values)
+        self.stands = first == "M400" or (self.stands and first not in MOTION_WORDS)
+        self.seen |= {first} - {"M400"}  # M400 sets no mode
 
-    def _pen(self, number: int, line: str, values: dict[str, float]) -> None:
-        """Up or down, at once: what the firmware still holds of moves is run behind it."""
+    def _move_pen(self, number: int, line: str, values: dict[str, float]) -> None:
+        """Move the pen up or down at once.
+
+        The firmware would run moves that it still holds after the pen.
+        """
         ups = [float(round(value)) for value in self.pen.servo_values]
         if values.get("P") != self.pen.servo_number or values.get("S") not in ups:
             sentence = f"line {number}: {line[:40]!r} is neither up nor down of the cell's pen"
@@ -185,18 +212,18 @@ class _Reader:
         is_down = values["S"] == ups[1]
         height_mm = self.pen.down_mm if is_down else self.heights.safe_mm
         if height_mm == self.at["Z"]:
-            return  # as it was
+            return  # the pen is already there
         self.at["Z"] = height_mm
         if math.isnan(self.at["X"]):
             self.out.rises_mm.append(self.at["Z"])
-        self._go(number, False, {}, None)
+        self._add_step(number, False, {}, None)
         step = self.out.section().steps[-1]
         self.out.section().steps[-1] = step._replace(
             speed_mm_s=min(self.press_mm_s, self.feed_mm_s or math.inf)
         )
         self.out.acts.append(Act(number, "text", f"M280 {'down' if is_down else 'up'}"))
 
-    def _line(self, number: int, line: str) -> None:
+    def _read_block(self, number: int, line: str) -> None:
         if not (words := _words(line)):
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
@@ -204,21 +231,23 @@ class _Reader:
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
         values = {letter: value for letter, value in words if letter not in "GM"}
         if codes == ["M30"] and not self.servo:
-            codes = ["M2"]  # what both end
-        idle = [code for code in codes if code == "M9"]  # switches off what no program switches on
-        if len(codes) > 1 and not values and (motion := self._motion_among(codes)):
+            codes = ["M2"]  # M2 and M30 both end the program
+        idle = [
+            code for code in codes if code == "M9"
+        ]  # M9 switches off a coolant that no program switches on
+        if len(codes) > 1 and not values and (motion := self._find_unused_motion(codes)):
             self.motion = motion
             idle.append(motion)
         codes = [code for code in codes if code not in idle]
-        if (len(codes) > 1 and set(codes) & ALONE) or not set(codes) <= self.known:
+        if (len(codes) > 1 and set(codes) & EXCLUSIVE_CODES) or not set(codes) <= self.known:
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
             )
         first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
         if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
-            first = "M3"  # which holds
-        if values and first in STANDING and self.motion in ("G0", "G1"):
-            first = self.motion  # which stays in force next to a mode
+            first = "M3"  # M3 stays in force
+        if values and first in LASTING_MODES and self.motion in ("G0", "G1"):
+            first = self.motion  # the motion code stays in force on a line with a mode
         if first not in self.words:
             raise Error(
                 f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
@@ -231,7 +260,7 @@ class _Reader:
                 code="line-unread",
             )
         if self.servo:
-            self._stays_held(number, line, first, codes)
+            self._check_servo_held(number, line, first, codes)
         if first == "G64" and "G21" not in self.seen:
             raise Error(
                 f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres",
@@ -239,10 +268,10 @@ class _Reader:
             )
         if values and first != "G64" and self.out.modes is None:
             self.out.modes = frozenset(self.seen)
-        if first in WAYS or not first:
+        if first in MOTION_WORDS or not first:
             self._move(number, line, first, values)
         elif first == "G64":
-            self.out.joint_mm = values.get("P") or math.inf  # none and 0 alike leave it to the machine
+            self.out.joint_mm = values.get("P") or math.inf  # without P, or with P0, the machine decides
         elif first == "M3":
             self._lift(number, values)
         elif first == "G4":
@@ -254,29 +283,35 @@ class _Reader:
             self.out.joint_mm = 0.0
         if "G80" in codes:
             self.motion = ""
-        self.seen -= {mode for code in codes for mode in INSTEAD.get(code, ())}
+        self.seen -= {mode for code in codes for mode in REPLACED_MODES.get(code, ())}
         self.seen |= set(codes)
 
-    def _stays_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
-        """Error for what ends G1, without which grbl switches a servo's output off: the brush falls."""
+    def _check_servo_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
+        """Raise Error for codes that end G1.
+
+        Without G1, grbl switches the servo off, and the brush falls.
+        """
         if first == "G0" or ("G80" in codes and "G1" in self.seen):
             raise Error(
                 f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall",
                 code="line-unread",
             )
 
-    def _comment(self, number: int, line: str, said: str) -> None:
-        """Raise Error for a line that is too long, or has letters that a machine obeys anywhere."""
-        if (plain := self.dialect.comment(said).rstrip("\n")) != line:
+    def _comment(self, number: int, line: str, text: str) -> None:
+        """Read a comment.
+
+        Raises Error for a comment that brushsvg would write differently, and for one that the firmware acts on.
+        """
+        if (plain := self.dialect.comment(text).rstrip("\n")) != line:
             raise Error(
                 f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",
                 code="line-unread",
             )
-        if self.dialect.acts and re.match(self.dialect.acts, said, re.IGNORECASE):
+        if self.dialect.acts and re.match(self.dialect.acts, text, re.IGNORECASE):
             raise Error(
                 f"line {number}: {line[:40]} is a comment that {self.firmware} acts on", code="line-unread"
             )
-        self.out.comment(number, said)
+        self.out.comment(number, text)
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
         if seconds < 0:
@@ -307,10 +342,10 @@ class _Reader:
             return
         if self.servo and "S" in values:
             self.value = values["S"]
-            places["Z"] = self._height(number, values["S"])
-            # the value takes effect with the move: the lift first, then the way at that height
+            places["Z"] = self._servo_height_mm(number, values["S"])
+            # The value takes effect with the move: first the lift, then the path at that height.
             if places["Z"] != self.at["Z"]:
-                self._go(number, False, {"Z": places["Z"]}, None)
+                self._add_step(number, False, {"Z": places["Z"]}, None)
         centre = None
         if code in ("G2", "G3"):
             if self.dialect.has_blocks and not self.for_circles <= self.seen:
@@ -341,7 +376,7 @@ class _Reader:
         if (code != "G0" or not self.dialect.has_blocks) and not self.feed_mm_s > 0:
             raise Error(f"line {number}: {line[:40]!r} has no feed", code="line-incomplete")
         rapid = code == "G0" and self.dialect.has_blocks
-        self._go(number, rapid, places, centre)
+        self._add_step(number, rapid, places, centre)
         x, y, z = self.at.values()
         speed = math.inf if rapid else self.feed_mm_s
         if self.servo:
@@ -351,9 +386,9 @@ class _Reader:
         else:
             self.out.acts.append(Act(number, "move", "", (x, y, z), (speed,), (self.out.joint_mm,)))
 
-    def _go(self, number: int, rapid: bool, places: dict[str, float], centre) -> None:
+    def _add_step(self, number: int, rapid: bool, places: dict[str, float], centre) -> None:
         self.at |= places
-        # a servo may lift before any F
+        # A servo may lift before any F.
         speed = self.rapid_mm_s if rapid else self.feed_mm_s or self.press_mm_s
         if "Z" in places and math.isnan(self.at["X"] + self.at["Y"]):
             self.out.rises_mm.append(places["Z"])
@@ -363,21 +398,24 @@ class _Reader:
     def _lift(self, number: int, values: dict[str, float]) -> None:
         self.feed_mm_s = values["F"] / 60 if "F" in values else self.feed_mm_s
         self.value = values.get("S", self.value)
-        before, height = self.at["Z"], self._height(number, self.value)
+        before, height = self.at["Z"], self._servo_height_mm(number, self.value)
         if height == before:
-            return  # the value that holds
-        self._go(number, False, {"Z": height}, None)
+            return  # the servo already has this value
+        self._add_step(number, False, {"Z": height}, None)
         self.out.acts.append(Act(number, "lift", same=(self.value,)))
 
-    def _motion_among(self, codes: list[str]) -> str:
-        """The one that a line of modes sets and does not use; LinuxCNC stops there."""
+    def _find_unused_motion(self, codes: list[str]) -> str:
+        """Return the motion code that a line of modes sets without using it.
+
+        The result is empty where there is none. For LinuxCNC the result is always "", because it stops at such a line.
+        """
         if self.dialect.comment is comment:
             return ""
         motions = [code for code in codes if code == "G1" or (code == "G0" and not self.servo)]
         rest = set(codes) - set(motions)
-        return motions[0] if len(motions) == 1 and rest <= STANDING else ""
+        return motions[0] if len(motions) == 1 and rest <= LASTING_MODES else ""
 
-    def _height(self, number: int, value: float) -> float:
+    def _servo_height_mm(self, number: int, value: float) -> float:
         known = [row[1] for row in self.servo.table]
         low, high = round(min(known)), round(max(known))
         if not low <= value <= high:

@@ -1,4 +1,4 @@
-"""The header of a program of ours: what it says of how the program was made."""
+"""Read how a program was made from the header that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from ...errors import Error
 
 
 @dataclass(frozen=True)
-class Made:
-    """What a program's header says of how it was made; tolerance_mm None: it does not say.
+class ProgramHeader:
+    """How a program was made, from its header.
 
-    strokes: how many the job has; notes: the lines about its planning, as they are written.
-    border_mm: what an air run goes round, left, bottom, right, top; heights_mm: highest, lowest and step of the strokes
-    that find the paper; first_mm: the same of a first run; None for programs that paint.
+    tolerance_mm is None where the header does not state it. strokes: number of strokes of the job; notes: the lines
+    about its planning, as they are written. border_mm: left, bottom, right and top of the border that an air run
+    follows; heights_mm: highest, lowest and step of the strokes that find the paper; first_mm: highest, lowest and step
+    of a first run. These three are None for programs that paint.
     """
 
     title: str
@@ -39,38 +40,41 @@ class Made:
     is_of_plan: bool = False  # made from a plan.json, which does not say how it was planned
 
 
-def made(text: str) -> Made:
-    """Error when the header is not one of ours, or one of its numbers is damaged."""
-    header = _header_of(text)
+def made(text: str) -> ProgramHeader:
+    """Read how a program was made from its header.
+
+    Raises Error when brushsvg did not write the header, or when one of its numbers is damaged.
+    """
+    header = _header_lines(text)
     if missing := [word for word in ("title", "brush", "cell") if word not in header]:
         lost = "" if len(missing) == 3 else ", or a line was lost"
         raise Error(
             f"its header does not name {' and '.join(missing)}: brushsvg did not write this program{lost}",
             code="header-damaged",
         )
-    sheet = _said(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
-    paper = _said(header, "paper", r"(\S+) mm against the cell's", (-20.0, 20.0))
-    resumed = _said(header, "resumed", r"from stroke (\d+)", (1, 1e6))
-    border = _said(header, "border", r"(\S+) to (\S+) mm, (\S+) to (\S+) mm", (-1e5, 1e6))
-    heights = _said(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
-    first = _said(header, "first", r"heights (\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
+    sheet = _numbers_in(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
+    paper = _numbers_in(header, "paper", r"(\S+) mm against the cell's", (-20.0, 20.0))
+    resumed = _numbers_in(header, "resumed", r"from stroke (\d+)", (1, 1e6))
+    border = _numbers_in(header, "border", r"(\S+) to (\S+) mm, (\S+) to (\S+) mm", (-1e5, 1e6))
+    heights = _numbers_in(header, "heights", r"(\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
+    first = _numbers_in(header, "first", r"heights (\S+) to (\S+) mm, (\S+) mm apart", (-1000.0, 1000.0))
     how = re.match(r"(none|constant|closed|refined), ", header.get("compensation", "closed, "))
     ends = r"(?:, start (?:auto|round|butt|pointed))?(?:, end (?:auto|round|butt|pointed))?"
     written = rf"\w+, tolerance (\S+) mm(?:, lag \S+ mm)?{ends}"
-    tolerance = _said(header, "compensation", written, (1e-5, 10.0))
+    tolerance = _numbers_in(header, "compensation", written, (1e-5, 10.0))
     start = re.search(r", start (\w+)(?:, end \w+)?$", header.get("compensation", ""))
     end = re.search(r", end (\w+)$", header.get("compensation", ""))
     has_lag = ", lag " in header.get("compensation", "")
-    lag = _said(header, "compensation", r".*, lag (\S+) mm.*", (0.0, 1000.0)) if has_lag else None
+    lag = _numbers_in(header, "compensation", r".*, lag (\S+) mm.*", (0.0, 1000.0)) if has_lag else None
     if how is None:
-        raise _damaged("compensation", header["compensation"])
-    _said(header, "warnings", r"(\d+)(?:, \d+ of them damaged geometry)?", (0, 1e6))
+        raise _damaged_error("compensation", header["compensation"])
+    _numbers_in(header, "warnings", r"(\d+)(?:, \d+ of them damaged geometry)?", (0, 1e6))
     if header.get("order", "nearest first") != "nearest first":
-        raise _damaged("order", header["order"])
-    _said(header, "corrections", r"(\d+) strokes, shifted by (\S+) mm at most", (0, 1e6))
-    _said(header, "margin", r"(\d+) strokes", (0, 1e6))
+        raise _damaged_error("order", header["order"])
+    _numbers_in(header, "corrections", r"(\d+) strokes, shifted by (\S+) mm at most", (0, 1e6))
+    _numbers_in(header, "margin", r"(\d+) strokes", (0, 1e6))
     strokes = re.search(r", (\d{1,7}) strokes$", header["brush"])
-    return Made(
+    return ProgramHeader(
         title=header["title"],
         brush=header["brush"].rpartition(", ")[0] or header["brush"],
         cell=header["cell"].rpartition(", ")[0],
@@ -98,15 +102,20 @@ def made(text: str) -> Made:
     )
 
 
-def _said(header: dict[str, str], word: str, pattern: str, bounds: tuple[float, float]) -> list[float] | None:
-    """The numbers of a line of the header; None where it is not there."""
+def _numbers_in(
+    header: dict[str, str], word: str, pattern: str, bounds: tuple[float, float]
+) -> list[float] | None:
+    """Return the numbers of a line of the header; None where the line is missing.
+
+    Raises Error where the line is damaged or a number is out of bounds.
+    """
     if word not in header:
         return None
     found = re.fullmatch(pattern, header[word])
     try:
         numbers = [float(text) for text in found.groups()]
     except (AttributeError, ValueError):
-        raise _damaged(word, header[word]) from None
+        raise _damaged_error(word, header[word]) from None
     for value in numbers:
         if not bounds[0] <= value <= bounds[1]:
             raise Error(
@@ -116,19 +125,22 @@ def _said(header: dict[str, str], word: str, pattern: str, bounds: tuple[float, 
     return numbers
 
 
-def _damaged(word: str, said: str) -> Error:
+def _damaged_error(word: str, text: str) -> Error:
     return Error(
-        f"its header is damaged: ({word}: {said[:50]}) is not what brushsvg writes there",
+        f"its header is damaged: ({word}: {text[:50]}) is not what brushsvg writes there",
         code="header-damaged",
     )
 
 
-def _header_of(text: str) -> dict[str, str]:
-    """The lines at the top of a program of ours, by their first word: title, brush, sheet, cell, ..."""
-    text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # a remark of TP goes on
-    written = re.compile(
+def _header_lines(text: str) -> dict[str, str]:
+    """Return the lines at the top of a program by their first word.
+
+    These are title, brush, sheet, cell and others.
+    """
+    text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # join continued remarks of TP
+    line_pattern = re.compile(
         r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;|CO \"(\w+): (.*)\";"
     )
-    lines = (written.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
+    lines = (line_pattern.fullmatch(line.rstrip(" \r")) for line in text.lstrip("\ufeff").split("\n")[:100])
     found = ([each for each in line.groups() if each is not None] for line in lines if line)
-    return {word: said[0] if said else "" for word, *said in found}
+    return {word: texts[0] if texts else "" for word, *texts in found}

@@ -1,4 +1,4 @@
-"""HP-GL as brushsvg writes it, read back."""
+"""Read back HP-GL that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -18,8 +18,11 @@ _COMMENT = re.compile(r'CO "([^"]*)";')
 
 
 def read_hpgl(text: str, cell: Cell) -> Readback:
-    """The program as steps in the plotter's frame, the pen up at the safe height. Error with the line for what brushsvg
-    does not write, and for places that no pen, no speed or no IN comes before."""
+    """Read an HP-GL program as steps in the plotter frame.
+
+    The raised pen is at the safe height. Raises Error with the line for a statement that brushsvg does not write, and
+    for a place without a pen, a speed or an IN before it.
+    """
     reader = _Reader(cell)
     for number, line in enumerate(text.splitlines(), 1):
         if line := line.strip(" "):
@@ -38,15 +41,15 @@ class _Reader:
         self.speed_mm_s, self.pen = 0.0, 0
 
     def line(self, number: int, line: str) -> None:
-        if said := _COMMENT.fullmatch(line):
-            if comment(said[1]).strip() != line:
-                raise _unread(number, line)
-            self.ended = self.ended or said[1] == HELD_UP
-            if said[1] != HELD_UP:
-                self.out.comment(number, said[1])
+        if comment_match := _COMMENT.fullmatch(line):
+            if comment(comment_match[1]).strip() != line:
+                raise _unread_error(number, line)
+            self.ended = self.ended or comment_match[1] == HELD_UP
+            if comment_match[1] != HELD_UP:
+                self.out.comment(number, comment_match[1])
             return
         if not (found := _CODE.fullmatch(line)):
-            raise _unread(number, line)
+            raise _unread_error(number, line)
         word, pen, speed, x, y = found.groups()
         word = word.upper()
         if not self.is_ready and word != "IN":
@@ -55,7 +58,7 @@ class _Reader:
             if word.startswith("PA"):
                 self.is_relative = False
             elif self.is_relative:
-                raise _unread(number, line)
+                raise _unread_error(number, line)
             else:
                 self._lift(number, line, word.startswith("PD"))
             self._go(number, line, int(x), int(y))
@@ -64,7 +67,7 @@ class _Reader:
         elif pen is not None:
             if self.is_down:
                 raise Error(f"line {number}: {line!r} changes a pen that is down", code="line-unread")
-            if int(pen or 0) != self.pen:  # none puts it away, as SP0 does
+            if int(pen or 0) != self.pen:  # SP without a number puts the pen away, like SP0
                 self.pen = int(pen or 0)
                 self.is_put_away = not self.pen
                 self.out.acts.append(Act(number, "text", f"SP{self.pen}"))
@@ -72,7 +75,7 @@ class _Reader:
             self._lift(number, line, word == "PD")
         elif word == "IN":
             if self.is_down:
-                raise _unread(number, line)
+                raise _unread_error(number, line)
             if not self.is_ready:
                 self.out.acts.append(Act(number, "text", word))
             self.is_ready, self.is_relative, self.speed_mm_s = True, False, 0.0
@@ -92,7 +95,7 @@ class _Reader:
         if is_down and self.place is None:
             raise Error(f"line {number}: {line!r} comes before any place", code="line-incomplete")
         if is_down == self.is_down:
-            return  # as it was
+            return  # the pen is already there
         self.is_down = is_down
         self._step(number, False, min(self.cell.speeds.press_mm_s, self.speed_mm_s or CM_S))
 
@@ -103,5 +106,5 @@ class _Reader:
         self.out.acts.append(Act(number, "move", "", (*self.place, height_mm), at_most, (0.0,)))
 
 
-def _unread(number: int, line: str) -> Error:
+def _unread_error(number: int, line: str) -> Error:
     return Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")

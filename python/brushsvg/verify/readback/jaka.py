@@ -1,4 +1,4 @@
-"""JAKA script as brushsvg writes it, read back."""
+"""Read back JAKA scripts that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ _LINES = tuple(
 
 
 def read_jaka(text: str, cell: Cell) -> Readback:
-    """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
+    """Read a JAKA script as steps in the robot frame.
+
+    Raises Error with the line for a statement that brushsvg does not write.
+    """
     turned = tuple(upright_deg(cell).tolist())
     script = Script(
         "# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned, rotation=rotation

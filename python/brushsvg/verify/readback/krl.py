@@ -1,4 +1,4 @@
-"""KRL as brushsvg writes it, read back."""
+"""Read back KRL that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.krl import KRL_END, RISES
 from ...machine.posts.script import down
 from . import Readback
-from .script import N, Numbered, Script, read_script
+from .script import N, NumberedLines, Script, read_script
 
 
 def _point(names: str, turned: str) -> str:
@@ -22,7 +22,7 @@ _TURN = rf"a {N}, b {N}, c {N}"
 _TO = _point("xyz", f"(?P<turned>{_TURN})")
 _VIA = _point("uvw", f"(?P<turned_via>{_TURN})")
 _FRAME = rf"\{{x {N}, y {N}, z {N}, {_TURN}\}}"
-_LINES = tuple(  # in small letters
+_LINES = tuple(  # in lower case
     (kind, re.compile(pattern))
     for kind, pattern in (
         ("blended", rf"lin {_TO} c_dis"),
@@ -43,62 +43,76 @@ _LINES = tuple(  # in small letters
 )
 _DEF = re.compile(r"def (\w+)\(\)")
 _CALL = re.compile(r"(b[0-9a-f]{4}\d{3,})\(\)")
-_RISES = RISES.strip().lower()
-_READY = "bas(#initmov, 0)"  # which sets all of them
+_RISE_DECLARATION = RISES.strip().lower()
+_INITIALISATION = "bas(#initmov, 0)"  # sets all motion parameters
 
 
 def read_krl(text: str, cell: Cell) -> Readback:
-    """The program, with those that it calls, as steps in the paper's frame. Error with the line for what brushsvg does
-    not write; lines are counted on through the programs."""
+    """Read the main program and those that it calls as steps in the paper frame.
+
+    Line numbers continue through the programs. Raises Error with the line for a statement that brushsvg does not write.
+    """
     script = Script(
         remark="; ",
         lines=_LINES,
         again=re.compile(r"\$|bas\(|ptp|here"),
         last=(f"; {KRL_END}", "END"),
         units_mm={"speed": 1e3, "acceleration": 1e3},
-        sets_after=_READY,
+        sets_after=_INITIALISATION,
         turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg))[::-1].tolist()),
         any_case=True,
         rotation=lambda abc: rotation(abc[::-1]),
     )
-    return read_script("", script, Readback(in_paper_frame=True, blends_by_radius=True), _in_order(text))
+    return read_script(
+        "", script, Readback(in_paper_frame=True, blends_by_radius=True), _lines_in_order(text)
+    )
 
 
-def _in_order(text: str) -> Numbered:
-    """The lines as they run, of programs that are called without their first and last ones; what the first of them
-    declares is declared in the main one, as where that is the only one."""
-    main, others = _programs(text)
+def _lines_in_order(text: str) -> NumberedLines:
+    """Return the lines in running order.
+
+    Called programs come without their first and last line. A declaration in the first of them moves to the main
+    program, where it is when there is only one program.
+    """
+    main, others = _split_programs(text)
     if not others:
         return main
-    lines: Numbered = []
-    left = dict(others)
+    lines: NumberedLines = []
+    uncalled = dict(others)
     for number, line in main:
         call = _CALL.fullmatch(line.strip(" ").lower())
         if not call:
             lines.append((number, line))
             continue
-        if call[1] not in left:
+        if call[1] not in uncalled:
             raise Error(
                 f"line {number}: it calls {call[1]!r}, which is missing or was called before",
                 code="line-unread",
             )
-        part = left.pop(call[1])
-        if len(left) + 1 == len(others) and part[1:2] and part[1][1].strip(" ").lower() == _RISES:
+        part = uncalled.pop(call[1])
+        if (
+            len(uncalled) + 1 == len(others)
+            and part[1:2]
+            and part[1][1].strip(" ").lower() == _RISE_DECLARATION
+        ):
             lines.insert(
                 next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1)
             )
         if part[-1][1].strip(" ").lower() != "end":
             raise Error(f"program {call[1]!r} has no END", code="program-cut-short")
         lines += part[1:-1]
-    if left:
-        raise Error(f"program {next(iter(left))!r} is not called", code="line-unread")
+    if uncalled:
+        raise Error(f"program {next(iter(uncalled))!r} is not called", code="line-unread")
     return lines
 
 
-def _programs(text: str) -> tuple[Numbered, dict[str, Numbered]]:
-    """Return the lines of the main program, with the remarks above it, and a dictionary of the lines of others."""
-    main: Numbered = []
-    others: dict[str, Numbered] = {}
+def _split_programs(text: str) -> tuple[NumberedLines, dict[str, NumberedLines]]:
+    """Return the lines of the main program, and of the others by their names.
+
+    The lines of the main program include the remarks above it.
+    """
+    main: NumberedLines = []
+    others: dict[str, NumberedLines] = {}
     lines, names = main, set()
     for number, line in enumerate(text.splitlines(), 1):
         if found := _DEF.fullmatch(line.strip(" ").lower()):

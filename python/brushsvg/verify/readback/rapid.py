@@ -1,4 +1,4 @@
-"""RAPID as brushsvg writes it, read back."""
+"""Read back RAPID that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from .script import N, Script, place, read_script
 
 _NUMBERS = rf"(?:{N}|9e9)(?:, (?:{N}|9e9))*"
 _MOVE = rf"mm_s\((?P<speed>{N})\), "
-_USED = r"brush\\wobj:=paper;"
-_FRAME = (  # what stands around the moves, in small letters
+_TOOL_AND_FRAME = r"brush\\wobj:=paper;"
+_FRAME = (  # the lines around the moves, in lower case
     r"(?:end)?(?:module|proc|func|if)|module brushsvg|proc paint\(\)|stop;|confl \\off;|return fine;",
     rf"local pers tooldata brush := \[true, \[\[{_NUMBERS}\], \[{_NUMBERS}\]\], "
     rf"\[{N}, \[{_NUMBERS}\], \[{_NUMBERS}\], {_NUMBERS}\]\];",
@@ -31,12 +31,12 @@ _FRAME = (  # what stands around the moves, in small letters
     r'here := crobt\(\\tool:=brush \\wobj:=paper\);|tpwrite "[^"\\]*";',
     rf"if here\.trans\.z < (?P<height>{N}) then|here\.trans\.z := {N};",
 )
-NOT_ONE = 1e-3  # off the length 1 the controller takes no quaternion
+QUATERNION_LENGTH_TOLERANCE = 1e-3  # deviation from length 1 above which the controller refuses a quaternion
 
 
 def _rotation(wxyz: list[float]) -> np.ndarray | None:
     size = float(np.linalg.norm(wxyz))
-    return of_quaternion(np.array(wxyz) / size) if abs(size - 1) <= NOT_ONE else None
+    return of_quaternion(np.array(wxyz) / size) if abs(size - 1) <= QUATERNION_LENGTH_TOLERANCE else None
 
 
 _SCRIPT = Script(
@@ -47,15 +47,18 @@ _SCRIPT = Script(
             (
                 "move",
                 rf"movel tilted\({place('xyz')}, (?P<turned>{N}(?:, {N}){{3}})\), {_MOVE}"
-                rf"(?:within\((?P<blend>{N})\)|fine), {_USED}",
+                rf"(?:within\((?P<blend>{N})\)|fine), {_TOOL_AND_FRAME}",
             ),
-            ("move", rf"movel on_paper\({place('xyz')}\), {_MOVE}(?:within\((?P<blend>{N})\)|fine), {_USED}"),
+            (
+                "move",
+                rf"movel on_paper\({place('xyz')}\), {_MOVE}(?:within\((?P<blend>{N})\)|fine), {_TOOL_AND_FRAME}",
+            ),
             (
                 "circle",
-                rf"movec on_paper\({place('uvw')}\), on_paper\({place('xyz')}\), {_MOVE}fine, {_USED}",
+                rf"movec on_paper\({place('uvw')}\), on_paper\({place('xyz')}\), {_MOVE}fine, {_TOOL_AND_FRAME}",
             ),
             ("wait", rf"waittime \\inpos, (?P<seconds>{N});"),
-            ("rise", rf"movel here, {_MOVE}fine, {_USED}"),
+            ("rise", rf"movel here, {_MOVE}fine, {_TOOL_AND_FRAME}"),
             ("most", rf"pathacclim true \\accmax:=(?P<more>{N}), true \\decelmax:=(?P<less>{N});"),
             ("text", "|".join(_FRAME)),
         )
@@ -71,5 +74,8 @@ _SCRIPT = Script(
 
 
 def read_rapid(text: str) -> Readback:
-    """The program as steps in the paper's frame. Error with the line for what brushsvg does not write."""
+    """Read a RAPID program as steps in the paper frame.
+
+    Raises Error with the line for a statement that brushsvg does not write.
+    """
     return read_script(text, _SCRIPT, Readback(in_paper_frame=True, blends_by_radius=True))

@@ -1,4 +1,4 @@
-"""Poses with times for ROS 2 as brushsvg writes them, as a table or as JSON, read back."""
+"""Read back poses with times for ROS 2, as a table or as JSON."""
 
 from __future__ import annotations
 
@@ -16,39 +16,45 @@ from ...machine.posts.ros2 import COLUMNS, ROS2_END, flange_from_tip
 from ...machine.posts.script import upright_deg
 from ...machine.tool_axes import turned_on, turned_to
 from . import Act, Readback, Step
-from .script import LEANS_DEG
+from .script import TILT_TOLERANCE_DEG
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
 _ROW = re.compile(rf"({_N}(?:,{_N}){{8}}),(pose|way|rest)")
-_OPENS = '{"format": "brushsvg/trajectory", "version": 1, "rows": ['
-_NAMES = '["' + COLUMNS.replace(",", '","') + '"]'
-LEAST_S = 1e-7
-ROUNDED_MM = 2e-4  # what decimals make of a way
-NOT_ONE = 1e-2  # of a quaternion: nearer ones are taken as the turns that they point at
-ROUNDED_DEG = 1e-4  # what decimals make of a turn
-NEAR_MM = 3e-3  # of places, what no brush shows
-FASTER, FASTER_MM_S = 1e-3, 0.01  # what rounding makes of speeds
+_FIRST_JSON_LINE = '{"format": "brushsvg/trajectory", "version": 1, "rows": ['
+_COLUMN_NAMES_LINE = '["' + COLUMNS.replace(",", '","') + '"]'
+MIN_TIME_STEP_S = 1e-7
+PATH_ROUNDING_MM = 2e-4  # change of a path by rounded decimals
+QUATERNION_LENGTH_TOLERANCE = 1e-2  # deviation of a quaternion from length 1: smaller ones are normalised
+ROTATION_ROUNDING_DEG = 1e-4  # change of a rotation by rounded decimals
+PLACE_TOLERANCE_MM = 3e-3  # distance of places: no brush shows a smaller one
+SPEED_TOLERANCE_SHARE, SPEED_TOLERANCE_MM_S = 1e-3, 0.01  # change of a speed by rounding: share and mm/s
 
 
 def as_table(text: str) -> str:
-    """The lines of a table for those of JSON. Error where it is none."""
+    """Convert JSON to the lines of a table, with the same line numbers.
+
+    Raises Error for invalid JSON.
+    """
     try:
         json.loads(text)
     except ValueError as mistake:
         raise Error(f"it is no JSON: {mistake}", code="line-unread") from None
     lines = text.splitlines()
-    if lines[0].rstrip(" ") != _OPENS:
+    if lines[0].rstrip(" ") != _FIRST_JSON_LINE:
         raise Error(f"line 1: {lines[0][:60]!r} is not a line that brushsvg writes", code="line-unread")
-    return "\n".join(["", *(_of_table(line.strip(" ")) for line in lines[1:])]) + "\n"
+    return "\n".join(["", *(_table_line(line.strip(" ")) for line in lines[1:])]) + "\n"
 
 
-def _of_table(line: str) -> str:
-    """What a line of JSON says, or the line where it says something else."""
+def _table_line(line: str) -> str:
+    """Return the table line for a line of JSON.
+
+    A line without a counterpart is returned unchanged.
+    """
     try:
         row = json.loads(line.removesuffix(",") if line.endswith(",") else line.removesuffix("]}"))
     except ValueError:
         return line
-    if line.rstrip(",") == _NAMES:
+    if line.rstrip(",") == _COLUMN_NAMES_LINE:
         return COLUMNS
     if isinstance(row, list) and len(row) == 1 and isinstance(row[0], str) and row[0].startswith("# "):
         return row[0]
@@ -58,9 +64,12 @@ def _of_table(line: str) -> str:
 
 
 def read_ros2(text: str, cell: Cell) -> Readback:
-    """The rows as steps in the robot's frame. Error with the line for what brushsvg does not write, for times that do
-    not go on, and for a way that is faster than its row says."""
-    reader = _Rows(cell)
+    """Read the rows as steps in the robot frame.
+
+    Raises Error with the line for a row that brushsvg does not write, for times that do not increase, and for a path
+    that is faster than its row allows.
+    """
+    reader = _RowReader(cell)
     lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     rows, found = [], [_ROW.fullmatch(line) for _, line in lines]
     for (number, line), row in zip(lines, found, strict=True):
@@ -71,18 +80,18 @@ def read_ros2(text: str, cell: Cell) -> Readback:
             raise Error(sentence, code="line-unread")
     numbers = [number for (number, _), row in zip(lines, found, strict=True) if row]
     is_tilted = any(line == f"# {TILT_LINE}" for _, line in lines)
-    places, turned = _tips(np.array(rows).reshape(-1, 9), numbers, cell, is_tilted)
+    places, turned = _tips_and_rotations(np.array(rows).reshape(-1, 9), numbers, cell, is_tilted)
     on_grid = np.array([row[2] != "way" for row in found if row], dtype=bool)
     places[on_grid] = np.round(places[on_grid], cell.decimals)
     tips, turns = iter(places.tolist()), iter(turned)
-    values, has_names = iter(rows), 0
+    values, header_count = iter(rows), 0
     for (number, line), row in zip(lines, found, strict=True):
         if row:
-            if has_names != 1:
+            if header_count != 1:
                 raise Error(f"line {number}: no line says once what the columns are", code="line-unread")
             reader.row(number, next(values), tuple(next(tips)), row[2], next(turns))
         elif line == COLUMNS:
-            has_names += 1
+            header_count += 1
         elif line != f"# {ROS2_END}":
             reader.out.comment(number, line[2:])
     if not lines or lines[-1][1] != f"# {ROS2_END}" or reader.ways:
@@ -90,16 +99,21 @@ def read_ros2(text: str, cell: Cell) -> Readback:
     return reader.out
 
 
-def _tips(rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool) -> tuple[np.ndarray, list]:
-    """(n, 3) where the brush's tip is [mm], and (3, 3) how the tool is turned there, None where it is upright. Error
-    where it leans and no line says that it does."""
+def _tips_and_rotations(
+    rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool
+) -> tuple[np.ndarray, list]:
+    """Return the places of the brush's tip (n, 3) [mm], and the tool's rotations.
+
+    A rotation is (3, 3), or None where the tool is upright. Raises Error where the tool is tilted although no line says
+    so, and for a quaternion that is not of length 1.
+    """
     sizes = np.linalg.norm(rows[:, 4:8], axis=1, keepdims=True)
-    off = np.abs(sizes[:, 0] - 1) > NOT_ONE
+    off = np.abs(sizes[:, 0] - 1) > QUATERNION_LENGTH_TOLERANCE
     turns = rows[:, 4:8] / np.where(sizes > 0, sizes, 1.0)
     upright = rotation(upright_deg(cell)) @ flange_from_tip(cell)[:3, :3]
     turned = of_quaternion(turns[:, [3, 0, 1, 2]])
     leans_deg = apart_deg(turned, upright)
-    for k in np.flatnonzero(off | ((leans_deg > LEANS_DEG) & (not is_tilted))):
+    for k in np.flatnonzero(off | ((leans_deg > TILT_TOLERANCE_DEG) & (not is_tilted))):
         if off[k]:
             raise Error(f"line {numbers[k]}: its quaternion is not of length 1", code="line-unread")
         sentence = (
@@ -108,17 +122,17 @@ def _tips(rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool) -> 
         raise Error(sentence, code="tool-turned")
     tip_in_flange = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)[:3, 3]
     tips = 1e3 * rows[:, 1:4] + turned @ tip_in_flange
-    stands = leans_deg < ROUNDED_DEG if is_tilted else np.ones(len(rows), dtype=bool)
+    stands = leans_deg < ROTATION_ROUNDING_DEG if is_tilted else np.ones(len(rows), dtype=bool)
     tool = turned @ frame_of_pose(np.zeros(3), cell.tool.rotation_deg)[:3, :3]
     return tips, [None if upright else each for each, upright in zip(tool, stands.tolist(), strict=True)]
 
 
-class _Rows:
+class _RowReader:
     def __init__(self, cell: Cell):
         self.out = Readback(blends_by_radius=True)
-        self.near_mm = max(NEAR_MM, 1.5 * 10.0**-cell.decimals)
-        self.rounded_mm = 3**0.5 * 10.0**-cell.decimals  # of a way between two poses
-        self.now_s, self.begin_s = 0.0, 0.0  # of the last row, of the last pose
+        self.near_mm = max(PLACE_TOLERANCE_MM, 1.5 * 10.0**-cell.decimals)
+        self.rounded_mm = 3**0.5 * 10.0**-cell.decimals  # rounding of a path between two poses
+        self.now_s, self.begin_s = 0.0, 0.0  # times of the last row and of the last pose
         self.last: tuple = ()
         self.here: tuple | None = None
         self.ways: list[tuple[int, tuple, float, np.ndarray | None]] = []
@@ -130,13 +144,18 @@ class _Rows:
         if self.here is None:
             if kind != "pose" or now_s != 0:
                 raise Error(f"line {number}: the first row is no pose at time 0", code="line-unread")
-            self._pose(number, tip, (limit_mm_s, limit_mm_s), now_s, turned)
+            self._add_pose(number, tip, (limit_mm_s, limit_mm_s), now_s, turned)
             return
-        if now_s < self.now_s + LEAST_S:
+        if now_s < self.now_s + MIN_TIME_STEP_S:
             raise Error(f"line {number}: time {now_s:g} s does not go on", code="line-unread")
         after_s, way_mm = now_s - self.now_s, math.dist(tip, self.last)
         if kind == "rest":
-            if self.ways or way_mm > self.near_mm or limit_mm_s or not self._is_same(turned, self.turned):
+            if (
+                self.ways
+                or way_mm > self.near_mm
+                or limit_mm_s
+                or not self._is_same_rotation(turned, self.turned)
+            ):
                 raise Error(f"line {number}: it moves while it rests", code="line-unread")
             step = self.out.section().steps[-1] if self.out.section().steps else None
             if step is None:
@@ -146,20 +165,22 @@ class _Rows:
             return
         if not limit_mm_s > 0:
             raise Error(f"line {number}: no speed is allowed", code="line-incomplete")
-        rounded_mm_s = ROUNDED_MM / after_s
-        if way_mm > after_s * (limit_mm_s * (1 + FASTER) + FASTER_MM_S + rounded_mm_s):
-            said = f"line {number}: speed {way_mm / after_s:.1f} mm/s, its limit {limit_mm_s:.1f} mm/s"
-            raise Error(said, code="speed-out-of-range")
+        rounded_mm_s = PATH_ROUNDING_MM / after_s
+        if way_mm > after_s * (
+            limit_mm_s * (1 + SPEED_TOLERANCE_SHARE) + SPEED_TOLERANCE_MM_S + rounded_mm_s
+        ):
+            sentence = f"line {number}: speed {way_mm / after_s:.1f} mm/s, its limit {limit_mm_s:.1f} mm/s"
+            raise Error(sentence, code="speed-out-of-range")
         self.now_s, self.last = now_s, tip
         if kind == "way":
             self.ways.append((number, tip, limit_mm_s, turned))
             return
-        self._on_the_way(tip, limit_mm_s, turned)
+        self._check_way_rows(tip, limit_mm_s, turned)
         way_mm, took_s = math.dist(tip, self.here), now_s - self.begin_s
-        # the mean speed of a short way says little: both of its ends are rounded
-        self._pose(number, tip, (limit_mm_s, way_mm / took_s, self.rounded_mm / took_s), now_s, turned)
+        # The mean speed of a short path is uncertain, because both of its ends are rounded.
+        self._add_pose(number, tip, (limit_mm_s, way_mm / took_s, self.rounded_mm / took_s), now_s, turned)
 
-    def _pose(
+    def _add_pose(
         self,
         number: int,
         tip: tuple,
@@ -176,14 +197,22 @@ class _Rows:
         self.turned = turned
         self.now_s = self.begin_s = now_s
 
-    def _is_same(self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = LEANS_DEG) -> bool:
-        """Whether the tool is turned alike, but for what no brush shows; None is upright."""
+    def _is_same_rotation(
+        self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = TILT_TOLERANCE_DEG
+    ) -> bool:
+        """Return whether no brush shows a difference of two rotations.
+
+        None is upright.
+        """
         a, b = (self.upright if each is None else each for each in (a, b))
         return bool(apart_deg(a, b) <= most_deg)
 
-    def _on_the_way(self, tip: tuple, limit_mm_s: float, turned: np.ndarray | None) -> None:
-        """Error where the rows since the last pose are not on the straight line to this one, one behind the other, or
-        the tool is not turned there as between both."""
+    def _check_way_rows(self, tip: tuple, limit_mm_s: float, turned: np.ndarray | None) -> None:
+        """Check the rows between the last pose and this one.
+
+        Raises Error where they are not in order on the straight line between both poses, or where the tool's rotation
+        is not between the rotations of both.
+        """
         start, way = np.array(self.here), np.subtract(tip, self.here)
         length, done = float(np.linalg.norm(way)), 0.0
         for number, place, its_mm_s, its_turn in self.ways:
@@ -194,7 +223,7 @@ class _Rows:
                 raise Error(f"line {number}: it is on no straight line to the next pose", code="line-unread")
             a, b, c = (self.upright if each is None else each for each in (self.turned, its_turn, turned))
             share = min(max(along / length, 0.0), 1.0)
-            if not self._is_same(b, turned_to(turned_on(-a[:, 2], -c[:, 2], share), self.upright)):
+            if not self._is_same_rotation(b, turned_to(turned_on(-a[:, 2], -c[:, 2], share), self.upright)):
                 raise Error(
                     f"line {number}: the tool is not turned on evenly to the next pose", code="line-unread"
                 )

@@ -1,4 +1,4 @@
-"""URScript as brushsvg writes it, read back."""
+"""Read back URScript that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from ...errors import Error
 from ...machine.frames import of_rotation_vector
 from ...machine.posts.urscript import BEGIN, END, NEXT
-from . import Act, Readback, Step, circle
-from .script import Numbered
+from . import Act, Readback, Step, add_circle
+from .script import NumberedLines
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
 _POINT = rf"on_paper\(({_N}), ({_N}), ({_N})\)"
@@ -26,7 +26,7 @@ _RISE = re.compile(
     rf"a=({_N}), v=({_N})\)"
 )
 TITLES = ("# stroke ", "# paint: ")
-_OTHER = re.compile(  # the frame around the moves
+_FRAME_LINE = re.compile(  # the frame around the moves
     rf"def brushsvg\(\):|end|brushsvg\(\)|set_tcp\(p\[{_N}(?:, {_N}){{5}}\]\)|def on_paper\(x, y, z\):"
     rf"|return pose_trans\(paper, p\[x, y, z(?:, {_N}){{3}}\]\)"
     r"|def tilted\(x, y, z, rx, ry, rz\):|return pose_trans\(paper, p\[x, y, z, rx, ry, rz\]\)"
@@ -39,29 +39,29 @@ _OTHER = re.compile(  # the frame around the moves
 
 
 def read_urscript(text: str) -> Readback:
-    """The programs, one after the other, as steps in the paper's frame. Error with the line for what brushsvg does not
-    write; lines are counted on through the programs."""
+    """Read one or more programs, in sequence, as steps in the paper frame.
+
+    Line numbers continue through the programs. Raises Error with the line for a statement that brushsvg does not write.
+    """
     out = Readback(in_paper_frame=True, blends_by_radius=True)
     has_paper = False
-    lines = _in_order(text)
+    lines = _join_programs(text)
     for number, line in lines:
         if line.startswith("# "):
             before = len(out.acts)
             out.comment(number, line[2:])
             if 0 < before < len(out.acts) and out.acts[before - 1].text.startswith("here ="):
-                out.acts.insert(
-                    before - 1, out.acts.pop()
-                )  # a title changes nothing of what stands before it
+                out.acts.insert(before - 1, out.acts.pop())  # a title has no effect on the line before it
         elif found := _MOVE.fullmatch(line):
             x, y, z, a, v, r = (float(value or 0) * 1e3 for value in found.groups()[1:])
-            _is_run(number, line, a, v)
+            _check_speed(number, line, a, v)
             if r < 0:
                 raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
             out.section().steps.append(Step(number, False, x, y, z, v, r))
             out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,)))
         elif found := _TILTED.fullmatch(line):
             x, y, z, a, v, r = (float(found[k] or 0) * 1e3 for k in (2, 3, 4, 8, 9, 10))
-            _is_run(number, line, a, v)
+            _check_speed(number, line, a, v)
             if r < 0:
                 raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
             turned = of_rotation_vector([float(found[k]) for k in (5, 6, 7)])
@@ -72,22 +72,22 @@ def read_urscript(text: str) -> Readback:
             )
         elif found := _CIRCLE.fullmatch(line):
             *points, a, v = (float(value) * 1e3 for value in found.groups())
-            _is_run(number, line, a, v)
-            circle(out, number, np.array(points[:3]), np.array(points[3:]), v)
+            _check_speed(number, line, a, v)
+            add_circle(out, number, np.array(points[:3]), np.array(points[3:]), v)
             out.acts.append(Act(number, "circle", "", tuple(points[3:]), (v, a), tuple(points[:3])))
         elif found := _SLEEP.fullmatch(line):
             out.acts.append(Act(number, "wait", same=(float(found[1]),)))
         elif found := _RISE.fullmatch(line):
             height_mm, a, v = (float(value) * 1e3 for value in found.groups()[1:])
-            _is_run(number, line, a, v)
+            _check_speed(number, line, a, v)
             out.rises_mm.append(height_mm)
             out.acts.append(Act(number, "text", found[1], (), (v, a)))
-        elif _OTHER.fullmatch(line) or (found := _PAPER.fullmatch(line)):
+        elif _FRAME_LINE.fullmatch(line) or (found := _PAPER.fullmatch(line)):
             has_paper = has_paper or bool(found)
-            is_set = " = " in line and " = run " not in line  # a thread that is run twice is two
+            is_set = " = " in line and " = run " not in line  # a thread that is run twice makes two threads
             if is_set and out.acts and out.acts[-1].text == line:
-                continue  # set twice, it is the same
-            is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may stand before it
+                continue  # setting a variable again has no effect
+            is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may precede it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
             raise Error(
@@ -101,18 +101,21 @@ def read_urscript(text: str) -> Readback:
     return out
 
 
-def _is_run(number: int, line: str, acceleration: float, speed: float) -> None:
+def _check_speed(number: int, line: str, acceleration: float, speed: float) -> None:
     if not (acceleration > 0 and speed > 0):
         raise Error(f"line {number}: {line[:60]!r} has no speed or acceleration", code="line-incomplete")
 
 
-def _in_order(text: str) -> Numbered:
-    """The lines as they run, as those of one program: what each one sets anew is the same in all of them."""
+def _join_programs(text: str) -> NumberedLines:
+    """Return the lines in running order, as if all programs were one.
+
+    Each program repeats the setup, which must be the same in all of them. Raises Error for a missing or changed part.
+    """
     lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
-    begins = [k for k, (_, line) in enumerate(lines) if line == BEGIN.strip()][1:]
-    parts = [lines[first:last] for first, last in zip([0, *begins], [*begins, None], strict=True)]
-    ran: Numbered = []
-    setup, rise = _setup(parts[0]), _rise(parts[0])
+    starts = [k for k, (_, line) in enumerate(lines) if line == BEGIN.strip()][1:]
+    parts = [lines[first:last] for first, last in zip([0, *starts], [*starts, None], strict=True)]
+    joined: NumberedLines = []
+    setup, rise = _setup_lines(parts[0]), _rise_lines(parts[0])
     if later := next((line for line in setup if line.startswith("# part: ")), None):
         raise Error(
             f"this is {later[2:].replace(':', '')} of a job in several files: check the first file, which finds the "
@@ -121,34 +124,37 @@ def _in_order(text: str) -> Numbered:
         )
     for count, part in enumerate(parts, 1):
         if count > 1:
-            _is_the_same(part, [setup[0], f"# part: {count}", *setup[1:]], _setup(part))
-            _is_the_same(part, rise, _rise(part))
+            _check_repeated_lines(part, [setup[0], f"# part: {count}", *setup[1:]], _setup_lines(part))
+            _check_repeated_lines(part, rise, _rise_lines(part))
             part = part[len(setup) + 1 :]
             at = next((k for k, (_, line) in enumerate(part) if line in rise[:1]), 0)
             part = part[:at] + part[at + len(rise) :]
         if count < len(parts):
             end = [f'textmsg("{NEXT} {count + 1}")', *END.split()]
-            _is_the_same(part, end, [line for _, line in part[-len(end) :]])
+            _check_repeated_lines(part, end, [line for _, line in part[-len(end) :]])
             part = part[: -len(end)]
-        ran += part
-    return ran
+        joined += part
+    return joined
 
 
-def _setup(part: Numbered) -> list[str]:
-    """The lines before the first title."""
+def _setup_lines(part: NumberedLines) -> list[str]:
+    """Return the lines before the first title."""
     lines = [line for _, line in part]
     return lines[: next((k for k, line in enumerate(lines) if line.startswith(TITLES)), len(lines))]
 
 
-def _rise(part: Numbered) -> list[str]:
-    """The lines that go straight up before the first move, and what is set there."""
+def _rise_lines(part: NumberedLines) -> list[str]:
+    """Return the lines that move straight up before the first move.
+
+    Settings among these lines are included.
+    """
     lines = [line for _, line in part]
     first = next((k for k, line in enumerate(lines) if line.startswith("here = ")), len(lines))
     last = first + 4
     return lines[first : last + 2 * (lines[last : last + 1] == ["zero_ftsensor()"])]
 
 
-def _is_the_same(part: Numbered, expected: list[str], found: list[str]) -> None:
+def _check_repeated_lines(part: NumberedLines, expected: list[str], found: list[str]) -> None:
     if found != expected:
         raise Error(
             f"line {part[0][0]}: this part begins or ends otherwise than the one before it: a part is missing, "

@@ -1,4 +1,4 @@
-"""Python for xArm as brushsvg writes it, read back."""
+"""Read back Python programs for xArm that brushsvg wrote."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _FIXED = "|".join(
 _LINES = tuple(
     (kind, re.compile(pattern))
     for kind, pattern in (
-        # a radius below 0 is none
+        # A radius below 0 means no blend.
         (
             "move",
             rf"go\({place('xyz')}, (?P<speed>{N}), (?:(?P<blend>\d+\.?\d*|\.\d+)|-(?:\d+\.?\d*|\.\d+)|None)\)",
@@ -47,10 +47,10 @@ _LINES = tuple(
     )
 )
 
-_NOTHING = re.compile(r"(?<=[\[ (])-0(?=[],)])")  # of a setting
-_LEFT_OUT = re.compile(r"(set_(?:mode|state))\(\)")  # 0 is what the SDK takes then
-# Runs of lines that do the same in any order: what is imported and named; where the tool is and how the arm moves,
-# between switching it on and letting it move.
+_MINUS_ZERO = re.compile(r"(?<=[\[ (])-0(?=[],)])")  # -0 in a setting
+_MISSING_ARGUMENT = re.compile(r"(set_(?:mode|state))\(\)")  # the SDK then uses 0
+# Runs of lines whose order has no effect: imports and constants; the tool and the arm's mode, set between switching the
+# arm on and letting it move.
 _ANY_ORDER = (
     re.compile(r"import |from |UPRIGHT = |TOOL = |at most"),
     re.compile(r"done\(arm\.set_(?:world_offset|tcp_offset|collision_sensitivity|mode)\("),
@@ -58,8 +58,11 @@ _ANY_ORDER = (
 
 
 def read_xarm(text: str, cell: Cell) -> Readback:
-    """The program as steps in the robot's frame. Error with the line for what brushsvg does not write."""
-    for number, line in enumerate(text.splitlines()[:2], 1):  # Python looks no further
+    """Read an xArm program as steps in the robot frame.
+
+    Raises Error with the line for a statement that brushsvg does not write.
+    """
+    for number, line in enumerate(text.splitlines()[:2], 1):  # Python looks for an encoding in two lines only
         if NAMES_LETTERS.search(line):
             sentence = f"line {number}: {line[:60]!r} makes Python decode the program with another encoding"
             raise Error(sentence, code="line-unread")
@@ -73,18 +76,20 @@ def read_xarm(text: str, cell: Cell) -> Readback:
         is_indented=True,
         rotation=rotation,
     )
-    lines = (_spelled(line) if line.startswith("done(arm.set_") else line for line in text.splitlines())
+    lines = (
+        _normalise_setting(line) if line.startswith("done(arm.set_") else line for line in text.splitlines()
+    )
     out = read_script("\n".join(lines), script, Readback(blends_by_radius=True))
-    out.acts = _with_runs_sorted(_without_idle_stops(out.acts))
+    out.acts = _sort_runs(_without_idle_stops(out.acts))
     return out
 
 
-def _spelled(line: str) -> str:
-    return _LEFT_OUT.sub(r"\1(0)", _NOTHING.sub("0", line))
+def _normalise_setting(line: str) -> str:
+    return _MISSING_ARGUMENT.sub(r"\1(0)", _MINUS_ZERO.sub("0", line))
 
 
 def _without_idle_stops(acts: list[Act]) -> list[Act]:
-    """To wait where the arm stops anyway, before it goes on, is nothing."""
+    """Drop waits where the arm stops anyway before it moves on: they have no effect."""
     kept = []
     for act, then in zip(acts, [*acts[1:], None], strict=True):
         stands = bool(kept) and kept[-1].kind == "move" and not any(kept[-1].same)
@@ -94,13 +99,13 @@ def _without_idle_stops(acts: list[Act]) -> list[Act]:
     return kept
 
 
-def _with_runs_sorted(acts: list[Act]) -> list[Act]:
+def _sort_runs(acts: list[Act]) -> list[Act]:
     out = []
-    for run, group in itertools.groupby(acts, _run):
+    for number, group in itertools.groupby(acts, _run_number):
         lines = list(group)
-        out += lines if run is None else sorted(lines, key=lambda act: act.text)
+        out += lines if number is None else sorted(lines, key=lambda act: act.text)
     return out
 
 
-def _run(act: Act) -> int | None:
-    return next((k for k, these in enumerate(_ANY_ORDER) if these.match(act.text)), None)
+def _run_number(act: Act) -> int | None:
+    return next((k for k, pattern in enumerate(_ANY_ORDER) if pattern.match(act.text)), None)
