@@ -261,7 +261,7 @@ def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
     ("change", "reported"),
     [
         ({"pen": None}, "key-missing pen"),
-        ({"language": "linuxcnc"}, "out-of-range 'pen' linuxcnc"),
+        ({"language": "linuxcnc"}, "key-unused 'pen' linuxcnc"),
         ({"paper": Paper((0.0, 0.0, 1.0))}, "paper-tilted"),
         ({"pen": Pen(-6.0)}, "cell-heights -6 -5"),
         ({"pen": Pen(-0.2, ("#000000", "red"))}, "colour-invalid red"),
