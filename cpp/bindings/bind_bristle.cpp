@@ -13,11 +13,17 @@ void bind_bristle(py::module_& m) {
             return bristle_coefficients(end == "shear_free" ? SlidingEnd::shear_free : SlidingEnd::third_derivative);
         },
         py::arg("sliding_end"),
-        "c1 to c4 of w = c1 + c2 z + (c3 + c4 z) e^z + z^2/2, Lemma 1 with EI = load = exp(1 - z).");
+        R"(Return the coefficients c1 to c4 of a bristle's deflection, by Lemma 1.
+
+The deflection is w(z) = c1 + c2 z + (c3 + c4 z) e^z + z^2/2, for EI = load = exp(1 - z).
+
+sliding_end: "third_derivative" or "shear_free".)");
     m.def(
         "bristle_deflection",
         [](const Eigen::Vector4d& coefficients, const Numbers& z) {
             return py::vectorize([&](double at) { return bristle_deflection(coefficients, at); })(z.values);
         },
-        py::arg("coefficients"), py::arg("z"), "w(z) for these coefficients, article (3) as it should read.");
+        py::arg("coefficients"), py::arg("z"), R"(Return the deflection w(z) of a bristle with these coefficients.
+
+The equation is article (3), corrected. z may be an array.)");
 }

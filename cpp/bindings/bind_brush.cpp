@@ -16,66 +16,85 @@ auto law_of(brushsvg::Profile brushsvg::Brush::* law) {
 
 void bind_brush(py::module_& m) {
     using brushsvg::Brush;
-    py::class_<Brush> type(
-        m, "Brush",
-        R"(Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
+    py::class_<Brush> type(m, "Brush",
+                           R"(A brush: four laws against depth, and the footprints.
 
-lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile that refuses depths at which the brush cannot be; footprints: a FootprintTable. Outlines rule what is
-painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
-depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
-save_brush, simulate, compensate and convert refuse what no brush can be.)");
+All lengths are in mm. Depths are in mm and increase downwards from first contact.
+
+lag, tip_gap, tip_to_widest, half_width: the laws. Each is a Profile that refuses depths that the brush cannot have.
+footprints: a FootprintTable.
+
+The outlines of the footprints determine what is painted, and the laws determine where the tool goes. Outlines and
+laws may differ by 0.5 mm.
+
+To make a brush, start with Brush() and set all laws, footprints, name and depth_range_mm. Or start with a copy of a
+known brush. Set each law, and the footprints, as a whole: these values cannot be changed. save_brush, simulate,
+compensate and convert refuse a brush that is not valid.)");
     type.def(py::init<>())
-        .def_readwrite("name", &Brush::name, "What plans and messages call it.")
+        .def_readwrite("name", &Brush::name, "Name of the brush in plans and messages.")
         .def_readwrite("kind", &Brush::kind,
-                       "round, liner (a round brush of long bristles), pen, or empty: round. Another one is refused.")
+                       R"(Kind of the brush: round, liner, pen, or empty, which means round.
+
+A liner is a round brush with long bristles. Other kinds are refused.)")
         .def_property(
             "depth_range_mm", frozen_copy(&Brush::depth_range_mm),
             [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); },
-            "(least, greatest) depth [mm] to which it may be pressed.")
+            "(least, greatest) depth [mm] to which the brush may be pressed.")
         .def_property(
             "lag", law_of(&Brush::lag), [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); },
-            "r(d): how far the centre of friction trails the TCP, bristles taut. A Profile, 0 everywhere for a pen.")
+            R"(r(d): distance of the centre of friction behind the TCP, bristles taut.
+
+A Profile, 0 at all depths for a pen.)")
         .def_property(
             "tip_gap", law_of(&Brush::tip_gap), [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); },
-            "b(d): from the tip of the footprint to the centre of friction. A Profile.")
+            R"(b(d): distance from the tip of the footprint to the centre of friction.
+
+A Profile.)")
         .def_property(
             "tip_to_widest", law_of(&Brush::tip_to_widest),
             [](Brush& b, brushsvg::Profile value) { b.tip_to_widest = std::move(value); },
-            "x_w(d): from the tip of the footprint to its widest section. A Profile.")
+            R"(x_w(d): distance from the tip of the footprint to its widest section.
+
+A Profile.)")
         .def_property(
             "half_width", law_of(&Brush::half_width),
             [](Brush& b, brushsvg::Profile value) { b.half_width = std::move(value); },
             "h(d): half of the footprint's greatest width. A Profile that never falls.")
         .def_property(
             "footprints", [](const Brush& b) -> const brushsvg::FootprintTable& { return b.footprints; },
-            replace(&Brush::footprints), "Outlines by depth: a FootprintTable.")
+            replace(&Brush::footprints), "Outlines of the contact patch by depth: a FootprintTable.")
         .def_property(
             "covariance", frozen_copy(&Brush::covariance),
             [](Brush& b, std::vector<std::vector<double>> value) { b.covariance = std::move(value); },
-            "Of all coefficients, in the order of the four laws, or empty.")
+            "Covariance of all coefficients, in the order of the four laws; may be empty.")
         .def_property(
             "paint", [](const Brush& b) { return b.paint; },
             [](Brush& b, std::optional<brushsvg::Paint> value) { b.paint = std::move(value); },
-            "How its mark narrows from dip to dip: a Paint, or None.")
+            "How the mark narrows between two dips into paint: a Paint, or None.")
         .def_readwrite("max_speed_mm_s", &Brush::max_speed_mm_s,
-                       "The greatest speed [mm/s] at which the model holds; it has no inertia.")
+                       "Greatest speed [mm/s] at which the model holds; the model has no inertia.")
         .def_readwrite("paint_depth_mm", &Brush::paint_depth_mm,
-                       "Depth [mm] to paint at where half_width does not depend on depth.")
-        .def_readwrite("sha256", &Brush::sha256, "Of the bytes of the file it was read from, or empty.")
+                       "Painting depth [mm] if half_width does not depend on depth.")
+        .def_readwrite("sha256", &Brush::sha256,
+                       "SHA-256 of the bytes of the file from which the brush was read, or empty.")
         .def_readwrite("extra", &Brush::extra,
-                       "JSON object of the keys of its file that are not known, written back as read.")
-        .def("is_rigid", &Brush::is_rigid, "Whether the lag is 0 everywhere: a pen.")
-        .def("width_follows_depth", &Brush::width_follows_depth, "Whether half_width depends on depth.")
+                       "JSON object of the unknown keys of the brush's file, written back as read.")
+        .def("is_rigid", &Brush::is_rigid, "Return whether the lag is 0 at all depths: a pen.")
+        .def("width_follows_depth", &Brush::width_follows_depth, "Return whether half_width depends on depth.")
         .def("half_width_range_mm", &Brush::half_width_range_mm,
-             "(least, greatest) half width [mm] within depth_range_mm.")
+             "Return the (least, greatest) half width [mm] within depth_range_mm.")
         .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
-             "Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.")
+             R"(Return the depth [mm] that paints a half width [mm].
+
+where: the element that the error names.
+
+Raises Error, with the reachable range, if no depth paints this half width.)")
         .def(
             "lever_to_widest",
             [](const Brush& b, double depth_mm) {
                 return law_of(&Brush::tip_to_widest)(b).at(depth_mm) - law_of(&Brush::tip_gap)(b).at(depth_mm);
             },
-            py::arg("depth_mm"), "e(d) = x_w(d) - b(d) [mm], signed.")
+            py::arg("depth_mm"), "Return e(d) = x_w(d) - b(d) [mm], signed.")
         .def("__repr__", [](const Brush& b) {
             const auto& [least, greatest] = b.depth_range_mm;
             const auto span = [](double from, double to) {
@@ -88,7 +107,9 @@ save_brush, simulate, compensate and convert refuse what no brush can be.)");
     as_value(type);
     m.def(
         "check", [](const Brush& brush) { brushsvg::check(brush); }, py::arg("brush"),
-        "Error when the brush would lead a robot astray (negative lag, laws and outlines that disagree, ...).");
+        R"(Raise Error if the brush would make a robot go wrong.
+
+Examples are a negative lag, or laws and outlines that disagree.)");
     m.def(
         "remarks",
         [](const Brush& brush) {
@@ -96,5 +117,5 @@ save_brush, simulate, compensate and convert refuse what no brush can be.)");
             for (const auto& each : brushsvg::remarks(brush)) out.append(notice(each, each.sentence));
             return out;
         },
-        py::arg("brush"), "What is odd about an admissible brush: notices about its laws.");
+        py::arg("brush"), "Return notices about unusual laws of a brush that check() accepts.");
 }

@@ -56,12 +56,16 @@ inline constexpr auto members<Compensated> =
 
 void bind_compensate(py::module_& m) {
     using namespace brushsvg;
-    py::class_<TrackingError> error(
-        m, "TrackingError",
-        R"(Distance of the widest point from the middle line [mm], from the first taut row to the last.
+    py::class_<TrackingError> error(m, "TrackingError",
+                                    R"(Distance [mm] of a mark's widest point from the middle line of its stroke.
 
-largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
-too sharp for the lever.)");
+The distance is measured from the first taut row to the last.
+
+largest_mm: the largest distance.
+at_mm: the place (x, y) of the largest distance.
+mean_mm: the mean distance over the painted length.
+within_tolerance: whether the largest distance is within the tolerance.
+has_turn_in_place: whether the brush turns in place, at a corner too sharp for the lever.)");
     error.def_readonly("largest_mm", &TrackingError::largest_mm)
         .def_property_readonly("at_mm", frozen_copy(&TrackingError::at_mm))
         .def_readonly("mean_mm", &TrackingError::mean_mm)
@@ -74,7 +78,11 @@ too sharp for the lever.)");
         });
     as_fixed_value(error);
     py::class_<Compensated> type(m, "Compensated",
-                                 "A plan, the tracking error of each pass, and warnings, notices about strokes.");
+                                 R"(A plan with its tracking errors and warnings.
+
+plan: the Plan.
+tracking_errors: a TrackingError for each pass.
+warnings: notices about strokes.)");
     type.def_readonly("plan", &Compensated::plan)
         .def_property_readonly("tracking_errors", parts(&Compensated::tracking_errors))
         .def_property_readonly("warnings",
@@ -104,7 +112,10 @@ too sharp for the lever.)");
                 return out;
             },
             py::arg("other"), py::arg("passes"),
-            "One plan of passes of both: (whether it is the other's, its number), in order.")
+            R"(Combine passes of this plan and another plan into one plan.
+
+other: the other Compensated.
+passes: (whether the pass is from the other plan, its index there) for each pass of the new plan, in order.)")
         .def("__repr__", [](const Compensated& done) {
             double largest = 0.0;
             for (const TrackingError& each : done.tracking_errors) largest = std::max(largest, each.largest_mm);
@@ -149,23 +160,36 @@ too sharp for the lever.)");
         py::arg("tolerance_mm") = 0.05, py::arg("lag_mm") = py::none(), py::arg("speed_mm_s") = 20.0,
         py::arg("progress") = py::none(), py::arg("few_poses") = true, py::arg("start") = "pointed",
         py::arg("end") = "round",
-        R"(Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
+        R"(Compute a plan for the TCP that puts the paint on the strokes' middle lines.
 
-sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
-ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
-the outline of the mark fits the target best, kept where it overlaps better. tolerance_mm: how far the widest
-point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
-tracking error returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
-the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
-asks for. start, end: closed and refined, the terminals of strokes that do not set them: "pointed", as the footprint is
-behind; "round", as it is in front, where a start is set down inside of the stroke, goes back to its beginning and turns
-over; "butt", straight, a narrower mark goes into one corner, along the cut and into the other; "auto", the one that
-suits the drawn end best.
+Returns a Compensated. Each pass is simulated, and its tracking error is returned.
 
-Error, naming the stroke, for widths or depths out of the brush's reach.)");
+sheet_mm: (width, height), kept in the plan. None: the plan has no sheet and is only for viewing.
+method: how the plan is computed:
+    "none": the TCP is on the middle line.
+    "constant": the TCP is ahead by lag_mm.
+    "closed": the inverse of the brush's laws.
+    "refined": the closed plan, moved by least squares until the outline of the mark fits the target best. The refined
+    plan is kept only if its mark overlaps the target better. Refining moves the middle of the mark on purpose.
+tolerance_mm: largest allowed distance of the mark's widest point from the middle line. The limit applies once the
+    brush is taut, also between poses.
+lag_mm: constant only. None: the lag at each stroke's median depth.
+speed_mm_s: painting speed, at most the speed of the brush.
+progress: called with (strokes done, strokes).
+few_poses: closed only. Use no more poses than the tolerance needs.
+start, end: closed and refined only. Terminals of the strokes that do not set their own:
+    "pointed": the shape of the footprint's rear.
+    "round": the shape of the footprint's front. At a start, the brush is set down inside the stroke. Then it goes back
+    to the stroke's beginning and turns over.
+    "butt": straight. A narrower mark goes into one corner, along the cut and into the other corner.
+    "auto": the terminal that suits the drawn end best.
+
+Raises Error, naming the stroke, for widths or depths that the brush cannot reach.)");
     m.def("tracking_error_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
           py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
-          "Miss of one pass against the stroke it should paint, by simulating it.");
+          R"(Return the TrackingError of a pass against the stroke that it should paint.
+
+The pass is simulated.)");
     m.def(
         "tracking_errors_of",
         [](const std::vector<Pass>& passes, const std::vector<Stroke>& strokes, const Brush& brush,
@@ -178,5 +202,7 @@ Error, naming the stroke, for widths or depths out of the brush's reach.)");
             return found;
         },
         py::arg("passes"), py::arg("strokes"), py::arg("brush"), py::arg("tolerance_mm") = 0.05,
-        "The same of passes and strokes in turn, on all processors: a Miss each.");
+        R"(Return a TrackingError for each pass, against the stroke with its index.
+
+Each pass is simulated, on all processors. Raises Error if there are not as many strokes as passes.)");
 }

@@ -10,14 +10,20 @@ void bind_coverage(py::module_& m) {
             return coverage(marks, brush, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
         },
         py::arg("marks"), py::arg("brush"), py::arg("window_mm"), py::arg("px_per_mm"), unlocked,
-        "Painted fraction of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].");
+        R"(Return the painted fraction of each pixel, as float32 with row 0 at the top.
+
+window_mm: (x, y, width, height) [mm] of the part of the paper.)");
     m.def(
         "coverage",
         [](const Rings& rings, const std::array<double, 4>& w, double px_per_mm) {
             return coverage(rings, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
         },
         py::arg("rings"), py::arg("window_mm"), py::arg("px_per_mm"), unlocked,
-        "The same for filled rings, non-zero winding.");
+        R"(Return the fraction of each pixel that filled rings cover, as float32.
+
+The rings are filled by the non-zero winding rule. Row 0 is at the top.
+
+window_mm: (x, y, width, height) [mm] of the part of the paper.)");
     m.def(
         "trace_outlines",
         [](Marks& marks, const Brush& brush, const py::object& progress) {
@@ -30,7 +36,7 @@ void bind_coverage(py::module_& m) {
             marks.outline_mm = marks.passes.size() == 1 ? all : unite(all);
         },
         py::arg("marks"), py::arg("brush"), py::arg("progress") = py::none(),
-        "Fills outline_mm of every pass and of the whole.");
+        "Fill in outline_mm of each pass, and outline_mm of all marks together.");
     m.def("painted_bounds", &painted_bounds, py::arg("pass_marks"), py::arg("brush"), unlocked,
-          "Left, bottom, right, top [mm] of everything one pass paints.");
+          "Return left, bottom, right and top [mm] of all that one pass paints.");
 }

@@ -12,6 +12,11 @@ void bind_curve_fit(py::module_& m) {
             return std::make_pair(fitted.middle_mm, knots);
         },
         py::arg("line"), py::arg("tolerance_mm"), py::arg("closed") = false,
-        R"(Few cubics (n, 8) along the points (k, 3) of x, y, half width [mm], and the half widths along them
-[(fraction of arc length, mm)], within the tolerance.)");
+        R"(Fit few cubics and half widths to a line of points, within a tolerance.
+
+Returns the cubics (n, 8) [mm] and the half widths along them [(fraction of arc length, mm)].
+
+line: points (k, 3): x, y, half width [mm].
+tolerance_mm: largest distance from the points.
+closed: whether the last point repeats the first one.)");
 }

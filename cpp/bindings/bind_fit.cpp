@@ -17,7 +17,9 @@ void bind_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<Unlocked>();
     py::enum_<Norm>(m, "Norm").value("squares", Norm::squares).value("absolute", Norm::absolute);
-    py::class_<LawShape> law_shape(m, "LawShape", "Constraints on a fitted law; positive and rising hold on range_mm.");
+    py::class_<LawShape> law_shape(m, "LawShape", R"(Constraints on a law that is fitted.
+
+positive and rising hold at all depths of range_mm.)");
     law_shape
         .def(py::init([](std::array<double, 2> range_mm, int degree, bool through_zero, bool positive, bool rising,
                          double floor, Norm norm, double smoothing) {
@@ -32,7 +34,7 @@ void bind_fit(py::module_& m) {
                    in_digits(v.range_mm[1]) + " mm>";
         });
     as_fixed_value(law_shape);
-    py::class_<LawFit> law_fit(m, "LawFit", "A fitted law, how sure it is, and what it leaves.");
+    py::class_<LawFit> law_fit(m, "LawFit", "A fitted law, with its uncertainty and its residuals.");
     law_fit
         .def(py::init([](const brushsvg::Profile& law, std::vector<std::vector<double>> covariance,
                          std::vector<double> residual_mm, double r_squared, double degrees_of_freedom, bool held) {
@@ -53,9 +55,12 @@ void bind_fit(py::module_& m) {
     as_fixed_value(law_fit);
     m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"),
           py::arg("scatter") = std::vector<double>{}, unlocked,
-          "Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals. "
-          "scatter: of "
-          "each value, up to a common factor; empty: alike.");
+          R"(Fit a law to values [mm] measured at depths [mm].
+
+The fit minimises squares or absolute residuals.
+
+shape: a LawShape, the constraints on the law.
+scatter: scatter of each value, up to a common factor. Empty: all values scatter alike.)");
     py::enum_<Lines>(m, "Lines").value("plain", Lines::plain).value("total", Lines::total);
     m.def(
         "from_angles",
@@ -71,5 +76,10 @@ void bind_fit(py::module_& m) {
         },
         py::arg("alpha0"), py::arg("s_mm"), py::arg("alpha"), py::arg("beta") = std::vector<double>{},
         py::arg_v("lines", Lines::plain, "Lines.plain"),
-        "Lag and tip gap [mm] from angles [rad] after distances s [mm] of a straight drag (article (19) to (23)).");
+        R"(Compute lag and tip gap [mm] from the angles of a straight drag.
+
+The equations are article (19) to (23).
+
+alpha0, alpha, beta: angles [rad].
+s_mm: distances of the drag after which alpha and beta were measured.)");
 }

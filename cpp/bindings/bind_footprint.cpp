@@ -4,10 +4,11 @@
 void bind_footprint(py::module_& m) {
     using namespace brushsvg;
     py::class_<Footprint> one(m, "Footprint",
-                              R"(The outline (n, 2) [mm] of the contact patch at one depth [mm].
+                              R"(The outline of the contact patch at one depth.
 
-outline_mm, at depth_mm: a simple ring, counter-clockwise, unclosed, whose first point is the tip at (0, 0); x points
-towards the TCP.)");
+depth_mm: the depth [mm].
+outline_mm: the outline (n, 2) [mm], a simple, unclosed, counter-clockwise ring. Its first point is the tip at (0, 0),
+    and x points towards the TCP.)");
     one.def(py::init([](double depth_mm, const Ring& outline_mm) { return Footprint{depth_mm, outline_mm}; }),
             py::arg("depth_mm"), py::arg("outline_mm"))
         .def_readonly("depth_mm", &Footprint::depth_mm)
@@ -23,10 +24,12 @@ towards the TCP.)");
         });
     as_fixed_value(one);
     py::class_<FootprintTable> table(m, "FootprintTable",
-                                     R"(The outlines of a brush at several depths, in tuples, depths ascending.
+                                     R"(The outlines of a brush at several depths, in tuples, with ascending depths.
 
-dragged: while the brush is drawn along; pressed: straight down, () where that is the same. All have equally many points,
-between which outlines of other depths are blended one by one.)");
+dragged: outlines while the brush is drawn along.
+pressed: outlines of a brush pressed straight down; () if they equal dragged.
+
+All outlines have the same number of points. At other depths, the outlines are blended point by point.)");
     table
         .def(py::init([](std::vector<Footprint> dragged, std::vector<Footprint> pressed) {
                  return FootprintTable{std::move(dragged), std::move(pressed)};
@@ -44,5 +47,7 @@ between which outlines of other depths are blended one by one.)");
         });
     as_fixed_value(table);
     m.def("footprint_at", &footprint_at, py::arg("table"), py::arg("depth_mm"), py::arg("pull") = 1.0,
-          "Outline (n, 2) [mm] at a depth [mm], tip at the origin; pull = r'/r blends pressed (0) and dragged (1).");
+          R"(Return the outline (n, 2) [mm] at a depth [mm], with the tip at the origin.
+
+pull: r'/r, which blends the pressed (0) and the dragged outline (1).)");
 }

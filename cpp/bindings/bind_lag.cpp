@@ -129,7 +129,7 @@ py::list follow_lags(const std::vector<Pass>& passes, const std::vector<PassMark
 }  // namespace
 
 void bind_lag(py::module_& m) {
-    py::module_ lag = m.def_submodule("lag", "The law by which the contact patch trails the handle.");
+    py::module_ lag = m.def_submodule("lag", "Equations of the lag: how the contact patch trails the handle.");
     lag.def(
         "drag_straight",
         [](const Vector2d& contact, const Vector2d& tcp0, const Vector2d& tcp1, double depth0, double depth1,
@@ -148,13 +148,15 @@ void bind_lag(py::module_& m) {
         },
         py::arg("contact_mm"), py::arg("tcp0_mm"), py::arg("tcp1_mm"), py::arg("depth0_mm"), py::arg("depth1_mm"),
         py::arg("profile"),
-        "Contact [mm] after a straight move of a taut brush, article (5) to (7); the loose rule is not applied.");
+        R"(Return the contact [mm] after a straight move of a taut brush.
+
+The equations are article (5) to (7). The rule for a loose brush is not applied.)");
     lag.def("drag_arc", &drag_arc<double>, py::arg("psi0_rad"), py::arg("curvature_per_mm"), py::arg("lag_mm"),
-            py::arg("length_mm"), "psi [rad] after an arc of the TCP at constant lag, taut.");
+            py::arg("length_mm"), "Return psi [rad] of a taut brush after an arc of the TCP at constant lag.");
     lag.def("tip_direction", py::vectorize(&tip_direction<double>), py::arg("alpha0_rad"), py::arg("alpha1_rad"),
-            py::arg("s_mm"), py::arg("lag_mm"), py::arg("tip_gap_mm"), "beta [rad], article (11), (12).");
+            py::arg("s_mm"), py::arg("lag_mm"), py::arg("tip_gap_mm"), "Return beta [rad] by article (11) and (12).");
     lag.def("alpha_after", py::vectorize(&alpha_after), py::arg("alpha0_rad"), py::arg("exponent"),
-            "alpha [rad] once the integral of ds / r is `exponent`, article (7).");
+            "Return alpha [rad] when the integral of ds / r is `exponent`, article (7).");
     lag.def(
         "exponent",
         [](const Numbers& s_mm, const Numbers& depth0_mm, const Numbers& depth1_mm, const Profile& profile) {
@@ -162,16 +164,22 @@ void bind_lag(py::module_& m) {
                 s_mm.values, depth0_mm.values, depth1_mm.values);
         },
         py::arg("s_mm"), py::arg("depth0_mm"), py::arg("depth1_mm"), py::arg("profile"),
-        "Integral of ds / r over straight moves with depth linear along them, article (7); beyond 50 it stops "
-        "counting.");
+        R"(Return the integral of ds / r over straight moves, article (7).
+
+The depth is linear along each move. The summation stops beyond 50.)");
     lag.def("follow", &follow, py::arg("tcp_mm"), py::arg("depth_mm"), py::arg("profile"),
             py::arg("contact_mm") = py::none(),
-            "Contact, heading and tension at each place of the TCP, taut and loose (article 2.1, 2.2).");
+            R"(Return contact, heading and tension at each position of the TCP.
+
+The brush may be taut or loose (article 2.1 and 2.2).
+
+contact_mm: the contact at the start. None: the brush touches down at the first position.)");
     m.def("follow_lags", &follow_lags, py::arg("passes"), py::arg("marks"), py::arg("lags"), py::arg("depth_range_mm"),
           R"(Follow the TCP of each pass with K other lags, at the rows of its marks.
 
-marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
-each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
+Returns for each pass the contacts [mm] and the headings as unit vectors, (n, 2, K) each. In the air, the contact is the
+TCP. The result is exact at each row, by the closed form.
 
-Exact at each row, by the closed form.)");
+marks: PassMarks of each pass, simulated with one upright brush.
+lags: K Profiles that are positive on depth_range_mm.)");
 }

@@ -59,10 +59,12 @@ inline constexpr auto members<brushsvg::fit::MarkFit> =
 void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
     const auto unlocked = py::call_guard<Unlocked>();
-    py::class_<PaintedMark> painted_mark(m, "PaintedMark", R"(What one pass painted.
+    py::class_<PaintedMark> painted_mark(m, "PaintedMark", R"(The mark that one pass painted, with the path of the TCP.
 
-stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them; arcs: of
-the pass, followed on their circles.)");
+stroke: id of the stroke.
+poses_mm: path of the TCP (n, 3), z = -depth.
+outline_mm: rings [(n, 2) mm] of the mark, including its holes.
+arcs: arcs of the pass, which the TCP follows on their circles.)");
     painted_mark
         .def(py::init([](std::string stroke, brushsvg::Poses poses_mm, brushsvg::Rings outline_mm,
                          std::vector<brushsvg::Arc> arcs) {
@@ -80,7 +82,10 @@ the pass, followed on their circles.)");
         });
     as_fixed_value(painted_mark);
     py::class_<Prior> prior(m, "Prior",
-                            "What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.");
+                            R"(Prior knowledge of a number, as a normal distribution.
+
+value: the mean.
+sigma: the standard deviation. 0: the number is known; inf: nothing is known.)");
     prior
         .def(py::init([](double value, double sigma) { return Prior{value, sigma}; }), py::arg("value"),
              py::arg("sigma"))
@@ -90,7 +95,9 @@ the pass, followed on their circles.)");
              [](const Prior& v) { return "Prior(" + in_digits(v.value) + ", " + in_digits(v.sigma) + ")"; });
     as_value(prior);
     py::class_<MarkLaws> mark_laws(m, "MarkLaws",
-                                   "Laws as coefficients (ascending powers of depth), and a drop's shape.");
+                                   R"(Laws as coefficients (ascending powers of depth), and a footprint's shape.
+
+The footprint has the shape of a drop.)");
     mark_laws
         .def(py::init([](std::vector<double> lag, std::vector<double> tip_gap, std::vector<double> half_width,
                          double widest_per_half, double front_per_half, bool round_tail,
@@ -115,10 +122,11 @@ the pass, followed on their circles.)");
                    std::to_string(v.tip_gap.size()) + ", half width of " + std::to_string(v.half_width.size()) + ">";
         });
     as_fixed_value(mark_laws);
-    py::class_<LawPrior> law_prior(m, "LawPrior", R"(Laws that are known beforehand: laws is the mean.
+    py::class_<LawPrior> law_prior(m, "LawPrior", R"(Prior knowledge of the laws.
 
-rows (k, n): each, over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and
-widest_per_half, gives a standard normal number of what they differ from it.)");
+laws: the mean.
+rows: (k, n), over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and widest_per_half.
+    Each row turns the difference of these numbers from the mean into a standard normal number.)");
     law_prior
         .def(py::init([](MarkLaws laws, std::vector<std::vector<double>> rows) {
                  return LawPrior{std::move(laws), std::move(rows)};
@@ -126,12 +134,19 @@ widest_per_half, gives a standard normal number of what they differ from it.)");
              py::arg("laws"), py::arg("rows"))
         .def("__repr__", [](const LawPrior& v) { return "<LawPrior: " + counted(v.rows.size(), "row") + ">"; });
     as_fixed_value(law_prior);
-    py::class_<Machine> machine(m, "Machine", R"(How a machine takes the tool elsewhere than it was commanded.
+    py::class_<Machine> machine(m, "Machine", R"(The systematic errors of a machine's motion.
 
-Commanded to (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
-is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash. A smooth field takes it elsewhere
-still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was commanded to go from
-field_middle_mm, over field_reach_mm.)");
+The tool is commanded to (x, y), measured from MarkFit.centre_mm, and to the depth d. The machine moves the tool to
+
+    x' = scale_x x + skew y + lean_x d
+    y' = scale_y y + lean_y d
+
+and by tilt_x x + tilt_y y deeper. On each axis the tool stays behind by half of the backlash. A smooth field adds
+a u^2 + b u v + c v^2 [mm] to x and to y.
+
+field_mm: (2, 3), the numbers a, b and c for x and for y.
+field_middle_mm, field_reach_mm: u and v are the commanded distances from field_middle_mm, divided by
+    field_reach_mm.)");
     machine.def_property_readonly("lean_mm_per_mm", frozen_copy(&Machine::lean_mm_per_mm))
         .def_property_readonly("scale", frozen_copy(&Machine::scale))
         .def_readonly("skew", &Machine::skew)
@@ -146,13 +161,19 @@ field_middle_mm, over field_reach_mm.)");
                    in_digits(v.backlash_mm[1]) + " mm>";
         });
     as_fixed_value(machine);
-    py::class_<MarkOptions> mark_options(m, "MarkOptions", R"(How marks are fitted; lengths in mm.
+    py::class_<MarkOptions> mark_options(m, "MarkOptions", R"(Options of fit_marks; lengths in mm.
 
-deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
-widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
-and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm:
-sigmas of the machine's numbers; 0: it has no such error. departing: laws get more numbers if the marks ask for it. noise_mm: fit
-nothing, say what to expect of such edges.)");
+deepest_mm: the laws hold on [0, deepest_mm].
+lag_terms, tip_gap_terms, half_width_terms: number of coefficients of each law, at most four.
+widest_per_half, front_per_half, height_mm: a Prior each.
+laws: LawPrior or None.
+placement_mm, turn_rad: sigmas of the sheet's shift and turn; 0: none.
+displacement_mm: sigma of each mark's own displacement; 0: none.
+lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm: sigmas of the numbers of the Machine; 0: the machine does
+    not have this error.
+departing: whether laws get more coefficients if the marks need them.
+noise_mm: noise of the edges. If given, nothing is fitted, and the result is the covariance to expect from these
+    edges.)");
     mark_options.def(py::init<>())
         .def_readwrite("deepest_mm", &MarkOptions::deepest_mm)
         .def_readwrite("lag_terms", &MarkOptions::lag_terms)
@@ -183,7 +204,7 @@ nothing, say what to expect of such edges.)");
                    in_digits(v.spacing_mm) + " mm>";
         });
     as_value(mark_options);
-    py::class_<MarkResidual> mark_miss(m, "MarkResidual", "One painted mark against its prediction.");
+    py::class_<MarkResidual> mark_miss(m, "MarkResidual", "Deviation of one painted mark from its prediction.");
     mark_miss.def_readonly("point_mm", &MarkResidual::point_mm)
         .def_property_readonly("distance_mm", frozen_copy(&MarkResidual::distance_mm))
         .def_property_readonly("displacement_mm", frozen_copy(&MarkResidual::displacement_mm))
@@ -197,9 +218,13 @@ nothing, say what to expect of such edges.)");
     as_fixed_value(mark_miss);
     py::class_<MarkFit> mark_fit(m, "MarkFit", R"(A brush fitted to marks.
 
-covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
-where any of the machine was requested lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.)");
+covariance: of these numbers, in this order:
+    the coefficients of lag, and of tip_gap and half_width (without the constant 0 of both);
+    widest_per_half and front_per_half, or the coefficients of widest_by_depth and front_by_depth if the ratios change
+    with depth;
+    height, shift x and y, turn;
+    if any number of the machine was requested: lean x and y, scale x and y, skew, tilt x and y, backlash x and y, and
+    the six numbers of the field.)");
     mark_fit.def_readonly("laws", &MarkFit::laws)
         .def_property_readonly("covariance", frozen_copy(&MarkFit::covariance))
         .def_readonly("height_mm", &MarkFit::height_mm)
@@ -223,8 +248,14 @@ where any of the machine was requested lean x and y, scale x and y, skew, tilt x
     as_fixed_value(mark_fit);
     m.def("fit_marks", &fit_marks, py::arg("marks"), py::arg("start") = std::optional<MarkLaws>(),
           py::arg_v("options", MarkOptions(), "MarkOptions()"), unlocked,
-          R"(Laws from painted marks and the TCP's way that painted each, by robust least squares through the simulator.
+          R"(Fit laws to painted marks and to the TCP paths that painted them.
 
-start: MarkLaws to begin from; without them lags of many lengths are tried. Error: no mark, numbers that are not finite,
-marks that no brush paints along these ways.)");
+The fit is by robust least squares through the simulator.
+
+marks: a PaintedMark for each pass.
+start: MarkLaws at which the fit begins. None: lags of many lengths are tried.
+options: MarkOptions.
+
+Raises Error if there is no mark, for numbers that are not finite, and for marks that no brush paints along these
+paths.)");
 }

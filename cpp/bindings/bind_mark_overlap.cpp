@@ -3,7 +3,11 @@
 
 void bind_mark_overlap(py::module_& m) {
     using namespace brushsvg;
-    py::class_<CommonArea> type(m, "CommonArea", "Areas [mm^2] of paint and target mark.");
+    py::class_<CommonArea> type(m, "CommonArea", R"(The areas that paint and target mark have in common and together.
+
+common_mm2: area of the intersection [mm^2].
+together_mm2: area of the union [mm^2].
+overlap: common_mm2 / together_mm2; 1 if both are 0.)");
     type.def(py::init([](double common_mm2, double together_mm2) { return CommonArea{common_mm2, together_mm2}; }),
              py::arg("common_mm2"), py::arg("together_mm2"))
         .def_readonly("common_mm2", &CommonArea::common_mm2)
@@ -19,17 +23,27 @@ void bind_mark_overlap(py::module_& m) {
             return common_area(painted, wanted, brush);
         },
         py::arg("painted"), py::arg("wanted"), py::arg("brush"), py::call_guard<Unlocked>(),
-        "What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.");
+        R"(Return the CommonArea of passes of marks and the strokes they should paint.
+
+The areas are counted in pixels.)");
     m.def("common_areas", &common_areas, py::arg("painted"), py::arg("wanted"), py::arg("groups"), py::arg("brush"),
           py::call_guard<Unlocked>(),
-          "The same of each of some groups, lists of numbers as touching() gives them: a CommonArea each.");
+          R"(Return a CommonArea for each group of strokes and their passes.
+
+groups: lists of indices, as touching() returns them.)");
     m.def(
         "wanted_coverage",
         [](const std::vector<Stroke>& wanted, const std::array<double, 4>& w, double px_per_mm) {
             return wanted_coverage(wanted, Window{w[0], w[1], w[2], w[3]}, px_per_mm);
         },
         py::arg("wanted"), py::arg("window_mm"), py::arg("px_per_mm"), py::call_guard<Unlocked>(),
-        "What strokes should cover of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].");
+        R"(Return the fraction of each pixel that the strokes should cover, as float32.
+
+Row 0 is at the top.
+
+window_mm: (x, y, width, height) [mm] of the part of the paper.)");
     m.def("touching", &touching, py::arg("wanted"), py::call_guard<Unlocked>(),
-          "Numbers of strokes whose target marks touch, a list per letter; those that stand alone are not named.");
+          R"(Group the strokes whose target marks touch: one list per letter.
+
+Each list contains the indices of the strokes. A stroke that touches no other stroke is not listed.)");
 }

@@ -19,13 +19,15 @@ auto column(std::vector<T> brushsvg::PassMarks::* member) {
 void bind_marks(py::module_& m) {
     using namespace brushsvg;
     py::class_<PassMarks> one(m, "PassMarks",
-                              R"(What the patch does during one pass; parallel rows (mm, rad), read only.
+                              R"(The motion of the contact patch in one pass, as parallel rows [mm, rad].
 
-pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
-the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
-before the first pose's the brush being set down.
+The rows are read-only.
 
-lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.)");
+pose: index of the plan's pose, with fractions between two poses. contact_mm[pose_rows] is the contact at each pose.
+lean_mm_per_mm: (n, 2), sideways distance of a tilted brush's axis for each mm up; empty for an upright brush.
+
+A pass that ends on the paper has rows after the last pose, where the brush is lifted on the spot. There the patch
+moves, because the bristles straighten. In the rows before the first pose, the brush is set down.)");
     one.def(py::init<>())
         .def_readwrite("stroke", &PassMarks::stroke)
         .def_property_readonly("pose", column(&PassMarks::pose))
@@ -42,7 +44,7 @@ lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_property_readonly("lean_mm_per_mm", [](const PassMarks& p) -> const Ring& { return p.lean_mm_per_mm; })
         .def_property_readonly("width_share", column(&PassMarks::width_share),
-                               "By how much narrower the brush paints than freshly dipped; empty: it does not.")
+                               "Width as a share of a freshly dipped brush's width; empty: 1 in all rows.")
         .def_property_readonly(
             "pose_rows",
             [](const PassMarks& p) {
@@ -51,7 +53,7 @@ lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each
                 std::copy(rows.begin(), rows.end(), out.mutable_data());
                 return as_typed<py::array_t<py::ssize_t>>(frozen(out));
             },
-            "For each pose of the pass the index of its row.")
+            "Index of the row of each pose.")
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
                       [](PassMarks& p, Rings rings) { p.outline_mm = std::move(rings); })
         .def("__repr__", [](const PassMarks& p) {
@@ -62,10 +64,11 @@ lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each
         });
     as_value(one);
     py::class_<Marks> marks(m, "Marks",
-                            R"(What is painted: marks.json as a value.
+                            R"(The marks that are painted: marks.json as a value.
 
-passes: a tuple with a PassMarks per stroke; outline_mm: a tuple of rings [(n, 2) mm] of all paint together, filled by trace_outlines, outer
-ones counter-clockwise, holes clockwise, unclosed.)");
+passes: a tuple with one PassMarks per stroke.
+outline_mm: a tuple of unclosed rings [(n, 2) mm] around all paint together, filled in by trace_outlines. Outer rings
+    are counter-clockwise, holes are clockwise.)");
     marks.def(py::init<>())
         .def_property("passes", parts(&Marks::passes), replace(&Marks::passes))
         .def_property("outline_mm", frozen_copy(&Marks::outline_mm),

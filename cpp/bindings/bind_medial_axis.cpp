@@ -5,7 +5,11 @@
 
 void bind_medial_axis(py::module_& m) {
     using namespace brushsvg;
-    py::class_<AxisBranch> type(m, "AxisBranch", "A stretch of the medial axis between two nodes.");
+    py::class_<AxisBranch> type(m, "AxisBranch", R"(A stretch of the medial axis between two nodes.
+
+start, end: indices of the nodes.
+line: (k, 3), places on the axis: x, y, distance to the outline [mm].
+part: rings of the part of the shape nearest to the branch.)");
     type.def_readonly("start", &AxisBranch::from)
         .def_readonly("end", &AxisBranch::to)
         .def_property_readonly("line", frozen_copy(&AxisBranch::line))
@@ -31,9 +35,14 @@ void bind_medial_axis(py::module_& m) {
             return std::make_pair(nodes, std::move(axis.branches));
         },
         py::arg("rings"), py::arg("least_share"), py::arg("least_limb") = py::none(),
-        R"(Medial axis of a shape: nodes (n, 4) with x, y, distance to the outline [mm] and the largest corner dropped there
-[squares of that distance], and branches between them, each with start, end (node numbers), line (k, 3) and part (rings).
+        R"(Return the medial axis of a shape: its nodes and the branches between them.
 
-rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius; it
-stays, too, if what is beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.)");
+nodes: (n, 4): x, y, distance to the outline [mm], and the largest corner dropped at the node, in squares of the
+    distance.
+branches: a list of AxisBranch, each with start and end (indices of nodes), line (k, 3) and part (rings).
+
+rings: a shape as `fill` returns it.
+least_share: the least area that a branch must add to the disc from which it starts, in squares of the disc's radius.
+least_limb: a branch also stays if the part beyond some place on the branch adds least_share to the disc at this place.
+    The part must also add least_limb to the disc from which the branch starts. None: equal to least_share.)");
 }

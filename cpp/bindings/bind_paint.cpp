@@ -3,15 +3,21 @@
 
 void bind_paint(py::module_& m) {
     using brushsvg::Paint;
-    py::class_<Paint> type(
-        m, "Paint",
-        R"(What the way [mm] painted since the last dip does: marks are exp(-narrows_per_m way / 1000) times as wide.
+    py::class_<Paint> type(m, "Paint",
+                           R"(The law by which marks narrow with the path painted since the last dip.
 
-Paint(0.4).width_share(500) is exp(-0.2). The way is the TCP's on the paper. lasts_mm: the way after which hairs run dry,
-None where nobody knows. calibrated_mm: (least, greatest) way that was measured; source: where it comes from, in words;
-assumed: nobody measured it. covariance: of narrows_per_m, and lasts_mm where it is known, or empty, by
-degrees_of_freedom values to spare. extra: unknown keys of its file, as JSON. A value: it is not changed, but another
-one made.)");
+After a path of s mm, marks are exp(-narrows_per_m s / 1000) times as wide. Paint(0.4).width_share(500) is exp(-0.2).
+The path is the path of the TCP on the paper.
+
+lasts_mm: path after which hairs run dry; None if this is not known.
+calibrated_mm: (least, greatest) path that was measured.
+source: where the law comes from, in words.
+assumed: True if the law was not measured.
+covariance: of narrows_per_m, and of lasts_mm if it is known; may be empty.
+degrees_of_freedom: number of spare values from which the scatter is known.
+extra: unknown keys of the file, as JSON.
+
+A Paint cannot be changed; make a new one instead.)");
     type.def(py::init([](double narrows_per_m, std::optional<double> lasts_mm,
                          std::optional<std::array<double, 2>> calibrated_mm, std::string source, bool assumed,
                          std::vector<std::vector<double>> covariance, std::optional<double> degrees_of_freedom,
@@ -40,10 +46,13 @@ one made.)");
         .def_readonly("degrees_of_freedom", &Paint::degrees_of_freedom)
         .def_readonly("extra", &Paint::extra)
         .def("width_share", &Paint::width_share, py::arg("way_mm"),
-             "Width over that of a freshly dipped brush, after a way [mm].")
-        .def(
-            "way_to_share_mm", &Paint::way_to_share_mm, py::arg("share"),
-            "The way [mm] after which the width is that share of a freshly dipped brush's; infinite where it never is.")
+             R"(Return the share of the width that is left after a path [mm].
+
+The share is of a freshly dipped brush's width.)")
+        .def("way_to_share_mm", &Paint::way_to_share_mm, py::arg("share"),
+             R"(Return the path [mm] after which the width has fallen to a share.
+
+The share is of a freshly dipped brush's width. The path is infinite if the width never falls so far.)")
         .def("__repr__", [](const Paint& p) {
             std::string out = "<Paint: width exp(-" + in_digits(p.narrows_per_m) + " way / 1000 mm)";
             if (p.lasts_mm) out += ", hairs dry after " + in_digits(*p.lasts_mm) + " mm";

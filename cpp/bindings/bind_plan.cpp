@@ -4,9 +4,13 @@
 void bind_plan(py::module_& m) {
     using namespace brushsvg;
     py::class_<Arc> arc(m, "Arc",
-                        R"(Poses first to last are on a circle about centre_mm (x, y), at constant depth.
+                        R"(A stretch of a pass on a circle, at constant depth.
 
-direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 180 degrees apart on it.)");
+first, last: indices of the first and the last pose on the circle.
+centre_mm: centre (x, y) of the circle.
+direction: 1 counter-clockwise, -1 clockwise.
+
+Neighbouring poses are less than 180 degrees apart on the circle.)");
     arc.def(py::init([](std::int64_t first, std::int64_t last, const Eigen::Vector2d& centre_mm, int direction) {
                 return Arc{first, last, centre_mm, direction};
             }),
@@ -21,15 +25,19 @@ direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 1
                    std::to_string(a.direction) + ")";
         });
     as_fixed_value(arc);
-    py::class_<Pass> one(m, "Pass", R"(One stroke's motion.
+    py::class_<Pass> one(m, "Pass", R"(The motion for one stroke.
 
-stroke: the name of what it paints, made of origin, a StrokeId, and set by a name or one.
-poses_mm: (n, 3) x, y, z = -depth [mm], straight moves in between, depth linear along each; read-only and not copied when read,
-to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
-the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
-load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
-file, as JSON. tool_axes: (n, 3) of each pose the unit vector from the tip up along the brush, in the frame of the paper,
-tilted by at most 30 degrees; empty for a brush that is upright; given, read and replaced as poses_mm.)");
+stroke: name of the stroke that the pass paints, made from origin. Set it to a name or to a StrokeId.
+origin: a StrokeId.
+poses_mm: (n, 3): x, y, z = -depth [mm]. Moves between poses are straight, with linear depth. The array is read-only
+    and not copied when you read it. Replace it as a whole.
+arcs: a tuple of Arc, ascending. Poses of an arc are followed on the true circle, not on its chords.
+speed_mm_s, layer, colour: of the pass.
+settings: a Settings. Set it as a whole.
+load: number of the load of paint within the stroke, from 1; 0 for a stroke that is not split.
+extra: unknown keys of the file, as JSON.
+tool_axes: (n, 3): for each pose the unit vector from the tip up along the brush, in the paper frame. The tilt is at
+    most 30 degrees. Empty for an upright brush. Like poses_mm, read-only, and replaced as a whole.)");
     one.def(py::init([](StrokeId stroke, Poses poses_mm, double speed_mm_s, std::string layer, std::string colour,
                         Settings settings, std::string extra, std::vector<Arc> arcs, int load, Poses tool_axes) {
                 return Pass{std::move(stroke), std::move(poses_mm), std::move(arcs),     speed_mm_s,
@@ -71,10 +79,12 @@ tilted by at most 30 degrees; empty for a brush that is upright; given, read and
         });
     as_value(one);
     py::class_<Plan> plan(m, "Plan",
-                          R"(TCP poses for every stroke, in the frame of the paper: plan.json as a value.
+                          R"(The TCP poses of all strokes, in the paper frame: plan.json as a value.
 
-brush, brush_sha256: what it was made for; sheet_mm: (w, h); passes: a tuple with one Pass per stroke, in painting
-order, to be set as a whole; extra: unknown keys of the file, as JSON.)");
+brush, brush_sha256: name and file hash of the brush for which the plan was made.
+sheet_mm: (width, height).
+passes: a tuple with one Pass per stroke, in painting order. Set it as a whole.
+extra: unknown keys of the file, as JSON.)");
     plan.def(py::init([](std::string brush, std::string brush_sha256, std::array<double, 2> sheet_mm,
                          std::vector<Pass> passes, std::string extra) {
                  return Plan{std::move(brush), std::move(brush_sha256), sheet_mm, std::move(passes), std::move(extra)};
@@ -101,7 +111,8 @@ order, to be set as a whole; extra: unknown keys of the file, as JSON.)");
             for (const Pass& pass : passes) refuse_tilted(pass, upright);
         },
         py::arg("passes"), py::arg("upright"),
-        R"(Error for the first pass whose brush is not upright everywhere.
+        R"(Raise Error for the first pass whose brush is not upright at all poses.
 
-upright: who keeps it upright, as the sentence begins: "cell ur5e holds the brush upright".)");
+upright: the beginning of the error's sentence, which says what keeps the brush upright. An example is "cell ur5e holds
+    the brush upright".)");
 }

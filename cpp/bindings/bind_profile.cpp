@@ -5,14 +5,23 @@
 
 void bind_profile(py::module_& m) {
     using brushsvg::Profile;
-    py::class_<Profile> type(
-        m, "Profile",
-        R"(A law of a brush: one parameter [mm] against press depth d [mm], max(floor + floor_slope d, c0 + c1 d + ...).
+    py::class_<Profile> type(m, "Profile",
+                             R"(A law of a brush: one parameter [mm] against the press depth d [mm].
 
-Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm; depths may be an array. coefficients: at most 11, in ascending powers of
-d. calibrated_mm: (least, greatest) depth that was measured, None where nobody says; source: where it comes from, in words;
-assumed: nobody measured it. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values to spare. extra:
-unknown keys of its file, as JSON. A value: it is not changed, but another one made.)");
+The value is max(floor + floor_slope d, c0 + c1 d + ...). Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm. The depth may
+be an array.
+
+coefficients: c0, c1, ..., in ascending powers of d, at most 11.
+floor, floor_slope: the lower limit of the value, linear in d.
+calibrated_mm: (least, greatest) depth that was measured; None if this is not known.
+source: where the law comes from, in words.
+assumed: True if the law was not measured.
+half_interval_95: half of the 95 % interval of each coefficient.
+rmse_mm: root mean square error of the fit.
+degrees_of_freedom: number of spare values from which the scatter is known.
+extra: unknown keys of the file, as JSON.
+
+A Profile cannot be changed; make a new one instead.)");
     type.def(py::init([](std::vector<double> coefficients, double floor, double floor_slope,
                          std::optional<std::array<double, 2>> calibrated_mm, std::string source, bool assumed,
                          std::vector<double> half_interval_95, std::optional<double> rmse_mm,
@@ -40,13 +49,17 @@ unknown keys of its file, as JSON. A value: it is not changed, but another one m
             [](const Profile& p, const Numbers& depth_mm) {
                 return py::vectorize([&p](double d) { return p.at(d); })(depth_mm.values);
             },
-            py::arg("depth_mm"), "The law at a depth [mm], or at an array of them. Error outside of depth_range_mm.")
+            py::arg("depth_mm"), R"(Return the value of the law at a depth [mm], or at an array of depths.
+
+Raises Error for depths outside depth_range_mm.)")
         .def(
             "extrapolated",
             [](const Profile& p, const Numbers& depth_mm) {
                 return py::vectorize([&p](double d) { return p(d); })(depth_mm.values);
             },
-            py::arg("depth_mm"), "The same at any depth [mm]: beyond what was measured a polynomial is soon nonsense.")
+            py::arg("depth_mm"), R"(Return the value of the law at any depth [mm], or at an array of depths.
+
+Beyond the measured depths, a polynomial soon becomes meaningless.)")
         .def_property_readonly("coefficients", frozen_copy(&Profile::coefficients))
         .def_readonly("floor", &Profile::floor)
         .def_readonly("floor_slope", &Profile::floor_slope)
@@ -57,9 +70,10 @@ unknown keys of its file, as JSON. A value: it is not changed, but another one m
         .def_readonly("rmse_mm", &Profile::rmse_mm)
         .def_readonly("degrees_of_freedom", &Profile::degrees_of_freedom)
         .def_readonly("extra", &Profile::extra)
-        .def_property_readonly(
-            "depth_range_mm", frozen_copy(&Profile::depth_range_mm),
-            "Depths [mm] at which it is defined, of a law of a Brush: its depth_range_mm. None: any.")
+        .def_property_readonly("depth_range_mm", frozen_copy(&Profile::depth_range_mm),
+                               R"(Depths [mm] at which the law is defined; None: at any depth.
+
+For a law of a Brush, this is depth_range_mm of the Brush.)")
         .def("__repr__", [](const Profile& p) {
             std::string out;
             for (std::size_t i = 0; i < p.coefficients.size(); ++i) {

@@ -19,10 +19,13 @@ py::dict said(const brushsvg::Settings& settings) {
 void bind_settings(py::module_& m) {
     using brushsvg::Settings;
     py::class_<Settings> type(m, "Settings",
-                              R"(What a drawing says of an element to brushsvg itself; None where it says nothing.
+                              R"(The brushsvg settings of an element in a drawing; None if a setting is absent.
 
-brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/reference/drawings.md; kind: of a stroke of the calibration
-chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.)");
+brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/reference/drawings.md.
+kind: kind of a stroke on the calibration chart.
+extra: unknown keys of a plan.json, as JSON.
+
+A Settings cannot be changed; use replaced() to make a new one.)");
     type.def(py::init([](std::optional<std::string> brush, std::optional<std::string> end,
                          std::optional<std::string> kind, std::optional<int> order, std::optional<int> passes,
                          std::optional<bool> reload, std::optional<bool> skip, std::optional<double> speed_mm_s,
@@ -53,7 +56,7 @@ chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be chang
                 all.attr("update")(fields);
                 return py::type::of<Settings>()(**all).cast<Settings>();
             },
-            "A copy in which the fields that are given are these.")
+            "Return a copy in which the given fields have these values.")
         .def("__repr__", [](const Settings& self) {
             py::list parts;
             for (const auto& [name, value] : said(self)) parts.append(py::str("{}={!r}").format(name, value));

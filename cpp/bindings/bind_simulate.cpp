@@ -17,21 +17,28 @@ void bind_simulate(py::module_& m) {
         },
         py::arg("plan"), py::arg("brush"), py::arg("tolerance_mm") = 0.02, py::arg("for_outlines") = true,
         py::arg("progress") = py::none(), py::kw_only(), py::arg("may_rise") = false,
-        R"(What the brush does along a plan: Marks without outlines (see trace_outlines and coverage).
+        R"(Simulate the brush along a plan.
 
-tolerance_mm: how far the painted area between two rows may be off the hull of both; it has nothing to do with the
-tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
-widest_points. progress: called with (passes done, passes).
+Returns Marks without outlines. To fill in the outlines, use trace_outlines; for a picture, use coverage.
 
-z = -depth. A pass that begins or ends below 0 is set down or lifted on the spot, with rows of its own: pose_rows of the
-PassMarks finds the poses. may_rise: the passes are motions of a machine that may leave the paper, z > 0; there the brush
-hangs free. Error for z > 0 otherwise, for a pass all of which is above the paper, and for a pose deeper than the brush may
-be pressed.)");
+z = -depth. If a pass begins or ends below 0, the brush is set down or lifted on the spot, in rows of its own. To find
+the rows of the poses, use pose_rows of the PassMarks.
+
+tolerance_mm: largest distance of the painted area between two rows from the hull of both. This tolerance is independent
+    of the tolerance with which the plan was made.
+for_outlines: False leaves out the rows that only the outline needs. The other rows are enough for widest_points.
+progress: called with (passes done, passes).
+may_rise: True if the passes are motions of a machine that may leave the paper (z > 0). There the brush hangs free.
+
+Raises Error for z > 0 without may_rise, and for a pass entirely above the paper. Also raises Error for a pose deeper
+than the brush may be pressed.)");
     m.def("narrow", &narrow, py::arg("marks"), py::arg("paint"), py::arg("dips_mm"), py::call_guard<Unlocked>(),
-          R"(Fills width_share of every pass, as paint runs out along them: before trace_outlines and coverage.
+          R"(Fill in width_share of each pass, as the paint runs out along the passes.
 
-dips_mm: for each pass the ways [mm] of the TCP along it at which paint was just fetched, ascending: [0] before it, [] goes
-on with the paint of the pass before.)");
+Call this function before trace_outlines and coverage.
+
+dips_mm: for each pass, the distances [mm] along the TCP's path at which paint was just fetched, ascending. [0]: just
+    before the pass. []: the pass continues with the paint of the previous pass.)");
     m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"), py::call_guard<Unlocked>(),
-          "Centre of the widest section at every row (n, 2) [mm].");
+          "Return the centre of the widest section at each row (n, 2) [mm].");
 }

@@ -5,11 +5,14 @@
 
 void bind_stroke(py::module_& m) {
     using namespace brushsvg;
-    py::class_<StrokeId> id(m, "StrokeId", R"(Where in a drawing a stroke comes from.
+    py::class_<StrokeId> id(m, "StrokeId", R"(The origin of a stroke in a drawing.
 
-element: its id; part: which of its sub-paths, 0 for the only one; repeat: which of the times that it is painted; lane:
-which of the passes that fill a shape wider than the brush; load: which of the loads of paint. name: element/part#repeat
-~lane+load, each where it says something; nobody takes it apart again.)");
+element: id of the element.
+part: number of the element's sub-path, 0 for the only one.
+repeat: number of the repetition, if the stroke is painted several times.
+lane: number of the pass that fills a shape wider than the brush.
+load: number of the load of paint.
+name: element/part#repeat~lane+load, without the parts that have their default. The name is never parsed.)");
     id.def(py::init<std::string, int, int, int, int>(), py::arg("element"), py::arg("part") = 0, py::arg("repeat") = 1,
            py::arg("lane") = 1, py::arg("load") = 1)
         .def_readonly("element", &StrokeId::element)
@@ -32,10 +35,16 @@ which of the passes that fill a shape wider than the brush; load: which of the l
         for (const auto& [at, h] : knots) s.half_width.push_back({at, h});
     };
     py::class_<Stroke> type(m, "Stroke",
-                            R"(A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
+                            R"(A stroke: a middle line, with a width along it.
 
-id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint covers that end.)");
+id: name of the stroke, made from origin. Set it to a name or to a StrokeId.
+origin: a StrokeId.
+middle_mm: cubics (n, 8) [mm].
+half_width: half widths along the middle line [(fraction of arc length, mm)].
+wanted_mm: rings of the target mark as drawn, or empty.
+start_covered, end_covered: whether this end meets other strokes of the shape, whose paint covers the end.
+
+Set middle_mm, half_width, wanted_mm and settings as a whole.)");
     type.def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, Settings settings) {
                  Stroke s;
@@ -98,14 +107,18 @@ set as a whole. start_covered, end_covered: where it meets others of its shape, 
             },
             py::arg("points_mm"), py::arg("width_mm"), py::arg("name") = "stroke1", py::kw_only(),
             py::arg("tolerance_mm") = py::none(),
-            R"(A stroke through points (n, 2) [mm], y up, in painting direction; closed where the last is the first again.
+            R"(Make a stroke through points, in painting direction.
 
-width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
-point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
-where the points are too far apart for it.
+The stroke is closed if the last point repeats the first one.
 
-Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
-is not positive.)")
+points_mm: (n, 2) [mm], y up.
+width_mm: one width for all points, or (n,), one width at each point, linear in between.
+tolerance_mm: None: straight lines from point to point. Otherwise cubics that pass each point within the tolerance. The
+    cubics are smooth except at corners that no smooth line follows. Points too far apart for the tolerance are
+    joined by lines.
+
+Raises Error, naming the stroke, for fewer than two different points, or a width that is not positive. Also raises
+Error for a number that is not finite or beyond 1e6 mm.)")
         .def(
             "replaced",
             [](const Stroke& s, const py::kwargs& fields) {
@@ -113,7 +126,7 @@ is not positive.)")
                 for (const auto& [name, value] : fields) py::setattr(made, name, value);
                 return made.cast<Stroke>();
             },
-            "A copy in which the fields that are given are these.")
+            "Return a copy in which the given fields have these values.")
         .def("__repr__", [](const Stroke& s) {
             double length = 0.0;
             for (Eigen::Index i = 0; i < s.middle_mm.rows(); ++i) length += arc_length(s.middle_mm, i, 0.0, 1.0);
@@ -137,7 +150,7 @@ is not positive.)")
             return flatten(stroke, tolerance_mm);
         },
         py::arg("stroke"), py::arg("tolerance_mm") = 0.005,
-        "Middle line as (n, 4): x, y, arc length, half width [mm].");
+        "Return the middle line as points (n, 4): x, y, arc length, half width [mm].");
     m.def(
         "wanted_outline",
         [](const Stroke& stroke, double tolerance_mm) {
@@ -145,5 +158,8 @@ is not positive.)")
             return wanted_outline(stroke, tolerance_mm);
         },
         py::arg("stroke"), py::arg("tolerance_mm") = 0.005, py::call_guard<Unlocked>(),
-        "Rings of the target mark: the path with its width, round caps and round joins.");
+        R"(Return the rings of the target mark.
+
+The target mark is wanted_mm of the stroke, if given. Otherwise the target mark is the path with its width, round caps
+and round joins.)");
 }

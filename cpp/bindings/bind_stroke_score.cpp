@@ -4,7 +4,11 @@
 
 void bind_stroke_score(py::module_& m) {
     using namespace brushsvg;
-    py::class_<WorstPlace> place(m, "WorstPlace", "Where paint and drawing differ most, and by how much.");
+    py::class_<WorstPlace> place(m, "WorstPlace", R"(The place where paint and drawing differ most.
+
+at_mm: the place (x, y).
+is_missing: True if paint is missing there, False if there is too much paint.
+area_mm2: area of the missing or excess paint.)");
     place.def_property_readonly("at_mm", frozen_copy(&WorstPlace::at_mm))
         .def_readonly("is_missing", &WorstPlace::is_missing)
         .def_readonly("area_mm2", &WorstPlace::area_mm2)
@@ -14,10 +18,12 @@ void bind_stroke_score(py::module_& m) {
         });
     as_fixed_value(place);
     py::class_<StrokeScore> type(m, "Verdict",
-                                 R"(How well a pass paints its stroke.
+                                 R"(A score of how well a pass paints its stroke.
 
-overlap: common over joint area; width_error_mm: mean absolute difference of widths across the line, None where none can
-be measured; excess_turning: of the mark's outline, in full turns; worst: a WorstPlace.)");
+overlap: area of the intersection over area of the union.
+width_error_mm: mean absolute difference of the widths across the line; None if no width can be measured.
+excess_turning: excess turning of the mark's outline, in full turns.
+worst: a WorstPlace.)");
     type.def_readonly("overlap", &StrokeScore::overlap)
         .def_readonly("excess_turning", &StrokeScore::excess_turning)
         .def_readonly("width_error_mm", &StrokeScore::width_error_mm)
@@ -38,5 +44,7 @@ be measured; excess_turning: of the mark's outline, in full turns; worst: a Wors
             return found;
         },
         py::arg("painted"), py::arg("wanted"), py::arg("brush"),
-        "How well each pass of marks paints the stroke it should be: a Verdict each, on all processors.");
+        R"(Score how well each pass of marks paints its stroke.
+
+Returns a Verdict for each pass, computed on all processors.)");
 }

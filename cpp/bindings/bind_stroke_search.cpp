@@ -35,12 +35,17 @@ void bind_stroke_search(py::module_& m) {
             return out;
         },
         py::arg("shapes"), py::arg("brush"), py::arg("detail") = "normal", py::arg("are_free") = true,
-        R"(The strokes by which the mark of each shape costs least: for each (strokes, changed, added).
+        R"(Search for the strokes with which the mark of each shape costs least.
 
-shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
-gets a stroke of its own. are_free: whether strokes may be moved, cut or left out, and not only added. strokes: for each that was
-given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
-that is nearest, rings of the area that it is for, rings of what it paints).)");
+Returns (strokes, changed, added) for each shape:
+    strokes: for each given stroke, the strokes that paint it best; [] if it is best left out.
+    changed: for each given stroke, whether these strokes differ from the given stroke.
+    added: (stroke, index of the nearest stroke, rings of the area that the stroke is for, rings of its paint) for each
+    added stroke.
+
+shapes: (rings of the shape, strokes, passes that paint the strokes) for each shape.
+detail: "draft", "normal" or "fine": how small an area gets its own stroke.
+are_free: True if strokes may also be moved, cut or left out. False: strokes are only added.)");
     m.def(
         "uncovered_areas",
         [](const std::vector<Shape>& shapes, const Brush& brush, double least_share) {
@@ -54,7 +59,10 @@ that is nearest, rings of the area that it is for, rings of what it paints).)");
             return out;
         },
         py::arg("shapes"), py::arg("brush"), py::arg("least_share"),
-        R"(The areas of each shape that its passes leave without paint, from a share of the shape on, the largest first.
+        R"(Find the areas of each shape that its passes leave without paint.
 
-shapes: as for search_strokes. For each a list of (rings [mm], (x, y) in it [mm], area [mm2]).)");
+Returns for each shape a list of (rings [mm], a place (x, y) in the area [mm], area [mm2]), the largest area first.
+
+shapes: as for search_strokes.
+least_share: the least area, as a share of the shape's area.)");
 }

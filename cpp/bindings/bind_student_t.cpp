@@ -4,13 +4,16 @@
 
 void bind_student_t(py::module_& m) {
     m.def("deviations_of_95", &brushsvg::deviations_of_95, py::arg("degrees_of_freedom") = py::none(),
-          "Half of a 95 % interval in standard deviations: Student's t, or normal where no degrees of freedom are "
-          "known.");
+          R"(Return half of a 95 % interval, in standard deviations.
+
+The interval is of Student's t, or of the normal distribution if degrees_of_freedom is None.)");
     m.def(
         "as_normal",
         [](const Numbers& t, double degrees_of_freedom) {
             return py::vectorize([=](double each) { return brushsvg::as_normal(each, degrees_of_freedom); })(t.values);
         },
         py::arg("t"), py::arg("degrees_of_freedom"),
-        "Size of a normal value as unlikely as t with so many degrees of freedom; of each t, where there are many.");
+        R"(Return the size of a normal value that is as unlikely as Student's t.
+
+t: a value, or an array of values.)");
 }

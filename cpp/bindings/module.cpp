@@ -23,7 +23,9 @@ static void refuse_what_was_never_made(const py::module_& m) {
 }
 
 PYBIND11_MODULE(_core, m) {
-    m.doc() = "The brush: simulation, inverse, marks. Millimetres, radians, paper frame.";
+    m.doc() = R"(Simulation of a brush, its inverse, and the marks that it paints.
+
+Lengths are in mm, angles in radians, coordinates in the paper frame.)";
     m.attr("__version__") = BRUSHSVG_VERSION;
     m.attr("MOST_ENTRIES") = kMostEntries;
 
