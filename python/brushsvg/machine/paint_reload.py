@@ -12,7 +12,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
-from .cells.cell import Cell, Station, briefly, robot_from_paper, why_no_waiting
+from .cells.cell import Cell, Station, reason_for_no_waiting, robot_from_paper, shorten_visit
 from .frames import is_upright
 from .posts import POSTS, circles_by
 from .realised.arc_chords import chords, cut_at_extremes, with_chords
@@ -198,7 +198,10 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
             or _is_due(a_pass, last, used_mm + length_mm, cell.reload, loads.lasts_mm)
         )
         if last is not None and not changed and number != first_stroke:
-            wash, station = [briefly(each) for each in wash if cell.reload.rinse], briefly(station)
+            wash, station = (
+                [shorten_visit(each) for each in wash if cell.reload.rinse],
+                shorten_visit(station),
+            )
         elif not changed:
             wash = []
         found.append((*wash, station) if fetch else ())
@@ -267,7 +270,7 @@ SHARED_MM = (
 
 def may_pause(cell: Cell) -> bool:
     """Whether the program stops for another pen, or takes it by itself."""
-    return cell.pause_per_colour and (has_pens(cell) or not why_no_waiting(cell))
+    return cell.pause_per_colour and (has_pens(cell) or not reason_for_no_waiting(cell))
 
 
 def has_pens(cell: Cell) -> bool:
@@ -323,7 +326,7 @@ def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[
     """Return a notice if strokes of several colours are painted in one run without an explicit option."""
     if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
         return []
-    sentence = f"strokes of several colours are painted with one pen: {why_no_waiting(cell)}"
+    sentence = f"strokes of several colours are painted with one pen: {reason_for_no_waiting(cell)}"
     return [Notice("", sentence, code="colours-as-one", advice="--per-colour writes a program for each")]
 
 

@@ -12,7 +12,15 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.joints import is_installed
 from .arm.place import unreachable
-from .cells.cell import MOST_LINES, MOST_POINTS, Cell, Station, briefly, robot_from_paper, value_mm
+from .cells.cell import (
+    MAX_PROGRAM_LINES,
+    MAX_PROGRAM_POINTS,
+    Cell,
+    Station,
+    robot_from_paper,
+    shorten_visit,
+    value_mm,
+)
 from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .paint_reload import PlanInLoads, visits
@@ -94,12 +102,12 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     problems += [
         Notice(
             a_pass.stroke,
-            f"{count} poses are outside the range [1, {MOST_POINTS[cell.language]}] of one program, and a stroke "
-            "cannot be parted: --tolerance makes them fewer",
+            f"{count} poses are outside the range [1, {MAX_PROGRAM_POINTS[cell.language]}] of one program, and a "
+            "stroke cannot be parted: --tolerance makes them fewer",
             code="poses-too-many",
         )
-        for a_pass in (left if cell.language in MOST_POINTS else ())
-        if (count := len(a_pass.poses_mm) + AROUND) > MOST_POINTS[cell.language]
+        for a_pass in (left if cell.language in MAX_PROGRAM_POINTS else ())
+        if (count := len(a_pass.poses_mm) + AROUND) > MAX_PROGRAM_POINTS[cell.language]
     ]
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left):
         problems += astray_in(made, loads.sheet_mm)
@@ -112,7 +120,7 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
 
 def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
     """A notice of each stroke that alone has more lines than a program of the language should."""
-    most = MOST_LINES.get(cell.language)
+    most = MAX_PROGRAM_LINES.get(cell.language)
     return [
         Notice(
             a_pass.stroke,
@@ -236,7 +244,7 @@ def approach_mm_s(brush, cell: Cell) -> float:
 
 def names_of_stations(cell: Cell) -> dict[Station, str]:
     """What a program calls each, short visits by a name of their own: no two alike."""
-    stations = list(dict.fromkeys(each for one in cell.stations for each in (one, briefly(one))))
+    stations = list(dict.fromkeys(each for one in cell.stations for each in (one, shorten_visit(one))))
     names = make_unique([station.name for station in stations])
     return dict(zip(stations, names, strict=True))
 

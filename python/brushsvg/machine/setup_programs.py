@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Error
-from .cells.cell import LEAST_SPEED_MM_S, Cell, robot_from_paper, why_no_waiting
+from .cells.cell import LEAST_SPEED_MM_S, Cell, reason_for_no_waiting, robot_from_paper
 from .motion import Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
@@ -41,7 +41,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
 
     Error when the program cannot wait for a person, when it leaves the workspace, when the strokes do not fit.
     """
-    if why := why_no_waiting(cell):
+    if why := reason_for_no_waiting(cell):
         raise Error(
             f"{why}, as a first run must",
             code="cannot-wait",

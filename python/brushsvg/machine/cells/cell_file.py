@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...errors import Error, need, shown
 from ...files import find_file, names_in, read_bytes, toml_document
-from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
+from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries_of, required_keys_of, tables_of
 from .cell_check import check
 
 SHIPPED = Path(__file__).parents[2] / "data" / "cells"
@@ -99,7 +99,7 @@ MOST_ROWS = 1000  # of one key: no table of a servo and no shop is longer
 
 
 def _read(table, values, where: str) -> dict:
-    known = entries(table)
+    known = entries_of(table)
     prefix = f"{where}." if where else ""
     if not isinstance(values, dict):
         raise Error(f"{where} must be a table", where=where, code="wrong-type")
@@ -110,7 +110,7 @@ def _read(table, values, where: str) -> dict:
                 where=prefix + key,
                 code="key-unknown",
             )
-    for key in required(table):
+    for key in required_keys_of(table):
         if key not in values:
             raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
     return {key: _value(known[key], value, prefix + key) for key, value in values.items()}

@@ -8,7 +8,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cells.cell import LEAST_SPEED_MM_S, least_part_mm, places_of, servo_parts, servo_stands, steps_of
+from ..cells.cell import (
+    LEAST_SPEED_MM_S,
+    min_part_mm,
+    mm_from_step_counts,
+    servo_parts,
+    servo_stands,
+    steps_from_mm,
+)
 from ..motion import Move, Program, Wait
 from ..trajectory import joint_caps, paced
 from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at
@@ -69,13 +76,13 @@ class _Writer:
 
     def moved(self, move: Move) -> Iterator[str]:
         motors, here = self.cell.motors, self.here
-        steps = steps_of(move.points_mm, motors)
+        steps = steps_from_mm(move.points_mm, motors)
         height_mm = float(move.points_mm[-1, 2])
         if len(steps) == 1 and (steps[0] == self.steps).all():  # most moves by far
             self.here = np.array([*here[:2], height_mm])
             yield self._lifted(move, here[2], height_mm)
             return
-        path = np.vstack([here, np.column_stack([places_of(steps, motors), move.points_mm[:, 2]])])
+        path = np.vstack([here, np.column_stack([mm_from_step_counts(steps, motors), move.points_mm[:, 2]])])
         self.here = path[-1]
         ways = path[1:] - path[:-1]
         still = servo_stands(ways, self.cell)
@@ -132,7 +139,7 @@ class _Writer:
 
     def _rows(self, parts_mm: list[float], caps: list[float], tops: list[float]) -> tuple[np.ndarray, ...]:
         """(n,) part, when [s], how far on it [mm]: no slice is shorter than a move may be."""
-        least_mm, last_mm = least_part_mm(self.cell), 0.0
+        least_mm, last_mm = min_part_mm(self.cell), 0.0
         part, when, done = [], [], []
         for k, when_s, done_mm in paced(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):
             if done_mm is None:
@@ -155,12 +162,12 @@ class _Writer:
         feeds: np.ndarray,
     ) -> str:
         motors = self.cell.motors
-        steps = np.vstack([self.steps, steps_of(places, motors)])
+        steps = np.vstack([self.steps, steps_from_mm(places, motors)])
         self.steps = steps[-1]
         moves = steps[1:] - steps[:-1]
         goes = moves.any(axis=1)  # where it stands, what follows takes the time, too
         part, when_s, moves = part[goes], when_s[goes], moves[goes]
-        ways_mm = np.hypot(*places_of(moves, motors).T)
+        ways_mm = np.hypot(*mm_from_step_counts(moves, motors).T)
         # never faster than allowed, with any rounding of ways and times
         least_s = np.maximum(_steps(when_s, 0.0), 60 * ways_mm / feeds[part])
         times_ms = np.ceil(np.maximum(1e3 * least_s, np.abs(moves).max(axis=1) / STEPS_MS) - 1e-6)

@@ -9,7 +9,7 @@ from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
-from ..cells.cell import MOST_POINTS, Cell
+from ..cells.cell import MAX_PROGRAM_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via
 from .dobot import whole_mm_s
@@ -35,7 +35,7 @@ def fanuc(program: Program) -> Iterator[str]:
     points, lines, calls, risen = _Points(cell), "", [], False
     with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
         for section in program.sections():
-            if points.count and points.count + _count(section) > MOST_POINTS["fanuc"]:
+            if points.count and points.count + _count(section) > MAX_PROGRAM_POINTS["fanuc"]:
                 calls.append(part_name(setup, len(calls) + 1))
                 held.write(_program(calls[-1], lines, points))
                 points, lines = _Points(cell), ""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cells.cell import RADII_MM
+from ..cells.cell import MAX_RADIUS_DIFFERENCE_MM
 from ..motion import SAFE_MEANINGS, Move, Program, Wait
 from .text import AT_ONCE, BRACKETS, feed_mm_min, number, plain, rows
 
@@ -82,7 +82,7 @@ DIALECTS = {  # LinuxCNC's length and radii by trying its version 2.9
     "linuxcnc": Dialect(comment, 252, True, acts=r"\s*(\w+\s*,|(PROBE|LOG)\w+)"),
     "grbl": Dialect(grbl_comment, 79),  # a buffer of 80
     # Protocol.h: 255 letters; GCode.cpp: radii that differ by more than 0.005 mm may be an error; (MSG, and (PRINT, act
-    "fluidnc": Dialect(grbl_comment, 255, acts=r"\s*\w+\s*,", radii_mm=RADII_MM["fluidnc"]),
+    "fluidnc": Dialect(grbl_comment, 255, acts=r"\s*\w+\s*,", radii_mm=MAX_RADIUS_DIFFERENCE_MM["fluidnc"]),
     "marlin": Dialect(
         printer_comment, 95, True, "; ?(.*)", has_blocks=False, per_s=1e3, stops=("M400", "M0")
     ),

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..cells.cell import MOST_LINES, Cell, robot_from_paper
+from ..cells.cell import MAX_PROGRAM_LINES, Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
 from ..tool_axes import is_upright_on, turned_to
@@ -45,7 +45,7 @@ def parts(program: Program, words: Words, around: int, rises_again: bool) -> Ite
     A section with more lines is a part by itself. around: lines that each program has in addition to these;
     rises_again: whether the tool goes straight up in each part, else in the first alone.
     """
-    most = MOST_LINES[program.cell.language] - around
+    most = MAX_PROGRAM_LINES[program.cell.language] - around
     text, lines, risen = "", 0, False
     for section in program.sections():
         more = "\n" + "".join(section_lines(section, words, risen))

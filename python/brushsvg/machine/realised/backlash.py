@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..cells.cell import Cell, rounded, unit_mm
+from ..cells.cell import Cell, round_points, unit_mm
 from ..motion import Move, Program, Section, Wait
 
 
@@ -92,7 +92,7 @@ def _compensate_sections(sections: Iterator[Section], half: np.ndarray, cell: Ce
 
 
 def _rounded(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
-    return np.column_stack([rounded(points_mm, cell)[:, :2], np.asarray(points_mm)[:, 2]])
+    return np.column_stack([round_points(points_mm, cell)[:, :2], np.asarray(points_mm)[:, 2]])
 
 
 def _side_of(steps, here: np.ndarray, side: np.ndarray, cell: Cell) -> np.ndarray:

@@ -10,7 +10,15 @@ from math import atan2, ceil, dist, hypot, inf, tau
 import numpy as np
 
 from ... import _core
-from ..cells.cell import RADII_MM, Cell, Servo, least_move_mm, rounded, servo_is_outrun, unit_mm
+from ..cells.cell import (
+    MAX_RADIUS_DIFFERENCE_MM,
+    Cell,
+    Servo,
+    is_too_steep_for_servo,
+    least_move_mm,
+    round_points,
+    unit_mm,
+)
 from ..frames import is_upright, moved
 from ..motion import via
 from ..posts import POSTS, circles_by
@@ -55,8 +63,8 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
 
     def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
-            return moved(np.linalg.inv(frame), rounded(moved(frame, poses), cell))
-        return rounded(poses, cell)
+            return moved(np.linalg.inv(frame), round_points(moved(frame, poses), cell))
+        return round_points(poses, cell)
 
     poses, arcs = on_grid(exact), []
     least_mm = least_move_mm(cell)
@@ -95,7 +103,9 @@ def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
     for most, and a way that steep is shorter than a tenth of its change of height."""
 
     def outrun(poses: np.ndarray) -> np.ndarray:
-        return np.flatnonzero(servo_is_outrun(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read))
+        return np.flatnonzero(
+            is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read)
+        )
 
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if not len(outrun(poses)):
@@ -174,7 +184,9 @@ PART_RAD, MOST_RAD = (
 def _is_round(spokes: np.ndarray, cell: Cell) -> bool:
     """Whether the firmware takes a circle with the spokes (2, 2) to its ends for one, and keeps near it."""
     first, last = (hypot(*spoke) for spoke in spokes.tolist())
-    near_mm = RADII_MM.get(cell.language, inf) - 1.5 * unit_mm(cell)  # its centre is rounded, too
+    near_mm = MAX_RADIUS_DIFFERENCE_MM.get(cell.language, inf) - 1.5 * unit_mm(
+        cell
+    )  # its centre is rounded, too
     sagitta_mm = cell.arc_segment_mm**2 / (8 * max(first, 1e-9))
     return abs(first - last) <= near_mm and sagitta_mm <= OFF_MM
 
