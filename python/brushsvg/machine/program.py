@@ -11,7 +11,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from .arm.joints import is_installed
-from .arm.place import unreachable
+from .arm.place import find_unreachable
 from .cells.cell import (
     MAX_PROGRAM_LINES,
     MAX_PROGRAM_POINTS,
@@ -178,7 +178,7 @@ def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
     where the cell has no arm, or nothing is installed that knows its joints."""
     if made.cell.arm is None or not is_installed():
         return []
-    return unreachable(made, lambda there: not astray_in(there, sheet_mm))
+    return find_unreachable(made, lambda there: not astray_in(there, sheet_mm))
 
 
 def _is_little(loads: PlanInLoads, job: Job) -> bool:
