@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
 from .paint_reload import PlanInLoads
-from .program import POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked, written_of
+from .program import MAX_POSES_AT_ONCE, WHOLE_JOB, Job, Walked, check_job, out_of_arm, written_of
 from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, blended
 from .realised.distortion import true_pass
@@ -56,7 +56,7 @@ def within_limits(
     of_drawing: bool = True,
 ) -> Walked:
     """The job with the limits that it breaks and the edges of the sheet that its marks cross."""
-    walk = walked(loads, brush, cell, job)
+    walk = check_job(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
         if not loads.loads:
@@ -207,7 +207,7 @@ def _groups(passes) -> Iterator[tuple[int, int]]:
     """First and last of passes that are handled at once."""
     first, poses = 0, 0
     for number, a_pass in enumerate(passes):
-        if poses and poses + len(a_pass.poses_mm) > POSES_AT_ONCE:
+        if poses and poses + len(a_pass.poses_mm) > MAX_POSES_AT_ONCE:
             yield first, number
             first, poses = number, 0
         poses += len(a_pass.poses_mm)

@@ -12,7 +12,7 @@ from ..errors import Error
 from .cells.cell import LEAST_SPEED_MM_S, Cell, reason_for_no_waiting, robot_from_paper
 from .motion import Move, Program, Section, Wait, rise_over, set_programmed_speeds
 from .move_extents import ways
-from .program import approach_mm_s, astray_in, out_of_arm, over, safely_over
+from .program import approach_mm_s, astray_in, out_of_arm, point_above, safe_point_above
 from .realised.distortion import commanded_mm, in_lines_mm
 from .workspace_limits import astray, touching_mm_s
 
@@ -112,7 +112,7 @@ def _highest_air(cell: Cell, sheet_mm) -> float:
     frame, safe_mm = robot_from_paper(cell), cell.heights.safe_mm
     for more_mm in (HIGH_MM, HIGH_MM / 2):
         corner_poses = [
-            commanded_mm(over(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
+            commanded_mm(point_above(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
             for corner in corners
         ]
         if not astray(ways([np.array(corner_poses)]), frame, cell, sheet_mm):
@@ -133,15 +133,15 @@ def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
 def _touch(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
     """Go down to where the tip should just touch, with two stops: a person who sees the brush bend ends it."""
     press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
-    touching, down = (commanded_mm(over(place, z), cell.machine) for z in (0.0, clearance_mm))
+    touching, down = (commanded_mm(point_above(place, z), cell.machine) for z in (0.0, clearance_mm))
     return (
-        Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
+        Move("travel", safe_point_above(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
         _ask("the tip is just over the paper"),
         Move("land", touching, press_mm_s),
         _ask("the tip just touches"),
         Move("lift", down, press_mm_s),
-        Move("retract", safely_over(down[0], cell), cell.speeds.travel_mm_s),
+        Move("retract", safe_point_above(down[0], cell), cell.speeds.travel_mm_s),
     )
 
 
@@ -152,8 +152,8 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     """
     left, bottom, right, top = around_mm
     corners = ((left, bottom), (right, bottom), (right, top), (left, top), (left, bottom))
-    corner_poses = np.vstack([commanded_mm(over(corner, 0.0), cell.machine) for corner in corners])
-    path = np.vstack([safely_over(corner, cell) for corner in corner_poses])
+    corner_poses = np.vstack([commanded_mm(point_above(corner, 0.0), cell.machine) for corner in corners])
+    path = np.vstack([safe_point_above(corner, cell) for corner in corner_poses])
 
     def sections() -> Iterator[Section]:
         start = Move("travel", path[:1], cell.speeds.travel_mm_s)
@@ -219,16 +219,16 @@ def _stroke_at(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -
     """A stroke from one place (x, y) to another at a height."""
     speed_mm_s = min(touching_mm_s(brush, cell), SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
-    way = in_lines_mm(np.vstack([over(end, height_mm) for end in ends]), cell.machine)
+    way = in_lines_mm(np.vstack([point_above(end, height_mm) for end in ends]), cell.machine)
     commanded = commanded_mm(way, cell.machine)
-    down, up = (commanded_mm(over(end, clearance_mm), cell.machine) for end in ends)
+    down, up = (commanded_mm(point_above(end, clearance_mm), cell.machine) for end in ends)
     return (
-        Move("travel", safely_over(down[0], cell), cell.speeds.travel_mm_s),
+        Move("travel", safe_point_above(down[0], cell), cell.speeds.travel_mm_s),
         Move("approach", down, approach_mm_s(brush, cell)),
         Move("land", commanded[:1], press_mm_s),
         Move("paint", commanded[1:], speed_mm_s),
         Move("lift", up, press_mm_s),
-        Move("retract", safely_over(up[0], cell), cell.speeds.travel_mm_s),
+        Move("retract", safe_point_above(up[0], cell), cell.speeds.travel_mm_s),
     )
 
 
@@ -243,7 +243,7 @@ def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program
     moves = (
         Move("travel", high, cell.speeds.travel_mm_s),
         Move("look", low[::-1], touching_mm_s(brush, cell)),
-        Move("retract", over(low[0], cell.heights.safe_mm), cell.speeds.travel_mm_s),
+        Move("retract", point_above(low[0], cell.heights.safe_mm), cell.speeds.travel_mm_s),
     )
     frame = robot_from_paper(cell, z_offset_mm)
     rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
