@@ -31,7 +31,7 @@ from .realised.distortion import commanded_high_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import slow_enough
 from .tool_axes import axes_of, tilts_deg
-from .workspace_limits import broken_limits, rise_astray, touching_mm_s, walked_astray
+from .workspace_limits import broken_limits, find_astray_sections, rise_astray, touching_mm_s
 
 STRAIGHT_SEGMENT, VERTICAL_SEGMENT = -1, -2  # kinds of segments that are not part of an arc
 
@@ -173,7 +173,7 @@ def astray_in(made: Program, sheet_mm) -> list[Notice]:
         yield from home_sections
 
     frame, height_mm = made.robot_from_frame, made.rise_mm
-    notices = walked_astray(sections(), frame, made.cell, sheet_mm)
+    notices = find_astray_sections(sections(), frame, made.cell, sheet_mm)
     post = POSTS.get(made.cell.language)
     if post and post.in_robot_frame:  # other programs rise to the safe height over the paper
         ends = list(moved(frame, np.reshape(ends, (-1, 3))))
@@ -286,7 +286,9 @@ def stations_astray(brush, cell: Cell, frame: np.ndarray, sheet_mm=None) -> list
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     """
     visited = ([make_visit(station, brush, cell)] for station in cell.stations)
-    return [notice for sections in visited for notice in walked_astray(sections, frame, cell, sheet_mm)]
+    return [
+        notice for sections in visited for notice in find_astray_sections(sections, frame, cell, sheet_mm)
+    ]
 
 
 def make_visit(station: Station, brush, cell: Cell) -> Section:
