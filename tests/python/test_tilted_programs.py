@@ -22,7 +22,7 @@ from brushsvg import _core
 from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
-from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.motion import program_in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import look
@@ -540,7 +540,7 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
 def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     cell = brushsvg.find_cell("fr3")
     made = check_job(in_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
-    table, message = (made_of(in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
+    table, message = (made_of(program_in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
     rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
     data = b"".join(message)
     points = np.frombuffer(data[-len(rows) * ros2.POINT.itemsize :], dtype=ros2.POINT)

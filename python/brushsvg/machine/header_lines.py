@@ -1,4 +1,4 @@
-"""Write the header of a program: how it was made, for whom, its duration."""
+"""Header lines of a program: its origin, its machine and its duration."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ TILT_LINE = "tilt: the brush is held as each move says"
 
 
 def header_of(title: str, brush: str, loads: PlanInLoads, notes, made: Program, job: Job) -> tuple[str, ...]:
-    """The header of a program; loads before the first one of the job are only counted."""
+    """Return the header of a program.
+
+    Loads before the job's first stroke are only counted.
+    """
     return (
         f"title: {title}",
         f"brush: {brush}, {len(loads.loads)} strokes",
         _sheet_line(loads.sheet_mm),
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
-        *about(made, job),
+        *common_lines(made, job),
         f"length: {painting_mm(made):.0f} mm on the paper",
     )
 
@@ -27,7 +30,11 @@ def header_of(title: str, brush: str, loads: PlanInLoads, notes, made: Program, 
 def border_header(
     title: str, brush: str, count: int, sheet_mm, notes, around_mm, made: Program, job: Job
 ) -> tuple[str, ...]:
-    """The header of an air run round (left, bottom, right, top) [mm] of a job of so many strokes."""
+    """Return the header of an air run round a job.
+
+    count: number of strokes of the job.
+    around_mm: left, bottom, right and top of the job [mm].
+    """
     left, bottom, right, top = around_mm
     return (
         f"title: {title}",
@@ -35,29 +42,35 @@ def border_header(
         _sheet_line(sheet_mm),
         *notes,
         f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
-        *about(made, job),
+        *common_lines(made, job),
     )
 
 
 def height_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
-    """The header of strokes from the highest to the lowest height [mm], a step apart."""
+    """Return the header of strokes that find the paper's height.
+
+    heights_mm: highest height, lowest height and step [mm].
+    """
     return (
         "title: height of the paper",
         f"brush: {brush}, {sum(1 for _ in made.sections())} strokes",
         _sheet_line(sheet_mm),
         "heights: {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
-        *about(made),
+        *common_lines(made),
     )
 
 
 def first_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
-    """The header of a first run with strokes from the highest to the lowest height [mm], a step apart."""
+    """Return the header of a first run.
+
+    heights_mm: highest height, lowest height and step of its strokes [mm].
+    """
     return (
         "title: first run",
         f"brush: {brush}, {sum(1 for each in made.sections() if each.title.startswith('stroke '))} strokes",
         _sheet_line(sheet_mm),
         "first: heights {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
-        *about(made),
+        *common_lines(made),
     )
 
 
@@ -65,8 +78,8 @@ def _sheet_line(sheet_mm) -> str:
     return "sheet: {:g} x {:g} mm".format(*sheet_mm)
 
 
-def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
-    """Lines of a header that every program has: machine, frame, time."""
+def common_lines(made: Program, job: Job = WHOLE_JOB) -> list[str]:
+    """Return the header lines that every program has: machine, frame and time."""
     lines = [
         f"cell: {made.cell.name}, {made.cell.language}",
         _frame_line(made),

@@ -22,7 +22,7 @@ from .cells.cell import (
     value_mm,
 )
 from .frames import moved
-from .motion import Arc, Move, Program, Section, Wait, rise_over, set_programmed_speeds
+from .motion import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import make_unique
@@ -244,7 +244,7 @@ def unchecked_program(
             yield set_programmed_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     make_sections_once = cache(lambda: tuple(sections()))
-    rises_mm = (rise_over(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
+    rises_mm = (rise_height_mm(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
     iterate_sections = (lambda: iter(make_sections_once())) if _fits_in_cache(loads, job) else sections
     tilts = any(axes_of(a_pass) is not None for _, a_pass in numbered_loads)
     return Program((), cell, frame, iterate_sections, *rises_mm, touching_mm_s(brush, cell), tilts)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import Error
 from .cells.cell import LEAST_SPEED_MM_S, Cell, reason_for_no_waiting, robot_from_paper
-from .motion import Move, Program, Section, Wait, rise_over, set_programmed_speeds
+from .motion import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .move_extents import ways
 from .program import approach_mm_s, astray_in, out_of_arm, point_above, safe_point_above
 from .realised.distortion import commanded_mm, in_lines_mm
@@ -210,8 +210,8 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
     speed = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     if speed < (min_mm_s := LEAST_SPEED_MM_S.get(cell.language, 0.0)):
         raise Error(
-            f"speed {speed:.4g} mm/s of brush {brush.name} is outside the range [{min_mm_s:g}, {TEST_SPEED_MM_S:g}] mm/s "
-            f"of cell {cell.name}",
+            f"speed {speed:.4g} mm/s of brush {brush.name} is outside the range [{min_mm_s:g}, {TEST_SPEED_MM_S:g}] "
+            f"mm/s of cell {cell.name}",
             code="speed-out-of-range",
         )
     steps = []
@@ -276,7 +276,7 @@ def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program
         Move("retract", point_above(low_points[0], cell.heights.safe_mm), cell.speeds.travel_mm_s),
     )
     frame = robot_from_paper(cell, z_offset_mm)
-    rises_mm = (rise_over(cell, sheet_mm, of) for of in (np.eye(4), frame))
+    rises_mm = (rise_height_mm(cell, sheet_mm, of) for of in (np.eye(4), frame))
     sections = (Section("the sheet", moves),)
     return Program((), cell, frame, lambda: iter(sections), *rises_mm, touching_mm_s(brush, cell))
 
@@ -319,7 +319,7 @@ def _checked_program(
     """
     frame = robot_from_paper(cell, z_offset_mm)
     raised_cell = replace(cell, heights=replace(cell.heights, safe_mm=cell.heights.safe_mm + rise_more_mm))
-    rises_mm = (rise_over(raised_cell, sheet_mm, of) for of in (np.eye(4), frame))
+    rises_mm = (rise_height_mm(raised_cell, sheet_mm, of) for of in (np.eye(4), frame))
 
     def sections_at_programmed_speeds() -> Iterator[Section]:
         return (set_programmed_speeds(section, cell) for section in sections())

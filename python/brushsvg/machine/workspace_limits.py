@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Notice
 from .cells.cell import LEAST_SPEED_MM_S, Cell
 from .motion import Move, Section
-from .move_extents import Ways, bounds, from_origin, place_inside, ways, ways_in
+from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, paths_in_frame, ways
 from .realised.tilt import broken_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6  # slack for the rounding of numbers
@@ -67,10 +67,10 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         (x, y), r = station.place_mm, station.stir_mm
         stir_points = [(x - r, y, 0.0), (x + r, y, 0.0), (x, y - r, 0.0), (x, y + r, 0.0)]
-        if any(place_inside(ways([[point]]), *on_sheet) is not None for point in (*path, *stir_points)):
+        if any(find_place_inside(ways([[point]]), *on_sheet) is not None for point in (*path, *stir_points)):
             sentence = f"its place is on the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
-        elif place_inside(ways([path]), *on_sheet) is not None:
+        elif find_place_inside(ways([path]), *on_sheet) is not None:
             sentence = f"its wipe goes over the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
     return problems
@@ -159,7 +159,7 @@ def astray(
     slack_mm: how far rounding may have moved the moves.
     """
     notices = [] if sheet_mm is None else [*_check_sheet(*bounds(moves), sheet_mm, cell, slack_mm)]
-    moves = ways_in(frame, moves)
+    moves = paths_in_frame(frame, moves)
     if cell.workspace.box_mm or cell.servo:
         notices += _check_box(*bounds(moves), cell, slack_mm)
     # A cut corner stays in the triangle of its joint. The triangle's third side is r sin(turn) / 2 away from the other
@@ -167,7 +167,7 @@ def astray(
     # anyway.
     cut_mm = 2 * cell.blending.tolerance_mm - slack_mm
     if cell.workspace.reach_mm:
-        notices += _check_reach(*from_origin(moves), cell, cut_mm, slack_mm)
+        notices += _check_reach(*distances_from_origin(moves), cell, cut_mm, slack_mm)
     return [*notices, *_check_keep_out(moves, cell, cut_mm)]
 
 
@@ -270,8 +270,8 @@ def _check_reach(
     if nearest < min_mm - max(-cut_mm, 0.0) or farthest > max_mm + slack_mm:
         shown_mm = nearest if min_mm - nearest > farthest - max_mm else farthest
         sentence = (
-            f"the tool goes {_outside_text(shown_mm, min_mm, max_mm)} mm away from the robot's origin, outside the range "
-            f"[{min_mm:g}, {max_mm:g}] mm of the reach of cell {cell.name}"
+            f"the tool goes {_outside_text(shown_mm, min_mm, max_mm)} mm away from the robot's origin, outside the "
+            f"range [{min_mm:g}, {max_mm:g}] mm of the reach of cell {cell.name}"
         )
         yield Notice("", sentence, code="out-of-reach")
 
@@ -280,7 +280,7 @@ def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
     for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
         low, high = np.array(corners)
         slack = np.maximum(cut_mm, (low - high) / 4)  # the slack leaves at least half of a thin box
-        if (place := place_inside(moves, low - slack, high + slack)) is None:
+        if (place := find_place_inside(moves, low - slack, high + slack)) is None:
             continue
         where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
         box = ", ".join(

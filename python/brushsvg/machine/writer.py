@@ -13,7 +13,7 @@ from ..files import write_files
 from .cells.cell import Cell
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
-from .motion import Program, duration_s, in_robot_frame
+from .motion import Program, duration_s, program_in_robot_frame
 from .paint_reload import PlanInLoads, in_loads, visits
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
@@ -130,7 +130,7 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
 
 def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
     """The program in a robot's language, in pieces, as files of an extension have it."""
-    made = undone(in_robot_frame(made)) if post.in_robot_frame else made
+    made = undone(program_in_robot_frame(made)) if post.in_robot_frame else made
     pieces = post.others.get(suffix, post.write)(made)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import Error, Notice
 from ..frames import moved, normal_tilt_deg
-from ..move_extents import from_origin, ways
+from ..move_extents import distances_from_origin, ways
 from ..realised.smooth_field import steepest
 from ..workspace_limits import astray
 from .cell import (
@@ -301,7 +301,7 @@ def _clip_polygon(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
 
 def _distances_from_origin_mm(corners: np.ndarray) -> tuple[float, float]:
     """Return the smallest and largest distance [mm] of a flat convex polygon (n, 3) from the origin."""
-    nearest, farthest = from_origin(ways([[*corners, corners[0]]]))
+    nearest, farthest = distances_from_origin(ways([[*corners, corners[0]]]))
     sides = np.roll(corners, -1, axis=0) - corners
     normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
     if size := np.linalg.norm(normal):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import rotation_deg
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import QUIET, Words, blends_mm, body, down, numbers, turned_at
 from .text import number, plain, rows
 
@@ -60,7 +60,7 @@ def _lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> It
     speed = f"speed = {whole_mm_s(move.speed_mm_s)}"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         yield from rows(f"Arc({point}, {point}, {{{speed}}})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm))

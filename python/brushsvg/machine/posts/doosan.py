@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import zyz_deg
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
 from .text import number, plain, rows
 from .xarm import NAMES_LETTERS
@@ -71,7 +71,7 @@ def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     yield _speed(move.speed_mm_s)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         yield from rows(f"movec({point}, {point})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)

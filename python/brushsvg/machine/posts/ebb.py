@@ -17,7 +17,7 @@ from ..cells.cell import (
     steps_from_mm,
 )
 from ..motion import Move, Program, Wait
-from ..trajectory import joint_caps, paced
+from ..trajectory import joint_speed_limits, time_lines
 from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at
 from .text import feed_mm_min, plain
 
@@ -120,7 +120,7 @@ class _Writer:
         """Straight lines, each in parts on which the height is the one half way along, and in slices of time."""
         cell, ways = self.cell, np.diff(path, axis=0)
         lengths = np.hypot(ways[:, 0], ways[:, 1])
-        caps = joint_caps(blends_mm, run + 1, ways[:, :2], lengths, cell.speeds.acceleration_mm_s2)
+        caps = joint_speed_limits(blends_mm, run + 1, ways[:, :2], lengths, cell.speeds.acceleration_mm_s2)
         counts = servo_parts(ways, cell)
         which = np.repeat(np.arange(len(ways)), counts)
         number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -141,7 +141,7 @@ class _Writer:
         """(n,) part, when [s], how far on it [mm]: no slice is shorter than a move may be."""
         least_mm, last_mm = min_part_mm(self.cell), 0.0
         part, when, done = [], [], []
-        for k, when_s, done_mm in paced(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):
+        for k, when_s, done_mm in time_lines(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):
             if done_mm is None:
                 last_mm, far_mm = 0.0, parts_mm[k]
             elif min(done_mm - last_mm, parts_mm[k] - done_mm) >= least_mm:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..cells.cell import MAX_PROGRAM_POINTS, Cell
 from ..frames import rotation_deg
-from ..motion import Move, Program, Section, Wait, via
+from ..motion import Move, Program, Section, Wait, via_point
 from .dobot import whole_mm_s
 from .script import Words, blends_mm, down, part_name, section_lines, turned_at
 from .text import ENDS, number, plain, rows
@@ -181,7 +181,7 @@ def _rise(height: str, speed_mm_s: float) -> str:
 def _lines(move: Move, points: _Points, ramp_s: float) -> Iterator[str]:
     speed = whole_mm_s(move.speed_mm_s)
     if move.arc is not None:
-        numbers = points.more(move, np.vstack([via(move.points_mm), move.points_mm[-1]]))
+        numbers = points.more(move, np.vstack([via_point(move.points_mm), move.points_mm[-1]]))
         yield " : C P[{}]\n :  P[{}] {}mm/sec FINE ;\n".format(*numbers, speed)
         return
     numbers = points.more(move, move.points_mm)

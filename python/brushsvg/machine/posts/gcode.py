@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cells.cell import MAX_RADIUS_DIFFERENCE_MM
-from ..motion import SAFE_MEANINGS, Move, Program, Wait
+from ..motion import MEANINGS_AT_SAFE_HEIGHT, Move, Program, Wait
 from .text import AT_ONCE, BRACKETS, feed_mm_min, number, plain, rows
 
 LINE_LIMIT = 120  # LinuxCNC reads 252 characters; this also fits a screen
@@ -109,7 +109,7 @@ def _program(program: Program, modes: list[str], dialect: Dialect) -> Iterator[s
     for section in program.sections():
         if here is None:  # up before going anywhere
             first = next((step for step in section.steps if isinstance(step, Move)), None)
-            is_slow = first is not None and first.meaning not in SAFE_MEANINGS
+            is_slow = first is not None and first.meaning not in MEANINGS_AT_SAFE_HEIGHT
             if first is not None and (is_slow or not dialect.has_blocks):
                 feed = f"F{feed_mm_min(first.speed_mm_s):.1f}\n"
                 yield feed if dialect.has_blocks else f"G1 {feed}"
@@ -119,7 +119,7 @@ def _program(program: Program, modes: list[str], dialect: Dialect) -> Iterator[s
             if isinstance(step, Wait):
                 yield wait(step, dialect)
                 continue
-            if step.meaning not in SAFE_MEANINGS or not dialect.has_blocks:
+            if step.meaning not in MEANINGS_AT_SAFE_HEIGHT or not dialect.has_blocks:
                 feed_word = f"F{feed_mm_min(step.speed_mm_s):.1f}\n"
                 if feed_word != feed:
                     yield feed_word if dialect.has_blocks else f"G1 {feed_word}"
@@ -137,5 +137,5 @@ def _lines(move: Move, here: np.ndarray | None, decimals: int) -> Iterator[str]:
         word = "G3" if move.arc.turn > 0 else "G2"
         yield from rows(" ".join([word, *(f"{axis}%.{decimals}f" for axis in "XYZIJ")]), values, decimals)
         return
-    word = "G0" if move.meaning in SAFE_MEANINGS else "G1"
+    word = "G0" if move.meaning in MEANINGS_AT_SAFE_HEIGHT else "G1"
     yield from rows(f"{word} X%.{decimals}f Y%.{decimals}f Z%.{decimals}f", move.points_mm, decimals)

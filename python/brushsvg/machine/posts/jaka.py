@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cells.cell import Blending
 from ..frames import rotation, rotation_deg
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import Words, body, numbers, rounded_down, turned_at, upright_deg
 from .text import number, plain, rows
 
@@ -66,7 +66,7 @@ def _lines(
     speed = _speed(move.speed_mm_s)
     pose = f"[%.{decimals}f, %.{decimals}f, %.{decimals}f, {turned}]"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         pattern = f"via = {pose}\nto = {pose}\nmovc(via, to, 0, {speed}, {acceleration}, 0)"
         yield from rows(pattern, values, decimals)
         return

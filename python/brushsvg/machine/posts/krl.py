@@ -10,7 +10,7 @@ from tempfile import SpooledTemporaryFile
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import Words, blends_mm, down, numbers, part_name, parts, rounded_down, turned_at
 from .text import number, plain, rows
 
@@ -93,7 +93,7 @@ def _lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
     yield _speed(move.speed_mm_s)
     point = f"{{X %.{decimals}f, Y %.{decimals}f, Z %.{decimals}f, {turned}}}"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         yield from rows(f"CIRC {point}, {point}", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)

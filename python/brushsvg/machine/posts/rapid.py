@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, quaternion
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
 from .text import number, plain, rows
 
@@ -91,7 +91,7 @@ def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     speed = f"mm_s({rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         yield from rows(f"    MoveC {point}, {point}, {speed}, fine, {USED};", values, decimals)
         return
     if move.axes is not None:

@@ -17,7 +17,7 @@ import numpy as np
 from ...errors import Error
 from ..cells.cell import Cell
 from ..frames import frame_of_pose
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import blends_mm, down, turned_at
 from .text import plain
 
@@ -145,7 +145,7 @@ class _Settings:
 def _move(post, settings: _Settings, move: Move, at, upright: np.ndarray, cell: Cell) -> None:
     if move.arc is not None:
         settings.at(move.speed_mm_s, EXACT)
-        post.MoveC(at(via(move.points_mm)), None, at(move.points_mm[-1]), None)
+        post.MoveC(at(via_point(move.points_mm)), None, at(move.points_mm[-1]), None)
         return
     zones = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, cell.decimals)
     for point, turned, zone in zip(move.points_mm, turned_at(move, upright), zones.tolist(), strict=True):

@@ -15,7 +15,7 @@ from ..cells.cell import Cell, robot_from_paper
 from ..frames import frame_of_pose, quaternion, rotation
 from ..motion import Program
 from ..tool_axes import is_upright_on, turned_to
-from ..trajectory import timed
+from ..trajectory import make_timed_sections
 from .script import rounded_down, upright_deg
 from .text import plain
 
@@ -32,7 +32,7 @@ TILTED_COLUMNS = 6  # of a row, behind which stands how the brush is held
 def csv(program: Program) -> Iterator[str]:
     """Remarks begin with #: readers of tables can be set to skip them."""
     yield "".join(map(comment, _head(program))) + COLUMNS + "\n"
-    for title, table in timed(program):
+    for title, table in make_timed_sections(program):
         yield comment(title)
         yield "".join(f"{numbers},{kind}\n" for numbers, kind in _lines(table, program.cell))
     yield comment(ROS2_END)
@@ -43,7 +43,7 @@ def traj(program: Program) -> Iterator[str]:
     yield '{"format": "brushsvg/trajectory", "version": 1, "rows": [\n'
     yield "".join(json.dumps([comment(line)[:-1]]) + ",\n" for line in _head(program))
     yield json.dumps(COLUMNS.split(","), separators=(",", ":")) + ",\n"
-    for title, table in timed(program):
+    for title, table in make_timed_sections(program):
         yield json.dumps([comment(title)[:-1]]) + ",\n"
         yield "".join(f'[{numbers},"{kind}"],\n' for numbers, kind in _lines(table, program.cell))
     yield json.dumps([comment(ROS2_END)[:-1]]) + "]}\n"
@@ -61,7 +61,7 @@ def cdr(program: Program) -> Iterator[bytes]:
         )
     head += bytes(-len(head) % 4)
     with SpooledTemporaryFile(HELD_BYTES) as held:
-        for _, table in timed(program):
+        for _, table in make_timed_sections(program):
             held.write(_points(table, program.cell).tobytes())
         count = held.tell() // POINT.itemsize
         yield b"\0\1\0\0" + head + struct.pack("<I", count)

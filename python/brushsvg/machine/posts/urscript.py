@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
-from ..motion import Move, Program, Wait, via
+from ..motion import Move, Program, Wait, via_point
 from .script import QUIET, Words, down, parts, turned_at
 from .text import number, plain, rows
 
@@ -103,7 +103,7 @@ def _lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) ->
     speed = number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]]) * M
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]]) * M
         yield from rows(
             f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
         )

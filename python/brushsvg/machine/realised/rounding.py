@@ -20,7 +20,7 @@ from ..cells.cell import (
     unit_mm,
 )
 from ..frames import is_upright, moved
-from ..motion import via
+from ..motion import via_point
 from ..posts import POSTS, circles_by
 from ..tool_axes import axes_of
 from .arc_chords import OFF_MM, with_chords, with_chords_on
@@ -198,7 +198,7 @@ def _is_writable(on: np.ndarray, circles_by: str, least_mm: float) -> bool:
         return dist(on[0], on[-1]) >= least_mm
     if len(on) < 3:
         return False
-    a, b, c = on[0], via(on[1:]), on[-1]
+    a, b, c = on[0], via_point(on[1:]), on[-1]
     (x, y), (u, v) = b - a, c - a
     longest_mm = max(np.hypot(x, y), np.hypot(u, v), np.hypot(u - x, v - y))
     return bool(abs(x * v - y * u) > least_mm * longest_mm)
