@@ -19,7 +19,7 @@ from .realised.arc_chords import chords, cut_at_extremes, with_chords
 from .realised.distortion import goes_straight, in_lines_mm, is_similar
 from .realised.retimed import on_way
 from .realised.tilt import in_steps, refuse_where_upright
-from .tool_axes import axes_of, unit
+from .tool_axes import axes_of, normalize
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def _split_for_map(a_pass, machine):
     rows = in_lines_mm(
         np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine
     )
-    return on_way(a_pass, rows[:, :3], (), None if axes is None else unit(rows[:, 3:]))
+    return on_way(a_pass, rows[:, :3], (), None if axes is None else normalize(rows[:, 3:]))
 
 
 def load_length_mm(brush: _core.Brush, cell: Cell) -> float:

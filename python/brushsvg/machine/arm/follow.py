@@ -22,7 +22,7 @@ from ..cells.cell import Arm, Cell, joint_number
 from ..frames import frame_of_pose, moved
 from ..motion import Program
 from ..posts.script import down
-from ..tool_axes import across, between_deg, turned_to, unit
+from ..tool_axes import between_deg, normalize, rotation_axes, turned_to
 from .joints import JointSolver, flange_rates, flange_rates_at, joint_frames_of, refine_angles
 
 MAX_PLACE_SPACING_MM = 5.0
@@ -261,7 +261,7 @@ def _places_along(name, points, axes, speeds, ends, frame, is_first: bool) -> It
     )
     turns = np.zeros_like(steps)
     if axes is not None:
-        about = across(axes[:-1], axes[1:]) @ frame[:3, :3].T
+        about = rotation_axes(axes[:-1], axes[1:]) @ frame[:3, :3].T
         turns = np.radians(between_deg(axes[1:], axes[:-1]))[:, None] * about
     with np.errstate(invalid="ignore", divide="ignore"):
         ways = np.hstack([steps, turns])
@@ -278,7 +278,7 @@ def _places_along(name, points, axes, speeds, ends, frame, is_first: bool) -> It
         axis = (
             UPRIGHT_AXIS
             if axes is None
-            else unit(np.array([np.interp(at, along, component) for component in axes.T]))
+            else normalize(np.array([np.interp(at, along, component) for component in axes.T]))
         )
         yield Place(name, paper_mm, robot_mm, velocities[first[k] : last[k]], axis)
 
@@ -299,7 +299,7 @@ def _advance_posture(
             posture.failure = _near_singularity_notice(place, arm, posture.most, posture.here_rad)
             return
         middle = (before.paper_mm + place.paper_mm) / 2, (before.robot_mm + place.robot_mm) / 2
-        half = Place(place.name, *middle, place.velocities, unit(before.axis + place.axis))
+        half = Place(place.name, *middle, place.velocities, normalize(before.axis + place.axis))
         half_solutions = solve(half)
         if not len(half_solutions.angles_rad):
             posture.failure = _reach_notice(half, arm)

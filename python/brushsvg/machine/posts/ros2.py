@@ -14,7 +14,7 @@ import numpy as np
 from ..cells.cell import Cell, robot_from_paper
 from ..frames import frame_of_pose, quaternion, rotation
 from ..motion import Program
-from ..tool_axes import is_upright_on, turned_to
+from ..tool_axes import is_parallel, turned_to
 from ..trajectory import make_timed_sections
 from .script import rounded_down, upright_deg
 from .text import plain
@@ -121,7 +121,7 @@ def _placed(table: np.ndarray, cell: Cell) -> tuple[np.ndarray, np.ndarray]:
     flange = flange_from_tip(cell)
     if table.shape[1] > TILTED_COLUMNS:
         tip = turned_to(table[:, TILTED_COLUMNS:], tip)
-        stands = is_upright_on(table[:, TILTED_COLUMNS:], robot_from_paper(cell)[:3, 2])
+        stands = is_parallel(table[:, TILTED_COLUMNS:], robot_from_paper(cell)[:3, 2])
         tip[stands] = rotation(upright_deg(cell))
         turned = np.array([quaternion(each) for each in tip @ flange[:3, :3]]).reshape(-1, 4)[:, [1, 2, 3, 0]]
     else:

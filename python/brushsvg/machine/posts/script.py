@@ -11,7 +11,7 @@ import numpy as np
 from ..cells.cell import MAX_PROGRAM_LINES, Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
-from ..tool_axes import is_upright_on, turned_to
+from ..tool_axes import is_parallel, turned_to
 from .text import number
 
 RISE_MM_S = 50.0
@@ -107,7 +107,7 @@ def turned_at(move: Move, upright: np.ndarray) -> Iterator[np.ndarray | None]:
     if move.axes is None:
         yield from [None] * len(move.points_mm)
         return
-    stands = is_upright_on(move.axes, -upright[:, 2])
+    stands = is_parallel(move.axes, -upright[:, 2])
     for turned, is_upright in zip(turned_to(move.axes, upright), stands.tolist(), strict=True):
         yield None if is_upright else turned
 

@@ -7,7 +7,7 @@ import numpy as np
 from ... import _core
 from ...errors import Notice
 from ..cells.cell import MOST_TILT_DEG, Cell
-from ..tool_axes import axes_of, between_deg, tilts_deg, unit
+from ..tool_axes import axes_of, between_deg, normalize, tilts_deg
 from .retimed import on_way
 
 # What a move is cut into, so that a robot between two poses keeps to what is predicted. Between two axes at most so far
@@ -49,7 +49,7 @@ def in_steps(a_pass):
         rows.append(way)
         leaning.append(lean)
     lean = np.vstack(leaning)
-    return on_way(a_pass, np.vstack(rows), (), unit(np.column_stack([lean, np.ones(len(lean))])))
+    return on_way(a_pass, np.vstack(rows), (), normalize(np.column_stack([lean, np.ones(len(lean))])))
 
 
 def _are_sound(poses: np.ndarray, axes: np.ndarray) -> bool:
