@@ -17,7 +17,7 @@ from brushsvg.machine.move_extents import (
     paths_in_frame,
     ways,
 )
-from brushsvg.machine.realised.corner_blending import blend_radii, blended
+from brushsvg.machine.realised.corner_blending import blend_radii, cut_corners
 
 COUNT = 1500
 LENGTH = st.floats(-300, 300)
@@ -130,7 +130,7 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
         [(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)]
     )
     radii = blend_radii(path, Blending(tolerance_mm))
-    cut = blended(path, radii)[0]
+    cut = cut_corners(path, radii)[0]
     if len(cut) < 5:
         return
     third_side = np.linspace(cut[1], cut[3], 101)

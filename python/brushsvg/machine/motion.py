@@ -12,7 +12,7 @@ import numpy as np
 from ..geometry import polylines
 from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
 from .frames import moved
-from .realised.distortion import commanded_high_mm
+from .realised.distortion import commanded_heights_mm
 
 MEANINGS_AT_SAFE_HEIGHT = ("travel", "retract")  # at or above the safe height, where speed is not limited
 
@@ -120,7 +120,7 @@ def rise_height_mm(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
     margin = cell.workspace.margin_mm
     x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
     corners = np.array([(a, b) for a in x for b in y])
-    heights = commanded_high_mm(corners, cell.heights.safe_mm, cell.machine)
+    heights = commanded_heights_mm(corners, cell.heights.safe_mm, cell.machine)
     return float(moved(frame, np.column_stack([corners, heights]))[:, 2].max())
 
 

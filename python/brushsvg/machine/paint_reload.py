@@ -15,8 +15,8 @@ from ..geometry.polylines import length, lengths
 from .cells.cell import Cell, Station, reason_for_no_waiting, robot_from_paper, shorten_visit
 from .frames import is_upright
 from .posts import POSTS, circles_by
-from .realised.arc_chords import chords, cut_at_extremes, with_chords
-from .realised.distortion import goes_straight, in_lines_mm, is_similar
+from .realised.arc_chords import points_with_chords, split_arcs_at_extremes, with_chords
+from .realised.distortion import in_lines_mm, is_similar, keeps_lines
 from .realised.retimed import on_way
 from .realised.tilt import in_steps, refuse_where_upright
 from .tool_axes import axes_of, normalize
@@ -87,8 +87,8 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         loads = map(with_chords, loads)
     elif cell.machine and any(cell.machine.backlash_mm):
         axes = robot_from_paper(cell)[:2, 0]
-        loads = (cut_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
-    if not goes_straight(cell.machine):
+        loads = (split_arcs_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
+    if not keeps_lines(cell.machine):
         loads = (_split_for_map(each, cell.machine) for each in map(in_steps, loads))
     else:
         loads = map(in_steps, loads)
@@ -271,7 +271,7 @@ def _part_start_mm(stroke, part, after_mm: float) -> float:
     after_mm: path length at which the part before begins.
     """
     stroke_points, part_points = (
-        chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part)
+        points_with_chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part)
     )
     along_mm, way_mm = lengths(stroke_points), lengths(part_points)
     start, step = stroke_points[:-1], np.diff(stroke_points, axis=0)
@@ -371,7 +371,7 @@ def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[
 def painted_mm(a_pass: _core.Pass) -> float:
     """Return the length of the TCP's path on the paper [mm]."""
     poses = np.asarray(a_pass.poses_mm)
-    return length(chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
+    return length(points_with_chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
 
 
 def _needs_paint(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:

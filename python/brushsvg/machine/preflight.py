@@ -13,7 +13,7 @@ from .cells.cell import Cell, unit_mm
 from .paint_reload import PlanInLoads
 from .program import MAX_POSES_AT_ONCE, WHOLE_JOB, Job, Walked, check_job, out_of_arm, written_of
 from .realised.arc_chords import with_chords
-from .realised.corner_blending import blend_radii, blended
+from .realised.corner_blending import blend_radii, cut_corners
 from .realised.distortion import true_pass
 from .realised.rounding import Written
 from .tool_axes import mixed
@@ -257,7 +257,7 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
     ]
     radii = radii_of(poses, arcs)
     radii[starts[:-1]] = radii[[start - 1 for start in starts[1:]]] = 0.0  # no path continues into the next
-    path, at, points = blended(poses, radii, arcs)
+    path, at, points = cut_corners(poses, radii, arcs)
     runs = []
     for a_pass, start, end in zip(passes, starts[:-1], starts[1:], strict=True):
         first, last = points[start, 0], points[end - 1, 1] + 1

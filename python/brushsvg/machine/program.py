@@ -26,8 +26,8 @@ from .motion import Arc, Move, Program, Section, Wait, rise_height_mm, set_progr
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
 from .posts.text import make_unique
-from .realised.corner_blending import SHARP_RAD, blends, on_the_spot
-from .realised.distortion import commanded_high_mm, commanded_mm, true_mm
+from .realised.corner_blending import MAX_BLEND_TURN_RAD, blend_radii_and_angles, find_vertical_steps
+from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import slow_enough
 from .tool_axes import axes_of, tilts_deg
@@ -257,7 +257,7 @@ def point_above(point, height_mm: float) -> np.ndarray:
 
 def safe_point_above(commanded_mm, cell: Cell) -> np.ndarray:
     """Return the place (1, 3) [mm] at the safe height above a commanded place."""
-    (height_mm,) = commanded_high_mm(
+    (height_mm,) = commanded_heights_mm(
         np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine
     )
     return point_above(commanded_mm, height_mm)
@@ -385,14 +385,14 @@ def _paint_moves(
     """
     arcs, steps = written.arcs, np.diff(true_mm(written.poses_mm, cell.machine), axis=0)
     kinds = np.full(len(steps), STRAIGHT_SEGMENT)
-    kinds[on_the_spot(steps, written.sideways_mm)] = VERTICAL_SEGMENT
+    kinds[find_vertical_steps(steps, written.sideways_mm)] = VERTICAL_SEGMENT
     for number, arc in enumerate(arcs):
         kinds[arc.first : arc.last] = number
     starts_run = np.diff(kinds) != 0
     radii = None
     if cell.blending.radius_mm:
-        radii, turns_rad = blends(written.poses_mm, cell.blending, arcs)
-        starts_run |= turns_rad[1:-1] > SHARP_RAD
+        radii, turns_rad = blend_radii_and_angles(written.poses_mm, cell.blending, arcs)
+        starts_run |= turns_rad[1:-1] > MAX_BLEND_TURN_RAD
     for run in np.split(np.arange(len(steps)), np.flatnonzero(starts_run) + 1):
         if not len(run):
             continue

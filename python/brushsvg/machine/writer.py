@@ -18,7 +18,7 @@ from .paint_reload import PlanInLoads, in_loads, visits
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
 from .program import WHOLE_JOB, Job, Walked, check_job, out_of_arm, unchecked_program
-from .realised.backlash import undone
+from .realised.backlash import compensate_backlash
 
 
 def post_for(suffix: str, cell: Cell) -> Post:
@@ -145,7 +145,7 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
 
 def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
     """Return the pieces of a program in a robot's language, for files with an extension."""
-    made = undone(program_in_robot_frame(made)) if post.in_robot_frame else made
+    made = compensate_backlash(program_in_robot_frame(made)) if post.in_robot_frame else made
     pieces = post.others.get(suffix, post.write)(made)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 

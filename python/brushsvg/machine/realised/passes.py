@@ -9,7 +9,7 @@ import numpy as np
 from ... import _core
 from ..cells.cell import Machine
 from .arc_chords import with_chords
-from .distortion import leans, true_way_mm
+from .distortion import has_lean, true_path_mm
 from .retimed import on_way
 
 STEP_MM = 0.4
@@ -24,9 +24,9 @@ def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float =
     out = []
     for one in with_play(passes, backlash_mm):
         poses = np.asarray(with_chords(one).poses_mm, dtype=float).reshape(-1, 3)
-        if leans(machine):  # also on its way down to a pose below the true paper
+        if has_lean(machine):  # also on its way down to a pose below the true paper
             poses = np.vstack([poses[0] + (0, 0, AIR_MM), poses, poses[-1] + (0, 0, AIR_MM)])
-        down = _on_paper(true_way_mm(poses, machine))
+        down = _on_paper(true_path_mm(poses, machine))
         if down is not None:
             down[:, 2] = np.maximum(down[:, 2], -deepest_mm)
             out.append(on_way(one, down, []))

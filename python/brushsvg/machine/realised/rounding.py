@@ -23,9 +23,9 @@ from ..frames import is_upright, moved
 from ..motion import via_point
 from ..posts import POSTS, circles_by
 from ..tool_axes import axes_of
-from .arc_chords import OFF_MM, with_chords, with_chords_on
-from .corner_blending import ON_THE_SPOT_MM
-from .distortion import commanded_pass, leans
+from .arc_chords import OFF_MM, add_chords, with_chords
+from .corner_blending import MAX_VERTICAL_SIDEWAYS_MM
+from .distortion import commanded_pass, has_lean
 from .retimed import on_way
 
 # circles that are smaller or flatter, in units of the last decimal, are run along their chords: rounded, they could
@@ -56,7 +56,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     given_by = circles_by(cell)
     in_robot = bool(post and post.in_robot_frame and not np.array_equal(frame, np.eye(4)))
     # a leaning tool is commanded sideways to go straight down, which it does up to rounding
-    sideways_mm = 2 * unit if leans(cell.machine) else ON_THE_SPOT_MM
+    sideways_mm = 2 * unit if has_lean(cell.machine) else MAX_VERTICAL_SIDEWAYS_MM
     if in_robot and not is_upright(frame):
         sideways_mm = 2 * unit  # up and down are only so up to rounding
         given_by = ""  # and circles are in no plane that the robot knows
@@ -70,7 +70,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     least_mm = least_move_mm(cell)
     if given_by:
         arcs, others = _split_arcs(a_pass.arcs, poses, given_by, cell)
-        dense, arcs = with_chords_on(exact, others, arcs)
+        dense, arcs = add_chords(exact, others, arcs)
         if len(dense) > len(exact):
             exact, poses = dense, on_grid(dense)
     run = _at_values(poses, cell.servo) if cell.servo else poses
