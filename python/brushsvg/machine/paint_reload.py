@@ -18,7 +18,7 @@ from .posts import POSTS, circles_by
 from .realised.arc_chords import points_with_chords, split_arcs_at_extremes, with_chords
 from .realised.distortion import in_lines_mm, is_similar, keeps_lines
 from .realised.retimed import on_way
-from .realised.tilt import in_steps, refuse_where_upright
+from .realised.tilt import refuse_tilt_without_tool, split_turning_moves
 from .tool_axes import axes_of, normalize
 
 
@@ -68,7 +68,7 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
 
     Raises Error for a part that does not follow the part before it, and for a tilted brush that the cell cannot tilt.
     """
-    refuse_where_upright(plan.passes, cell)
+    refuse_tilt_without_tool(plan.passes, cell)
     loads, previous, lasts_mm = list(plan.passes), None, math.inf
     for a_pass in loads:
         if is_later_part(a_pass) and (previous is None or previous.load != a_pass.load - 1):
@@ -89,9 +89,9 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         axes = robot_from_paper(cell)[:2, 0]
         loads = (split_arcs_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
     if not keeps_lines(cell.machine):
-        loads = (_split_for_map(each, cell.machine) for each in map(in_steps, loads))
+        loads = (_split_for_map(each, cell.machine) for each in map(split_turning_moves, loads))
     else:
-        loads = map(in_steps, loads)
+        loads = map(split_turning_moves, loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_start_and_end_on_paper, loads)), lasts_mm)
 
 

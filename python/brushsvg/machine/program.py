@@ -29,7 +29,7 @@ from .posts.text import make_unique
 from .realised.corner_blending import MAX_BLEND_TURN_RAD, blend_radii_and_angles, find_vertical_steps
 from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
-from .realised.tilt import slow_enough
+from .realised.tilt import limit_turning_speed
 from .tool_axes import axes_of, tilts_deg
 from .workspace_limits import broken_limits, find_astray_sections, rise_astray, touching_mm_s
 
@@ -353,7 +353,7 @@ def _stroke_moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ..
     def limit_turn_speed(speed_mm_s: float, axes_there) -> float:
         """Limit the speed, because the tool turns between the safe height, where it is upright, and the clearance."""
         turn_deg = 0.0 if axes_there is None else float(tilts_deg(axes_there)[0])
-        return slow_enough(speed_mm_s, heights.safe_mm - heights.clearance_mm, turn_deg, cell)
+        return limit_turning_speed(speed_mm_s, heights.safe_mm - heights.clearance_mm, turn_deg, cell)
 
     # Pressing on the spot and lifting bend the bristles as much as painting does, so they are never faster.
     press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)

@@ -11,7 +11,7 @@ from ..errors import Notice
 from .cells.cell import LEAST_SPEED_MM_S, Cell
 from .motion import Move, Section
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, paths_in_frame, ways
-from .realised.tilt import broken_limits as tilted_too_far
+from .realised.tilt import check_tilt_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6  # slack for the rounding of numbers
 MIN_SPEED_MM_S = 1e-6  # below this speed, durations would be meaningless

@@ -11,7 +11,7 @@ import numpy as np
 from ...errors import Error, Notice
 from ..frames import moved, normal_tilt_deg
 from ..move_extents import distances_from_origin, ways
-from ..realised.smooth_field import steepest
+from ..realised.smooth_field import max_field_slope
 from ..workspace_limits import astray
 from .cell import (
     ARCS_IN_SEGMENTS,
@@ -469,7 +469,7 @@ def _check_field(machine: Machine) -> None:
     if 0 < len(missing) < len(keys):
         sentence = f"a field needs {', '.join(keys)}: there is no {missing[0]}"
         raise Error(sentence, where=f"machine.{missing[0]}", code="key-missing")
-    if machine.field_mm and (slope := steepest(machine)) > MAX_FIELD_SLOPE:
+    if machine.field_mm and (slope := max_field_slope(machine)) > MAX_FIELD_SLOPE:
         sentence = (
             f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MAX_FIELD_SLOPE:g}]: with "
             f"field_reach_mm {[*machine.field_reach_mm]} its numbers are too large"

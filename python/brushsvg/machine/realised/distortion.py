@@ -13,7 +13,7 @@ import numpy as np
 from ... import _core
 from ..cells.cell import Cell, Machine
 from .retimed import on_way
-from .smooth_field import edge_cuts, field_mm, is_bent, parts_of
+from .smooth_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field
 
 SOLVER_TOLERANCE_MM, MAX_SOLVER_ROUNDS = (
     1e-9,
@@ -47,7 +47,7 @@ def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     commanded = np.asarray(points_mm, dtype=float)
     z = commanded[:, 2] - _paper_height_mm(commanded[:, :2], machine)
     depth = np.maximum(-z, 0.0)
-    place = commanded[:, :2] @ _axis_matrix(machine).T + field_mm(commanded[:, :2], machine)
+    place = commanded[:, :2] @ _axis_matrix(machine).T + field_displacement_mm(commanded[:, :2], machine)
     return np.column_stack([place + np.outer(depth, machine.lean_mm_per_mm), z])
 
 
@@ -56,8 +56,8 @@ def true_path_mm(commanded_mm: np.ndarray, machine: Machine | None) -> np.ndarra
 
     The path has more points where the machine bends the lines.
     """
-    if is_bent(machine):
-        commanded_mm = _split_evenly(commanded_mm, parts_of(commanded_mm[:, :2], machine))
+    if has_field(machine):
+        commanded_mm = _split_evenly(commanded_mm, count_line_parts(commanded_mm[:, :2], machine))
     true_path = true_mm(commanded_mm, machine)
     if not has_lean(machine):
         return true_path
@@ -81,8 +81,8 @@ def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
     """Return the commands (n, 2) for which the machine's axes and its field take the tool to a target (n, 2)."""
     inverse_axes = np.linalg.inv(_axis_matrix(machine)).T
     place = target_mm @ inverse_axes
-    for _ in range(MAX_SOLVER_ROUNDS if is_bent(machine) else 0):
-        previous, place = place, (target_mm - field_mm(place, machine)) @ inverse_axes
+    for _ in range(MAX_SOLVER_ROUNDS if has_field(machine) else 0):
+        previous, place = place, (target_mm - field_displacement_mm(place, machine)) @ inverse_axes
         if np.max(np.abs(place - previous), initial=0.0) < SOLVER_TOLERANCE_MM:
             break
     return place
@@ -118,9 +118,11 @@ def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     if keeps_lines(machine):
         return points_mm
     target = np.asarray(points_mm, dtype=float)
-    if is_bent(machine):
-        target = _split_evenly(target, parts_of(commanded_mm(target[:, :3], machine)[:, :2], machine))
-        target = _split_at_shares(target, edge_cuts(commanded_mm(target[:, :3], machine)[:, :2], machine))
+    if has_field(machine):
+        target = _split_evenly(target, count_line_parts(commanded_mm(target[:, :3], machine)[:, :2], machine))
+        target = _split_at_shares(
+            target, cuts_at_field_edge(commanded_mm(target[:, :3], machine)[:, :2], machine)
+        )
     if not machine.map_mm:
         return target
     commanded = commanded_mm(target[:, :3], machine)[:, :2]
