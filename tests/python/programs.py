@@ -9,7 +9,7 @@ from brushsvg.cli import main
 from brushsvg.cli.commands.drawings import check
 from brushsvg.machine.paint_reload import PlanInLoads
 from brushsvg.machine.preflight import look
-from brushsvg.machine.program import WHOLE_JOB, check_job
+from brushsvg.machine.program import WHOLE_JOB, walked
 
 LANGUAGES = {
     "linuxcnc-3axis": ".ngc",
@@ -47,11 +47,11 @@ def whole(plan):
 
 def program(plan, brush, cell, header=(), job=WHOLE_JOB):
     """Its moves, or an Error where something forbids them."""
-    return replace(check_job(whole(plan), brush, cell, job).allowed(), header=header)
+    return replace(walked(whole(plan), brush, cell, job).allowed(), header=header)
 
 
 def forbidden(plan, brush, cell):
-    return check_job(whole(plan), brush, cell).problems
+    return walked(whole(plan), brush, cell).problems
 
 
 def problems(plan, brush, marks, cell, tolerance_mm):

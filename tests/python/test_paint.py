@@ -27,7 +27,7 @@ from brushsvg.machine.paint_reload import (
     without_paint,
 )
 from brushsvg.machine.preflight import look
-from brushsvg.machine.program import check_job, make_visit
+from brushsvg.machine.program import make_visit, walked
 from brushsvg.model.library import find_brush
 from brushsvg.show.evaluation.report import PaintedPlan, measure
 
@@ -454,7 +454,7 @@ def test_what_every_load_does_is_reported_once_of_its_stroke():
     plan = long_plan(brush)
     for a_pass in plan.passes:
         a_pass.speed_mm_s = 99.0
-    reported = check_job(in_loads(plan, brush, cell), brush, cell).problems
+    reported = walked(in_loads(plan, brush, cell), brush, cell).problems
     assert [where for where, _ in reported] == ["short", "long", "last"]
 
 

@@ -26,7 +26,7 @@ from brushsvg.machine.motion import program_in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import look
-from brushsvg.machine.program import check_job, out_of_arm
+from brushsvg.machine.program import out_of_arm, walked
 from brushsvg.machine.realised.tilt import check_tilt_limits, split_turning_moves
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
@@ -70,7 +70,7 @@ def anyhow(name="ur5e"):
 
 
 def text_for(of, cell):
-    made = check_job(in_loads(of, BRUSH, cell), BRUSH, cell).allowed()
+    made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).allowed()
     return "".join(text_of(POSTS[cell.language], made))
 
 
@@ -539,7 +539,7 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
 
 def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     cell = brushsvg.find_cell("fr3")
-    made = check_job(in_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
+    made = walked(in_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
     table, message = (made_of(program_in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
     rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
     data = b"".join(message)
@@ -681,7 +681,7 @@ def test_what_is_no_tilt_is_refused_before_anything_is_made_of_it(poses, held, e
 
 
 def arm_problems(of, cell):
-    made = check_job(in_loads(of, BRUSH, cell), BRUSH, cell).made
+    made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).made
     return out_of_arm(made, (100, 60))
 
 

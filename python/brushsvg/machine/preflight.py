@@ -11,7 +11,7 @@ from .. import _core
 from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
 from .paint_reload import PlanInLoads
-from .program import MAX_POSES_AT_ONCE, WHOLE_JOB, Job, Walked, check_job, out_of_arm, written_of
+from .program import MAX_POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked, written_of
 from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, cut_corners
 from .realised.distortion import true_pass
@@ -63,7 +63,7 @@ def within_limits(
     of_drawing: bool = True,
 ) -> Walked:
     """Check a job for limits that it breaks and edges of the sheet that its marks cross."""
-    walk = check_job(loads, brush, cell, job)
+    walk = walked(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
         if not loads.loads:

@@ -25,7 +25,7 @@ from .frames import moved
 from .motion import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .paint_reload import PlanInLoads, visits
 from .posts import POSTS
-from .posts.text import make_unique
+from .posts.text import make_unique_names
 from .realised.corner_blending import MAX_BLEND_TURN_RAD, blend_radii_and_angles, find_vertical_steps
 from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
@@ -81,7 +81,7 @@ class Walked:
         return self.made
 
 
-def check_job(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walked:
+def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walked:
     """Make the moves of a job, with the visits to the paint, and check their limits.
 
     Every move is checked over its whole length, and so are the visits to all stations.
@@ -276,7 +276,7 @@ def names_of_stations(cell: Cell) -> dict[Station, str]:
     stations = list(
         dict.fromkeys(visited for station in cell.stations for visited in (station, shorten_visit(station)))
     )
-    names = make_unique([station.name for station in stations])
+    names = make_unique_names([station.name for station in stations])
     return dict(zip(stations, names, strict=True))
 
 

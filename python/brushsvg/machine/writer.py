@@ -17,7 +17,7 @@ from .motion import Program, duration_s, program_in_robot_frame
 from .paint_reload import PlanInLoads, in_loads, visits
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
-from .program import WHOLE_JOB, Job, Walked, check_job, out_of_arm, unchecked_program
+from .program import WHOLE_JOB, Job, Walked, out_of_arm, unchecked_program, walked
 from .realised.backlash import compensate_backlash
 
 
@@ -73,7 +73,7 @@ def encode(
     if suffix == ".json":
         return _core.write_plan(plan).encode()
     post_for(suffix, cell)
-    walk = check_job(in_loads(plan, brush, cell), brush, cell, job)
+    walk = walked(in_loads(plan, brush, cell), brush, cell, job)
     if not walk.problems:
         walk = replace(walk, problems=out_of_arm(walk.made, plan.sheet_mm))
     return encoded(suffix, plan, walk, brush, title, notes)

@@ -9,8 +9,16 @@ import numpy as np
 
 from ..frames import rotation_deg
 from ..motion import Move, Program, Wait, via_point
-from .script import QUIET, Words, blends_mm, body, down, numbers, turned_at
-from .text import number, plain, rows
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    down,
+    join_numbers,
+    tool_rotations_at,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
@@ -28,22 +36,22 @@ def dobot(program: Program) -> Iterator[str]:
     yield "".join(map(comment, program.header))
     yield f"SetUser({INDEX}, {paper})\nSetTool({INDEX}, {tool})\nUser({INDEX})\nTool({INDEX})\nCP(0)\n"
     stands = down(cell.tool.spin_deg)
-    upright = numbers(rotation_deg(stands), DEGREE_DECIMALS)
+    upright = join_numbers(rotation_deg(stands), DEGREE_DECIMALS)
     yield f"\nfunction on_paper(x, y, z)\n  return {{pose = {{x, y, z, {upright}}}}}\nend\n"
     if program.tilts:
         yield "\nfunction tilted(x, y, z, rx, ry, rz)\n  return {pose = {x, y, z, rx, ry, rz}}\nend\n"
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(number(program.rise_mm, decimals), speed),
+        lambda speed: _rise(format_number(program.rise_mm, decimals), speed),
         _wait,
         lambda move: _lines(move, stands, cell.blending.step_mm, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(DOBOT_END)
 
 
 def comment(text: str) -> str:
-    return f"-- {plain(text, LINE_LIMIT - 3)}\n"
+    return f"-- {plain_text(text, LINE_LIMIT - 3)}\n"
 
 
 def _rise(height: str, speed_mm_s: float) -> str:
@@ -61,30 +69,32 @@ def _lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> It
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"Arc({point}, {point}, {{{speed}}})", values, decimals)
+        yield from format_rows(f"Arc({point}, {point}, {{{speed}}})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm))
     if move.blends_mm is not None:
         blends = np.floor(blends_mm(move, decimals) / step_mm + 1e-9) * step_mm
     blend = "r = %.0f" if step_mm == 1 else f"r = %.{decimals}f"
     if move.axes is not None:
-        for point, turned, r in zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True):
-            place = numbers(point, decimals)
-            angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
+        for point, turned, r in zip(
+            move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True
+        ):
+            place = join_numbers(point, decimals)
+            angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
             options = f"{speed}, {blend % r}" if r > 0 else speed
             yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{options}}})\n"
         return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:
-            yield from rows(f"MovL({point}, {{{speed}, {blend}}})", values[run], decimals)
+            yield from format_rows(f"MovL({point}, {{{speed}, {blend}}})", values[run], decimals)
         else:
-            yield from rows(f"MovL({point}, {{{speed}}})", values[run, :3], decimals)
+            yield from format_rows(f"MovL({point}, {{{speed}}})", values[run, :3], decimals)
 
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'print("{plain(step.message, 60).translate(QUIET)}")\nPause()\n'
+        return f'print("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}")\nPause()\n'
     return f"Wait({round(1e3 * step.seconds)})\n"
 
 
@@ -94,4 +104,4 @@ def whole_mm_s(speed_mm_s: float) -> int:
 
 
 def _pose(origin_mm, turned_deg, decimals: int) -> str:
-    return f"{{{numbers(origin_mm, decimals)}, {numbers(turned_deg, DEGREE_DECIMALS)}}}"
+    return f"{{{join_numbers(origin_mm, decimals)}, {join_numbers(turned_deg, DEGREE_DECIMALS)}}}"

@@ -8,8 +8,17 @@ import numpy as np
 
 from ..frames import zyz_deg
 from ..motion import Move, Program, Wait, via_point
-from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
-from .text import number, plain, rows
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    down,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 from .xarm import NAMES_LETTERS
 
 LINE_LIMIT = 100
@@ -35,29 +44,29 @@ def doosan(program: Program) -> Iterator[str]:
     checked before anything moves."""
     cell, decimals = program.cell, program.cell.decimals
     frame = program.robot_from_frame
-    paper = f"{numbers(frame[:3, 3], decimals)}, {numbers(zyz_deg(frame[:3, :3]), DEGREE_DECIMALS)}"
+    paper = f"{join_numbers(frame[:3, 3], decimals)}, {join_numbers(zyz_deg(frame[:3, :3]), DEGREE_DECIMALS)}"
     yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))
     yield CHECKS
-    yield f"if abs(tip_mm - {number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
-    yield f"set_accx({rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURNS})\n"
+    yield f"if abs(tip_mm - {format_number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
+    yield f"set_accx({format_rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURNS})\n"
     yield f"paper = set_user_cart_coord(posx({paper}), ref=DR_BASE)\nset_ref_coord(paper)\n"
     stands = down(cell.tool.spin_deg)
-    upright = numbers(zyz_deg(stands), DEGREE_DECIMALS)
+    upright = join_numbers(zyz_deg(stands), DEGREE_DECIMALS)
     yield f"\n\ndef on_paper(x, y, z):\n    return posx(x, y, z, {upright})\n\n"
     if program.tilts:
         yield "\ndef tilted(x, y, z, a, b, c):\n    return posx(x, y, z, a, b, c)\n\n"
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(number(program.rise_mm, decimals), speed),
+        lambda speed: _rise(format_number(program.rise_mm, decimals), speed),
         _wait,
         lambda move: _lines(move, stands, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(DOOSAN_END)
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
 def _rise(height: str, speed_mm_s: float) -> str:
@@ -72,31 +81,31 @@ def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"movec({point}, {point})", values, decimals)
+        yield from format_rows(f"movec({point}, {point})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     if move.axes is not None:
         for point, turned, blend in zip(
-            move.points_mm, turned_at(move, upright), blends.tolist(), strict=True
+            move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True
         ):
-            place = numbers(point, decimals)
-            angles = "" if turned is None else f", {numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
-            radius = f", radius={number(blend, decimals)}" if blend > 0 else ""
+            place = join_numbers(point, decimals)
+            angles = "" if turned is None else f", {join_numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
+            radius = f", radius={format_number(blend, decimals)}" if blend > 0 else ""
             yield f"movel({'tilted' if angles else 'on_paper'}({place}{angles}){radius})\n"
         return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:
-            yield from rows(f"movel({point}, radius=%.{decimals}f)", values[run], decimals)
+            yield from format_rows(f"movel({point}, radius=%.{decimals}f)", values[run], decimals)
         else:
-            yield from rows(f"movel({point})", values[run, :3], decimals)
+            yield from format_rows(f"movel({point})", values[run, :3], decimals)
 
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'tp_popup("{plain(step.message, 60).translate(QUIET)}", DR_PM_MESSAGE, 1)\n'
-    return f"wait({number(step.seconds, 3)})\n"
+        return f'tp_popup("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}", DR_PM_MESSAGE, 1)\n'
+    return f"wait({format_number(step.seconds, 3)})\n"
 
 
 def _speed(speed_mm_s: float) -> str:
-    return f"set_velx({rounded_down(speed_mm_s, SPEED_DECIMALS)}, {TURNS})\n"
+    return f"set_velx({format_rounded_down(speed_mm_s, SPEED_DECIMALS)}, {TURNS})\n"

@@ -18,8 +18,8 @@ from ..cells.cell import (
 )
 from ..motion import Move, Program, Wait
 from ..trajectory import joint_speed_limits, time_lines
-from .gcode_servo import TOUCHING, feeds_mm_min, lifted, value_at
-from .text import feed_mm_min, plain
+from .gcode_servo import TOUCHING_MEANINGS, lift_steps, line_feeds_mm_min, servo_values_at
+from .text import feed_of_speed_mm_min, plain_text
 
 LINE_LIMIT = 100
 LEAST_MS = 16  # no slice is shorter: firmware 2.4 left gaps between such (evil-mad/EggBot, issues 71 and 72)
@@ -56,7 +56,7 @@ def ebb(program: Program) -> Iterator[str]:
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
 def _waited(seconds: float) -> str:
@@ -71,7 +71,7 @@ class _Writer:
 
     def risen(self, height_mm: float) -> str:
         """Up before going anywhere."""
-        self.value = int(value_at(self.cell.servo, height_mm))
+        self.value = int(servo_values_at(self.cell.servo, height_mm))
         return self._set(self.value, 0) + _waited(self.cell.servo.settle_s)
 
     def moved(self, move: Move) -> Iterator[str]:
@@ -86,25 +86,25 @@ class _Writer:
         self.here = path[-1]
         ways = path[1:] - path[:-1]
         still = servo_stands(ways, self.cell)
-        fastest_mm_s = self.touching_mm_s if move.meaning in TOUCHING else math.inf
+        fastest_mm_s = self.touching_mm_s if move.meaning in TOUCHING_MEANINGS else math.inf
         for run in np.split(np.arange(len(still)), np.flatnonzero(still[1:] != still[:-1]) + 1):
             if still[run[0]]:
                 for k in run:
                     yield self._lifted(move, path[k, 2], path[k + 1, 2])
                 continue
-            feeds = feeds_mm_min(ways[run], move.speed_mm_s, fastest_mm_s)
-            feeds = np.maximum(feeds, feed_mm_min(LEAST_SPEED_MM_S["ebb"]))
+            feeds = line_feeds_mm_min(ways[run], move.speed_mm_s, fastest_mm_s)
+            feeds = np.maximum(feeds, feed_of_speed_mm_min(LEAST_SPEED_MM_S["ebb"]))
             yield self._ways(path[run[0] : run[-1] + 2], feeds, move.blends_mm, run)
 
     def _lifted(self, move: Move, from_mm: float, to_mm: float) -> str:
         servo = self.cell.servo
-        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
-        lifts = lifted(from_mm, to_mm, self.value, move.speed_mm_s, step_mm, servo)
+        step_mm = servo.step_mm if move.meaning in TOUCHING_MEANINGS else np.inf
+        lifts = lift_steps(from_mm, to_mm, self.value, move.speed_mm_s, step_mm, servo)
         if not lifts:
             return ""
         self.value = lifts[-1][0]
         set_lifts = "".join(self._set(*lift) for lift in lifts)
-        return self._set_feed(feed_mm_min(move.speed_mm_s)) + set_lifts + _waited(servo.settle_s)
+        return self._set_feed(feed_of_speed_mm_min(move.speed_mm_s)) + set_lifts + _waited(servo.settle_s)
 
     def _set_feed(self, feed: float) -> str:
         """The line that says the most that the moves have which follow, where it is another one."""
@@ -127,7 +127,7 @@ class _Writer:
         inner = np.full(len(which) - 1, np.inf)
         inner[np.cumsum(counts)[:-1] - 1] = caps
         heights = path[which, 2] + ways[which, 2] * (number + 0.5) / counts[which]
-        values = value_at(cell.servo, heights)
+        values = servo_values_at(cell.servo, heights)
         parts_mm, tops = (lengths / counts)[which], feeds[which] / 60
         part, when_s, done_mm = self._rows(parts_mm.tolist(), inner.tolist(), tops.tolist())
         line = which[part]

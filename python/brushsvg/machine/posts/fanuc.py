@@ -13,8 +13,8 @@ from ..cells.cell import MAX_PROGRAM_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via_point
 from .dobot import whole_mm_s
-from .script import Words, blends_mm, down, part_name, section_lines, turned_at
-from .text import ENDS, number, plain, rows
+from .script import LanguageWords, blends_mm, down, name_part, tool_rotations_at, write_section
+from .text import STATEMENT_ENDS, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100  # of a remark, on as many lines as it needs
 REMARK = 32  # letters of one line of it
@@ -36,15 +36,15 @@ def fanuc(program: Program) -> Iterator[str]:
     with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
         for section in program.sections():
             if points.count and points.count + _count(section) > MAX_PROGRAM_POINTS["fanuc"]:
-                calls.append(part_name(setup, len(calls) + 1))
+                calls.append(name_part(setup, len(calls) + 1))
                 held.write(_program(calls[-1], lines, points))
                 points, lines = _Points(cell), ""
-            lines += "".join(section_lines(section, _words(program, points), risen))
+            lines += "".join(write_section(section, _words(program, points), risen))
             risen = risen or bool(section.moves)
         if not calls:
             yield _program(MAIN, setup + lines + end, points)
             return
-        calls.append(part_name(setup, len(calls) + 1))
+        calls.append(name_part(setup, len(calls) + 1))
         held.write(_program(calls[-1], lines, points))
         called = "".join(f" : CALL {call} ;\n" for call in calls)
         yield _program(MAIN, setup + called + end, _Points(cell))
@@ -68,7 +68,7 @@ def called(text: str) -> list[str]:
 
 def comment(text: str) -> str:
     """As remarks of so many letters: what goes on begins with a plus."""
-    left, lines = plain(text, LINE_LIMIT).translate(ENDS), []
+    left, lines = plain_text(text, LINE_LIMIT).translate(STATEMENT_ENDS), []
     while left or not lines:
         begin = "+" if lines else ""
         kept = left[: REMARK - len(begin)]
@@ -99,7 +99,7 @@ class _Points:
         if move.axes is None:
             self.held.append((points_mm, self.upright))
         else:
-            turns = turned_at(move, self.stands)
+            turns = tool_rotations_at(move, self.stands)
             angles = (self.upright if turned is None else _angles(turned) for turned in turns)
             self.held += zip(points_mm[:, None], angles, strict=True)
         self.count += len(points_mm)
@@ -112,14 +112,14 @@ class _Points:
             values = np.column_stack([np.arange(first, first + len(places)), places])
             w, p, r = angles
             held = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
-            rows_text += "".join(rows(self.place + held, values, self.decimals))
+            rows_text += "".join(format_rows(self.place + held, values, self.decimals))
             first += len(places)
         return rows_text
 
 
 def _angles(turned: np.ndarray) -> tuple[str, str, str]:
     """W, P and R of the tool (3, 3): about the fixed axes x, y and z."""
-    w, p, r = (number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
+    w, p, r = (format_number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
     return w, p, r
 
 
@@ -140,8 +140,8 @@ def _setup(program: Program) -> str:
     )
     lines = [f"PR[{INDEX}]=LPOS"]
     for name, origin_mm, turned_deg in frames:
-        values = [number(value, cell.decimals) for value in origin_mm]
-        values += [number(angle, DEGREE_DECIMALS) for angle in turned_deg]
+        values = [format_number(value, cell.decimals) for value in origin_mm]
+        values += [format_number(angle, DEGREE_DECIMALS) for angle in turned_deg]
         lines += [f"PR[{INDEX},{k}]={_constant(value)}" for k, value in enumerate(values, 1)]
         lines.append(f"{name}[{INDEX}]=PR[{INDEX}]")
     lines += [f"UFRAME_NUM={INDEX}", f"UTOOL_NUM={INDEX}"]
@@ -152,9 +152,9 @@ def _constant(value: str) -> str:
     return f"({value})" if value.startswith("-") else value
 
 
-def _words(program: Program, points: _Points) -> Words:
-    height = number(program.rise_mm, program.cell.decimals)
-    return Words(
+def _words(program: Program, points: _Points) -> LanguageWords:
+    height = format_number(program.rise_mm, program.cell.decimals)
+    return LanguageWords(
         comment,
         lambda speed: _rise(height, speed),
         _wait,
@@ -205,4 +205,4 @@ def cnt_mm(percent: float, speed_mm_s: float, ramp_s: float) -> float:
 def _wait(step: Wait) -> str:
     if step.seconds is None:
         return comment(f"stop: {step.message}") + " : PAUSE ;\n"
-    return f" : WAIT {number(np.ceil(100 * step.seconds - 1e-6) / 100, 2)}(sec) ;\n"
+    return f" : WAIT {format_number(np.ceil(100 * step.seconds - 1e-6) / 100, 2)}(sec) ;\n"

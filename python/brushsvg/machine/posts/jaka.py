@@ -9,8 +9,15 @@ import numpy as np
 from ..cells.cell import Blending
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait, via_point
-from .script import Words, body, numbers, rounded_down, turned_at, upright_deg
-from .text import number, plain, rows
+from .script import (
+    LanguageWords,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    upright_deg,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
@@ -28,28 +35,31 @@ def jaka(program: Program) -> Iterator[str]:
     cell, decimals = program.cell, program.cell.decimals
     yield "".join(map(comment, program.header))
     yield "set_user_frame_id(0)\n"
-    yield f"tool = [{numbers(cell.tool.tcp_mm, decimals)}, {numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
+    yield (
+        f"tool = [{join_numbers(cell.tool.tcp_mm, decimals)}, "
+        f"{join_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
+    )
     yield "set_tool(tool)\n"
-    turned = numbers(upright_deg(cell), DEGREE_DECIMALS)
+    turned = join_numbers(upright_deg(cell), DEGREE_DECIMALS)
     upright = rotation(upright_deg(cell))
-    acceleration = number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
-    words = Words(
+    acceleration = format_number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
+    words = LanguageWords(
         comment,
         lambda speed: _rise(program.rise_mm, speed, acceleration, decimals),
         _wait,
         lambda move: _lines(move, turned, upright, acceleration, cell.blending, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(JAKA_END)
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
 def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
     """By what is missing, along the base's z axis, turned as the tool is."""
-    height = number(height_mm, decimals)
+    height = format_number(height_mm, decimals)
     return (
         "here = get_atl_tcp_pose()\n"
         f"if(here[2] < {height}):\n"
@@ -68,27 +78,27 @@ def _lines(
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         pattern = f"via = {pose}\nto = {pose}\nmovc(via, to, 0, {speed}, {acceleration}, 0)"
-        yield from rows(pattern, values, decimals)
+        yield from format_rows(pattern, values, decimals)
         return
     cut_mm = np.zeros(len(move.points_mm))
     if move.blends_mm is not None:
         cut_mm[:-1] = np.minimum(move.blends_mm[:-1], blending.tolerance_mm)
     values = np.column_stack([move.points_mm, np.floor(cut_mm * 10.0**decimals) / 10.0**decimals])
     if move.axes is not None:
-        for row, held in zip(values, turned_at(move, upright), strict=True):
-            angles = turned if held is None else numbers(rotation_deg(held), DEGREE_DECIMALS)
-            yield f"to = [{numbers(row[:3], decimals)}, {angles}]\n"
-            yield f"movl(to, 0, {speed}, {acceleration}, {number(row[3], decimals)})\n"
+        for row, held in zip(values, tool_rotations_at(move, upright), strict=True):
+            angles = turned if held is None else join_numbers(rotation_deg(held), DEGREE_DECIMALS)
+            yield f"to = [{join_numbers(row[:3], decimals)}, {angles}]\n"
+            yield f"movl(to, 0, {speed}, {acceleration}, {format_number(row[3], decimals)})\n"
         return
     pattern = f"to = {pose}\nmovl(to, 0, {speed}, {acceleration}, %.{decimals}f)"
-    yield from rows(pattern, values, decimals)
+    yield from format_rows(pattern, values, decimals)
 
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
         return comment(f"stop: {step.message}") + "pause()\n"
-    return f"sleep({number(step.seconds, 3)})\n"
+    return f"sleep({format_number(step.seconds, 3)})\n"
 
 
 def _speed(speed_mm_s: float) -> str:
-    return rounded_down(speed_mm_s, SPEED_DECIMALS)
+    return format_rounded_down(speed_mm_s, SPEED_DECIMALS)

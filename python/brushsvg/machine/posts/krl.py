@@ -11,8 +11,17 @@ import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
 from ..motion import Move, Program, Wait, via_point
-from .script import Words, blends_mm, down, numbers, part_name, parts, rounded_down, turned_at
-from .text import number, plain, rows
+from .script import (
+    LanguageWords,
+    blends_mm,
+    down,
+    format_rounded_down,
+    join_numbers,
+    name_part,
+    split_into_parts,
+    tool_rotations_at,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
@@ -29,7 +38,7 @@ def krl(program: Program) -> Iterator[str]:
     strokes. They are those of the BASE: to teach the paper anew, only its line has to change. The first move goes to
     where the robot is, as a first one must be PTP."""
     cell, decimals = program.cell, program.cell.decimals
-    acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
+    acceleration = format_rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     header = "".join(map(comment, program.header))
     setup = "BAS(#INITMOV, 0)\n"
@@ -39,15 +48,15 @@ def krl(program: Program) -> Iterator[str]:
     setup += f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
     upright = down(cell.tool.spin_deg)
     turned = _angles(rotation_deg(upright))
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(number(program.rise_mm, decimals), speed),
+        lambda speed: _rise(format_number(program.rise_mm, decimals), speed),
         _wait,
         lambda move: (
             _lines(move, turned, decimals) if move.axes is None else _tilted(move, upright, decimals)
         ),
     )
-    made = parts(program, words, AROUND, rises_again=False)
+    made = split_into_parts(program, words, AROUND, rises_again=False)
     end = comment(KRL_END) + "END\n"
     first, second = next(made), next(made, None)
     if second is None:
@@ -56,7 +65,7 @@ def krl(program: Program) -> Iterator[str]:
     calls, setup = "", header + setup
     with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
         for count, moves in enumerate(itertools.chain((first, second), made), 1):
-            name = part_name(setup, count)
+            name = name_part(setup, count)
             calls += f"{name}()\n"
             held.write(f"DEF {name}()\n{RISES if count == 1 else ''}{moves}END\n")
         yield f"DEF {MAIN}()\n{setup}{calls}{end}"
@@ -79,7 +88,7 @@ def called(text: str) -> list[str]:
 
 
 def comment(text: str) -> str:
-    return f"; {plain(text, LINE_LIMIT - 2)}\n"
+    return f"; {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
 def _rise(height: str, speed_mm_s: float) -> str:
@@ -94,15 +103,15 @@ def _lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
     point = f"{{X %.{decimals}f, Y %.{decimals}f, Z %.{decimals}f, {turned}}}"
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"CIRC {point}, {point}", values, decimals)
+        yield from format_rows(f"CIRC {point}, {point}", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     values, is_blended = np.column_stack([blends, move.points_mm]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:
-            yield from rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
+            yield from format_rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
         else:
-            yield from rows(f"LIN {point}", values[run, 1:], decimals)
+            yield from format_rows(f"LIN {point}", values[run, 1:], decimals)
 
 
 def _tilted(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
@@ -110,30 +119,34 @@ def _tilted(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     yield _speed(move.speed_mm_s)
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     stands = _angles(rotation_deg(upright))
-    rows_of = zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True)
+    rows_of = zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True)
     for point, turned, blend in rows_of:
-        x, y, z = numbers(point, decimals).split(", ")
+        x, y, z = join_numbers(point, decimals).split(", ")
         angles = stands if turned is None else _angles(rotation_deg(turned))
         place = f"{{X {x}, Y {y}, Z {z}, {angles}}}"
-        yield f"$APO.CDIS = {number(blend, decimals)}\nLIN {place} C_DIS\n" if blend > 0 else f"LIN {place}\n"
+        yield (
+            f"$APO.CDIS = {format_number(blend, decimals)}\nLIN {place} C_DIS\n"
+            if blend > 0
+            else f"LIN {place}\n"
+        )
 
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
         return comment(f"stop: {step.message}") + "HALT\n"
-    return f"WAIT SEC {number(step.seconds, 3)}\n"
+    return f"WAIT SEC {format_number(step.seconds, 3)}\n"
 
 
 def _speed(speed_mm_s: float) -> str:
-    return f"$VEL.CP = {rounded_down(speed_mm_s / 1e3, SPEED_DECIMALS)}\n"
+    return f"$VEL.CP = {format_rounded_down(speed_mm_s / 1e3, SPEED_DECIMALS)}\n"
 
 
 def _frame(frame: np.ndarray, decimals: int) -> str:
-    x, y, z = numbers(frame[:3, 3], decimals).split(", ")
+    x, y, z = join_numbers(frame[:3, 3], decimals).split(", ")
     return f"{{X {x}, Y {y}, Z {z}, {_angles(rotation_deg(frame[:3, :3]))}}}"
 
 
 def _angles(about_xyz_deg: np.ndarray) -> str:
     """A turns about z, then B about the new y, then C about the newest x: the same as fixed x, y, z backwards."""
-    a, b, c = numbers(about_xyz_deg[::-1], DEGREE_DECIMALS).split(", ")
+    a, b, c = join_numbers(about_xyz_deg[::-1], DEGREE_DECIMALS).split(", ")
     return f"A {a}, B {b}, C {c}"

@@ -8,8 +8,17 @@ import numpy as np
 
 from ..frames import frame_of_pose, quaternion
 from ..motion import Move, Program, Wait, via_point
-from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
-from .text import number, plain, rows
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    down,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 TURN_DECIMALS = 7  # of quaternions: a tenth of a micrometre at a metre
@@ -37,7 +46,7 @@ def rapid(program: Program) -> Iterator[str]:
     """A module whose routine paint does all. The points are those of the work object paper: to teach it anew, only its
     line has to change. Configurations are free: the robot keeps the one in which it was put over the sheet."""
     cell, decimals = program.cell, program.cell.decimals
-    acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
+    acceleration = format_rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     load = f"[{BRUSH_KG}, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]"
     stands = down(cell.tool.spin_deg)
@@ -62,67 +71,67 @@ def rapid(program: Program) -> Iterator[str]:
     yield _FUNCTIONS
     yield "\n  PROC paint()\n    ConfL \\Off;\n"
     yield f"    PathAccLim TRUE \\AccMax:={acceleration}, TRUE \\DecelMax:={acceleration};\n"
-    words = Words(
+    words = LanguageWords(
         comment,
         lambda speed: _rise(program.rise_mm, speed, decimals),
         _wait,
         lambda move: _lines(move, stands, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(RAPID_END) + "  ENDPROC\nENDMODULE\n"
 
 
 def comment(text: str) -> str:
-    return f"  ! {plain(text, LINE_LIMIT - 4)}\n"
+    return f"  ! {plain_text(text, LINE_LIMIT - 4)}\n"
 
 
 def _rise(height_mm: float, speed_mm_s: float, decimals: int) -> str:
-    height = number(height_mm, decimals)
+    height = format_number(height_mm, decimals)
     return (
         "    here := CRobT(\\Tool:=brush \\WObj:=paper);\n"
         f"    IF here.trans.z < {height} THEN\n"
         f"      here.trans.z := {height};\n"
-        f"      MoveL here, mm_s({rounded_down(speed_mm_s, SPEED_DECIMALS)}), fine, {USED};\n"
+        f"      MoveL here, mm_s({format_rounded_down(speed_mm_s, SPEED_DECIMALS)}), fine, {USED};\n"
         "    ENDIF\n"
     )
 
 
 def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    speed = f"mm_s({rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
+    speed = f"mm_s({format_rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"    MoveC {point}, {point}, {speed}, fine, {USED};", values, decimals)
+        yield from format_rows(f"    MoveC {point}, {point}, {speed}, fine, {USED};", values, decimals)
         return
     if move.axes is not None:
         yield from _tilted(move, upright, speed, decimals)
         return
     if move.blends_mm is None:
-        yield from rows(f"    MoveL {point}, {speed}, fine, {USED};", move.points_mm, decimals)
+        yield from format_rows(f"    MoveL {point}, {speed}, fine, {USED};", move.points_mm, decimals)
         return
     values = np.column_stack([move.points_mm, blends_mm(move, decimals)])
-    yield from rows(f"    MoveL {point}, {speed}, within(%.{decimals}f), {USED};", values, decimals)
+    yield from format_rows(f"    MoveL {point}, {speed}, within(%.{decimals}f), {USED};", values, decimals)
 
 
 def _tilted(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
     """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
     blends = None if move.blends_mm is None else blends_mm(move, decimals)
-    for k, (point, turned) in enumerate(zip(move.points_mm, turned_at(move, upright), strict=True)):
-        place = numbers(point, decimals)
+    for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):
+        place = join_numbers(point, decimals)
         place = f"on_paper({place})" if turned is None else f"tilted({place}, {_turned(turned)})"
-        zone = "fine" if blends is None else f"within({number(blends[k], decimals)})"
+        zone = "fine" if blends is None else f"within({format_number(blends[k], decimals)})"
         yield f"    MoveL {place}, {speed}, {zone}, {USED};\n"
 
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'    TPWrite "{plain(step.message, STRING_LIMIT).translate(QUIET)}";\n    Stop;\n'
-    return f"    WaitTime \\InPos, {number(step.seconds, 3)};\n"
+        return f'    TPWrite "{plain_text(step.message, STRING_LIMIT).translate(QUOTE_REPLACEMENTS)}";\n    Stop;\n'
+    return f"    WaitTime \\InPos, {format_number(step.seconds, 3)};\n"
 
 
 def _pose(frame: np.ndarray, decimals: int) -> str:
-    return f"[[{numbers(frame[:3, 3], decimals)}], [{_turned(frame[:3, :3])}]]"
+    return f"[[{join_numbers(frame[:3, 3], decimals)}], [{_turned(frame[:3, :3])}]]"
 
 
 def _turned(turned: np.ndarray) -> str:
-    return numbers(quaternion(turned), TURN_DECIMALS)
+    return join_numbers(quaternion(turned), TURN_DECIMALS)

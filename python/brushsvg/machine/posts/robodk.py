@@ -18,8 +18,8 @@ from ...errors import Error
 from ..cells.cell import Cell
 from ..frames import frame_of_pose
 from ..motion import Move, Program, Wait, via_point
-from .script import blends_mm, down, turned_at
-from .text import plain
+from .script import blends_mm, down, tool_rotations_at
+from .text import plain_text
 
 LINE_LIMIT = 100
 NAME = "brushsvg"
@@ -47,10 +47,10 @@ def robodk(program: Program) -> Iterator[str]:
         except Error:
             raise
         except (Exception, SystemExit) as mistake:
-            said = plain(f"{type(mistake).__name__}: {mistake}", LINE_LIMIT)
+            said = plain_text(f"{type(mistake).__name__}: {mistake}", LINE_LIMIT)
             raise Error(f"the post {where} fails: {said}", where="robodk.post", code="post-failed") from None
         if log:
-            said = plain(log.splitlines()[0], LINE_LIMIT)
+            said = plain_text(log.splitlines()[0], LINE_LIMIT)
             raise Error(f"the post {where} complains: {said}", where="robodk.post", code="post-failed")
         saved = [path for path in sorted(Path(folder).rglob("*")) if path.is_file()]
         if len(saved) != 1:
@@ -113,13 +113,13 @@ def _called(post, mat, program: Program) -> None:
 
     post.ProgStart(NAME)
     for line in program.header:
-        post.RunMessage(plain(line, LINE_LIMIT), True)
+        post.RunMessage(plain_text(line, LINE_LIMIT), True)
     post.setFrame(pose(program.robot_from_frame), -1, "paper")
     post.setTool(pose(frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)), -1, "brush")
     post.setAcceleration(cell.speeds.acceleration_mm_s2)
     settings = _Settings(post)
     for section in program.sections():
-        post.RunMessage(plain(section.title, LINE_LIMIT), True)
+        post.RunMessage(plain_text(section.title, LINE_LIMIT), True)
         for step in section.steps:
             if isinstance(step, Wait):
                 _wait(post, step)
@@ -148,14 +148,16 @@ def _move(post, settings: _Settings, move: Move, at, upright: np.ndarray, cell: 
         post.MoveC(at(via_point(move.points_mm)), None, at(move.points_mm[-1]), None)
         return
     zones = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, cell.decimals)
-    for point, turned, zone in zip(move.points_mm, turned_at(move, upright), zones.tolist(), strict=True):
+    for point, turned, zone in zip(
+        move.points_mm, tool_rotations_at(move, upright), zones.tolist(), strict=True
+    ):
         settings.at(move.speed_mm_s, zone if zone > 0 else EXACT)
         post.MoveL(at(point, upright if turned is None else turned), None)
 
 
 def _wait(post, step: Wait) -> None:
     if step.seconds is None:
-        post.RunMessage(plain(step.message, LINE_LIMIT))
+        post.RunMessage(plain_text(step.message, LINE_LIMIT))
         post.Pause(UNTIL_RESUMED)
     else:
         post.Pause(1000.0 * step.seconds)

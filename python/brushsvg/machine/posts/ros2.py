@@ -16,8 +16,8 @@ from ..frames import frame_of_pose, quaternion, rotation
 from ..motion import Program
 from ..tool_axes import is_parallel, turned_to
 from ..trajectory import make_timed_sections
-from .script import rounded_down, upright_deg
-from .text import plain
+from .script import format_rounded_down, upright_deg
+from .text import plain_text
 
 LINE_LIMIT = 100
 SECOND_DECIMALS, SPEED_DECIMALS, TURN_DECIMALS = 7, 6, 9
@@ -96,7 +96,7 @@ def _points(table: np.ndarray, cell: Cell) -> np.ndarray:
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
 def flange_from_tip(cell: Cell) -> np.ndarray:
@@ -132,7 +132,9 @@ def _placed(table: np.ndarray, cell: Cell) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _shortest(limit_mm_s: float) -> str:
-    return rounded_down(limit_mm_s / 1e3, SPEED_DECIMALS).rstrip("0").rstrip(".") if limit_mm_s else "0"
+    return (
+        format_rounded_down(limit_mm_s / 1e3, SPEED_DECIMALS).rstrip("0").rstrip(".") if limit_mm_s else "0"
+    )
 
 
 def _lines(table: np.ndarray, cell: Cell) -> Iterator[tuple[str, str]]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
 from ..motion import Move, Program, Wait, via_point
-from .script import QUIET, Words, down, parts, turned_at
-from .text import number, plain, rows
+from .script import QUOTE_REPLACEMENTS, LanguageWords, down, split_into_parts, tool_rotations_at
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 LEAST_BLEND_M = 5e-6  # what would be written as less is no blend
@@ -27,8 +27,8 @@ def urscript(program: Program) -> Iterator[str]:
     decimals = program.cell.decimals + 3
     tool = program.cell.tool
     tcp = frame_of_pose(np.array(tool.tcp_mm), tool.rotation_deg)
-    acceleration = number(program.cell.speeds.acceleration_mm_s2 * M, 4)
-    header = "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
+    acceleration = format_number(program.cell.speeds.acceleration_mm_s2 * M, 4)
+    header = "".join(f"  # {plain_text(line, LINE_LIMIT - 4)}\n" for line in program.header)
     setup = f"  set_tcp({_pose(tcp, decimals)})\n  paper = {_pose(program.robot_from_frame, decimals)}\n"
     upright = down(tool.spin_deg)
     setup += "  def on_paper(x, y, z):\n"
@@ -40,14 +40,14 @@ def urscript(program: Program) -> Iterator[str]:
     if contact:
         setup += _watch(contact.force_n)
     begin = f"  zero_ftsensor()\n{WATCHED}" if contact else ""  # held high, where nothing presses
-    words = Words(
-        lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
+    words = LanguageWords(
+        lambda title: f"  # {plain_text(title, LINE_LIMIT - 4)}\n",
         lambda speed: _rise(program.rise_mm, speed, acceleration, decimals) + begin,
         lambda step: _wait(step, contact is not None),
         lambda move: _lines(move, upright, acceleration, decimals),
     )
     around = (BEGIN + header + setup + END).count("\n") + 2  # its number, and the next one's
-    for count, moves in enumerate(parts(program, words, around, rises_again=True), 1):
+    for count, moves in enumerate(split_into_parts(program, words, around, rises_again=True), 1):
         if count > 1:
             yield f'  textmsg("{NEXT} {count}")\n{END}'
         part = f"  # part: {count}\n" if count > 1 else ""
@@ -73,19 +73,19 @@ def called(text: str) -> list[str]:
 
 
 def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
-    height = number(height_mm * M, decimals)
+    height = format_number(height_mm * M, decimals)
     return (
         "  here = pose_trans(pose_inv(paper), get_actual_tcp_pose())\n"
         f"  if here[2] < {height}:\n"
         f"    movel(pose_trans(paper, p[here[0], here[1], {height}, here[3], here[4], here[5]]), "
-        f"a={acceleration}, v={number(speed_mm_s * M, 4)})\n"
+        f"a={acceleration}, v={format_number(speed_mm_s * M, 4)})\n"
         "  end\n"
     )
 
 
 def _watch(force_n: float) -> str:
     """A thread that runs with the moves: the whole program ends where the tool is pressed harder."""
-    newtons = number(force_n, 1)
+    newtons = format_number(force_n, 1)
     return (
         "  thread watch():\n"
         "    while True:\n"
@@ -100,11 +100,11 @@ def _watch(force_n: float) -> str:
 
 
 def _lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) -> Iterator[str]:
-    speed = number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
+    speed = format_number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]]) * M
-        yield from rows(
+        yield from format_rows(
             f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
         )
         return
@@ -113,41 +113,48 @@ def _lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) ->
         return
     points = move.points_mm * M
     if move.blends_mm is None or len(points) == 1:
-        yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points, decimals)
+        yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points, decimals)
         return
     blends = move.blends_mm[:-1, None] * M
     blends = np.where(blends < LEAST_BLEND_M, 0.0, blends)
     # movep keeps the speed of the tool; the last one stops, since what follows may turn back, which movep cannot
     values = np.hstack([points[:-1], blends])
-    yield from rows(f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals)
-    yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
+    yield from format_rows(
+        f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals
+    )
+    yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
 
 
 def _tilted(move: Move, upright: np.ndarray, at_most: str, decimals: int) -> Iterator[str]:
     """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
     last = len(move.points_mm) - 1
     blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M
-    for k, (point, turned) in enumerate(zip(move.points_mm * M, turned_at(move, upright), strict=True)):
-        place = ", ".join(number(value, decimals) for value in point)
+    for k, (point, turned) in enumerate(
+        zip(move.points_mm * M, tool_rotations_at(move, upright), strict=True)
+    ):
+        place = ", ".join(format_number(value, decimals) for value in point)
         place = f"on_paper({place})" if turned is None else f"tilted({place}, {_vector(turned, decimals)})"
         if move.blends_mm is None or k == last:
             yield f"  movel({place}, {at_most})\n"
         else:
             blend = blends[k] if blends[k] >= LEAST_BLEND_M else 0.0
-            yield f"  movep({place}, {at_most}, r={number(blend, decimals)})\n"
+            yield f"  movep({place}, {at_most}, r={format_number(blend, decimals)})\n"
 
 
 def _wait(step: Wait, is_watched: bool) -> str:
     if step.seconds is None:
-        asks = f'  popup("{plain(step.message, 60).translate(QUIET)}", "brushsvg", False, False, blocking=True)\n'
+        asks = (
+            f'  popup("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}", '
+            '"brushsvg", False, False, blocking=True)\n'
+        )
         return f"  kill watching\n{asks}{WATCHED}" if is_watched else asks  # a hand may be at the brush
-    return f"  sleep({number(step.seconds, 3)})\n"
+    return f"  sleep({format_number(step.seconds, 3)})\n"
 
 
 def _pose(frame: np.ndarray, decimals: int) -> str:
-    place = ", ".join(number(value * M, decimals) for value in frame[:3, 3])
+    place = ", ".join(format_number(value * M, decimals) for value in frame[:3, 3])
     return f"p[{place}, {_vector(frame[:3, :3], decimals)}]"
 
 
 def _vector(turned: np.ndarray, decimals: int) -> str:
-    return ", ".join(number(value, decimals) for value in rotation_vector(turned))
+    return ", ".join(format_number(value, decimals) for value in rotation_vector(turned))

@@ -9,8 +9,17 @@ import numpy as np
 
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait
-from .script import QUIET, Words, blends_mm, body, numbers, rounded_down, turned_at, upright_deg
-from .text import number, plain, rows
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    upright_deg,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
@@ -78,55 +87,57 @@ def xarm(program: Program) -> Iterator[str]:
     """A script for a computer next to the arm, which sends the moves one by one; the SDK waits while the arm's list of
     them is full. Turns of the brush are lines: the SDK defines a circle by its share of a whole one, not by its end."""
     cell, decimals = program.cell, program.cell.decimals
-    tool = numbers(cell.tool.tcp_mm, decimals), numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
+    tool = join_numbers(cell.tool.tcp_mm, decimals), join_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
     yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))
     yield BEFORE
-    yield f"\nUPRIGHT = ({numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
+    yield f"\nUPRIGHT = ({join_numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
     yield f"TOOL = [{tool[0]}, {tool[1]}]\n"
-    yield f"MOST = {rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
+    yield f"MOST = {format_rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
     yield FUNCTIONS.replace(BEFORE_ARM, TILTED + BEFORE_ARM) if program.tilts else FUNCTIONS
     if cell.contact:
         yield f"done(arm.set_collision_sensitivity({cell.contact.sensitivity}))\n"
     yield READY
     upright = rotation(upright_deg(cell))
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: f"rise({number(program.rise_mm, decimals)}, {rounded_down(speed, SPEED_DECIMALS)})\n",
+        lambda speed: (
+            f"rise({format_number(program.rise_mm, decimals)}, {format_rounded_down(speed, SPEED_DECIMALS)})\n"
+        ),
         _wait,
         lambda move: _lines(move, upright, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield f"\n{AFTER}" + comment(XARM_END)
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
 def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    speed = rounded_down(move.speed_mm_s, SPEED_DECIMALS)
+    speed = format_rounded_down(move.speed_mm_s, SPEED_DECIMALS)
     point = f"go(%.{decimals}f, %.{decimals}f, %.{decimals}f, {speed}"
     if move.axes is not None:
         yield from _tilted(move, upright, speed, decimals)
         return
     if move.blends_mm is None:
-        yield from rows(f"{point}, None)", move.points_mm, decimals)
+        yield from format_rows(f"{point}, None)", move.points_mm, decimals)
         return
     values = np.column_stack([move.points_mm, blends_mm(move, decimals, BLENDED)])
-    yield from rows(f"{point}, %.{decimals}f)", values, decimals)
+    yield from format_rows(f"{point}, %.{decimals}f)", values, decimals)
 
 
 def _tilted(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
     """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
     blends = None if move.blends_mm is None else blends_mm(move, decimals, BLENDED)
-    for k, (point, turned) in enumerate(zip(move.points_mm, turned_at(move, upright), strict=True)):
-        place = numbers(point, decimals)
-        radius = "None" if blends is None else number(blends[k], decimals)
-        angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
+    for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):
+        place = join_numbers(point, decimals)
+        radius = "None" if blends is None else format_number(blends[k], decimals)
+        angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
         yield f"{'lean' if angles else 'go'}({place}{angles}, {speed}, {radius})\n"
 
 
 def _wait(step: Wait) -> str:
     if step.seconds is None:
-        return f'stop("{plain(step.message, 60).translate(QUIET)}")\n'
-    return f"rest({number(step.seconds, 3)})\n"
+        return f'stop("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}")\n'
+    return f"rest({format_number(step.seconds, 3)})\n"
