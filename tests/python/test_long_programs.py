@@ -182,7 +182,7 @@ def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
         path.parent.mkdir()
         with monkeypatch.context() as patch:
             if folder == "whole":
-                patch.setattr(ebb, "LEAST_MS", 1)
+                patch.setattr(ebb, "MIN_SLICE_MS", 1)
                 for language in cell.MAX_PROGRAM_LINES:
                     patch.setitem(cell.MAX_PROGRAM_LINES, language, NO_LIMIT)
             status, _, reported = call(capsys, "convert", words[0], "-o", str(path), *words[1:])

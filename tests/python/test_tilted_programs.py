@@ -543,7 +543,7 @@ def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     table, message = (made_of(program_in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
     rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
     data = b"".join(message)
-    points = np.frombuffer(data[-len(rows) * ros2.POINT.itemsize :], dtype=ros2.POINT)
+    points = np.frombuffer(data[-len(rows) * ros2.POINT_DTYPE.itemsize :], dtype=ros2.POINT_DTYPE)
     reported = np.array([[float(each) for each in row[1:8]] for row in rows])
     assert np.hstack([points["place_m"], points["turn_xyzw"]]) == pytest.approx(reported, abs=1e-9)
     assert len(np.unique(points["turn_xyzw"], axis=0)) > 10

@@ -183,9 +183,9 @@ def sources_of_post(cell: Cell) -> list[str]:
     """
     if cell.robodk is None:
         return []
-    from .robodk import sources
+    from .robodk import find_sources
 
-    return sources(cell.robodk.post)
+    return find_sources(cell.robodk.post)
 
 
 def circles_by(cell: Cell) -> str:
