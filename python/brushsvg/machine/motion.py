@@ -248,9 +248,8 @@ def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
 
     here: (3,) the tool's place. If it is None, the path begins at the first point.
     """
-    if (
-        len(move.points_mm) == 1 and here is not None and move.arc is None
-    ):  # nearly all moves have one point, for which arrays are slow
+    # Nearly all moves have one point, for which arrays are slow.
+    if len(move.points_mm) == 1 and here is not None and move.arc is None:
         return np.array([math.dist(here, move.points_mm[0])])
     path = np.vstack([move.points_mm[:1] if here is None else here[None], move.points_mm])
     steps = polylines.steps(path)

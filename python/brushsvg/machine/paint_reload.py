@@ -323,9 +323,8 @@ def _pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tupl
     is_new_pen = [False] + [
         bool(a.colour and b.colour) and a.colour.lower() != b.colour.lower() for a, b in pairwise(loads.loads)
     ]
-    is_new_pen[:first_stroke] = [False] * len(
-        is_new_pen[:first_stroke]
-    )  # the person mounts the first pen before the program starts
+    # The person mounts the first pen before the program starts.
+    is_new_pen[:first_stroke] = [False] * len(is_new_pen[:first_stroke])
     if not any(is_new_pen):
         return ()
     return tuple(

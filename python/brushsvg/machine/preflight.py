@@ -43,9 +43,8 @@ def look(
     if job.first_stroke > 1 and not left_loads.loads:
         return walk
     limit_problems = walk.problems or out_of_arm(walk.made, left_loads.sheet_mm)
-    is_paper_unchanged = (
-        walk.made.cell is cell and not job.z_offset_mm
-    )  # the result then holds for the paper's place in the cell
+    # In this case, the program was checked for the paper's place in the cell.
+    is_paper_unchanged = walk.made.cell is cell and not job.z_offset_mm
     written = walk.written if is_paper_unchanged else written_of(loads, cell, WHOLE_JOB)
     return replace(
         walk,

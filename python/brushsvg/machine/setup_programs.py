@@ -71,9 +71,8 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
     def sections() -> Iterator[Section]:
         (air_section,) = air_run.sections()
         start, *others = air_section.steps
-        slowly = Move(
-            "approach", start.points_mm, approach_mm_s(brush, cell)
-        )  # the tool may come down from the higher air run
+        # The tool may come down from the higher air run.
+        slowly = Move("approach", start.points_mm, approach_mm_s(brush, cell))
         raised_moves = tuple(_raise_step(step, high_mm) for step in (slowly, *others))
         yield Section("first run: round the sheet, high in the air", raised_moves)
         yield Section(

@@ -11,11 +11,8 @@ from .cells.cell import robot_from_paper
 from .motion import Move, Program, Wait
 from .tool_axes import turned_on
 
-POSE_ROW, WAY_ROW, REST_ROW = (
-    0,
-    1,
-    2,
-)  # kinds of rows: a place of the plan, a place on the way to it, the end of a wait
+# Kinds of rows: a place of the plan, a place on the way to it, the end of a wait.
+POSE_ROW, WAY_ROW, REST_ROW = 0, 1, 2
 SLICE_S = 0.02  # spacing of rows while the speed changes; between two rows the speed counts as constant
 MIN_LENGTH_MM = 1e-6
 

@@ -80,9 +80,8 @@ class _Solutions:
     angles_rad: np.ndarray
     rates: np.ndarray
     most: np.ndarray  # (k,) largest turn of any joint for each mm [rad/mm]
-    sides: (
-        np.ndarray
-    )  # (k,) side of all singularities: between solutions on different sides there is a singularity
+    # (k,) side of all singularities. Between two solutions on different sides there is a singularity.
+    sides: np.ndarray
     lowest_mm: np.ndarray  # (k,) height of the lowest joint above the table
 
 
@@ -377,9 +376,8 @@ def _leaves_limits(
 
 def _limit_notice(place: Place, arm: Arm, joint: int, posture: _Posture) -> Notice:
     low, high = arm.limits_deg[joint]
-    _, turns = _leaves_limits(
-        arm, posture.least_rad, posture.greatest_rad
-    )  # the turns that fitted before this place
+    # These whole turns kept the joint within its limits before this place.
+    _, turns = _leaves_limits(arm, posture.least_rad, posture.greatest_rad)
     angle = np.degrees(posture.here_rad[joint]) + 360 * turns[joint]
     if not angle < low and angle - high > low - (angle - 360):  # at the first place, report the nearer limit
         angle -= 360
@@ -423,7 +421,7 @@ def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
 def _note_flip(posture: _Posture, solutions: _Solutions, arm: Arm) -> None:
     """Change a posture's failure from a singularity to a wrist flip if the wrist has turned over.
 
-    The solutions compared are clear of the singularity again, and bend the wrist the same way as before.
+    Only solutions that are clear of the singularity again, and bend the wrist as before, are compared.
     """
     turns = _joint_turns_rad(posture.calm_rad, solutions.angles_rad)
     bends = np.sin(solutions.angles_rad[:, WRIST_BEND_JOINT]) * np.sin(posture.calm_rad[WRIST_BEND_JOINT])

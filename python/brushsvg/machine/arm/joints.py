@@ -115,7 +115,7 @@ def _solver_of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
 def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     """Return the solver of an arm that ssik provides.
 
-    Its base frame may be turned about z by half a turn, and its flange frame in any way.
+    Its base frame may be turned about z by half a turn, and its flange frame may be turned in any way.
     """
     if not any(each.name == f"{arm.prebuilt}_ik" for each in ssik.list_arms()):
         sentence = f"ssik has no arm {arm.prebuilt!r} ready"

@@ -1,4 +1,4 @@
-"""The robot's side of the table: the place of the paper, how high, how fast and how far the tool may go, the paint."""
+"""Cells: the place of the paper, limits of height, speed and space, and the paint."""
 
 from __future__ import annotations
 
@@ -422,10 +422,8 @@ LEAST_SPEED_MM_S = {
 }
 MIN_SERVO_SPEED_MM_S = 1 / 60  # grbl replaces a lower feed by this one
 UNITS_MM = {"hpgl": 0.025}  # size of a whole unit in languages without fractions
-ARCS_IN_SEGMENTS = (
-    "marlin",
-    "klipper",
-)  # firmware that divides circles into lines, if it supports circles at all
+# Firmware that divides circles into lines, if it supports circles at all.
+ARCS_IN_SEGMENTS = ("marlin", "klipper")
 # Largest difference of the distances from a circle's centre to the two ends of the circle.
 MAX_RADIUS_DIFFERENCE_MM = {"fluidnc": 0.005}
 MAX_PROGRAM_POINTS = {"fanuc": 1000}  # longer jobs are split into several programs between strokes

@@ -30,7 +30,7 @@ def marlin_servo(program: Program) -> Iterator[str]:
                 yield write_wait(step, dialect)
                 continue
             if step.meaning in ("approach", "retract"):
-                continue  # the pen has no such heights
+                continue  # the pen only moves up and down
             if step.meaning == "lift":
                 yield pen_lift_lines(cell, is_down=False)
             places = np.round(step.points_mm[:, :2], cell.decimals) + 0.0

@@ -58,7 +58,7 @@ def find_pen_number(name: str, cell: Cell) -> int:
 def _move_lines(move: Move, here: tuple | None):
     """Yield the lines of a move, and return the end of the move in units."""
     if move.meaning in ("approach", "retract"):
-        return here  # the pen has no such heights
+        return here  # the pen only moves up and down
     places = np.rint(move.points_mm[:, :2] / UNIT_MM).astype(int)
     path = np.vstack([[here] if here else places[:1] + 1, places])
     changed_places = path[1:][np.diff(path, axis=0).any(axis=1)]

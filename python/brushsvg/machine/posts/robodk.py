@@ -142,7 +142,7 @@ def _call_post(post, mat, program: Program) -> None:
 
 
 class _PostSettings:
-    """The current speed and zone of a post, which are only written when they change."""
+    """The current speed and zone of a post. They are only written when they change."""
 
     def __init__(self, post):
         self.post, self.speed, self.zone = post, None, None

@@ -61,9 +61,8 @@ def format_rows(pattern: str, values: np.ndarray, decimals: int) -> Iterator[str
     pattern: a line with k fields such as %.4f.
     """
     for first in range(0, len(values), MAX_ROWS_AT_ONCE):
-        part = (
-            np.round(values[first : first + MAX_ROWS_AT_ONCE], decimals) + 0.0
-        )  # adding 0.0 turns -0.0 into 0.0
+        # Adding 0.0 turns -0.0 into 0.0.
+        part = np.round(values[first : first + MAX_ROWS_AT_ONCE], decimals) + 0.0
         yield "\n".join([pattern] * len(part)) % tuple(part.ravel().tolist()) + "\n"
 
 

@@ -41,9 +41,8 @@ def urscript(program: Program) -> Iterator[str]:
     contact = program.cell.contact
     if contact:
         setup += _watch_thread(contact.force_n)
-    begin = (
-        f"  zero_ftsensor()\n{START_WATCH}" if contact else ""
-    )  # the tool is high, and nothing presses on the sensor
+    # The tool is high, and nothing presses on the sensor.
+    begin = f"  zero_ftsensor()\n{START_WATCH}" if contact else ""
     words = LanguageWords(
         lambda title: f"  # {plain_text(title, LINE_LIMIT - 4)}\n",
         lambda speed: _rise_lines(program.rise_mm, speed, acceleration, decimals) + begin,
@@ -158,9 +157,8 @@ def _wait_lines(step: Wait, is_watched: bool) -> str:
             f'  popup("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}", '
             '"brushsvg", False, False, blocking=True)\n'
         )
-        return (
-            f"  kill watching\n{popup}{START_WATCH}" if is_watched else popup
-        )  # a person may touch the brush during the wait
+        # A person may touch the brush during the wait.
+        return f"  kill watching\n{popup}{START_WATCH}" if is_watched else popup
     return f"  sleep({format_number(step.seconds, 3)})\n"
 
 

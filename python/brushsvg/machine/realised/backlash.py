@@ -32,7 +32,7 @@ def compensate_backlash(program: Program) -> Program:
 
 
 def sides_of_steps(ways_mm: np.ndarray, side: np.ndarray) -> np.ndarray:
-    """Return to which side, 1 or -1, each axis goes on each step, (n, 2).
+    """Return the side, 1 or -1, to which each axis goes on each step, (n, 2).
 
     An axis that stands still stays on its side. side: (2,) sides before the first step.
     """
@@ -79,7 +79,7 @@ def from_air_mm(commanded_mm: np.ndarray, backlash_mm) -> np.ndarray:
 
 
 def first_side(ways_mm: np.ndarray) -> np.ndarray:
-    """Return to which side each axis goes first on steps (n, 2), or 0 if it stands still, (2,)."""
+    """Return the side to which each axis goes first on steps (n, 2), or 0 if it stands still, (2,)."""
     signs = np.sign(ways_mm)
     return np.array([next(iter(axis_signs[axis_signs != 0]), 0.0) for axis_signs in signs.T])
 

@@ -15,10 +15,9 @@ from ..cells.cell import Cell, Machine
 from .retimed import on_way
 from .smooth_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field
 
-SOLVER_TOLERANCE_MM, MAX_SOLVER_ROUNDS = (
-    1e-9,
-    60,
-)  # of the inverse of a field; each round leaves at most a quarter of the error
+# Error [mm] at which inverting a field stops, and largest number of rounds. Each round leaves at most a quarter of the
+# error.
+SOLVER_TOLERANCE_MM, MAX_SOLVER_ROUNDS = 1e-9, 60
 MAX_MAP_OFFSET_MM = 0.003  # largest distance of a commanded line from the paper's map
 
 
@@ -96,9 +95,8 @@ def commanded_heights_mm(commanded_mm: np.ndarray, height_mm: float, machine: Ma
     rises_mm = np.zeros(len(commanded_mm))
     if machine is not None:
         plane_mm = machine.height_mm + commanded_mm @ machine.tilt_mm_per_mm
-        highest_mm = max(
-            (row[2] for row in machine.map_mm), default=0.0
-        )  # the map is not higher between its places
+        # The map is not higher between its places.
+        highest_mm = max((row[2] for row in machine.map_mm), default=0.0)
         rises_mm = np.maximum(plane_mm + highest_mm, 0.0)
     return height_mm + rises_mm
 

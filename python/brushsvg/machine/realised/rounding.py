@@ -217,9 +217,8 @@ TARGET_PART_RAD, MAX_PART_RAD = 3.5, 5.0
 def _keeps_radius(spokes: np.ndarray, cell: Cell) -> bool:
     """Return whether the firmware accepts a circle with spokes (2, 2) to its ends, and stays close to it."""
     first, last = (hypot(*spoke) for spoke in spokes.tolist())
-    max_difference_mm = MAX_RADIUS_DIFFERENCE_MM.get(cell.language, inf) - 1.5 * unit_mm(
-        cell
-    )  # the centre of the circle is rounded, too
+    # The centre of the circle is rounded, too.
+    max_difference_mm = MAX_RADIUS_DIFFERENCE_MM.get(cell.language, inf) - 1.5 * unit_mm(cell)
     sagitta_mm = cell.arc_segment_mm**2 / (8 * max(first, 1e-9))
     return abs(first - last) <= max_difference_mm and sagitta_mm <= OFF_MM
 
