@@ -67,7 +67,7 @@ def first_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, 
     """
     return (
         "title: first run",
-        f"brush: {brush}, {sum(1 for each in made.sections() if each.title.startswith('stroke '))} strokes",
+        f"brush: {brush}, {sum(1 for section in made.sections() if section.title.startswith('stroke '))} strokes",
         _sheet_line(sheet_mm),
         "first: heights {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
         *common_lines(made),

@@ -182,14 +182,14 @@ def duration_s(program: Program) -> float:
 
 
 def _duration_s(program: Program) -> float:
-    total_s, here = 0.0, None
+    total_s, last_point = 0.0, None
     for step in (step for section in program.sections() for step in section.steps):
         if isinstance(step, Wait):
             total_s += step.seconds or 0.0
             continue
-        total_s += duration_of_path_s(length_mm(step, here), step.speed_mm_s, program.cell)
-        total_s += settling_s(step, here, program.cell)
-        here = step.points_mm[-1]
+        total_s += duration_of_path_s(length_mm(step, last_point), step.speed_mm_s, program.cell)
+        total_s += settling_s(step, last_point, program.cell)
+        last_point = step.points_mm[-1]
     return total_s
 
 
@@ -207,10 +207,10 @@ def settling_s(move: Move, here_mm: np.ndarray | None, cell: Cell) -> float:
 
 def painting_mm(program: Program) -> float:
     """Return the length [mm] of the tool's path on the paper, with circles as circles."""
-    total_mm, here = 0.0, None
+    total_mm, last_point = 0.0, None
     for move in (move for section in program.sections() for move in section.moves):
-        total_mm += length_mm(move, here) if move.meaning == "paint" else 0.0
-        here = move.points_mm[-1]
+        total_mm += length_mm(move, last_point) if move.meaning == "paint" else 0.0
+        last_point = move.points_mm[-1]
     return total_mm
 
 

@@ -39,9 +39,9 @@ def ways(paths, circles=()) -> Ways:
     starts = [path[:-1] if len(path) > 1 else path for path in paths]
     ends = [path[1:] if len(path) > 1 else path for path in paths]
     no_points = np.zeros((0, 3))
-    start = np.array([each[0] for each in circles], dtype=float).reshape(-1, 3)
-    end = np.array([each[1] for each in circles], dtype=float).reshape(-1, 3)
-    x, y, turn = np.array([each[2] for each in circles], dtype=float).reshape(-1, 3).T
+    start = np.array([circle[0] for circle in circles], dtype=float).reshape(-1, 3)
+    end = np.array([circle[1] for circle in circles], dtype=float).reshape(-1, 3)
+    x, y, turn = np.array([circle[2] for circle in circles], dtype=float).reshape(-1, 3).T
     centre = np.column_stack([x, y, start[:, 2]])
     spoke = start - centre
     across = turn[:, None] * np.column_stack([-spoke[:, 1], spoke[:, 0], np.zeros(len(spoke))])
@@ -57,7 +57,7 @@ def ways(paths, circles=()) -> Ways:
 def paths_in_frame(frame: np.ndarray, moves: Ways) -> Ways:
     """Transform moves into the frame in which their own frame, a pose (4, 4), is given."""
     turned, shift = frame[:3, :3].T, frame[:3, 3]
-    places = (each @ turned + shift for each in (moves.starts, moves.ends, moves.centre))
+    places = (points @ turned + shift for points in (moves.starts, moves.ends, moves.centre))
     return Ways(*places, moves.spoke @ turned, moves.across @ turned, moves.rise @ turned, moves.sweep_rad)
 
 

@@ -87,9 +87,9 @@ def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
         loads = map(with_chords, loads)
     elif cell.machine and any(cell.machine.backlash_mm):
         axes = robot_from_paper(cell)[:2, 0]
-        loads = (split_arcs_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
+        loads = (split_arcs_at_extremes(load, float(np.arctan2(axes[1], axes[0]))) for load in loads)
     if not keeps_lines(cell.machine):
-        loads = (_split_for_map(each, cell.machine) for each in map(split_turning_moves, loads))
+        loads = (_split_for_map(load, cell.machine) for load in map(split_turning_moves, loads))
     else:
         loads = map(split_turning_moves, loads)
     return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_start_and_end_on_paper, loads)), lasts_mm)
@@ -208,7 +208,7 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
         station = _find_station(a_pass, cell)
         length_mm = painted_mm(a_pass)
         is_new_colour = last_pass is not None and _find_station(last_pass, cell) != station
-        wash = [each for each in cell.stations if each.name == cell.reload.wash]
+        wash_stations = [candidate for candidate in cell.stations if candidate.name == cell.reload.wash]
         is_fetching = (
             last_pass is None
             or is_new_colour
@@ -216,13 +216,13 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
             or _needs_paint(a_pass, last_pass, used_mm + length_mm, cell.reload, loads.lasts_mm)
         )
         if last_pass is not None and not is_new_colour and number != first_stroke:
-            wash, station = (
-                [shorten_visit(each) for each in wash if cell.reload.rinse],
+            wash_stations, station = (
+                [shorten_visit(candidate) for candidate in wash_stations if cell.reload.rinse],
                 shorten_visit(station),
             )
         elif not is_new_colour:
-            wash = []
-        visits_of_loads.append((*wash, station) if is_fetching else ())
+            wash_stations = []
+        visits_of_loads.append((*wash_stations, station) if is_fetching else ())
         used_mm = length_mm + (0.0 if is_fetching else used_mm)
         last_pass = a_pass
     return tuple(visits_of_loads)
@@ -259,7 +259,9 @@ def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[
 
 def dips_without_cell(passes) -> list[list[float]]:
     """Return dips_mm for passes whose paint is not fetched by a program."""
-    return [[] if k and each.settings.reload is False else [0.0] for k, each in enumerate(passes)]
+    return [
+        [] if number and a_pass.settings.reload is False else [0.0] for number, a_pass in enumerate(passes)
+    ]
 
 
 def _part_start_mm(stroke, part, after_mm: float) -> float:
@@ -271,7 +273,7 @@ def _part_start_mm(stroke, part, after_mm: float) -> float:
     after_mm: path length at which the part before begins.
     """
     stroke_points, part_points = (
-        points_with_chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part)
+        points_with_chords(np.asarray(a_pass.poses_mm), a_pass.arcs)[:, :2] for a_pass in (stroke, part)
     )
     along_mm, way_mm = lengths(stroke_points), lengths(part_points)
     start, step = stroke_points[:-1], np.diff(stroke_points, axis=0)
@@ -395,7 +397,7 @@ def _find_station(a_pass, cell: Cell) -> Station:
     colour = a_pass.colour.lower()
     stations = [station for station in cell.stations if station.name != cell.reload.wash]
     for station in stations:
-        if colour in [each.lower() for each in station.colours]:
+        if colour in [served_colour.lower() for served_colour in station.colours]:
             return station
     for station in stations:
         if not station.colours:

@@ -243,8 +243,8 @@ def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell
     """
     speed_mm_s = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
-    way = in_lines_mm(np.vstack([point_above(end, height_mm) for end in ends]), cell.machine)
-    commanded = commanded_mm(way, cell.machine)
+    path = in_lines_mm(np.vstack([point_above(end, height_mm) for end in ends]), cell.machine)
+    commanded = commanded_mm(path, cell.machine)
     down, up = (commanded_mm(point_above(end, clearance_mm), cell.machine) for end in ends)
     return (
         Move("travel", safe_point_above(down[0], cell), cell.speeds.travel_mm_s),

@@ -81,15 +81,15 @@ def _append_move_rows(
     places = path[point_numbers].tolist()
     axes = axes if axes is None else axes[point_numbers - 1]
     for k, when_s, done_mm in time_lines(lengths.tolist(), caps, [top_speed] * len(lengths), a, now_s):
-        there = places[k]
+        end_of_line = places[k]
         if done_mm is None:
-            now_s, here = when_s, tuple(there)
+            now_s, here = when_s, tuple(end_of_line)
             axis_here = axis_here if axes is None else tuple(axes[k].tolist())
             rows.append((now_s, *here, top_speed, POSE_ROW, *axis_here))
             continue
-        part = done_mm / lengths[k]
-        place = (x + part * (to - x) for x, to in zip(here, there, strict=True))
-        axis_on_way = () if axes is None else turned_on(np.array(axis_here), axes[k], part).tolist()
+        fraction = done_mm / lengths[k]
+        place = (x + fraction * (to - x) for x, to in zip(here, end_of_line, strict=True))
+        axis_on_way = () if axes is None else turned_on(np.array(axis_here), axes[k], fraction).tolist()
         rows.append((when_s, *place, top_speed, WAY_ROW, *axis_on_way))
     return now_s, here, axis_here
 

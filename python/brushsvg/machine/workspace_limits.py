@@ -58,7 +58,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                 f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:f}, {max_mm_s:.1f}] mm/s of {owner}"
             )
             notices.append(Notice("", sentence, code="speed-out-of-range"))
-        problems += [replace(each, where=a_pass.stroke) for each in notices]
+        problems += [replace(notice, where=a_pass.stroke) for notice in notices]
     for station in cell.stations:
         if station.by_hand:
             continue  # the tool stays at the safe height
@@ -117,7 +117,7 @@ def _find_in_each_section(sections, here, frame: np.ndarray, cell: Cell, sheet_m
         moves = section.moves
         notices = [] if here is None else astray_between(here, moves[0].points_mm[0], frame, cell)
         notices += astray(_paths_of_moves(moves, None), frame, cell, sheet_mm)
-        yield from (replace(each, where=section.name) for each in notices)
+        yield from (replace(notice, where=section.name) for notice in notices)
         here = moves[-1].points_mm[-1]
 
 
@@ -144,7 +144,7 @@ def astray_between(here, there, frame: np.ndarray, cell: Cell, slack_mm: float =
     """
     ends = astray(ways([[here], [there]]), frame, cell, None, slack_mm)
     notices = [] if ends else astray(ways([[here, there]]), frame, cell, None, slack_mm)
-    return [replace(each, sentence=f"on the way there {each.sentence}") for each in notices]
+    return [replace(notice, sentence=f"on the way there {notice.sentence}") for notice in notices]
 
 
 def astray(
@@ -188,7 +188,7 @@ def rise_astray(
         if not astray(ways([[place]]), frame, cell, None, slack_mm):  # otherwise the place itself is reported
             notices += astray(ways([[place, (*place[:2], float(height_mm))]]), frame, cell, None, slack_mm)
     notices_of_rise = [
-        replace(each, sentence=f"on the rise before the first move {each.sentence}") for each in notices
+        replace(notice, sentence=f"on the rise before the first move {notice.sentence}") for notice in notices
     ]
     return list(dict.fromkeys(notices_of_rise))
 

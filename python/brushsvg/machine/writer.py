@@ -86,11 +86,11 @@ def encoded(
 
     Raises Error if the check found a problem.
     """
-    made = walk.allowed()
+    program = walk.allowed()
     if suffix == ".json":
         return _core.write_plan(plan).encode()
-    header = header_of(title or "untitled", brush.name, walk.loads, notes, made, walk.job)
-    return text_of(post_for(suffix, made.cell), replace(made, header=header), suffix)
+    header = header_of(title or "untitled", brush.name, walk.loads, notes, program, walk.job)
+    return text_of(post_for(suffix, program.cell), replace(program, header=header), suffix)
 
 
 def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | str | Iterator[str]]:

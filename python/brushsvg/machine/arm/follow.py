@@ -225,7 +225,7 @@ def far_from_singular(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) ->
 
 def places_of_program(made: Program) -> Iterator[Place]:
     """Yield the places to check: at and between the ends of moves, at most MAX_PLACE_SPACING_MM apart."""
-    here = held = None
+    last_point = last_axis = None
     for section in made.sections():
         moves = section.moves
         if not moves:
@@ -238,13 +238,13 @@ def places_of_program(made: Program) -> Iterator[Place]:
             )
         speeds = np.concatenate([np.full(len(move.points_mm), move.speed_mm_s) for move in moves])
         ends = np.cumsum([len(move.points_mm) for move in moves])
-        if here is not None:
-            points, speeds, ends = np.vstack([here, points]), np.r_[speeds[:1], speeds], ends + 1
-            axes = None if axes is None else np.vstack([held, axes])
+        if last_point is not None:
+            points, speeds, ends = np.vstack([last_point, points]), np.r_[speeds[:1], speeds], ends + 1
+            axes = None if axes is None else np.vstack([last_axis, axes])
         yield from _places_along(
-            section.name, points, axes, speeds, ends - 1, made.robot_from_frame, here is None
+            section.name, points, axes, speeds, ends - 1, made.robot_from_frame, last_point is None
         )
-        here, held = points[-1], None if axes is None else axes[-1]
+        last_point, last_axis = points[-1], None if axes is None else axes[-1]
 
 
 UPRIGHT_AXIS = np.array([0.0, 0.0, 1.0])

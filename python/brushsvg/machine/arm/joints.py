@@ -108,8 +108,8 @@ def _solver_of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     a, alpha, d, theta = np.array(arm.dh).T
     manipulator = ssik.Manipulator.from_dh(np.radians(alpha), a * M_PER_MM, d * M_PER_MM)
     base, _, flange = _fixed_frames(arm)
-    into, behind = np.linalg.inv(base), np.linalg.inv(flange)
-    return _make_solver(manipulator.solve, into, behind, np.radians(theta))
+    ssik_from_robot, ssik_flange_offset = np.linalg.inv(base), np.linalg.inv(flange)
+    return _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.radians(theta))
 
 
 def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
@@ -122,13 +122,18 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
         raise Error(sentence, where="arm.prebuilt", code="cell-arm")
     manipulator = ssik.Manipulator.from_prebuilt(arm.prebuilt)
     sample_angles = np.random.default_rng(0).uniform(-1.0, 1.0, (5, len(arm.dh)))
-    ours = joint_frames_of(arm, sample_angles)[:, -1]
-    theirs = np.array([_scale_origin(manipulator.fk(each), 1 / M_PER_MM) for each in sample_angles])
+    our_flanges = joint_frames_of(arm, sample_angles)[:, -1]
+    ssik_flanges = np.array([_scale_origin(manipulator.fk(each), 1 / M_PER_MM) for each in sample_angles])
     for half_turns in (0.0, 180.0):
-        into = frame_of_pose((0, 0, 0), (0, 0, half_turns))
-        behind = np.linalg.inv(ours[0]) @ np.linalg.inv(into) @ theirs[0]
-        if np.abs(into @ ours @ behind - theirs).max() < MAX_PREBUILT_DIFFERENCE_MM:
-            solve_roughly = _make_solver(manipulator.solve, into, behind, np.zeros(len(arm.dh)))
+        ssik_from_robot = frame_of_pose((0, 0, 0), (0, 0, half_turns))
+        ssik_flange_offset = np.linalg.inv(our_flanges[0]) @ np.linalg.inv(ssik_from_robot) @ ssik_flanges[0]
+        if (
+            np.abs(ssik_from_robot @ our_flanges @ ssik_flange_offset - ssik_flanges).max()
+            < MAX_PREBUILT_DIFFERENCE_MM
+        ):
+            solve_roughly = _make_solver(
+                manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh))
+            )
             return lambda flange: _refine_on_links(arm, solve_roughly(flange), flange)
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
     raise Error(sentence, where="arm.prebuilt", code="cell-arm")
@@ -176,10 +181,12 @@ def refine_angles(
     return angles, None
 
 
-def _make_solver(solve, into: np.ndarray, behind: np.ndarray, theta: np.ndarray):
+def _make_solver(solve, ssik_from_robot: np.ndarray, ssik_flange_offset: np.ndarray, theta: np.ndarray):
     def solutions(flange: np.ndarray) -> np.ndarray:
-        solutions_found = solve(_scale_origin(into @ flange @ behind, M_PER_MM), respect_limits=False)
-        angles = np.array([each.q for each in solutions_found]).reshape(-1, len(theta)) - theta
+        solutions_found = solve(
+            _scale_origin(ssik_from_robot @ flange @ ssik_flange_offset, M_PER_MM), respect_limits=False
+        )
+        angles = np.array([solution.q for solution in solutions_found]).reshape(-1, len(theta)) - theta
         return np.pi - (np.pi - angles) % (2 * np.pi)
 
     return solutions

@@ -59,8 +59,8 @@ def find_unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[
     problems = follow(made, joints).problems
     if not problems:
         return []
-    found = nearest(made, joints, allowed)
-    advice = f"the sheet {found.text} would do" if found else NOWHERE
+    place = nearest(made, joints, allowed)
+    advice = f"the sheet {place.text} would do" if place else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
 
 
@@ -106,14 +106,16 @@ def _tried_places(made: Program, outermost: np.ndarray):
     for length in TRIED_SHIFTS_MM:
         for angle in np.arange(SHIFT_DIRECTIONS) * 2 * np.pi / SHIFT_DIRECTIONS:
             shift = np.round([length * np.cos(angle), length * np.sin(angle)])
-            there = frame.copy()
-            there[:2, 3] += shift
-            yield PaperPlace(tuple(shift.tolist()), 0.0, about, there)
+            moved_frame = frame.copy()
+            moved_frame[:2, 3] += shift
+            yield PaperPlace(tuple(shift.tolist()), 0.0, about, moved_frame)
     for turn in TRIED_TURNS_DEG:
-        back = frame_of_pose((*middle, 0.0), (0.0, 0.0, 0.0))
-        there = np.eye(4)
-        there[:3, :3] = rotation((0.0, 0.0, turn))
-        yield PaperPlace((0.0, 0.0), turn, about, frame @ back @ there @ np.linalg.inv(back))
+        frame_at_middle = frame_of_pose((*middle, 0.0), (0.0, 0.0, 0.0))
+        moved_frame = np.eye(4)
+        moved_frame[:3, :3] = rotation((0.0, 0.0, turn))
+        yield PaperPlace(
+            (0.0, 0.0), turn, about, frame @ frame_at_middle @ moved_frame @ np.linalg.inv(frame_at_middle)
+        )
 
 
 def _can_reach(joints: JointSolver, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> bool:

@@ -629,6 +629,6 @@ def _check_sheet_corner(cell: Cell) -> list[Notice]:
     """
     corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
     return [
-        replace(each, where="workspace", sentence=f"over the sheet's lower left corner {each.sentence}")
-        for each in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
+        replace(notice, where="workspace", sentence=f"over the sheet's lower left corner {notice.sentence}")
+        for notice in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
     ]

@@ -108,21 +108,21 @@ MAX_ROWS = 1000  # largest number of rows of one key; no servo table and no work
 
 
 def _read_table(table, values, where: str) -> dict:
-    known = entries_of(table)
+    entries_by_key = entries_of(table)
     prefix = f"{where}." if where else ""
     if not isinstance(values, dict):
         raise Error(f"{where} must be a table", where=where, code="wrong-type")
     for key in values:
-        if key not in known:
+        if key not in entries_by_key:
             raise Error(
-                f"a cell has no key {prefix}{key}; known here: {', '.join(known)}",
+                f"a cell has no key {prefix}{key}; known here: {', '.join(entries_by_key)}",
                 where=prefix + key,
                 code="key-unknown",
             )
     for key in required_keys_of(table):
         if key not in values:
             raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
-    return {key: _read_value(known[key], value, prefix + key) for key, value in values.items()}
+    return {key: _read_value(entries_by_key[key], value, prefix + key) for key, value in values.items()}
 
 
 def _read_value(entry: Entry, value, where: str):

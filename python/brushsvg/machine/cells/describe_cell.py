@@ -43,7 +43,9 @@ def cell_page(cell) -> str:
         rows.append(("contact", f"{limit_text} ends the program"))
     if cell.reload:
         rows.append(("fetches paint", _reload_text(cell.reload)))
-    rows += [("station", f"{each.name} at {_point_text(each.place_mm)} mm") for each in cell.stations]
+    rows += [
+        ("station", f"{station.name} at {_point_text(station.place_mm)} mm") for station in cell.stations
+    ]
     width = max(len(name) for name, _ in rows)
     lines = [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
     return "\n".join(lines)

@@ -57,8 +57,8 @@ def ebb(program: Program) -> Iterator[str]:
             else:
                 yield from writer.write_move(step)
     yield comment(HOME)
-    there = np.array([[0.0, 0.0, writer.here[2]]])
-    yield from writer.write_move(Move("travel", there, cell.speeds.travel_mm_s))
+    origin = np.array([[0.0, 0.0, writer.here[2]]])
+    yield from writer.write_move(Move("travel", origin, cell.speeds.travel_mm_s))
     yield comment(EBB_END)
 
 

@@ -61,15 +61,17 @@ def fanuc(program: Program) -> Iterator[str]:
 
 def programs(text: str) -> dict[str, str]:
     """Return the texts of a stream of programs, keyed by program name. The main program has the name ""."""
-    found = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
-    named = {re.match(r"/PROG +(\S*)", each)[1]: each for each in found}
-    return {"" if name == MAIN else name: each for name, each in named.items()}
+    program_texts = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
+    texts_by_name = {
+        re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in program_texts
+    }
+    return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
 
 
 def called(text: str) -> list[str]:
     """Return the names of the programs that a program calls, in order and without repetition."""
-    found = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
-    return list(dict.fromkeys(each[1] for each in found))
+    calls = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
+    return list(dict.fromkeys(call[1] for call in calls))
 
 
 def comment(text: str) -> str:
@@ -116,12 +118,12 @@ class _ProgramPoints:
 
     def text(self) -> str:
         rows_text, first = "", 1
-        for angles, alike in itertools.groupby(self.held, lambda each: each[1]):
-            places = np.vstack([points_mm for points_mm, _ in alike])
+        for angles, points_of_angles in itertools.groupby(self.held, lambda entry: entry[1]):
+            places = np.vstack([points_mm for points_mm, _ in points_of_angles])
             values = np.column_stack([np.arange(first, first + len(places)), places])
             w, p, r = angles
-            held = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
-            rows_text += "".join(format_rows(self.place + held, values, self.decimals))
+            angles_text = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
+            rows_text += "".join(format_rows(self.place + angles_text, values, self.decimals))
             first += len(places)
         return rows_text
 

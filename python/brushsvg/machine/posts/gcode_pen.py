@@ -35,14 +35,14 @@ def marlin_servo(program: Program) -> Iterator[str]:
                 yield pen_lift_lines(cell, is_down=False)
             places = np.round(step.points_mm[:, :2], cell.decimals) + 0.0
             path = np.vstack([places[:1] + 1 if here is None else here, places])
-            new, here = places[(path[1:] != path[:-1]).any(axis=1)], places[-1]
+            changed_places, here = places[(path[1:] != path[:-1]).any(axis=1)], places[-1]
             speed_mm_s = section.drawn_mm_s if step.meaning == "land" else step.speed_mm_s
             feed_word = f"G1 F{feed_of_speed_mm_min(speed_mm_s):.1f}\n"
-            if (len(new) or step.meaning == "land") and feed_word != feed:
+            if (len(changed_places) or step.meaning == "land") and feed_word != feed:
                 yield feed_word
                 feed = feed_word
             yield from format_rows(
-                f"{_motion_word(step)} X%.{cell.decimals}f Y%.{cell.decimals}f", new, cell.decimals
+                f"{_motion_word(step)} X%.{cell.decimals}f Y%.{cell.decimals}f", changed_places, cell.decimals
             )
             if step.meaning == "land":
                 yield pen_lift_lines(cell, is_down=True)

@@ -88,15 +88,15 @@ def krl(program: Program) -> Iterator[str]:
 
 def programs(text: str) -> dict[str, str]:
     """Return the texts of a stream of programs, keyed by program name. The main program has the name ""."""
-    found = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
-    named = {re.match(r"DEF (\w+)", each)[1]: each for each in found}
-    return {"" if name == MAIN else name: each for name, each in named.items()}
+    program_texts = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
+    texts_by_name = {re.match(r"DEF (\w+)", program_text)[1]: program_text for program_text in program_texts}
+    return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
 
 
 def called(text: str) -> list[str]:
     """Return the names of the programs that a program calls, in order and without repetition."""
-    found = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
-    return list(dict.fromkeys(each[1].upper() for each in found))
+    calls = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
+    return list(dict.fromkeys(call[1].upper() for call in calls))
 
 
 def comment(text: str) -> str:

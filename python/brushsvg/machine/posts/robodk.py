@@ -90,7 +90,7 @@ def _imported_modules(path: Path) -> list[str]:
         nodes = list(ast.walk(ast.parse(path.read_bytes())))
     except (ValueError, SyntaxError, RecursionError, MemoryError):
         return []
-    names = [each.name for node in nodes if isinstance(node, ast.Import) for each in node.names]
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
     names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
     return [name.partition(".")[0] for name in names if name]
 

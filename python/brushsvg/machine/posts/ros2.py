@@ -134,9 +134,9 @@ def _flange_poses(table: np.ndarray, cell: Cell) -> tuple[np.ndarray, np.ndarray
         tip_rotations = turned_to(table[:, AXIS_COLUMN:], tip_rotations)
         is_upright_at = is_parallel(table[:, AXIS_COLUMN:], robot_from_paper(cell)[:3, 2])
         tip_rotations[is_upright_at] = rotation(upright_deg(cell))
-        turned = np.array([quaternion(each) for each in tip_rotations @ flange[:3, :3]]).reshape(-1, 4)[
-            :, [1, 2, 3, 0]
-        ]
+        turned = np.array(
+            [quaternion(rotation_matrix) for rotation_matrix in tip_rotations @ flange[:3, :3]]
+        ).reshape(-1, 4)[:, [1, 2, 3, 0]]
     else:
         w, *xyz = quaternion(tip_rotations @ flange[:3, :3])
         turned = np.array([*xyz, w])

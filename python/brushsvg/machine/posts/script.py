@@ -53,19 +53,19 @@ def split_into_parts(
     rises_again: whether the tool goes straight up in each part, or only in the first one.
     """
     max_lines = MAX_PROGRAM_LINES[program.cell.language] - lines_around
-    text, line_count, risen = "", 0, False
+    part_text, line_count, risen = "", 0, False
     for section in program.sections():
-        more = "\n" + "".join(write_section(section, words, risen))
-        if text and line_count + more.count("\n") > max_lines:
-            yield text
-            text, line_count = "", 0
+        section_text = "\n" + "".join(write_section(section, words, risen))
+        if part_text and line_count + section_text.count("\n") > max_lines:
+            yield part_text
+            part_text, line_count = "", 0
             if rises_again:
                 risen = False
-                more = "\n" + "".join(write_section(section, words, risen))
-        text += more
-        line_count += more.count("\n")
+                section_text = "\n" + "".join(write_section(section, words, risen))
+        part_text += section_text
+        line_count += section_text.count("\n")
         risen = risen or bool(section.moves)
-    yield text
+    yield part_text
 
 
 def name_part(setup: str, number: int) -> str:

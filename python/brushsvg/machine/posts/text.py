@@ -41,8 +41,10 @@ def make_unique_names(names: Sequence[str]) -> list[str]:
     """Return the names, each with its number if a program would write it like another name or as nothing."""
     short_names = [spelled(name)[:NAMED] for name in names]
     has_own_name = [
-        short_names.count(each) == 1 and re.search("[0-9A-Za-z]", each) and not each.startswith("station ")
-        for each in short_names
+        short_names.count(short_name) == 1
+        and re.search("[0-9A-Za-z]", short_name)
+        and not short_name.startswith("station ")
+        for short_name in short_names
     ]
     return [
         name if is_kept else f"station {number}, {name}"

@@ -63,8 +63,10 @@ def urscript(program: Program) -> Iterator[str]:
 
 def programs(text: str) -> dict[str, str]:
     """Return the texts of a stream of programs, keyed by the end of their file names. The first one has ""."""
-    found = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
-    return {part_suffix(count) if count > 1 else "": each for count, each in enumerate(found, 1)}
+    part_texts = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
+    return {
+        part_suffix(count) if count > 1 else "": part_text for count, part_text in enumerate(part_texts, 1)
+    }
 
 
 def part_suffix(count: int) -> str:
@@ -73,8 +75,8 @@ def part_suffix(count: int) -> str:
 
 def called(text: str) -> list[str]:
     """Return the end of the name of the next file, if there is one."""
-    found = re.findall(rf'^ *textmsg\("{NEXT} (\d{{1,6}})"\) *$', text, re.MULTILINE)
-    return [part_suffix(int(count)) for count in found]
+    part_numbers = re.findall(rf'^ *textmsg\("{NEXT} (\d{{1,6}})"\) *$', text, re.MULTILINE)
+    return [part_suffix(int(count)) for count in part_numbers]
 
 
 def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:

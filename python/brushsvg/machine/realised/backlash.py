@@ -85,7 +85,7 @@ def first_side(ways_mm: np.ndarray) -> np.ndarray:
 
 
 def _compensate_sections(sections: Iterator[Section], half: np.ndarray, cell: Cell) -> Iterator[Section]:
-    here, side = None, np.zeros(2)
+    last_point, side = None, np.zeros(2)
     for section in sections:
         steps: list[Move | Wait] = []
         for number, step in enumerate(section.steps):
@@ -94,14 +94,14 @@ def _compensate_sections(sections: Iterator[Section], half: np.ndarray, cell: Ce
                 continue
             move = replace(step, points_mm=_round_sideways(step.points_mm, cell), blends_mm=None)
             next_side = _next_side(section.steps[number + 1 :], move.points_mm[-1], side, cell)
-            if here is None:  # the axis leaves its play on the way to the other side, from any place
-                here, side = move.points_mm[0], -next_side
-            moves, side = _compensate_moves(move, here, side, half)
+            if last_point is None:  # the axis leaves its play on the way to the other side, from any place
+                last_point, side = move.points_mm[0], -next_side
+            moves, side = _compensate_moves(move, last_point, side, half)
             steps += moves
-            here = move.points_mm[-1]
+            last_point = move.points_mm[-1]
             if move.meaning == "travel" and (side != next_side).any():
                 side = next_side  # take up the play in the air, not on the paper
-                steps.append(replace(move, points_mm=_offset_to_side(here[None], side, half)))
+                steps.append(replace(move, points_mm=_offset_to_side(last_point[None], side, half)))
         yield Section(section.title, tuple(steps))
 
 

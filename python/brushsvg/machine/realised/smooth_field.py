@@ -36,9 +36,9 @@ def max_field_slope(machine: Machine) -> float:
 
     The change is linear in u and v, so it is largest at a corner.
     """
-    ((a, b, c), (d, e, f)), (along, up) = machine.field_mm, machine.field_reach_mm
-    by_x = max(2 * abs(a) + abs(b), 2 * abs(d) + abs(e)) / along
-    by_y = max(2 * abs(c) + abs(b), 2 * abs(f) + abs(e)) / up
+    ((a, b, c), (d, e, f)), (reach_x, reach_y) = machine.field_mm, machine.field_reach_mm
+    by_x = max(2 * abs(a) + abs(b), 2 * abs(d) + abs(e)) / reach_x
+    by_y = max(2 * abs(c) + abs(b), 2 * abs(f) + abs(e)) / reach_y
     return max(by_x, by_y)
 
 
@@ -85,10 +85,11 @@ def beyond_field(passes, cell: Cell) -> list[Notice]:
     stroke = max(far_mm, key=far_mm.get, default="")
     if not far_mm or far_mm[stroke] <= MIN_REPORTED_BEYOND_MM:
         return []
-    (x, y), (along, up) = cell.machine.field_middle_mm, cell.machine.field_reach_mm
+    (x, y), (reach_x, reach_y) = cell.machine.field_middle_mm, cell.machine.field_reach_mm
     sentence = (
         f"the tool goes {far_mm[stroke]:.1f} mm beyond where the field of cell {cell.name} was measured, outside the "
-        f"ranges [{x - along:.1f}, {x + along:.1f}] and [{y - up:.1f}, {y + up:.1f}] mm: there it is taken to be as at "
+        f"ranges [{x - reach_x:.1f}, {x + reach_x:.1f}] "
+        f"and [{y - reach_y:.1f}, {y + reach_y:.1f}] mm: there it is taken to be as at "
         "its edge"
     )
     return [
