@@ -190,11 +190,11 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
     """Return for each load the stations to visit before it.
 
     Loads before first_stroke are not run and have no visits. For a cell without paint, the visits are changes of the
-    pen. The result is () if all strokes have one colour, or if the program cannot wait for a person.
+    pen. The result is then () if all strokes have one colour, or if the program cannot wait for a person.
 
     Paint is fetched before the first stroke and before every change of colour. It is also fetched before every stroke
     or layer if the cell says so, and when the paint on the brush would not last. More paint of the same colour needs
-    only a short visit. A stroke's setting reload overrides these rules.
+    only a short visit. A stroke's setting reload requests paint or does without it, instead of the cell's rule.
 
     Raises Error for a colour that no station serves.
     """
