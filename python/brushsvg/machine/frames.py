@@ -21,9 +21,9 @@ def frame_of_pose(origin_mm, rotation_deg) -> np.ndarray:
 
 
 def rotation(rotation_deg) -> np.ndarray:
-    """Return the rotation Rz Ry Rx (3, 3) of angles about the fixed axes x, y, z [degrees].
+    """Return the rotation Rz Ry Rx (3, 3) of angles [degrees].
 
-    Right angles are exact.
+    The angles are about the fixed axes x, y and z. Right angles are exact.
     """
     result = np.eye(3)
     for axis, angle in enumerate(np.asarray(rotation_deg, dtype=float)):
@@ -41,7 +41,10 @@ def rotation(rotation_deg) -> np.ndarray:
 
 
 def rotation_deg(turned: np.ndarray) -> np.ndarray:
-    """Return the angles [degrees] about the fixed axes x, y, z of a rotation (3, 3), the inverse of `rotation`."""
+    """Return the angles [degrees] of a rotation (3, 3), the inverse of `rotation`.
+
+    The angles are about the fixed axes x, y and z.
+    """
     about_x = np.arctan2(turned[2, 1], turned[2, 2])
     about_y = np.arctan2(-turned[2, 0], np.hypot(turned[2, 1], turned[2, 2]))
     about_z = np.arctan2(turned[1, 0], turned[0, 0])
@@ -49,7 +52,10 @@ def rotation_deg(turned: np.ndarray) -> np.ndarray:
 
 
 def zyz_deg(turned: np.ndarray) -> np.ndarray:
-    """Return the angles [degrees] about z, the new y and the newest z of a rotation (3, 3)."""
+    """Return the z-y-z angles [degrees] of a rotation (3, 3).
+
+    The rotation is about z, then the new y, then the newest z.
+    """
     sideways = np.hypot(turned[0, 2], turned[1, 2])
     b = np.arctan2(sideways, turned[2, 2])
     if sideways > 1e-9:
@@ -102,7 +108,10 @@ def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
 
 
 def normal_tilt_deg(frame: np.ndarray) -> float:
-    """Return the angle [degrees] between a frame's z axis and the z axis of the frame it is given in."""
+    """Return the angle [degrees] of a frame's z axis.
+
+    It is the angle to the z axis of the frame in which the frame is given.
+    """
     return float(np.degrees(np.arctan2(np.hypot(frame[0, 2], frame[1, 2]), frame[2, 2])))
 
 
@@ -112,12 +121,15 @@ def moved(frame: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def is_upright(frame: np.ndarray) -> bool:
-    """Return whether a circle on the paper is a circle in the x-y plane of the frame in which the paper is given."""
+    """Return whether a frame's z axis is upright.
+
+    Circles on the paper are then circles in the x-y plane of the frame in which the paper is given.
+    """
     return bool(np.allclose(frame[:3, 2], (0, 0, 1), atol=1e-9))
 
 
 def quaternion(turned: np.ndarray) -> np.ndarray:
-    """Return the quaternion w, x, y, z (4,) of a rotation (3, 3), with w not negative.
+    """Return the quaternion w, x, y, z (4,) of a rotation (3, 3); w >= 0.
 
     The largest part is found first (Shepperd's method). Half a turn, at which a tool points down, is therefore as exact
     as any other rotation.
@@ -167,7 +179,10 @@ def apart_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def rotation_vector(turned: np.ndarray) -> np.ndarray:
-    """Return the rotation vector (3,) of a rotation (3, 3): axis times angle [rad], with the angle in [0, pi]."""
+    """Return the rotation vector (3,) of a rotation (3, 3).
+
+    It is axis times angle [rad], with the angle in [0, pi].
+    """
     turn = quaternion(turned)
     sine = np.linalg.norm(turn[1:])
     angle = 2 * np.arctan2(sine, turn[0])

@@ -1,4 +1,4 @@
-"""Moves, waits, sections and programs, which posts translate into a robot's language."""
+"""Moves, waits, sections and programs, which posts write as robot languages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ MEANINGS_AT_SAFE_HEIGHT = ("travel", "retract")  # at or above the safe height, 
 
 @dataclass(frozen=True)
 class Arc:
-    """A circle in the x-y plane. turn is 1 for counter-clockwise and -1 for clockwise."""
+    """A circle in the x-y plane.
+
+    turn: 1 for counter-clockwise, -1 for clockwise.
+    """
 
     centre_mm: tuple[float, float]
     turn: int
@@ -27,7 +30,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Move:
-    """Straight lines through points_mm (n, 3) at one speed, or the circle through these points.
+    """Straight lines at one speed, or a circle.
 
     meaning: travel (at the safe height), approach (down to the clearance), land (down to the first pose), paint (along
         the poses), lift (up to the clearance), retract (up to the safe height), dip (into the paint and out), wipe, or
@@ -77,7 +80,10 @@ class Section:
 
     @property
     def drawn_mm_s(self) -> float:
-        """Highest speed [mm/s] at which a stroke is drawn. For a dab, the speed of its landing."""
+        """Highest speed [mm/s] at which a stroke is drawn.
+
+        For a dab, it is the speed of the landing.
+        """
         speeds = [
             [move.speed_mm_s for move in self.moves if move.meaning == kind] for kind in ("paint", "land")
         ]
@@ -152,7 +158,10 @@ def _move_step_to_frame(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
 
 
 def set_programmed_speeds(section: Section, cell: Cell) -> Section:
-    """Round speeds down for a language of whole speeds, but not below its lowest speed."""
+    """Round speeds down for a language of whole speeds.
+
+    No speed becomes lower than the language's lowest speed.
+    """
     unit = LEAST_SPEED_MM_S.get(cell.language)
     if unit is None:
         return section
@@ -194,7 +203,10 @@ def _duration_s(program: Program) -> float:
 
 
 def settling_s(move: Move, here_mm: np.ndarray | None, cell: Cell) -> float:
-    """Return how long [s] a move waits for its servo or pen to settle after each lift."""
+    """Return how long [s] a move waits for its servo or pen to settle.
+
+    It waits after each move of the lift alone.
+    """
     if cell.pen and cell.language == "marlin-servo":
         return cell.pen.settle_s if move.meaning in ("land", "lift") else 0.0
     if not cell.servo or not cell.servo.settle_s:
@@ -206,7 +218,10 @@ def settling_s(move: Move, here_mm: np.ndarray | None, cell: Cell) -> float:
 
 
 def painting_mm(program: Program) -> float:
-    """Return the length [mm] of the tool's path on the paper, with circles as circles."""
+    """Return the length [mm] of the tool's path on the paper.
+
+    Arcs count with their own length, not with that of their chords.
+    """
     total_mm, last_point = 0.0, None
     for move in (move for section in program.sections() for move in section.moves):
         total_mm += length_mm(move, last_point) if move.meaning == "paint" else 0.0
@@ -228,7 +243,7 @@ def duration_of_path_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float
 
 
 def length_mm(move: Move, start_mm: np.ndarray | None) -> float:
-    """Return the length [mm] of the path from the tool's place to the last point of a move.
+    """Return the length [mm] of a move from the tool's place.
 
     It equals the last value of distances(). Most moves have few points, for which arrays are ten times slower.
     """
@@ -244,7 +259,7 @@ def length_mm(move: Move, start_mm: np.ndarray | None) -> float:
 
 
 def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
-    """Return the path lengths [mm] from the tool's place to each point of a move, (n,).
+    """Return the path lengths [mm] to each point of a move, (n,).
 
     here: (3,) the tool's place. If it is None, the path begins at the first point.
     """
@@ -260,9 +275,9 @@ def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
 
 
 def times_s(along_mm: np.ndarray, length_mm: float, speed_mm_s: float, cell: Cell) -> np.ndarray:
-    """Return the times [s] at which a move from rest to rest reaches path lengths along it.
+    """Return the times [s] at which a move reaches path lengths.
 
-    The speed rises with the cell's acceleration, stays constant, and falls.
+    The move is from rest to rest. The speed rises with the cell's acceleration, stays constant, and falls.
 
     along_mm: path lengths [mm].
     length_mm: length of the move [mm].

@@ -1,4 +1,4 @@
-"""Exact extents of straight and circular moves: bounds, distances and intersections with boxes."""
+"""Exact bounds, distances and box intersections of lines and circles."""
 
 from __future__ import annotations
 
@@ -55,7 +55,10 @@ def ways(paths, circles=()) -> Ways:
 
 
 def paths_in_frame(frame: np.ndarray, moves: Ways) -> Ways:
-    """Transform moves into the frame in which their own frame, a pose (4, 4), is given."""
+    """Transform moves into the frame in which their own frame is given.
+
+    frame: (4, 4) pose of the moves' frame.
+    """
     turned, shift = frame[:3, :3].T, frame[:3, 3]
     places = (points @ turned + shift for points in (moves.starts, moves.ends, moves.centre))
     return Ways(*places, moves.spoke @ turned, moves.across @ turned, moves.rise @ turned, moves.sweep_rad)
@@ -106,7 +109,10 @@ def distances_from_origin(moves: Ways) -> tuple[float, float]:
 
 
 def find_place_inside(moves: Ways, low, high) -> np.ndarray | None:
-    """Return a place (3,) where a move is inside the box from low to high, or None if there is none."""
+    """Return a place (3,) where a move is inside a box, or None.
+
+    low, high: (3,) corners of the box.
+    """
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     step = moves.ends - moves.starts
     moving = step != 0
@@ -132,7 +138,10 @@ def find_place_inside(moves: Ways, low, high) -> np.ndarray | None:
 
 
 def _angles_between_planes(moves: Ways, k: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return one angle [rad] in each part of a circle that the planes of a box's six sides divide."""
+    """Return one angle [rad] in each part of a circle between planes.
+
+    The planes are those of a box's six sides.
+    """
     amplitude = np.hypot(moves.spoke[k], moves.across[k])
     phase = np.arctan2(moves.across[k], moves.spoke[k])
     crossing_angles = []
@@ -149,7 +158,7 @@ def _angles_between_planes(moves: Ways, k: int, low: np.ndarray, high: np.ndarra
 def _harmonic_range(
     spoke: np.ndarray, across: np.ndarray, sweep_rad: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the smallest and the largest value of spoke cos t + across sin t for t from 0 to sweep_rad."""
+    """Return the range of spoke cos t + across sin t for t from 0 to sweep_rad."""
     end = spoke * np.cos(sweep_rad) + across * np.sin(sweep_rad)
     amplitude, phase = np.hypot(spoke, across), np.arctan2(across, spoke)
     least = np.where((phase + np.pi) % (2 * np.pi) <= sweep_rad, -amplitude, np.minimum(spoke, end))

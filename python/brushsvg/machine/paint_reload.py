@@ -1,4 +1,4 @@
-"""Reloading of paint: the stations to visit before each stroke, and the places where long strokes are split."""
+"""Reload paint: stations to visit before strokes, and splits of long strokes."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ from .tool_axes import axes_of, normalize
 
 @dataclass(frozen=True)
 class PlanInLoads:
-    """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
+    """A plan as a machine runs it, with each stroke in one or more passes.
 
-    This is not a plan: it counts loads instead of strokes, and no load is split again. The attribute `load` of a part
-    is its number in its stroke, also in a plan.json. As a rule, plans are stored unsplit and are split for the machine.
+    Paint can be fetched between the passes. This is not a plan: it counts loads instead of strokes, and no load is
+    split again. The attribute `load` of a part is its number in its stroke, also in a plan.json. As a rule, plans are
+    stored unsplit and are split for the machine.
 
     lasts_mm: path length [mm] that a load of paint lasts; infinite unless the brush gives it and the cell counts it.
     """
@@ -53,10 +54,11 @@ class PlanInLoads:
 
 
 def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
-    """Split every stroke that is longer than one load of paint lasts into parts: stroke, stroke+2, ...
+    """Split strokes into parts that one load of paint can paint.
 
-    A stroke stays whole if the cell does not count the length, or if its setting reload is false. Parts that are
-    already split stay as they are. A pass that begins or ends below the paper is set down or lifted there.
+    The parts are named stroke, stroke+2, ... A stroke stays whole if the cell does not count the length, or if its
+    setting reload is false. Parts that are already split stay as they are. A pass that begins or ends below the paper
+    is set down or lifted there.
 
     Passes are also prepared for the machine. Poses are added to
 
@@ -104,10 +106,10 @@ def _split_for_map(a_pass, machine):
 
 
 def load_length_mm(brush: _core.Brush, cell: Cell) -> float:
-    """Return the path length [mm] that a load of paint lasts, for a cell that counts it.
+    """Return the path length [mm] that a load of paint lasts.
 
-    It is the smallest of three lengths: the cell's own, the length until the hairs run dry, and the length until the
-    marks narrow by the amount that the cell allows.
+    The cell must count the length. It is the smallest of three lengths: the cell's own, the length until the hairs run
+    dry, and the length until the marks narrow by the amount that the cell allows.
 
     Raises Error if no part of a stroke could be that short.
     """
@@ -127,7 +129,10 @@ def load_length_mm(brush: _core.Brush, cell: Cell) -> float:
 
 
 def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
-    """Report a cell that limits the narrowing of marks if the brush does not say how they narrow."""
+    """Report that a limit of narrowing has no effect.
+
+    The cell has the limit, but the brush does not say how its marks narrow.
+    """
     if not cell.reload or not cell.reload.narrower_percent or brush.paint:
         return []
     sentence = (
@@ -151,7 +156,7 @@ def _can_write_circles(cell: Cell) -> bool:
 
 
 def _start_and_end_on_paper(a_pass):
-    """Set the brush down on the spot, or lift it, if a pass begins or ends below the paper."""
+    """Add a landing or lift on the spot if a pass begins or ends below the paper."""
     poses = np.asarray(a_pass.poses_mm)
     below = poses[[0, -1], 2] < 0 if len(poses) else np.zeros(2, dtype=bool)
     if not below.any():
@@ -169,7 +174,10 @@ def _start_and_end_on_paper(a_pass):
 
 
 def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:
-    """Report strokes with parts that are longer than a load of paint lasts, unless they must not be split."""
+    """Report strokes with parts that are longer than a load of paint lasts.
+
+    Strokes that must not be split are not reported.
+    """
     if not cell.reload or cell.reload.when != "length":
         return []
     every_mm, deepest_mm = load_length_mm(brush, cell), brush.depth_range_mm[1]
@@ -229,12 +237,14 @@ def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple
 
 
 def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
-    """Return for each pass the path lengths [mm] at which paint was just fetched, as `narrow` needs them.
+    """Return for each pass the path lengths [mm] at which paint was fetched.
 
-    The path lengths are measured along the path of the TCP.
+    `narrow` needs this result. The path lengths are measured along the path of the TCP.
 
-    passes: passes of the plan, or the loads themselves. If the cell does not fetch paint, every pass begins freshly
-        dipped, except passes with reload set to false, which continue with the paint left by the pass before.
+    If the cell does not fetch paint, every pass begins freshly dipped. Only passes with reload set to false continue
+    with the paint left by the pass before.
+
+    passes: passes of the plan, or the loads themselves.
     """
     if not cell.reload:
         return dips_without_cell(passes)
@@ -265,10 +275,10 @@ def dips_without_cell(passes) -> list[list[float]]:
 
 
 def _part_start_mm(stroke, part, after_mm: float) -> float:
-    """Return the path length [mm] along a stroke at which one of its parts begins, including its landing.
+    """Return the path length [mm] along a stroke at which a part begins.
 
-    It is found from the moves that the stroke and the part share, beyond the beginning of the part before. If they
-    share none, it is found from the part's first pose.
+    The part's landing is included. It is found from the moves that the stroke and the part share, beyond the beginning
+    of the part before. If they share none, it is found from the part's first pose.
 
     after_mm: path length at which the part before begins.
     """
@@ -336,9 +346,9 @@ def _pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tupl
 
 
 def _plotter_pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
-    """Return for each load the pen that a plotter takes before it, including the first pen.
+    """Return for each load the pen that a plotter takes before it.
 
-    Strokes without a colour are drawn with pen 1. Raises Error for a colour that no pen has.
+    The first pen is included. Strokes without a colour are drawn with pen 1. Raises Error for a colour that no pen has.
     """
     colours = [colour.lower() for colour in cell.pen.colours]
     visits_of_loads, last_colour = [()] * (first_stroke - 1), ""
@@ -362,7 +372,10 @@ def pens_changed(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> int:
 
 
 def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[Notice]:
-    """Report strokes of several colours that are painted in one run without an explicit option."""
+    """Report strokes of several colours that are painted in one run.
+
+    Cells with pause_per_colour set to false are not reported.
+    """
     if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
         return []
     sentence = f"strokes of several colours are painted with one pen: {reason_for_no_waiting(cell)}"

@@ -1,4 +1,4 @@
-"""Checks before a plan is run on a machine: limits, the sheet, cut corners and rounding."""
+"""Check a plan before it is run: limits, the sheet, cut corners and rounding."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def within_limits(
     job: Job = WHOLE_JOB,
     of_drawing: bool = True,
 ) -> Walked:
-    """Check a job for limits that it breaks and edges of the sheet that its marks cross."""
+    """Check a job for broken limits and marks that cross the sheet's edges."""
     walk = walked(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
@@ -86,7 +86,7 @@ MAX_AIR_CUT_MM = 0.04
 
 
 def check_rounding(cell: Cell, tolerance_mm: float) -> None:
-    """Raise Error if rounding to the units of the cell's language moves places too far.
+    """Raise Error if the units of the cell's language are too coarse.
 
     The limit is a fifth of a plan's tolerance, or a quarter if the language has a unit of its own.
     """
@@ -144,7 +144,10 @@ _MAX_EDGE_SHIFT_RATIO = 5.0
 
 
 def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, float, float]:
-    """Return left, bottom, right and top of all paint [mm]. Raises Error if nothing touches the paper."""
+    """Return left, bottom, right and top of all paint [mm].
+
+    Raises Error if nothing touches the paper.
+    """
     bounds = np.array([_core.painted_bounds(trace, brush) for trace in marks.passes]).reshape(-1, 4)
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     if not len(bounds):
@@ -173,7 +176,9 @@ def find_blend_shifts(
     first_stroke: int,
     written: Callable[[int], Written],
 ) -> list[Notice]:
-    """Report strokes whose marks the cutting of corners moves by more than the tolerance.
+    """Report strokes whose marks move too far when corners are cut.
+
+    A mark may move by the tolerance.
 
     The path with cut corners is simulated. Its widest section is compared with the plan where the brush is taut.
 
@@ -244,8 +249,8 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
 
     radii_of: maps poses (n, 3) and arcs to the blend radius of each corner, see blend_radii.
 
-    Returns for each pass the pass with cut corners, and for each point of its path the planned pose to which the point
-    belongs, as a fractional index.
+    Returns the pass with cut corners for each pass. It also returns the planned pose of each point of the path, as a
+    fractional index.
     """
     starts = np.cumsum([0, *(len(a_pass.poses_mm) for a_pass in passes)]).tolist()
     poses = np.vstack([a_pass.poses_mm for a_pass in passes])
@@ -274,7 +279,9 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
 
 
 def _largest_shift_mm(planned_trace, run, at: np.ndarray, brush) -> float:
-    """Return the largest distance [mm] between the widest sections of two traces of one stroke.
+    """Return the largest distance [mm] of the widest sections of two traces.
+
+    Both traces are of one stroke.
 
     at: planned pose of each pose that is run, as a fractional index.
     """
@@ -293,7 +300,7 @@ def _largest_shift_mm(planned_trace, run, at: np.ndarray, brush) -> float:
 
 
 def _moving_rows(trace) -> slice:
-    """Return the rows from the place where the brush is set down to the place where it is lifted.
+    """Return the rows of a trace between its landing and its lift.
 
     All rows of a landing or lift on the spot have the same pose, so no place can be found for them.
     """

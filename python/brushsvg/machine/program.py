@@ -75,7 +75,10 @@ class Walked:
     problems: list[Notice]
 
     def allowed(self) -> Program:
-        """Return the program. Raises Error, naming stroke and range, if there is a problem."""
+        """Return the program if there is no problem.
+
+        Raises Error, naming stroke and range, for the first problem.
+        """
         for notice in self.problems:
             raise Error(notice.sentence, where=notice.where, code=notice.code)
         return self.made
@@ -133,7 +136,10 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
 
 
 def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
-    """Report each stroke that alone has more lines than a program of the language should have."""
+    """Report each stroke that alone is too long for one program.
+
+    The language limits the lines of a program.
+    """
     max_lines = MAX_PROGRAM_LINES.get(cell.language)
     return [
         Notice(
@@ -160,7 +166,10 @@ def _pass_at_servo_places(a_pass, made: Program):
 
 
 def astray_in(made: Program, sheet_mm) -> list[Notice]:
-    """Report moves of a program that leave the workspace, including the rise before the first move."""
+    """Report moves of a program that leave the workspace.
+
+    The rise before the first move is included.
+    """
     ends: list = []
     home_sections = _home_sections(made)
 
@@ -194,9 +203,10 @@ def _home_sections(made: Program) -> tuple[Section, ...]:
 
 
 def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
-    """Report what the cell's arm cannot do of a program, with the place that the paper would need.
+    """Report what the cell's arm cannot do of a program.
 
-    Reports nothing if the cell has no arm, or if the library for joints is not installed.
+    The advice is the place that the paper would need. Reports nothing if the cell has no arm, or if the library for
+    joints is not installed.
     """
     if made.cell.arm is None or not is_installed():
         return []
@@ -209,9 +219,11 @@ def _fits_in_cache(loads: PlanInLoads, job: Job) -> bool:
 
 
 def written_of(loads: PlanInLoads, cell: Cell, job: Job, was_read: bool = False) -> Callable[[int], Written]:
-    """Return a function that gives the written form of a load, by its number from 1 on.
+    """Return a function that gives the written form of a load by its number.
 
-    The results are kept for a small plan. was_read: whether the loads were read from a program.
+    Loads are numbered from 1. The results are kept for a small plan.
+
+    was_read: whether the loads were read from a program.
     """
     frame = robot_from_paper(cell, job.z_offset_mm)
 
@@ -228,9 +240,10 @@ def unchecked_program(
     job: Job = WHOLE_JOB,
     written: Callable[[int], Written] | None = None,
 ) -> Program:
-    """Make a program without checking its limits, for example for its duration or picture.
+    """Make a program without checking its limits.
 
-    A small plan's sections are made only once, because limits, time, length and text all need them.
+    It can be used for a duration or a picture. A small plan's sections are made only once, because limits, time, length
+    and text all need them.
     """
     frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
     numbered_loads = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
@@ -281,7 +294,9 @@ def names_of_stations(cell: Cell) -> dict[Station, str]:
 
 
 def stations_astray(brush, cell: Cell, frame: np.ndarray, sheet_mm=None) -> list[Notice]:
-    """Report visits to stations that leave the workspace, including dips, stirring and wiping.
+    """Report visits to stations that leave the workspace.
+
+    Dips, stirring and wiping are included.
 
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     """
@@ -351,7 +366,10 @@ def _stroke_moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ..
     first, last = (None, None) if axes is None else (axes[:1], axes[-1:])
 
     def limit_turn_speed(speed_mm_s: float, axes_there) -> float:
-        """Limit the speed, because the tool turns between the safe height, where it is upright, and the clearance."""
+        """Limit the speed of a move that turns the tool.
+
+        The tool is upright at the safe height and turns on the way to or from the clearance.
+        """
         turn_deg = 0.0 if axes_there is None else float(tilts_deg(axes_there)[0])
         return limit_turning_speed(speed_mm_s, heights.safe_mm - heights.clearance_mm, turn_deg, cell)
 

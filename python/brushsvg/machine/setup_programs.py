@@ -1,4 +1,4 @@
-"""Make the programs that are run before a job: the border, the paper's height and the first run."""
+"""Make the programs that are run before a job: border, height, first run."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ LAST_STROKE_MM, ONE_STROKE_DEPTH_MM = 30.0, 2.0
 
 
 def around(bounds_mm) -> tuple[float, float, float, float]:
-    """Round (left, bottom, right, top) outwards to whole hundredths of a millimetre, as a header shows them."""
+    """Round (left, bottom, right, top) outwards to hundredths of a millimetre.
+
+    A header shows them with two decimals.
+    """
     left, bottom, right, top = bounds_mm
     rounded_sides = [math.floor(side * 100 + 1e-6) / 100 for side in (left, bottom, -right, -top)]
     return (rounded_sides[0], rounded_sides[1], -rounded_sides[2], -rounded_sides[3])
@@ -257,7 +260,7 @@ def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell
 
 
 def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
-    """Make moves to and fro over a whole sheet, at the safe height and touching the paper.
+    """Make moves to and fro over a whole sheet, high and touching the paper.
 
     They stand for everything that a drawing on the sheet may need from an arm. The program is only checked for the arm
     and never run. Its limits are not checked here.
@@ -281,7 +284,10 @@ def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program
 
 
 def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
-    """Return the heights [mm] of the strokes, highest first. Raises Error for less than 2 or more than 100."""
+    """Return the heights [mm] of the strokes, highest first.
+
+    Raises Error for less than 2 or more than 100 strokes.
+    """
     count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
     if not 2 <= count <= 100:
         raise Error(
@@ -292,7 +298,10 @@ def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np
 
 
 def _stroke_starts(count: int, sheet_mm) -> list[tuple[float, float]]:
-    """Return the start (x, y) [mm] of each stroke: down from the sheet's top, then in the next column."""
+    """Return the start (x, y) [mm] of each stroke.
+
+    Strokes go down from the sheet's top, then continue in the next column.
+    """
     width, height = sheet_mm
     rows = int((height - 2 * LANE_SPACING_MM) // LANE_SPACING_MM) + 1
     pitch = TEST_STROKE_MM * LONG_STROKE_RATIO + LANE_SPACING_MM

@@ -1,4 +1,4 @@
-"""Tilted tool axes: the brush is turned about its tip, the shortest way from upright."""
+"""Tilted tool axes: the brush turns about its tip, the shortest way."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def is_parallel(axes: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 
 def turned_to(axes: np.ndarray, upright: np.ndarray) -> np.ndarray:
-    """Return the rotations (..., 3, 3) of the tool with its z axis against axes (..., 3).
+    """Return the rotations (..., 3, 3) of the tool along axes (..., 3).
 
-    The tool is turned the shortest way from its upright rotation (3, 3), about the line across both directions. It
-    therefore turns as little as possible about its own axis.
+    The tool's z axis points against the axis. The tool is turned the shortest way from its upright rotation (3, 3),
+    about the line across both directions. It therefore turns as little as possible about its own axis.
 
     Rodrigues: with the upright axis n, the axis a, v = n x a and c = n . a, R = I + [v] + [v]^2 / (1 + c).
     The axis a must not be -n.
@@ -57,12 +57,15 @@ def turned_to(axes: np.ndarray, upright: np.ndarray) -> np.ndarray:
 
 
 def between_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the angles [degrees] between unit vectors (..., 3). Small angles are exact, too."""
+    """Return the angles [degrees] between unit vectors (..., 3).
+
+    Small angles are exact, too.
+    """
     return np.degrees(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
 
 
 def rotation_axes(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the axes (..., 3) about which unit vectors (..., 3) turn to others the shortest way.
+    """Return the axes (..., 3) of the shortest turns between unit vectors (..., 3).
 
     The axis is 0 for equal vectors.
     """

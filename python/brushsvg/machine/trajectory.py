@@ -20,13 +20,13 @@ MIN_LENGTH_MM = 1e-6
 def make_timed_sections(program: Program) -> Iterator[tuple[str, np.ndarray]]:
     """Yield (title, rows) for each section.
 
-    rows: (n, 6) the time from the first place on [s], x, y and z [mm, the program's frame], the highest speed of the
-        move [mm/s], and POSE_ROW, WAY_ROW or REST_ROW. A program that tilts the brush has rows (n, 9). They end with
-        the unit vector from the tip up along the brush, which turns evenly along a line.
+    rows: (n, 6) the time since the first place [s], x, y and z [mm, the program's frame], the highest speed of the
+        move [mm/s], and the kind of row: POSE_ROW, WAY_ROW or REST_ROW. A program that tilts the brush has rows (n, 9).
+        They end with the unit vector from the tip up along the brush, which turns evenly along a line.
 
     A move begins and ends at rest, and stops at a corner that must not be cut. Along straight lines, the speed changes
-    with the cell's acceleration a. At a joint of two lines that turns by t and may be cut from a distance r on, the
-    speed v is limited by the arc that touches both lines there: v^2 tan(t/2) / r <= a. Places are rounded to the cell's
+    with the cell's acceleration a. At a joint, the lines turn by t, and the corner may be cut from a distance r on. The
+    arc that touches both lines there limits the speed v: v^2 tan(t/2) / r <= a. Places are rounded to the cell's
     decimals.
     """
     a, decimals = program.cell.speeds.acceleration_mm_s2, program.cell.decimals
@@ -64,7 +64,9 @@ def _append_move_rows(
     decimals: int,
     rows: list,
 ) -> tuple[float, tuple, tuple]:
-    """Append the rows of a move, and return when and where it ends and the brush's axis there.
+    """Append the rows of a move, and return its end.
+
+    The end is a time [s], a place, and the brush's axis.
 
     axes: (n, 3) the brush's axes at the points of the move.
     """
@@ -97,9 +99,10 @@ def _append_move_rows(
 def time_lines(
     lengths: list[float], caps: list[float], tops: list[float], a: float, now_s: float = 0.0
 ) -> Iterator[tuple[int, float, float | None]]:
-    """Yield (line, time [s], path length on the line [mm]) for n consecutive lines, from rest to rest.
+    """Yield (line, time [s], path length [mm]) for consecutive lines.
 
-    The path length is None for the end of a line.
+    The motion is from rest to rest. The path length is measured on the line. The path length is None for the end of a
+    line.
 
     lengths: (n,) lengths of the lines [mm].
     caps: (n - 1,) highest speed in each joint [mm/s].
@@ -145,7 +148,10 @@ def joint_speed_limits(
 
 
 def _speeds_at_joints(lengths: list[float], caps: list[float], tops: list[float], a: float) -> list[float]:
-    """Return the speeds at both ends and in all joints that can be reached, and braked from in time."""
+    """Return the speeds [mm/s] at both ends and in all joints.
+
+    They can be reached, and braked from in time.
+    """
     speeds = [0.0, *map(min, caps, tops[:-1], tops[1:]), 0.0]
     for k, length in enumerate(lengths):
         if speeds[k + 1] > speeds[k]:

@@ -79,10 +79,10 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
 def find_astray_sections(
     sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None
 ) -> list[Notice]:
-    """Report each limit of place that the moves of sections break, also between sections.
+    """Report each limit of place that the moves of sections break.
 
-    Each notice names the stroke or station. The path to the first move is not checked, because the tool's place before
-    it is not known.
+    Moves between sections are included. Each notice names the stroke or station. The path to the first move is not
+    checked, because the tool's place before it is not known.
 
     frame: (4, 4) pose of the moves' frame, which is the paper's frame, in the robot's frame.
     """
@@ -122,9 +122,9 @@ def _find_in_each_section(sections, here, frame: np.ndarray, cell: Cell, sheet_m
 
 
 def _paths_of_moves(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
-    """Return the paths of moves, from the tool's place, or from the first point if that is not known.
+    """Return the paths of moves.
 
-    Circles are also included as chords.
+    They begin at the tool's place, or at the first point if that is not known. Circles are also included as chords.
     """
     paths = [move.points_mm for move in moves]
     points = np.vstack(paths if here is None else [here, *paths])
@@ -152,8 +152,8 @@ def astray(
 ) -> list[Notice]:
     """Report each limit of place that moves break anywhere on their path.
 
-    The limits are the sheet with the margin round it, the cell's box and reach, the boxes to keep out of, and the
-    heights of a servo's table. The notices name no stroke or station yet.
+    The limits are the sheet with its margin, the cell's box, reach and boxes to keep out of, and the heights of a
+    servo's table. The notices name no stroke or station yet.
 
     frame: (4, 4) pose of the moves' frame, which is the paper's frame, in the robot's frame.
     slack_mm: how far rounding may have moved the moves.
@@ -204,7 +204,7 @@ def _check_heights(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
 
 
 def _check_pen_height(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
-    """Report the first place where a pass is not drawn at the one height that a pen has."""
+    """Report the first place that is not drawn at the height of the pen."""
     moves_sideways = np.linalg.norm(np.diff(poses[:, :2], axis=0), axis=1) > 1e-9
     drawn = np.r_[moves_sideways, False] | np.r_[False, moves_sideways]
     drawn[poses[:, 2].argmin()] = True  # the deepest place of a dab
@@ -291,7 +291,10 @@ def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
 
 
 def _outside_text(value: float, low: float, high: float) -> str:
-    """Format a length outside of a range with enough decimals to show that it is outside."""
+    """Format a length outside of a range.
+
+    It has enough decimals to show that it is outside.
+    """
     for decimals in range(1, 7):
         if not low <= float(f"{value:.{decimals}f}") <= high:
             break
@@ -299,7 +302,10 @@ def _outside_text(value: float, low: float, high: float) -> str:
 
 
 def distances_beyond_edges(bounds_mm, sheet_mm) -> dict[str, float]:
-    """Return how far [mm] (left, bottom, right, top) reaches beyond each edge of the sheet; negative inside."""
+    """Return how far [mm] bounds reach beyond each edge of the sheet.
+
+    bounds_mm: left, bottom, right and top. The distances are negative inside the sheet.
+    """
     left, bottom, right, top = bounds_mm
     width, height = sheet_mm
     return {"left": -left, "right": right - width, "lower": -bottom, "upper": top - height}

@@ -1,4 +1,4 @@
-"""Write a plan as a machine program: fetch paint, write the header, encode the files."""
+"""Write a plan as a machine program: paint, header and files."""
 
 from __future__ import annotations
 
@@ -61,7 +61,9 @@ def encode(
     cell: Cell | None = None,
     job: Job = WHOLE_JOB,
 ) -> bytes | Iterator[str]:
-    """Encode a plan as a plan.json or as a program in the cell's language, depending on the extension.
+    """Encode a plan as a plan.json or as a program.
+
+    The program is in the cell's language. The extension decides between the two.
 
     suffix: extension of the file, with its dot.
 
@@ -94,10 +96,10 @@ def encoded(
 
 
 def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | str | Iterator[str]]:
-    """Split an encoded program into files, for a language in which one program cannot hold a long job.
+    """Split an encoded program into files.
 
-    Returns {"": first file, name: another file}. A name that begins with "-" is appended to the first file's name, see
-    path_next_to.
+    Some languages cannot hold a long job in one program. Returns {"": first file, name: another file}. A name that
+    begins with "-" is appended to the first file's name, see path_next_to.
     """
     post = parted_post(suffix)
     if post is None:
@@ -129,7 +131,9 @@ def path_next_to(path: str | os.PathLike[str], name: str) -> str:
 
 
 def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str], str]) -> dict[str, str]:
-    """Return the texts of the files that a program calls, directly or indirectly, in the order of the calls.
+    """Return the texts of the files that a program calls.
+
+    Indirect calls are included. The files are in the order of the calls.
 
     path: path of the program, which need not exist yet.
     read: returns the text of a file.
@@ -144,7 +148,10 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
 
 
 def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
-    """Return the pieces of a program in a robot's language, for files with an extension."""
+    """Return the pieces of a program in a robot's language.
+
+    suffix: extension of the file.
+    """
     made = compensate_backlash(program_in_robot_frame(made)) if post.in_robot_frame else made
     pieces = post.others.get(suffix, post.write)(made)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
@@ -168,7 +175,9 @@ def write_program(
     title: str = "",
     cell: Cell | None = None,
 ) -> None:
-    """Write a plan as a plan.json or as a program in the cell's language, depending on the extension of path.
+    """Write a plan as a plan.json or as a program.
+
+    The program is in the cell's language. The extension of path decides between the two.
 
     Raises Error, and writes nothing, if paint leaves the sheet or a limit of the brush or the cell is broken.
     """

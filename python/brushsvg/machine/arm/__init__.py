@@ -1,1 +1,1 @@
-"""Joints of an arm while it paints: their limits and speeds, and places for the paper within their reach."""
+"""Joints of an arm while it paints: limits, speeds and reach."""

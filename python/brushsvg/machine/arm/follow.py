@@ -75,7 +75,11 @@ class FollowedProgram:
 
 @dataclass(frozen=True)
 class _Solutions:
-    """All joint angles (k, 6) for a place, and the turn of the joints for each mm and rad of the tool (k, 6, 6)."""
+    """All solutions for a place, and the turn of the joints there.
+
+    angles_rad: (k, 6) joint angles of each solution.
+    rates: (k, 6, 6) turn of each joint for each mm and rad of the tool.
+    """
 
     angles_rad: np.ndarray
     rates: np.ndarray
@@ -101,7 +105,9 @@ class _Posture:
 
 
 def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
-    """Return the flange's pose (4, 4) in the robot's frame, for the tip at a place with the brush upright on the paper.
+    """Return the flange's pose (4, 4) for a place of the tip, in the robot's frame.
+
+    The brush is upright on the paper.
 
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     robot_mm: (3,) place of the tip in the robot's frame.
@@ -177,10 +183,10 @@ def _rate_solutions(
 
 
 def lowest_joint_mm(joint_frames: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Return the height [mm] of the lowest joint, from the elbow on, above the table, (...).
+    """Return the height [mm] of the lowest joint above the table, (...).
 
-    The paper may be on a block and the robot on a pedestal. A joint that is lower than both the paper and the base is
-    therefore in the table.
+    Only joints from the elbow on count. The paper may be on a block and the robot on a pedestal. A joint that is lower
+    than both the paper and the base is therefore in the table.
 
     joint_frames: (..., n + 1, 4, 4) frames of the joints.
     frame: (4, 4) pose of the paper's frame in the robot's frame.
@@ -194,10 +200,10 @@ def lowest_joint_mm(joint_frames: np.ndarray, frame: np.ndarray) -> np.ndarray:
 def _continue_solutions(
     arm: Arm, postures: list[_Posture], flange: np.ndarray, place: Place, frame: np.ndarray
 ) -> _Solutions | None:
-    """Continue each posture that has not failed to the next place, by Newton's steps from its last angles.
+    """Continue each posture that has not failed to the next place.
 
-    Returns None if all angles for the place must be searched: a posture does not converge nearby, or has just passed
-    a singularity.
+    Newton's steps start from the posture's last angles. Returns None if all angles for the place must be searched: a
+    posture does not converge nearby, or has just passed a singularity.
     """
     if any(_may_have_flipped(posture, place.robot_mm) for posture in postures):
         return None
@@ -212,19 +218,25 @@ def _continue_solutions(
 
 
 def within_limits(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
-    """Return which joint angles (k, 6) can be brought within their limits by whole turns, (k,)."""
+    """Return which joint angles (k, 6) fit their limits after whole turns, (k,)."""
     return ~_leaves_limits(arm, joints_rad, joints_rad)[0].any(axis=-1)
 
 
 def far_from_singular(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
-    """Return for which joint angles (k, 6) no joint turns faster than MAX_JOINT_RATE_RAD_MM, (k,)."""
+    """Return which joint angles (k, 6) are far from a singularity, (k,).
+
+    There, no joint turns faster than MAX_JOINT_RATE_RAD_MM.
+    """
     return (
         np.linalg.norm(joint_rates(arm, joints_rad, robot_mm), axis=-1).max(axis=-1) <= MAX_JOINT_RATE_RAD_MM
     )
 
 
 def places_of_program(made: Program) -> Iterator[Place]:
-    """Yield the places to check: at and between the ends of moves, at most MAX_PLACE_SPACING_MM apart."""
+    """Yield the places of a program at which the arm is checked.
+
+    They are at and between the ends of moves, at most MAX_PLACE_SPACING_MM apart.
+    """
     last_point = last_axis = None
     for section in made.sections():
         moves = section.moves
@@ -323,12 +335,15 @@ def _advance_posture(
 
 
 def _joint_turns_rad(here_rad: np.ndarray, solutions: np.ndarray) -> np.ndarray:
-    """Return how far [rad] each joint turns to each of the solutions (k, 6), the short way round."""
+    """Return the turn [rad] of each joint to each solution (k, 6), the short way."""
     return (solutions - here_rad + np.pi) % (2 * np.pi) - np.pi
 
 
 def joint_rates(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) -> np.ndarray:
-    """Return how each joint turns [rad] for each mm of the tip along x, y or z, without turning, (..., 6, 3)."""
+    """Return the turn [rad] of each joint for each mm of the tip, (..., 6, 3).
+
+    The tip moves along x, y or z without turning.
+    """
     return _invert_jacobian(flange_rates(arm, joints_rad, robot_mm))[..., :3]
 
 
@@ -365,7 +380,9 @@ def _find_failure(posture: _Posture, place: Place, turns: np.ndarray, arm: Arm) 
 def _leaves_limits(
     arm: Arm, least_rad: np.ndarray, greatest_rad: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return which joints leave their limits despite any whole turns, and the whole turns for the others.
+    """Return which joints leave their limits, and the whole turns of the others.
+
+    A joint leaves its limits if no number of whole turns helps.
 
     least_rad, greatest_rad: (..., 6) smallest and largest angle of each joint on its path. Both results are (..., 6).
     """
@@ -411,7 +428,10 @@ def _near_singularity_notice(place: Place, arm: Arm, most: float, joints_rad: np
 
 
 def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
-    """Return whether a place is close enough behind a posture's singularity to show a wrist flip."""
+    """Return whether a place behind a singularity can show a wrist flip.
+
+    It must be within FLIP_SEARCH_MM of the place where the posture failed.
+    """
     failure = posture.failure
     if failure is None or failure.code != "singularity":
         return False
@@ -419,7 +439,7 @@ def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
 
 
 def _note_flip(posture: _Posture, solutions: _Solutions, arm: Arm) -> None:
-    """Change a posture's failure from a singularity to a wrist flip if the wrist has turned over.
+    """Report a singularity as a wrist flip if the wrist has turned over.
 
     Only solutions that are clear of the singularity again, and bend the wrist as before, are compared.
     """

@@ -1,4 +1,4 @@
-"""Forward and inverse kinematics of an arm. The library ssik solves the inverse problem."""
+"""Forward and inverse kinematics of an arm; ssik solves the inverse."""
 
 from __future__ import annotations
 
@@ -54,9 +54,10 @@ def joints_of(arm: Arm) -> JointSolver:
 
 
 def joint_frames_of(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
-    """Return the frames of the joints and the flange in the robot's frame [mm], (..., n + 1, 4, 4).
+    """Return the frames of the joints and the flange, (..., n + 1, 4, 4).
 
-    Each joint (..., n) turns about the z axis of its frame. The flange's frame is the last one.
+    They are in the robot's frame [mm]. Each joint (..., n) turns about the z axis of its frame. The flange's frame is
+    the last one.
     """
     joints_rad = np.asarray(joints_rad, dtype=float)
     base, links, flange = _fixed_frames(arm)
@@ -75,7 +76,9 @@ def joint_frames_of(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
 
 
 def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
-    """Return how the tip moves [mm/rad] and turns [rad/rad] with each joint, (..., 6, n).
+    """Return how the tip moves and turns with each joint, (..., 6, n).
+
+    The units are mm/rad and rad/rad.
 
     tip_mm: (3,) place of the tip, which the flange holds, in the robot's frame.
     """
@@ -83,7 +86,10 @@ def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.nda
 
 
 def flange_rates_at(joint_frames: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
-    """Return the result of flange_rates for the frames of joints and flange (..., n + 1, 4, 4)."""
+    """Return flange_rates for given frames of joints and flange.
+
+    joint_frames: (..., n + 1, 4, 4) frames, see joint_frames_of.
+    """
     axes, arms = joint_frames[..., :-1, :3, 2], tip_mm - joint_frames[..., :-1, :3, 3]
     (u, v, w), (x, y, z) = np.moveaxis(axes, -1, 0), np.moveaxis(arms, -1, 0)
     return np.stack([v * z - w * y, w * x - u * z, u * y - v * x, u, v, w], axis=-2)
@@ -140,7 +146,7 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _refine_on_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
-    """Refine angles that were found for differently rounded links, so that they fit the links of the cell.
+    """Refine angles of differently rounded links for the links of the cell.
 
     Two Newton steps are enough, except near a singularity.
     """
@@ -150,8 +156,10 @@ def _refine_on_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.nda
 def refine_angles(
     arm: Arm, angles: np.ndarray, flange: np.ndarray, steps: int, most_step_rad: float
 ) -> tuple[np.ndarray, np.ndarray | None]:
-    """Refine angles (k, 6), which put the flange near a pose (4, 4), by Newton's steps.
+    """Refine joint angles for a flange pose by Newton's steps.
 
+    angles: (k, 6) angles that put the flange near the pose.
+    flange: (4, 4) the pose.
     steps: largest number of steps.
     most_step_rad: longest step of a joint. A longer step is left out.
 

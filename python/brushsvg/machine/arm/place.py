@@ -1,4 +1,4 @@
-"""Find where paper can be for an arm to paint on it: the nearest place for a job, and a map of the table."""
+"""Find places of the paper within reach of an arm, and map the table."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ class PaperPlace:
 
 
 def find_unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[Notice]:
-    """Report what the arm of a program's cell cannot do, with a place of the paper at which it could.
+    """Report what the arm of a program's cell cannot do.
+
+    The advice is a place of the paper at which the arm can do it.
 
     allowed: returns whether a program breaks no other limit.
 
@@ -65,9 +67,9 @@ def find_unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[
 
 
 def nearest(made: Program, joints: JointSolver, allowed: Callable[[Program], bool]) -> PaperPlace | None:
-    """Find the smallest shift of the paper, or else the smallest turn, at which the arm can run the whole program.
+    """Find the nearest place of the paper at which the arm can run a program.
 
-    Returns None if no place that was tried works.
+    Shifts of the paper are tried first, then turns. Returns None if no place that was tried works.
     """
     outermost_mm, followed_count = outermost_places(made), 0
     for place in _tried_places(made, outermost_mm):
@@ -146,7 +148,10 @@ class Table:
 
 
 def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> Table:
-    """Rate each square of the table for the arm, within the cell's box or as far as the links reach."""
+    """Rate each square of the table for the arm.
+
+    The table is the cell's box, or the area that the links reach.
+    """
     reach_mm = sum(float(np.hypot(a, d)) for a, _, d, _ in joints.arm.dh)
     low, high = cell.workspace.box_mm or ((-reach_mm,) * 3, (reach_mm,) * 3)
     step_mm = max(high[0] - low[0], high[1] - low[1]) / MAX_TABLE_SQUARES

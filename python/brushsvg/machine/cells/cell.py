@@ -1,4 +1,4 @@
-"""Cells: the place of the paper, limits of height, speed and space, and the paint."""
+"""Cells: the paper's place, limits of height, speed and space, and paint."""
 
 from __future__ import annotations
 
@@ -282,7 +282,7 @@ class Arm:
 
 
 def joint_number(arm: Arm, joint: int) -> int:
-    """Return the number that the pendant shows for a joint, which is counted from 0 here."""
+    """Return the pendant's number of a joint, which is counted from 0 here."""
     return int(arm.numbers[joint]) if arm.numbers else joint + 1
 
 
@@ -449,7 +449,7 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
 
 
 def unit_mm(cell: Cell) -> float:
-    """Return the step [mm] between x or y positions that the cell's language can express.
+    """Return the smallest step [mm] in x or y that the language can express.
 
     For motors, return twice the largest shift that rounding can cause.
     """
@@ -469,7 +469,10 @@ def round_points(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
 
 
 def steps_from_mm(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
-    """Return motor positions (n, 2), in whole steps from the origin, at points (n, 2 or 3) [mm]."""
+    """Return motor positions (n, 2) in whole steps from the origin.
+
+    points_mm: (n, 2 or 3) points [mm].
+    """
     return np.rint(np.asarray(points_mm)[:, :2] @ _steps_from_mm(motors)).astype(int)
 
 
@@ -527,7 +530,7 @@ def ends_rounded_mm(cell: Cell) -> float:
 def is_too_steep_for_servo(
     ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False
 ) -> np.ndarray:
-    """Return which straight paths (n, 3) [mm] are too steep for a servo that moves along them, (n,).
+    """Return which straight paths are too steep for a moving servo, (n,).
 
     A path is too steep in three cases:
 
@@ -535,6 +538,7 @@ def is_too_steep_for_servo(
     - The height would change by more than MAX_SERVO_SLOPE times the path's length. Its rounded parts would say little.
     - The feed, slowed down for the servo, would be below the lowest feed of the firmware.
 
+    ways_mm: (n, 3) displacement of each path [mm].
     are_rounded: whether the paths were read from a program. Rounding may have made them steeper than planned, and
     the limits allow for that.
     """
@@ -559,7 +563,10 @@ MAX_SERVO_SLOPE = 10.0
 
 
 def min_part_mm(cell: Cell) -> float:
-    """Return the length [mm] from which a part of a path stays a move, however its ends are rounded."""
+    """Return the length [mm] from which a part of a path stays a move.
+
+    Rounding of its ends does not turn such a part into nothing.
+    """
     return least_move_mm(cell) + 2**0.5 * unit_mm(cell)
 
 
@@ -611,7 +618,10 @@ def reason_for_no_backlash(cell: Cell) -> str:
 
 
 def not_undone(cell: Cell) -> dict[str, str]:
-    """Return the keys of the table machine that cannot be corrected on this cell, each with the reason."""
+    """Return the keys of the table machine that cannot be corrected on a cell.
+
+    The values of the result are the reasons.
+    """
     reasons = {}
     if cell.servo:  # the tool would jump sideways at each step of the servo
         reasons |= dict.fromkeys(

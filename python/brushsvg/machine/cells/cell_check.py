@@ -1,4 +1,4 @@
-"""Check that the keys of a cell agree: refuse contradictions and report unusual values."""
+"""Check that the keys of a cell agree, and report unusual values."""
 
 from __future__ import annotations
 
@@ -91,7 +91,10 @@ def check(cell: Cell) -> None:
 
 
 def _check_tables(cell: Cell) -> None:
-    """Raise Error if a table is missing that the language needs, or present that only other languages use."""
+    """Raise Error if a table of the cell is missing or unused.
+
+    A table is unused if only other languages use it.
+    """
     for table in sorted({table for tables in REQUIRED_TABLES.values() for table in tables}):
         languages = [language for language, tables in REQUIRED_TABLES.items() if table in tables]
         is_given = getattr(cell, table) is not None
@@ -300,7 +303,10 @@ def _clip_polygon(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
 
 
 def _distances_from_origin_mm(corners: np.ndarray) -> tuple[float, float]:
-    """Return the smallest and largest distance [mm] of a flat convex polygon (n, 3) from the origin."""
+    """Return the range of distances [mm] of a flat convex polygon from the origin.
+
+    corners: (n, 3) corners of the polygon [mm].
+    """
     nearest, farthest = distances_from_origin(ways([[*corners, corners[0]]]))
     sides = np.roll(corners, -1, axis=0) - corners
     normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)

@@ -1,4 +1,4 @@
-"""Posts: write programs in robot languages, one language per file. POSTS lists all of them."""
+"""Posts: one robot language per file. POSTS lists all of them."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def _robodk(program: Program) -> Iterator[str]:
 
 
 def sources_of_post(cell: Cell) -> list[str]:
-    """Return the paths of the files on which a program depends in addition to the cell.
+    """Return the paths of further files on which a program depends.
 
     These are the files of a RoboDK post that the cell names.
     """

@@ -106,7 +106,10 @@ def _wait_lines(step: Wait) -> str:
 
 
 def round_down_speed_mm_s(speed_mm_s: float) -> int:
-    """Round a speed down to whole mm/s, so that limits are kept, but not to 0, at which a machine stands still."""
+    """Round a speed down to whole mm/s, but not to 0.
+
+    Rounding down keeps limits, and a machine would stand still at 0.
+    """
     return max(int(np.floor(speed_mm_s + 1e-6)), 1)
 
 

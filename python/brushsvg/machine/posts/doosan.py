@@ -1,4 +1,7 @@
-"""Write DRL (.drl) for Doosan robots: millimetres, degrees, the paper as a user coordinate system."""
+"""Write DRL (.drl) for Doosan robots.
+
+Units are millimetres and degrees. The paper is a user coordinate system.
+"""
 
 from __future__ import annotations
 

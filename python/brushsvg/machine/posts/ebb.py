@@ -116,7 +116,10 @@ class _EbbWriter:
         )
 
     def _feed_line(self, feed: float) -> str:
-        """Return the line with the highest feed of the next moves, or "" if the feed is unchanged."""
+        """Return the line with the highest feed of the next moves.
+
+        It is "" if the feed is unchanged.
+        """
         before, self.feed = self.feed, feed
         return "" if feed == before else f"# feed {feed:.1f} mm/min\n"
 
@@ -154,7 +157,7 @@ class _EbbWriter:
     def _time_parts(
         self, parts_mm: list[float], caps: list[float], tops: list[float]
     ) -> tuple[np.ndarray, ...]:
-        """Return the part, the time [s] and the path length on the part [mm] of each row, (n,) each.
+        """Return the part, the time [s] and the path length [mm] of each row.
 
         No slice is shorter than the shortest part of a move.
         """

@@ -60,7 +60,10 @@ def fanuc(program: Program) -> Iterator[str]:
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs, keyed by program name. The main program has the name ""."""
+    """Return the texts of a stream of programs, keyed by program name.
+
+    The main program has the name "".
+    """
     program_texts = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
     texts_by_name = {
         re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in program_texts
@@ -69,13 +72,19 @@ def programs(text: str) -> dict[str, str]:
 
 
 def called(text: str) -> list[str]:
-    """Return the names of the programs that a program calls, in order and without repetition."""
+    """Return the names of the programs that a program calls.
+
+    They are in order and without repetition.
+    """
     calls = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
     return list(dict.fromkeys(call[1] for call in calls))
 
 
 def comment(text: str) -> str:
-    """Return a comment as remarks of at most REMARK_LETTERS letters. Each continuation begins with a plus."""
+    """Return a comment as remarks of at most REMARK_LETTERS letters.
+
+    Each continuation begins with a plus.
+    """
     rest, lines = plain_text(text, LINE_LIMIT).translate(STATEMENT_ENDS), []
     while rest or not lines:
         begin = "+" if lines else ""
@@ -88,7 +97,7 @@ def comment(text: str) -> str:
 
 
 class _ProgramPoints:
-    """The numbered points of one program, each with a place and the angles of the tool."""
+    """The numbered points of one program, with the angles of the tool."""
 
     def __init__(self, cell: Cell):
         self.decimals, self.count = cell.decimals, 0
@@ -129,7 +138,10 @@ class _ProgramPoints:
 
 
 def _wpr_angles(turned: np.ndarray) -> tuple[str, str, str]:
-    """Return W, P and R, the tool's angles about the fixed axes x, y and z, of a rotation (3, 3)."""
+    """Return W, P and R of a rotation (3, 3).
+
+    They are the tool's angles about the fixed axes x, y and z.
+    """
     w, p, r = (format_number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
     return w, p, r
 

@@ -23,7 +23,10 @@ HELD_UP = "end: the brush is held up"
 
 
 def linuxcnc(program: Program) -> Iterator[str]:
-    """Write a program for LinuxCNC: a header, one commented section per stroke, and M2."""
+    """Write a program for LinuxCNC.
+
+    It has a header, one commented section per stroke, and M2.
+    """
     # G64 P instead of G61: the exact path mode stops the machine between any two moves, and a brush that stands still
     # bleeds. Rounding the joints by a fraction of the plan's tolerance keeps the speed even.
     tolerance = format_number(program.cell.blending.tolerance_mm, program.cell.decimals)
@@ -52,16 +55,17 @@ def comment(text: str) -> str:
 
 
 def grbl_comment(text: str) -> str:
-    """Return a line with a comment for grbl, without the letters that grbl obeys anywhere in a line.
+    """Return a line with a comment for grbl.
 
-    For example, ! would begin a stop, and ~ would end a stop while somebody's hand is at the brush.
+    Letters that grbl obeys anywhere in a line are replaced. For example, ! would begin a stop, and ~ would end a stop
+    while somebody's hand is at the brush.
     """
     text = plain_text(text.translate(BRACKETS), GRBL_LINE_LIMIT - 2)
     return f"({text.translate(IMMEDIATE_COMMANDS)})\n"
 
 
 def printer_comment(text: str) -> str:
-    """Return a comment for a printer's firmware, which extends to the end of the line.
+    """Return a comment for a printer's firmware, up to the end of the line.
 
     The emergency parser that some builds of Marlin have reads only the beginning of lines.
     """

@@ -1,4 +1,7 @@
-"""Write G-code for Marlin plotters with a pen on a servo: M280 P0 S... lifts or lowers the pen."""
+"""Write G-code for Marlin plotters with a pen on a servo.
+
+M280 P0 S... lifts or lowers the pen.
+"""
 
 from __future__ import annotations
 

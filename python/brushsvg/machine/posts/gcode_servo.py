@@ -1,4 +1,7 @@
-"""Write G-code for grbl machines with the brush on a servo: M3 S... sets a value instead of a height."""
+"""Write G-code for grbl machines with the brush on a servo.
+
+M3 S... sets a value instead of a height.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +66,7 @@ def grbl_servo(program: Program) -> Iterator[str]:
 
 
 def servo_values_at(servo: Servo, height_mm):
-    """Return the servo's value for a height [mm], or the values for an array of heights."""
+    """Return the servo's value for a height [mm] or an array of heights."""
     return np.rint(np.interp(height_mm, *_table_by_height(servo.table))).astype(int)
 
 
@@ -87,7 +90,9 @@ def _table_by_value(table: tuple) -> tuple[np.ndarray, np.ndarray]:
 def _move_lines(
     move: Move, here: np.ndarray, value: int, cell: Cell, fastest_mm_s: float, feed: float
 ) -> Generator[str, None, tuple[int, float]]:
-    """Yield the lines of a move, and return the servo's value and the feed [mm/min] after it.
+    """Yield the lines of a move, and return the value and the feed after it.
+
+    They are the servo's value and the feed [mm/min].
 
     value, feed: value and feed before the move.
     fastest_mm_s: highest speed of the tip.
@@ -121,10 +126,10 @@ def _lift_lines(lifts: tuple[tuple[int, int], ...], settle_s: float) -> str:
 def lift_steps(
     from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
 ) -> tuple[tuple[int, int], ...]:
-    """Return the steps of a lift without a sideways move, each with its value and its wait [ms].
+    """Return the steps of a lift, each with its value and its wait [ms].
 
-    The waits give the lift its speed. Heights are those of the whole values, so a lift after a line begins at the
-    height of the line's last part.
+    The lift has no sideways move. The waits give the lift its speed. Heights are those of the whole values, so a lift
+    after a line begins at the height of the line's last part.
     """
     feed_mm_s = feed_of_speed_mm_min(speed_mm_s) / 60
     count = max(1, math.ceil(abs(to_mm - from_mm) / step_mm - 1e-9))
@@ -139,9 +144,10 @@ def lift_steps(
 def _line_parts(
     starts: np.ndarray, ways: np.ndarray, feeds: np.ndarray, feed: float, cell: Cell
 ) -> Generator[str, None, tuple[int, float]]:
-    """Yield straight lines at their feeds, and return the value and the feed of the last part.
+    """Yield straight lines at their feeds.
 
-    Each line is written in parts. The height of a part is the height at its middle.
+    Returns the servo's value and the feed of the last part. Each line is written in parts. The height of a part is the
+    height at its middle.
 
     starts, ways: (n, 3) start and displacement of each line.
     feeds: (n,) feed of each line [mm/min].

@@ -1,4 +1,7 @@
-"""Write HP-GL (.hpgl) for pen plotters: units of 0.025 mm from the plotter's origin, the pen up or down."""
+"""Write HP-GL (.hpgl) for pen plotters.
+
+The unit is 0.025 mm, from the plotter's origin. The pen is up or down.
+"""
 
 from __future__ import annotations
 

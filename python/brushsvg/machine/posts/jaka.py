@@ -1,4 +1,7 @@
-"""Write JAKA script (.jks) for JAKA robots: millimetres, degrees, points in the robot's own frame."""
+"""Write JAKA script (.jks) for JAKA robots.
+
+Units are millimetres and degrees. Points are in the robot's own frame.
+"""
 
 from __future__ import annotations
 
@@ -60,7 +63,10 @@ def comment(text: str) -> str:
 
 
 def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
-    """Return a rise to a height along the base's z axis, with the tool's orientation unchanged."""
+    """Return a rise to a height along the base's z axis.
+
+    The tool's orientation does not change.
+    """
     height = format_number(height_mm, decimals)
     return (
         "here = get_atl_tcp_pose()\n"

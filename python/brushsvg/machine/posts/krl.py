@@ -87,14 +87,20 @@ def krl(program: Program) -> Iterator[str]:
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs, keyed by program name. The main program has the name ""."""
+    """Return the texts of a stream of programs, keyed by program name.
+
+    The main program has the name "".
+    """
     program_texts = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
     texts_by_name = {re.match(r"DEF (\w+)", program_text)[1]: program_text for program_text in program_texts}
     return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
 
 
 def called(text: str) -> list[str]:
-    """Return the names of the programs that a program calls, in order and without repetition."""
+    """Return the names of the programs that a program calls.
+
+    They are in order and without repetition.
+    """
     calls = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
     return list(dict.fromkeys(call[1].upper() for call in calls))
 
@@ -127,9 +133,10 @@ def _move_lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
 
 
 def _tilted_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush, each with the tool's orientation at its end.
+    """Yield the lines of a move that tilts the brush.
 
-    At points where the brush is upright, the lines are those of other moves.
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
     """
     yield _speed_line(move.speed_mm_s)
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)

@@ -126,9 +126,10 @@ def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]
 
 
 def _tilted_lines(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush, each with the tool's orientation at its end.
+    """Yield the lines of a move that tilts the brush.
 
-    At points where the brush is upright, the lines are those of other moves.
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
     """
     blends = None if move.blends_mm is None else blends_mm(move, decimals)
     for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):

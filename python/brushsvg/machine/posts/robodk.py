@@ -71,7 +71,10 @@ def robodk(program: Program) -> Iterator[str]:
 
 
 def find_sources(where: str) -> list[str]:
-    """Return the paths of a post and of the modules in its folder that it imports, directly or indirectly."""
+    """Return the paths of a post and of the modules that it imports.
+
+    The modules are those in its folder that it imports directly or indirectly.
+    """
     unread, paths = [Path(where).expanduser().resolve()], []
     while unread:
         path = unread.pop()

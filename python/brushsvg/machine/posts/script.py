@@ -1,4 +1,4 @@
-"""Common parts of scripts for robot arms: titled sections, the first rise, and numbers."""
+"""Common parts of scripts for robot arms: sections, the first rise, numbers."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ def write_sections(program: Program, words: LanguageWords) -> Iterator[str]:
 def split_into_parts(
     program: Program, words: LanguageWords, lines_around: int, rises_again: bool
 ) -> Iterator[str]:
-    """Split the sections into parts, none with more lines than one program of the language may have.
+    """Split the sections into parts that each fit in one program.
 
-    A section with more lines is a part by itself.
+    The language limits the lines of one program. A section with more lines is a part by itself.
 
     lines_around: number of lines that each program has in addition to its part.
     rises_again: whether the tool goes straight up in each part, or only in the first one.
@@ -93,7 +93,10 @@ def write_section(section: Section, words: LanguageWords, risen: bool) -> Iterat
 
 
 def format_rounded_down(value: float, decimals: int) -> str:
-    """Format a number rounded down, so that limits are kept, but not to 0, at which a machine stands still."""
+    """Format a number rounded down, but not to 0.
+
+    Rounding down keeps limits, and a machine would stand still at 0.
+    """
     unit = 10.0**decimals
     return format_number(max(np.floor(value * unit + 1e-6), 1) / unit, decimals)
 
@@ -103,9 +106,9 @@ def join_numbers(values, decimals: int) -> str:
 
 
 def blends_mm(move: Move, decimals: int, part: float = 1.0) -> np.ndarray:
-    """Return how far [mm] before each point of a move its blend begins, rounded down, (n,).
+    """Return how far [mm] before each point of a move its blend begins, (n,).
 
-    The last point has no blend, because the next move may turn back.
+    The distances are rounded down. The last point has no blend, because the next move may turn back.
 
     part: fraction of the blend distance to use.
     """
@@ -115,12 +118,17 @@ def blends_mm(move: Move, decimals: int, part: float = 1.0) -> np.ndarray:
 
 
 def down(spin_deg: float) -> np.ndarray:
-    """Return the tool's rotation (3, 3) in the paper's frame, with its z axis into the paper."""
+    """Return the rotation (3, 3) of an upright tool in the paper's frame.
+
+    The tool's z axis points into the paper.
+    """
     return np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, spin_deg))
 
 
 def tool_rotations_at(move: Move, upright: np.ndarray) -> Iterator[np.ndarray | None]:
-    """Yield the tool's rotation (3, 3) at each point of a move, or None where the brush is upright.
+    """Yield the tool's rotation (3, 3) at each point of a move.
+
+    It is None where the brush is upright.
 
     upright: (3, 3) rotation of the tool with an upright brush. It defines the frame of the result.
     """
@@ -133,8 +141,8 @@ def tool_rotations_at(move: Move, upright: np.ndarray) -> Iterator[np.ndarray | 
 
 
 def upright_deg(cell: Cell) -> np.ndarray:
-    """Return the tool's angles [degrees] about the robot's fixed x, then y, then z axis, (3,).
+    """Return the angles [degrees] of an upright tool in the robot's frame, (3,).
 
-    The brush is upright on the paper.
+    The angles are about the fixed x, then y, then z axis. The brush is upright on the paper.
     """
     return rotation_deg(robot_from_paper(cell)[:3, :3] @ down(cell.tool.spin_deg))

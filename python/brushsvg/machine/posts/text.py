@@ -38,7 +38,10 @@ def spelled(text: str) -> str:
 
 
 def make_unique_names(names: Sequence[str]) -> list[str]:
-    """Return the names, each with its number if a program would write it like another name or as nothing."""
+    """Return names that stay distinct in a program.
+
+    A name that a program would write like another name, or as nothing, gets its number.
+    """
     short_names = [spelled(name)[:NAMED] for name in names]
     has_own_name = [
         short_names.count(short_name) == 1
@@ -53,7 +56,10 @@ def make_unique_names(names: Sequence[str]) -> list[str]:
 
 
 def format_number(value: float, decimals: int) -> str:
-    """Format a number with fixed decimals, a point in any locale, and no minus sign before a zero."""
+    """Format a number with fixed decimals.
+
+    It has a point in any locale, and a zero has no minus sign.
+    """
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 

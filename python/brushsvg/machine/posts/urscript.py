@@ -1,4 +1,7 @@
-"""Write URScript for Universal Robots: metres, rotation vectors, and points on the paper's plane."""
+"""Write URScript for Universal Robots.
+
+Units are metres, and rotations are rotation vectors. Points are on the paper's plane.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +65,10 @@ def urscript(program: Program) -> Iterator[str]:
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs, keyed by the end of their file names. The first one has ""."""
+    """Return the texts of a stream of programs.
+
+    The keys are the ends of their file names. The first program has the key "".
+    """
     part_texts = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
     return {
         part_suffix(count) if count > 1 else "": part_text for count, part_text in enumerate(part_texts, 1)
@@ -91,7 +97,10 @@ def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals
 
 
 def _watch_thread(force_n: float) -> str:
-    """Return a thread that ends the whole program if the tool is pressed with more than force_n."""
+    """Return a thread that ends the whole program on hard contact.
+
+    The limit is force_n.
+    """
     newtons = format_number(force_n, 1)
     return (
         "  thread watch():\n"
@@ -133,9 +142,10 @@ def _move_lines(move: Move, upright: np.ndarray, acceleration: str, decimals: in
 
 
 def _tilted_lines(move: Move, upright: np.ndarray, at_most: str, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush, each with the tool's orientation at its end.
+    """Yield the lines of a move that tilts the brush.
 
-    At points where the brush is upright, the lines are those of other moves.
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
     """
     last = len(move.points_mm) - 1
     blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M_PER_MM

@@ -88,10 +88,10 @@ AFTER = "arrive()\narm.disconnect()\n"
 
 
 def xarm(program: Program) -> Iterator[str]:
-    """Write a script for a computer next to the arm, which sends the moves one by one.
+    """Write a script for a computer next to the arm.
 
-    The SDK waits while the arm's queue of moves is full. Circles are written as lines, because the SDK defines a circle
-    by its share of a whole turn and not by its end.
+    The computer sends the moves one by one. The SDK waits while the arm's queue of moves is full. Circles are written
+    as lines, because the SDK defines a circle by its share of a whole turn and not by its end.
     """
     cell, decimals = program.cell, program.cell.decimals
     tool = join_numbers(cell.tool.tcp_mm, decimals), join_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
@@ -135,9 +135,10 @@ def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]
 
 
 def _tilted_lines(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush, each with the tool's orientation at its end.
+    """Yield the lines of a move that tilts the brush.
 
-    At points where the brush is upright, the lines are those of other moves.
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
     """
     blends = None if move.blends_mm is None else blends_mm(move, decimals, BLEND_FRACTION)
     for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):

@@ -88,12 +88,15 @@ def _angle_in_quarters(arc, pose: np.ndarray, turned_rad: float) -> float:
 
 
 def _overshoot_in_quarters(arc, pose: np.ndarray) -> float:
-    """Return the angle at which a circle has gone OVER_MM beyond its turning point, in quarters of a turn."""
+    """Return the angle of an overshoot of OVER_MM, in quarters of a turn.
+
+    The circle has then gone OVER_MM beyond its turning point.
+    """
     return min(0.5, acos(max(0.0, 1 - OVER_MM / hypot(*(pose[:2] - arc.centre_mm)))) / (pi / 2))
 
 
 def _extreme_at_pose(arc, pose: np.ndarray, turned_rad: float) -> int | None:
-    """Return the quarter at which a circle turns back if it does so at a pose, else None."""
+    """Return the quarter at which a circle turns back at a pose, else None."""
     quarters = _angle_in_quarters(arc, pose, turned_rad)
     return (
         round(quarters) % 4 if abs(quarters - round(quarters)) < _overshoot_in_quarters(arc, pose) else None

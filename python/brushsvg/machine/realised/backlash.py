@@ -18,13 +18,19 @@ from ..motion import Move, Program, Section, Wait
 
 
 def half_mm(cell: Cell) -> np.ndarray:
-    """Return half of the backlash of x and y (2,) [mm], rounded to whole units of the language."""
+    """Return half of the backlash of x and y (2,) [mm].
+
+    It is rounded to whole units of the language.
+    """
     unit = unit_mm(cell)
     return np.rint(np.array(cell.machine.backlash_mm if cell.machine else (0.0, 0.0)) / 2 / unit) * unit
 
 
 def compensate_backlash(program: Program) -> Program:
-    """Return a program, in the robot's frame, with the backlash of its axes compensated."""
+    """Return a program with the backlash of its axes compensated.
+
+    The program must be in the robot's frame.
+    """
     half = half_mm(program.cell)
     if not half.any():
         return program
@@ -34,7 +40,9 @@ def compensate_backlash(program: Program) -> Program:
 def sides_of_steps(ways_mm: np.ndarray, side: np.ndarray) -> np.ndarray:
     """Return the side, 1 or -1, to which each axis goes on each step, (n, 2).
 
-    An axis that stands still stays on its side. side: (2,) sides before the first step.
+    An axis that stands still stays on its side.
+
+    side: (2,) sides before the first step.
     """
     signs = np.vstack([side, np.sign(ways_mm)])
     last_moving = np.maximum.accumulate(np.where(signs != 0, np.arange(len(signs))[:, None], 0), axis=0)
@@ -42,9 +50,12 @@ def sides_of_steps(ways_mm: np.ndarray, side: np.ndarray) -> np.ndarray:
 
 
 def commands_ahead(points_mm: np.ndarray, here_mm: np.ndarray, side: np.ndarray, half: np.ndarray) -> tuple:
-    """Return the commands (m, 3) for places (n, 3) in turn, and the final sides of the axes (2,).
+    """Return the commands for places in turn, and the final sides of the axes.
 
-    The commands include the moves that take up the play. here_mm: (3,) place before the first one.
+    The commands include the moves that take up the play.
+
+    points_mm: (n, 3) the places. The commands are (m, 3), and the sides are (2,).
+    here_mm: (3,) place before the first one.
     """
     path = np.vstack([here_mm, points_mm])
     sides = sides_of_steps(np.diff(path[:, :2], axis=0), side)
@@ -79,7 +90,10 @@ def from_air_mm(commanded_mm: np.ndarray, backlash_mm) -> np.ndarray:
 
 
 def first_side(ways_mm: np.ndarray) -> np.ndarray:
-    """Return the side to which each axis goes first on steps (n, 2), or 0 if it stands still, (2,)."""
+    """Return the side to which each axis goes first on steps (n, 2), (2,).
+
+    It is 0 for an axis that stands still.
+    """
     signs = np.sign(ways_mm)
     return np.array([next(iter(axis_signs[axis_signs != 0]), 0.0) for axis_signs in signs.T])
 
@@ -110,7 +124,10 @@ def _round_sideways(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
 
 
 def _next_side(steps, here: np.ndarray, side: np.ndarray, cell: Cell) -> np.ndarray:
-    """Return the side (2,) to which each axis goes first in the next steps, or its present side if it stands still."""
+    """Return the side (2,) to which each axis goes first in the next steps.
+
+    An axis that stands still keeps its side.
+    """
     sides = np.zeros(2)
     for move in (step for step in steps if isinstance(step, Move)):
         points = _round_sideways(move.points_mm if move.arc is None else move.points_mm[-1:], cell)
@@ -128,9 +145,9 @@ def _offset_to_side(points_mm: np.ndarray, side: np.ndarray, half: np.ndarray) -
 def _compensate_moves(
     move: Move, here: np.ndarray, side: np.ndarray, half: np.ndarray
 ) -> tuple[list[Move], np.ndarray]:
-    """Compensate a move from a place (3,) on, and return its moves and the final sides of the axes (2,).
+    """Compensate a move, and return its moves and the final sides of the axes.
 
-    On a circle, each axis keeps its direction.
+    The move begins at the place `here` (3,). The sides are (2,). On a circle, each axis keeps its direction.
     """
     if move.arc is None:
         points, side = commands_ahead(move.points_mm, here, side, half)

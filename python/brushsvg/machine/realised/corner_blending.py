@@ -1,4 +1,4 @@
-"""Corner blending: a machine cuts the corner between two moves instead of stopping there."""
+"""Corner blending: a machine cuts corners instead of stopping there."""
 
 from __future__ import annotations
 
@@ -50,7 +50,10 @@ def _move_geometry(poses_mm: np.ndarray, arcs) -> _MoveGeometry:
 
 
 def corner_angles_rad(poses_mm: np.ndarray, arcs=()) -> np.ndarray:
-    """Return the angles [rad] between the moves that meet at each pose, (n,). They are 0 at the ends."""
+    """Return the angles [rad] between the moves that meet at each pose, (n,).
+
+    They are 0 at the ends.
+    """
     return _corner_angles(_move_geometry(poses_mm, arcs))
 
 
@@ -62,11 +65,11 @@ def _corner_angles(moves: _MoveGeometry) -> np.ndarray:
 
 
 def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray:
-    """Return how far before and after each pose the path may leave its moves [mm], (n,).
+    """Return how far [mm] from each pose the path may leave its moves, (n,).
 
-    A circle that touches both moves at distance R passes the corner at R tan(angle / 4), which must be at most the
-    tolerance. Blends never meet. Robots stop where they turn back, where the brush is pressed on the spot, and at the
-    ends of circles. The distance is 0 there.
+    The distance holds before and after the pose. A circle that touches both moves at distance R passes the corner at R
+    tan(angle / 4), which must be at most the tolerance. Blends never meet. Robots stop where they turn back, where the
+    brush is pressed on the spot, and at the ends of circles. The distance is 0 there.
     """
     return blend_radii_and_angles(poses_mm, blending, arcs)[0]
 
@@ -147,9 +150,11 @@ def cut_corners(poses_mm: np.ndarray, radii_mm: np.ndarray, arcs=()) -> tuple[np
 
 
 def _travel_along(along: np.ndarray, length_mm: np.ndarray, bends: np.ndarray) -> np.ndarray:
-    """Return the displacement (k, 3) after a length on lines and circles that begin in a direction.
+    """Return the displacement (k, 3) after a length on lines and circles.
 
     A negative length goes backwards.
+
+    along: (k, 3) directions in which they begin.
     """
     half = length_mm * bends / 2
     chord = (length_mm * np.sinc(half / np.pi))[:, None]

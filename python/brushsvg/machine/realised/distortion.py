@@ -1,4 +1,4 @@
-"""Model of an inexact machine: the true place of a command, and the command for a place.
+"""Model of an inexact machine: true places and commands.
 
 All places are in the paper's frame.
 """
@@ -51,9 +51,9 @@ def true_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def true_path_mm(commanded_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """Return the true path (m, 3) [mm] of the tool along commanded lines between places (n, 3).
+    """Return the true path (m, 3) [mm] of the tool along commanded lines.
 
-    The path has more points where the machine bends the lines.
+    The lines connect the commanded places (n, 3). The path has more points where the machine bends the lines.
     """
     if has_field(machine):
         commanded_mm = _split_evenly(commanded_mm, count_line_parts(commanded_mm[:, :2], machine))
@@ -77,7 +77,10 @@ def commanded_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """Return the commands (n, 2) for which the machine's axes and its field take the tool to a target (n, 2)."""
+    """Return the commands (n, 2) that take the tool to targets (n, 2).
+
+    They invert the machine's axes and its field.
+    """
     inverse_axes = np.linalg.inv(_axis_matrix(machine)).T
     place = target_mm @ inverse_axes
     for _ in range(MAX_SOLVER_ROUNDS if has_field(machine) else 0):
@@ -88,9 +91,11 @@ def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def commanded_heights_mm(commanded_mm: np.ndarray, height_mm: float, machine: Machine | None) -> np.ndarray:
-    """Return the commanded heights (n,) [mm] for a safe height at commanded places (n, 2).
+    """Return the commanded heights [mm] for a height over the paper, (n,).
 
     The tool is then at least height_mm above the paper, and above objects whose heights were taught, such as vessels.
+
+    commanded_mm: (n, 2) commanded places.
     """
     rises_mm = np.zeros(len(commanded_mm))
     if machine is not None:
@@ -107,11 +112,11 @@ def keeps_lines(machine: Machine | None) -> bool:
 
 
 def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
-    """Split lines between places (n, k), so that straight commanded lines keep the tool on its path.
+    """Split lines, so that commanded lines keep the tool on its path.
 
     The lines also keep the tool's height over the paper's map. Returns places (m, k).
 
-    points_mm: x, y, z and further values that change evenly along the lines.
+    points_mm: (n, k) x, y, z and further values that change evenly along the lines.
     """
     if keeps_lines(machine):
         return points_mm
@@ -128,23 +133,29 @@ def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def _split_at_shares(points: np.ndarray, cuts) -> np.ndarray:
-    """Split each line between points (n, k) at its shares. The last share of each line is 1."""
+    """Split each line between points (n, k) at its shares.
+
+    The last share of each line is 1.
+    """
     lines = zip(pairwise(points), cuts, strict=True)
     return np.vstack([points[:1], *(a + at[:, None] * (b - a) for (a, b), at in lines)])
 
 
 def _split_evenly(points: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Split each line between points (n, k) into counts (n - 1,) parts of equal length."""
+    """Split each line between points (n, k) into equal parts.
+
+    counts: (n - 1,) number of parts of each line.
+    """
     line = np.repeat(np.arange(len(counts)), counts)
     share = (np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[line]
     return np.vstack([points[:1], points[line] + share[:, None] * (points[line + 1] - points[line])])
 
 
 def _map_cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
-    """Return the shares, above 0 and up to 1, at which to split the line between two places (2,).
+    """Return the shares at which to split the line between two places (2,).
 
-    The line is split where it crosses the map's lines. Between two of these, it is split further if the map is hollow
-    or domed along it, until chords are close enough.
+    The shares are above 0 and up to 1. The line is split where it crosses the map's lines. Between two of these, it is
+    split further if the map is hollow or domed along it, until chords are close enough.
     """
     xs, ys, heights = _map_grid(machine.map_mm)
     crossed = [
@@ -167,7 +178,10 @@ def _map_cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def _paper_height_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """Return how much higher [mm] the paper is at commanded places (n, 2) than it was taught, (n,)."""
+    """Return how much higher [mm] the paper is than it was taught, (n,).
+
+    places_mm: (n, 2) commanded places.
+    """
     plane_mm = machine.height_mm + places_mm @ machine.tilt_mm_per_mm
     if not machine.map_mm:
         return plane_mm
@@ -182,14 +196,20 @@ def _paper_height_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
 
 @lru_cache
 def _map_grid(map_mm: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the ascending x (k,) and y (m,) of a map's places, and its heights (m, k)."""
+    """Return x (k,), y (m,) and heights (m, k) of a map.
+
+    x and y are ascending.
+    """
     rows = np.array(sorted(map_mm, key=lambda row: (row[1], row[0])))
     xs, ys = np.unique(rows[:, 0]), np.unique(rows[:, 1])
     return xs, ys, rows[:, 2].reshape(len(ys), len(xs))
 
 
 def _grid_cell(grid: np.ndarray, places):
-    """Return the number of the grid cell for each place, or of the nearest cell beyond the ends of the grid."""
+    """Return the number of the grid cell for each place.
+
+    Places beyond the ends of the grid belong to the nearest cell.
+    """
     return np.clip(np.searchsorted(grid, places, side="right") - 1, 0, len(grid) - 2)
 
 

@@ -1,4 +1,7 @@
-"""Passes as an inexact machine runs them, with backlash, scale, lean and the paper's height."""
+"""Passes as an inexact machine runs them.
+
+The machine has backlash, scale and lean, and the paper has its true height.
+"""
 
 from __future__ import annotations
 
@@ -40,10 +43,10 @@ def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float =
 
 
 def passes_with_backlash(passes, backlash_mm) -> list:
-    """Return passes as a machine with backlash runs them, one after the other, in straight steps.
+    """Return passes as a machine with backlash runs them.
 
-    Each axis stays behind by half of its backlash, on the side from which it comes. At the start, both axes are in the
-    middle of their play.
+    The passes are run one after the other, in straight steps. Each axis stays behind by half of its backlash, on the
+    side from which it comes. At the start, both axes are in the middle of their play.
 
     backlash_mm: backlash of x and y [mm].
     """
@@ -91,9 +94,9 @@ def split_long_moves(poses: np.ndarray) -> np.ndarray:
 
 
 def _clip_to_paper(poses: np.ndarray) -> np.ndarray | None:
-    """Return the part of a path from its first to its last touch of the paper, or None if there is none.
+    """Return the part of a path between its first and last touch of the paper.
 
-    Between the two, the tip stays on the paper or below.
+    Returns None if the path does not touch the paper. Between the two, the tip stays on the paper or below.
     """
     down = np.flatnonzero(poses[:, 2] < 0)
     if not len(down):

@@ -55,7 +55,9 @@ class Written:
 
 
 def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) -> Written:
-    """Return a pass as the cell's language writes it, with the commands for the cell's machine.
+    """Return a pass as the cell's language writes it.
+
+    The result has the commands for the cell's machine.
 
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     was_read: whether the pass was read from a program.
@@ -215,7 +217,10 @@ TARGET_PART_RAD, MAX_PART_RAD = 3.5, 5.0
 
 
 def _keeps_radius(spokes: np.ndarray, cell: Cell) -> bool:
-    """Return whether the firmware accepts a circle with spokes (2, 2) to its ends, and stays close to it."""
+    """Return whether the firmware accepts a circle and stays close to it.
+
+    spokes: (2, 2) from the centre to both ends of the circle.
+    """
     first, last = (hypot(*spoke) for spoke in spokes.tolist())
     # The centre of the circle is rounded, too.
     max_difference_mm = MAX_RADIUS_DIFFERENCE_MM.get(cell.language, inf) - 1.5 * unit_mm(cell)

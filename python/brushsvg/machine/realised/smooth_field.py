@@ -43,9 +43,10 @@ def max_field_slope(machine: Machine) -> float:
 
 
 def count_line_parts(commanded_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """Return the number of parts (n - 1,) that make each line between commanded places (n, 2) straight enough.
+    """Return the number of parts that make each line straight enough, (n - 1,).
 
-    A curve with the second derivative q that is divided into k chords is at most q / (8 k^2) away from them.
+    The lines connect commanded places (n, 2). A curve with the second derivative q that is divided into k chords is at
+    most q / (8 k^2) away from them.
     """
     du, dv = (np.diff(commanded_mm, axis=0) / machine.field_reach_mm).T
     bends = 2 * np.column_stack([du * du, du * dv, dv * dv]) @ np.array(machine.field_mm).T
@@ -53,9 +54,10 @@ def count_line_parts(commanded_mm: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def cuts_at_field_edge(commanded_mm: np.ndarray, machine: Machine) -> list[np.ndarray]:
-    """Return for each line between commanded places (n, 2) the shares, up to 1, where it crosses the field's edge.
+    """Return the shares at which each line crosses the field's edge.
 
-    The field has a kink at the edge of the measured area.
+    The lines connect commanded places (n, 2). The last share of each line is 1. The field has a kink at the edge of the
+    measured area.
     """
     if not distance_beyond_field_mm(commanded_mm, machine):
         return [np.ones(1)] * (len(commanded_mm) - 1)
@@ -69,13 +71,16 @@ def cuts_at_field_edge(commanded_mm: np.ndarray, machine: Machine) -> list[np.nd
 
 
 def distance_beyond_field_mm(commanded_mm: np.ndarray, machine: Machine) -> float:
-    """Return the largest distance [mm] of commanded places (n, 2) beyond the measured area of the field."""
+    """Return the largest distance [mm] of places beyond the field.
+
+    commanded_mm: (n, 2) commanded places.
+    """
     beyond = np.abs(commanded_mm - machine.field_middle_mm) - machine.field_reach_mm
     return float(np.max(beyond, initial=0.0))
 
 
 def beyond_field(passes, cell: Cell) -> list[Notice]:
-    """Report the stroke that goes furthest beyond the measured area of the cell's field."""
+    """Report the stroke that goes furthest beyond the measured field."""
     if not has_field(cell.machine):
         return []
     far_mm = {

@@ -1,4 +1,4 @@
-"""Limits and poses of a tilted brush on a cell: how far, how fast and in which steps it may turn."""
+"""Limits and poses of a tilted brush on a cell."""
 
 from __future__ import annotations
 
@@ -63,7 +63,10 @@ def _can_be_simulated(poses: np.ndarray, axes: np.ndarray) -> bool:
 
 
 def limit_turning_speed(speed_mm_s: float, length_mm: float, turn_deg: float, cell: Cell) -> float:
-    """Return the speed [mm/s], reduced if the tool would turn too fast on a path of length_mm."""
+    """Return the speed [mm/s], reduced if the tool would turn too fast.
+
+    length_mm: length of the path on which the tool turns by turn_deg.
+    """
     return min(speed_mm_s, length_mm * cell.tool.turn_deg_s / turn_deg) if turn_deg > 0 else speed_mm_s
 
 
