@@ -181,7 +181,7 @@ def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]
     if not cell.reload or cell.reload.when != "length":
         return []
     every_mm, deepest_mm = load_length_mm(brush, cell), brush.depth_range_mm[1]
-    last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the lift comes back over its own mark
+    last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the brush lifts over its own mark
     sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
     return [
         Notice(
@@ -262,7 +262,7 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
 def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[list[float]]:
     """Return dips_mm for the passes of a plan, with or without a cell."""
     if cell:
-        with suppress(Error):  # a colour that no station serves is reported where a program is made
+        with suppress(Error):  # the error is reported when the program is made
             return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
     return dips_without_cell(plan.passes)
 

@@ -153,64 +153,66 @@ def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
     ]
 
 
-def _pass_at_servo_places(a_pass, made: Program):
+def _pass_at_servo_places(a_pass, program: Program):
     """Return the pass for which limits are checked.
 
     With a servo, its poses are the places at which the servo stands.
     """
-    if made.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
+    if program.cell.servo is None or not np.isfinite(a_pass.poses_mm).all():
         return a_pass
-    written = as_written(a_pass, made.cell, made.robot_from_frame)
-    poses = true_mm(written.commanded_mm, made.cell.machine)
-    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # no servo tilts a brush
+    written = as_written(a_pass, program.cell, program.robot_from_frame)
+    poses = true_mm(written.commanded_mm, program.cell.machine)
+    return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # a servo cannot tilt the brush
 
 
-def astray_in(made: Program, sheet_mm) -> list[Notice]:
+def astray_in(program: Program, sheet_mm) -> list[Notice]:
     """Report moves of a program that leave the workspace.
 
     The rise before the first move is included.
     """
     ends: list = []
-    home_sections = _home_sections(made)
+    home_sections = _home_sections(program)
 
     def sections() -> Iterator[Section]:
         yield from home_sections
-        for section in made.sections():
+        for section in program.sections():
             if moves := section.moves:
                 ends[:] = [ends[0] if ends else moves[0].points_mm[0], moves[-1].points_mm[-1]]
             yield section
         yield from home_sections
 
-    frame, height_mm = made.robot_from_frame, made.rise_mm
-    notices = find_astray_sections(sections(), frame, made.cell, sheet_mm)
-    post = POSTS.get(made.cell.language)
+    frame, height_mm = program.robot_from_frame, program.rise_mm
+    notices = find_astray_sections(sections(), frame, program.cell, sheet_mm)
+    post = POSTS.get(program.cell.language)
     if post and post.in_robot_frame:  # other programs rise to the safe height over the paper
         ends = list(moved(frame, np.reshape(ends, (-1, 3))))
-        frame, height_mm = np.eye(4), made.rise_in_robot_mm
-    return notices + rise_astray(height_mm, ends, frame, made.cell)
+        frame, height_mm = np.eye(4), program.rise_in_robot_mm
+    return notices + rise_astray(height_mm, ends, frame, program.cell)
 
 
-def _home_sections(made: Program) -> tuple[Section, ...]:
+def _home_sections(program: Program) -> tuple[Section, ...]:
     """Return a section with the place where motors that count steps begin and end.
 
     The place is over the robot's origin. Other machines have no such section.
     """
-    if made.cell.motors is None:
+    if program.cell.motors is None:
         return ()
-    place_mm = moved(np.linalg.inv(made.robot_from_frame), np.array([[0.0, 0.0, made.cell.heights.safe_mm]]))
-    travel = Move("travel", place_mm, made.cell.speeds.travel_mm_s)
+    place_mm = moved(
+        np.linalg.inv(program.robot_from_frame), np.array([[0.0, 0.0, program.cell.heights.safe_mm]])
+    )
+    travel = Move("travel", place_mm, program.cell.speeds.travel_mm_s)
     return (Section("home: where the motors begin and end", (travel,)),)
 
 
-def out_of_arm(made: Program, sheet_mm) -> list[Notice]:
+def out_of_arm(program: Program, sheet_mm) -> list[Notice]:
     """Report what the cell's arm cannot do of a program.
 
     The advice is the place that the paper would need. Reports nothing if the cell has no arm, or if the library for
     joints is not installed.
     """
-    if made.cell.arm is None or not is_installed():
+    if program.cell.arm is None or not is_installed():
         return []
-    return find_unreachable(made, lambda there: not astray_in(there, sheet_mm))
+    return find_unreachable(program, lambda there: not astray_in(there, sheet_mm))
 
 
 def _fits_in_cache(loads: PlanInLoads, job: Job) -> bool:

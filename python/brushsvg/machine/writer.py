@@ -147,13 +147,13 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
     return called_texts
 
 
-def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
+def text_of(post: Post, program: Program, suffix: str = "") -> Iterator[str]:
     """Return the pieces of a program in a robot's language.
 
     suffix: extension of the file.
     """
-    made = compensate_backlash(program_in_robot_frame(made)) if post.in_robot_frame else made
-    pieces = post.others.get(suffix, post.write)(made)
+    program = compensate_backlash(program_in_robot_frame(program)) if post.in_robot_frame else program
+    pieces = post.others.get(suffix, post.write)(program)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 

@@ -40,7 +40,7 @@ FLIP_SEARCH_MM = 30.0  # distance behind a singularity within which a wrist flip
 # A wrist joint that turns by more has flipped, provided that each of the first three joints turns by less.
 MIN_FLIP_RAD, MAX_SAME_ARM_TURN_RAD = np.radians(90.0), np.radians(30.0)
 ELBOW_JOINT = 2  # joint 3, counted from 0
-WRIST_BEND_JOINT, WRIST_TWIST_JOINTS = 4, [3, 5]  # joint 5 bends a wrist, 4 and 6 twist it
+WRIST_BEND_JOINT, WRIST_TWIST_JOINTS = 4, [3, 5]  # joint 5 bends the wrist, and joints 4 and 6 twist it
 
 
 @dataclass(frozen=True)
@@ -118,19 +118,19 @@ def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray
     return tip @ np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
 
 
-def follow(made: Program, joints: JointSolver, to_the_end: bool = True) -> FollowedProgram:
+def follow(program: Program, joints: JointSolver, to_the_end: bool = True) -> FollowedProgram:
     """Follow the joints of an arm along a program, from the program's first place on.
 
     How the arm gets to the first place is not known and not checked.
     to_the_end: whether to continue when no posture is left, because a place out of all reach is a better reason.
     """
-    cell, arm, frame = made.cell, joints.arm, made.robot_from_frame
+    cell, arm, frame = program.cell, joints.arm, program.robot_from_frame
     flange_from_tip = np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
     upright = frame[:3, :3] @ down(cell.tool.spin_deg)
 
     def flange(place: Place) -> np.ndarray:
         tip = np.eye(4)
-        tip[:3, :3] = turned_to(frame[:3, :3] @ place.axis, upright) if made.tilts else upright
+        tip[:3, :3] = turned_to(frame[:3, :3] @ place.axis, upright) if program.tilts else upright
         tip[:3, 3] = place.robot_mm
         return tip @ flange_from_tip
 
@@ -140,7 +140,7 @@ def follow(made: Program, joints: JointSolver, to_the_end: bool = True) -> Follo
 
     postures: list[_Posture] | None = None
     before = None
-    for number, place in enumerate(places_of_program(made)):
+    for number, place in enumerate(places_of_program(program)):
         solutions = (
             _continue_solutions(arm, postures, flange(place), place, frame) if postures else None
         ) or solve(place)
@@ -232,19 +232,19 @@ def far_from_singular(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) ->
     )
 
 
-def places_of_program(made: Program) -> Iterator[Place]:
+def places_of_program(program: Program) -> Iterator[Place]:
     """Yield the places of a program at which the arm is checked.
 
     They are at and between the ends of moves, at most MAX_PLACE_SPACING_MM apart.
     """
     last_point = last_axis = None
-    for section in made.sections():
+    for section in program.sections():
         moves = section.moves
         if not moves:
             continue
         points = np.vstack([move.points_mm for move in moves])
         axes = None
-        if made.tilts:
+        if program.tilts:
             axes = np.vstack(
                 [np.tile(UPRIGHT_AXIS, (len(m.points_mm), 1)) if m.axes is None else m.axes for m in moves]
             )
@@ -254,7 +254,7 @@ def places_of_program(made: Program) -> Iterator[Place]:
             points, speeds, ends = np.vstack([last_point, points]), np.r_[speeds[:1], speeds], ends + 1
             axes = None if axes is None else np.vstack([last_axis, axes])
         yield from _places_along(
-            section.name, points, axes, speeds, ends - 1, made.robot_from_frame, last_point is None
+            section.name, points, axes, speeds, ends - 1, program.robot_from_frame, last_point is None
         )
         last_point, last_axis = points[-1], None if axes is None else axes[-1]
 
@@ -469,12 +469,12 @@ def _near(place: Place) -> str:
     return f"near x {place.paper_mm[0]:.1f}, y {place.paper_mm[1]:.1f} mm"
 
 
-def outermost_places(made: Program) -> np.ndarray:
+def outermost_places(program: Program) -> np.ndarray:
     """Return a few outermost places (n, 3) [mm] of a program, in the program's frame.
 
     What the arm can do at these places, it can mostly do between them.
     """
-    points = np.vstack(list(chain.from_iterable([m.points_mm for m in s.moves] for s in made.sections())))
+    points = np.vstack(list(chain.from_iterable([m.points_mm for m in s.moves] for s in program.sections())))
     turns = np.radians(np.arange(0, 360, 45))
     ways = np.column_stack([np.cos(turns), np.sin(turns)])
     outermost = points[np.unique((points[:, :2] @ ways.T).argmax(axis=0))]

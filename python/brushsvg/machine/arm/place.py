@@ -48,7 +48,7 @@ class PaperPlace:
         return "moved by x {:+.0f}, y {:+.0f} mm in the robot's frame".format(*self.shift_mm)
 
 
-def find_unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[Notice]:
+def find_unreachable(program: Program, allowed: Callable[[Program], bool]) -> list[Notice]:
     """Report what the arm of a program's cell cannot do.
 
     The advice is a place of the paper at which the arm can do it.
@@ -57,23 +57,23 @@ def find_unreachable(made: Program, allowed: Callable[[Program], bool]) -> list[
 
     Raises Error if the library for joints is not installed.
     """
-    joints = joints_of(made.cell.arm)
-    problems = follow(made, joints).problems
+    joints = joints_of(program.cell.arm)
+    problems = follow(program, joints).problems
     if not problems:
         return []
-    place = nearest(made, joints, allowed)
+    place = nearest(program, joints, allowed)
     advice = f"the sheet {place.text} would do" if place else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
 
 
-def nearest(made: Program, joints: JointSolver, allowed: Callable[[Program], bool]) -> PaperPlace | None:
+def nearest(program: Program, joints: JointSolver, allowed: Callable[[Program], bool]) -> PaperPlace | None:
     """Find the nearest place of the paper at which the arm can run a program.
 
     Shifts of the paper are tried first, then turns. Returns None if no place that was tried works.
     """
-    outermost_mm, followed_count = outermost_places(made), 0
-    for place in _tried_places(made, outermost_mm):
-        moved_program = at(made, place.frame)
+    outermost_mm, followed_count = outermost_places(program), 0
+    for place in _tried_places(program, outermost_mm):
+        moved_program = at(program, place.frame)
         robot_points_mm = moved(place.frame, outermost_mm)
         if not all(
             _can_reach(joints, moved_program.cell, place.frame, point) for point in robot_points_mm
@@ -87,10 +87,10 @@ def nearest(made: Program, joints: JointSolver, allowed: Callable[[Program], boo
     return None
 
 
-def at(made: Program, frame: np.ndarray) -> Program:
+def at(program: Program, frame: np.ndarray) -> Program:
     """Return the program with the paper at a pose (4, 4) in the robot's frame."""
-    rise = made.rise_in_robot_mm + frame[2, 3] - made.robot_from_frame[2, 3]
-    return replace(made, cell=cell_at(made.cell, frame), robot_from_frame=frame, rise_in_robot_mm=rise)
+    rise = program.rise_in_robot_mm + frame[2, 3] - program.robot_from_frame[2, 3]
+    return replace(program, cell=cell_at(program.cell, frame), robot_from_frame=frame, rise_in_robot_mm=rise)
 
 
 def cell_at(cell: Cell, frame: np.ndarray) -> Cell:
@@ -101,8 +101,8 @@ def cell_at(cell: Cell, frame: np.ndarray) -> Cell:
     return replace(cell, paper=replace(cell.paper, origin_mm=origin, rotation_deg=turned, taught_mm=()))
 
 
-def _tried_places(made: Program, outermost: np.ndarray):
-    frame = made.robot_from_frame
+def _tried_places(program: Program, outermost: np.ndarray):
+    frame = program.robot_from_frame
     middle = (outermost[:, :2].min(axis=0) + outermost[:, :2].max(axis=0)) / 2
     about = tuple(middle.tolist())
     for length in TRIED_SHIFTS_MM:

@@ -223,7 +223,7 @@ def _merge_short_slices(part: np.ndarray, times_ms: np.ndarray) -> np.ndarray:
     Rows of one part are merged if one of them, or the rest of the part, would be too short.
     """
     done_ms = np.cumsum(times_ms)
-    left_ms = done_ms[np.searchsorted(part, part, "right") - 1] - done_ms + times_ms  # of the part
+    left_ms = done_ms[np.searchsorted(part, part, "right") - 1] - done_ms + times_ms  # time left in the part
     first_rows: list[int] = []
     slice_ms, last_part = 0.0, -1
     for k, (part_number, time_ms, rest_ms) in enumerate(

@@ -17,7 +17,7 @@ from .text import BRACKETS, IMMEDIATE_COMMANDS, feed_of_speed_mm_min, format_num
 LINE_LIMIT = 120  # letters of a line; LinuxCNC reads 252, and 120 also fit a screen
 # Letters of a line for grbl 1.1, which reads 79 without blanks. Builds with less memory read 69.
 GRBL_LINE_LIMIT = 70
-PRINTER_LINE_LIMIT = 90  # Marlin keeps 96
+PRINTER_LINE_LIMIT = 90  # letters of a line; Marlin keeps 96
 MODE_WORDS = "G21 G90 G94 G17 G40 G80"
 HELD_UP = "end: the brush is held up"
 
