@@ -8,7 +8,7 @@ from controller import ran
 from brushsvg import _core
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.realised.corner_blending import blend_radii, blended
+from brushsvg.machine.realised.corner_blending import blend_radii, cut_corners
 from brushsvg.model.library import find_brush
 
 TURNS_DEG = (10, -45, 90, -120, 5, 60, -90, 150, -30, 20, 20, 20)
@@ -58,7 +58,7 @@ def test_linuxcnc_goes_round_corners_as_it_is_reckoned_with(tmp_path):
     went = ran(text, tmp_path, cell.speeds.travel_mm_s, cell.speeds.acceleration_mm_s2)
     painted = went[went[:, 2] < -0.5]
     reach_mm = blend_radii(way, cell.blending)
-    ours, _, _ = blended(way, reach_mm)
+    ours, _, _ = cut_corners(way, reach_mm)
     tried = 0
     for k in range(1, len(way) - 1):
         around = painted[np.linalg.norm(painted - way[k], axis=1) < 1.9]

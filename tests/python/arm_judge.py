@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from brushsvg.machine.arm.follow import rates
-from brushsvg.machine.arm.joints import flange_rates, frames, joints_of
+from brushsvg.machine.arm.follow import joint_rates
+from brushsvg.machine.arm.joints import flange_rates, joint_frames_of, joints_of
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.frames import frame_of_pose
 
@@ -61,7 +61,7 @@ def newton_of(arm):
     random = np.random.default_rng(0)
 
     def nearer(angles, flange):
-        there = frames(arm, angles)[:, -1]
+        there = joint_frames_of(arm, angles)[:, -1]
         turned = flange[:3, :3] @ there[:, :3, :3].swapaxes(-1, -2)
         axis = np.stack([turned[:, k - 1, k - 2] - turned[:, k - 2, k - 1] for k in (0, 1, 2)], axis=-1)
         off = np.concatenate([flange[:3, 3] - there[:, :3, 3], axis / 2], axis=-1)
@@ -71,7 +71,7 @@ def newton_of(arm):
         return angles + step * np.minimum(1.0, MOST_STEP_RAD / np.maximum(longest, 1e-12))
 
     def within(angles, flange, most_mm):
-        return angles[np.abs(frames(arm, angles)[:, -1] - flange).max(axis=(1, 2)) < most_mm]
+        return angles[np.abs(joint_frames_of(arm, angles)[:, -1] - flange).max(axis=(1, 2)) < most_mm]
 
     def solutions(flange, starts=STARTS):
         angles = random.uniform(-np.pi, np.pi, (starts, 6))
@@ -110,12 +110,12 @@ def compare(name: str, count: int, seed: int = 0) -> dict:
     newton = None if judge.knows else newton_of(arm)
     solutions = newton or judge.solutions
     for made_of in random.uniform(-np.pi, np.pi, (count, 6)):
-        flange = frames(arm, made_of)[-1]
+        flange = joint_frames_of(arm, made_of)[-1]
         ours, theirs = joints.solutions(flange), np.vstack([solutions(flange), made_of])
         if newton and missing(ours, theirs):
             theirs = np.vstack([theirs, newton(flange, 10 * STARTS)])
         both = np.vstack([ours, theirs])
-        turn = np.linalg.norm(rates(arm, both, flange[:3, 3]), axis=-1).max()
+        turn = np.linalg.norm(joint_rates(arm, both, flange[:3, 3]), axis=-1).max()
         if turn > SINGULAR_RAD_MM:
             reported["singular"] += 1
             continue

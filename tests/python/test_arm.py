@@ -9,7 +9,7 @@ import pytest
 from arm_judge import compare
 
 from brushsvg.errors import Error
-from brushsvg.machine.arm.joints import frames, joints_of
+from brushsvg.machine.arm.joints import joint_frames_of, joints_of
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 pytestmark = pytest.mark.arm
@@ -139,7 +139,7 @@ def described(name, joints_rad):
 def test_an_arms_links_put_the_flange_where_its_own_description_puts_it(name):
     arm, rng = find_cell(name).arm, np.random.default_rng(1)
     for joints_rad in rng.uniform(-np.pi, np.pi, (20, 6)):
-        assert frames(arm, joints_rad)[-1] == pytest.approx(described(name, joints_rad), abs=2e-5)
+        assert joint_frames_of(arm, joints_rad)[-1] == pytest.approx(described(name, joints_rad), abs=2e-5)
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -147,10 +147,10 @@ def test_all_found_angles_put_the_flange_at_the_requested_place(name):
     arm, rng = find_cell(name).arm, np.random.default_rng(2)
     joints = joints_of(arm)
     for joints_rad in rng.uniform(-2.5, 2.5, (20, 6)):
-        target = frames(arm, joints_rad)[-1]
+        target = joint_frames_of(arm, joints_rad)[-1]
         found = joints.solutions(target)
         assert len(found) >= 2
-        there = frames(arm, found)[:, -1]
+        there = joint_frames_of(arm, found)[:, -1]
         assert there == pytest.approx(np.broadcast_to(target, there.shape), abs=1e-6)
         turns = (found - joints_rad + np.pi) % (2 * np.pi) - np.pi
         assert np.abs(turns).max(axis=1).min() < 1e-6
@@ -159,8 +159,8 @@ def test_all_found_angles_put_the_flange_at_the_requested_place(name):
 def test_near_a_singularity_angles_are_as_exact():
     """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad off their target."""
     arm = find_cell("xarm6").arm
-    target = frames(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
-    there = frames(arm, joints_of(arm).solutions(target))[:, -1]
+    target = joint_frames_of(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
+    there = joint_frames_of(arm, joints_of(arm).solutions(target))[:, -1]
     assert there == pytest.approx(np.broadcast_to(target, there.shape), abs=1e-8)
 
 

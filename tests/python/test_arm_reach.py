@@ -17,7 +17,7 @@ from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.machine import preflight
 from brushsvg.machine.arm import joints, place
-from brushsvg.machine.arm.follow import flange_at, follow, lowest_joint_mm, rates
+from brushsvg.machine.arm.follow import flange_at, follow, joint_rates, lowest_joint_mm
 from brushsvg.machine.cells.cell import robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import moved
@@ -102,7 +102,7 @@ def test_joint_rates_are_those_of_two_places_close_together():
     found, frame = joints.joints_of(cell.arm), robot_from_paper(cell)
     at = np.array([-100.0, -500.0, 30.0])
     here = found.solutions(flange_at(cell, frame, at))[0]
-    expected = rates(cell.arm, here, at)
+    expected = joint_rates(cell.arm, here, at)
     for axis in range(3):
         step = np.zeros(3)
         step[axis] = 1e-3
@@ -224,6 +224,6 @@ def test_joints_below_the_table_are_refused_unless_the_cell_names_the_posture():
     made = over_sheet(BRUSH, replace(cell, arm=named), (200.0, 100.0))
     assert not follow(made, joints.joints_of(named)).problems
     # paper far below the robot's base: what is lower than the base alone is in the air
-    there, low = joints.frames(arm, below[0]), first.copy()
+    there, low = joints.joint_frames_of(arm, below[0]), first.copy()
     low[2, 3] = -1000.0
     assert lowest_joint_mm(there, first) < 0 < lowest_joint_mm(there, low)

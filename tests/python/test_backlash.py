@@ -15,8 +15,8 @@ core = pytest.importorskip("brushsvg._core")
 
 from brushsvg.machine.cells.cell import Machine, Paper  # noqa: E402
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell  # noqa: E402
-from brushsvg.machine.realised.arc_chords import cut_at_extremes  # noqa: E402
-from brushsvg.machine.realised.backlash import ahead, from_air_mm  # noqa: E402
+from brushsvg.machine.realised.arc_chords import split_arcs_at_extremes  # noqa: E402
+from brushsvg.machine.realised.backlash import commands_ahead, from_air_mm  # noqa: E402
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
 <g fill="none" stroke="#000" stroke-linecap="round">
@@ -185,7 +185,7 @@ def test_a_circle_is_cut_where_an_axis_turns_back():
     arcs = [core.Arc(0, 5, (40.0, 30.0), 1)]
     a_pass = core.Pass(stroke="s", poses_mm=poses, speed_mm_s=20.0, arcs=arcs)
     for turned_deg, target in ((0.0, [270, 360, 450]), (25.0, [245, 335, 425])):
-        cut = cut_at_extremes(a_pass, np.radians(turned_deg))
+        cut = split_arcs_at_extremes(a_pass, np.radians(turned_deg))
         ends = np.array(cut.poses_mm)[[arc.last for arc in cut.arcs][:-1], :2] - (40, 30)
         assert np.degrees(np.arctan2(*ends.T[::-1])) % 360 == pytest.approx(np.array(target) % 360, abs=1e-6)
         assert np.hypot(*ends.T) == pytest.approx(8.0)
@@ -194,15 +194,15 @@ def test_a_circle_is_cut_where_an_axis_turns_back():
     back = core.Pass(
         stroke="s", poses_mm=poses[::-1], speed_mm_s=20.0, arcs=[core.Arc(0, 5, (40.0, 30.0), -1)]
     )
-    assert np.array(cut_at_extremes(back, 0.0).poses_mm) == pytest.approx(
-        np.array(cut_at_extremes(a_pass, 0.0).poses_mm)[::-1]
+    assert np.array(split_arcs_at_extremes(back, 0.0).poses_mm) == pytest.approx(
+        np.array(split_arcs_at_extremes(a_pass, 0.0).poses_mm)[::-1]
     )
 
 
 def test_axes_are_commanded_half_of_it_ahead():
     way = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, -1.0], [3.0, 2.0, -1.0], [1.0, 3.0, -1.0]])
     half = np.array([0.2, 0.1])
-    reported, side = ahead(way[1:], way[0], np.array([1.0, -1.0]), half)
+    reported, side = commands_ahead(way[1:], way[0], np.array([1.0, -1.0]), half)
     target = [[3.2, -0.1, -1], [3.2, 0.1, -1], [3.2, 2.1, -1], [2.8, 2.1, -1], [0.8, 3.1, -1]]
     assert reported == pytest.approx(np.array(target)) and side.tolist() == [-1, 1]
     in_all = from_air_mm(way, 2 * half)

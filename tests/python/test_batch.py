@@ -26,7 +26,7 @@ from brushsvg.cli import main
 from brushsvg.jobs.batch import executors, one, run
 from brushsvg.jobs.batch.items import list_words
 from brushsvg.jobs.batch.manifest import FORMAT, format_row
-from brushsvg.machine.cells.cell import MOST_LINES, MOST_POINTS, RoboDK
+from brushsvg.machine.cells.cell import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS, RoboDK
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.show.contact_sheet import ACROSS, CARD_W, DOWN, GAP, PICTURE_H, WORDS_H, Card, contact_sheets
 
@@ -430,7 +430,7 @@ def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(des
     many = "".join(LINE.format(f"s{k}", 20 + 5 * k, 90, "#203060", 3) for k in range(3))
     Path("two/a.svg").write_text(PAGE.format("", many))
     Path("two", small).write_text(drawing(0))
-    monkeypatch.setitem(MOST_POINTS, "fanuc", 40)
+    monkeypatch.setitem(MAX_PROGRAM_POINTS, "fanuc", 40)
     with threads() as executor:
         done = brushsvg.batch(["two"], "out", executor=executor, cell="lrmate200id", width=3)
         (row,) = done.refused
@@ -449,7 +449,7 @@ def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(des
 def test_parts_of_a_long_job_go_on_and_go_when_it_gets_shorter(desk, monkeypatch, cell, capsys):
     many = "".join(LINE.format(f"s{k}", 20 + 5 * k, 90, "#203060", 3) for k in range(6))
     Path("word.svg").write_text(PAGE.format("", many))
-    monkeypatch.setitem(MOST_LINES, find_cell(cell).language, 60)
+    monkeypatch.setitem(MAX_PROGRAM_LINES, find_cell(cell).language, 60)
     with threads() as executor:
         first = brushsvg.batch(["word.svg"], "out", executor=executor, cell=cell, width=3)
         (main,) = Path("out/programs/word").glob("word.s*[!0-9]")

@@ -13,7 +13,7 @@ from brushsvg.cli import main
 from brushsvg.machine.cells.cell import Blending
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.preflight import as_exact_as
-from brushsvg.machine.realised.corner_blending import blend_radii, blended, turns_rad
+from brushsvg.machine.realised.corner_blending import blend_radii, corner_angles_rad, cut_corners
 from brushsvg.model.library import find_brush
 
 CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
@@ -21,12 +21,12 @@ CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
 
 def test_turns_are_the_angles_between_moves():
     path = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (2, 0, 0), (2, 0, 5)], dtype=float)
-    assert turns_rad(path) == pytest.approx([0, 0, np.pi / 2, np.pi, np.pi / 2, 0])
+    assert corner_angles_rad(path) == pytest.approx([0, 0, np.pi / 2, np.pi, np.pi / 2, 0])
 
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.01, 0.5])
 def test_a_corner_is_cut_by_the_tolerance(tolerance):
-    path, at, _ = blended(CORNER, blend_radii(CORNER, Blending(tolerance)))
+    path, at, _ = cut_corners(CORNER, blend_radii(CORNER, Blending(tolerance)))
     away = np.linalg.norm(path - CORNER[1], axis=1)
     assert away.min() == pytest.approx(tolerance, rel=1e-6)
     assert at == pytest.approx([0, 1 - away[1] / 20, 1, 1 + away[3] / 30, 2])
@@ -41,13 +41,13 @@ TURN_IN_PLACE = np.array(
 
 
 def test_where_a_circle_goes_on_straight_there_is_no_corner_and_where_it_does_not_there_is():
-    assert turns_rad(TURN_IN_PLACE, [QUARTER]) == pytest.approx([0, 0, 0, np.pi / 2, 0])
+    assert corner_angles_rad(TURN_IN_PLACE, [QUARTER]) == pytest.approx([0, 0, 0, np.pi / 2, 0])
 
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.02, 0.1])
 def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
     radii = blend_radii(TURN_IN_PLACE, Blending(tolerance), [QUARTER])
-    path, at, points = blended(TURN_IN_PLACE, radii, [QUARTER])
+    path, at, points = cut_corners(TURN_IN_PLACE, radii, [QUARTER])
     assert len(path) == 7
     away = np.linalg.norm(path[3:6] - TURN_IN_PLACE[3], axis=1)
     assert away[1] == pytest.approx(tolerance)
@@ -93,7 +93,7 @@ def test_corners_in_the_air_are_cut_by_little_however_coarse_the_plan():
 
 
 def test_without_tolerance_nothing_is_cut():
-    assert blended(CORNER, blend_radii(CORNER, Blending(0.0)))[0] is CORNER
+    assert cut_corners(CORNER, blend_radii(CORNER, Blending(0.0)))[0] is CORNER
 
 
 def marks_and_plan(brush):
@@ -170,7 +170,7 @@ def test_without_a_tolerance_nothing_is_cut_and_a_place_that_stands_twice_is_no_
     line = np.array([[0, 0, -1], [5, 0, -1], [10, 0, -1.0]])
     assert not blend_radii(line, Blending(tolerance_mm=0.0)).any()
     twice = np.array([[0, 0, -1], [5, 0, -1], [5, 0, -1], [5, 5, -1.0]])
-    assert np.array_equal(blended(twice, np.array([0.0, 1.0, 1.0, 0.0]))[0], twice)
+    assert np.array_equal(cut_corners(twice, np.array([0.0, 1.0, 1.0, 0.0]))[0], twice)
     once = np.array([[4, 0, -1], [5, 0, -1], [5, 1, -1.0]])
-    path, _, _ = blended(once, np.array([0.0, 0.3, 0.0]))
+    path, _, _ = cut_corners(once, np.array([0.0, 0.3, 0.0]))
     assert len(path) == 5  # moves of exactly 1 mm are cut as others are

@@ -127,7 +127,7 @@ def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(m
         straight,
     ]
     texts = [made(*paths)]
-    monkeypatch.setattr(ebb, "LEAST_MS", 1)
+    monkeypatch.setattr(ebb, "MIN_SLICE_MS", 1)
     texts.append(made(*paths))
     times = [[int(each) for each in re.findall(r"(?m)^SM,(\d+),(?!0,0$)", text)] for text in texts]
     assert min(times[0]) >= 16 and np.mean(np.array(times[1]) < 16) > 0.5

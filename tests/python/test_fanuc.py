@@ -11,7 +11,7 @@ from test_urscript import text_for
 
 from brushsvg import _core
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.posts.fanuc import REMARK, programs
+from brushsvg.machine.posts.fanuc import REMARK_LETTERS, programs
 from brushsvg.verify.readback import read_program
 from brushsvg.verify.readback.header import made
 
@@ -130,7 +130,7 @@ def test_remarks_are_as_long_as_the_pendant_shows_them_and_read_as_they_were():
     header = (f"title: {title}", "brush: b, 3 strokes", "cell: lrmate200id, x")
     text = text_for(on("lrmate200id", SQUARE), header=header).replace("\r\n", "\n")
     remarks = [line for line in text.split("\n") if line.startswith(" : !")]
-    assert len(remarks) == 9 and max(map(len, remarks)) == len(" : !") + REMARK + len(" ;")
+    assert len(remarks) == 9 and max(map(len, remarks)) == len(" : !") + REMARK_LETTERS + len(" ;")
     said = f"title: {title}".replace(";", ",")
     assert made(text).title == said.removeprefix("title: ")
     assert sound(text, find_cell("lrmate200id")).header[0] == said

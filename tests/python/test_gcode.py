@@ -12,7 +12,7 @@ from programs import program
 
 from brushsvg import _core, find_brush, read_plan, save_brush, write_cell, write_program
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.motion import program_in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
@@ -29,7 +29,7 @@ def text_of(*passes, header=("title: test",), sheet=(100.0, 60.0), limit=25.0, c
     brush = SimpleNamespace(name="b", max_speed_mm_s=limit)
     cell = find_cell(cell)
     made = program(SimpleNamespace(sheet_mm=sheet, passes=passes), brush, cell, header)
-    return "".join(POSTS[cell.language].write(in_robot_frame(made)))
+    return "".join(POSTS[cell.language].write(program_in_robot_frame(made)))
 
 
 def feeds_in(text):
@@ -212,7 +212,7 @@ def test_the_first_rise_is_over_every_place_of_paper_that_leans():
     )
     plan = SimpleNamespace(sheet_mm=(300.0, 60.0), passes=[a_pass])
     made = program(plan, SimpleNamespace(name="b", max_speed_mm_s=25.0), cell)
-    text = "".join(POSTS["linuxcnc"].write(in_robot_frame(made)))
+    text = "".join(POSTS["linuxcnc"].write(program_in_robot_frame(made)))
     heights = [float(z) for z in re.findall(r"Z(-?[\d.]+)", text)]
     right_edge = 330 * np.sin(np.radians(2)) + 10 * np.cos(np.radians(2))
     assert heights[0] == pytest.approx(right_edge, abs=1e-3) and heights[0] == max(heights)

@@ -54,7 +54,7 @@ def job(request, tmp_path, capsys, monkeypatch):
         path.parent.mkdir()
         with monkeypatch.context() as patch:
             if path.parent.name == "whole":
-                patch.setitem(cell.MOST_LINES, find_cell(name).language, NO_LIMIT)
+                patch.setitem(cell.MAX_PROGRAM_LINES, find_cell(name).language, NO_LIMIT)
             status, _, reported = call(
                 capsys, "convert", str(tmp_path / "waves.json"), "-o", str(path), "--cell", name
             )
@@ -182,9 +182,9 @@ def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
         path.parent.mkdir()
         with monkeypatch.context() as patch:
             if folder == "whole":
-                patch.setattr(ebb, "LEAST_MS", 1)
-                for language in cell.MOST_LINES:
-                    patch.setitem(cell.MOST_LINES, language, NO_LIMIT)
+                patch.setattr(ebb, "MIN_SLICE_MS", 1)
+                for language in cell.MAX_PROGRAM_LINES:
+                    patch.setitem(cell.MAX_PROGRAM_LINES, language, NO_LIMIT)
             status, _, reported = call(capsys, "convert", words[0], "-o", str(path), *words[1:])
             assert status == 0, reported
         texts.append(text_of(files_of(path)))

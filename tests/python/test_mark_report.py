@@ -12,7 +12,7 @@ from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.calibration.marks.mark_input import Painted
 from brushsvg.calibration.marks.mark_report import overlaps
-from brushsvg.machine.cells.cell import not_undone, why_no_backlash
+from brushsvg.machine.cells.cell import not_undone, reason_for_no_backlash
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 
@@ -71,7 +71,11 @@ def test_the_table_for_a_cell_says_for_which_machines_its_lines_have_no_use(name
     head, *lines = machine_found.cell_table(fit, options, found)
     remarks = {line.partition(" = ")[0]: line.partition("  # ")[2] for line in lines}
     assert head == "[machine]" and {"backlash_mm", "scale"} <= tomllib.loads("\n".join(lines)).keys()
-    kinds = {"arm": why_no_backlash(cell) != "", "servo": bool(cell.servo or cell.pen), "pen": bool(cell.pen)}
+    kinds = {
+        "arm": reason_for_no_backlash(cell) != "",
+        "servo": bool(cell.servo or cell.pen),
+        "pen": bool(cell.pen),
+    }
     of_no_use = {
         key
         for key, remark in remarks.items()

@@ -10,8 +10,14 @@ from hypothesis import strategies as st
 
 from brushsvg.machine.cells.cell import Blending
 from brushsvg.machine.frames import frame_of_pose, moved
-from brushsvg.machine.move_extents import bounds, from_origin, place_inside, ways, ways_in
-from brushsvg.machine.realised.corner_blending import blend_radii, blended
+from brushsvg.machine.move_extents import (
+    bounds,
+    distances_from_origin,
+    find_place_inside,
+    paths_in_frame,
+    ways,
+)
+from brushsvg.machine.realised.corner_blending import blend_radii, cut_corners
 
 COUNT = 1500
 LENGTH = st.floats(-300, 300)
@@ -49,7 +55,7 @@ def both(frame, start, end, circle):
     """A line and a circle, and places on them, in a frame."""
     line = np.linspace(start, end, COUNT)
     return (
-        ways_in(frame, ways([[start, end]], [circle[:3]])),
+        paths_in_frame(frame, ways([[start, end]], [circle[:3]])),
         moved(frame, np.vstack([line, sampled(circle)])),
         max(math.dist(start, end), np.linalg.norm(np.diff(sampled(circle), axis=0), axis=1).sum()) / COUNT,
     )
@@ -65,7 +71,7 @@ def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start,
         high == pytest.approx(places.max(axis=0), abs=step_mm) and (high >= places.max(axis=0) - 1e-9).all()
     )
     away = np.linalg.norm(places, axis=1)
-    nearest, farthest = from_origin(some)
+    nearest, farthest = distances_from_origin(some)
     assert nearest == pytest.approx(away.min(), abs=step_mm) and nearest <= away.min() + 1e-9
     assert farthest == pytest.approx(away.max(), abs=step_mm) and farthest >= away.max() - 1e-9
 
@@ -74,7 +80,7 @@ def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start,
 def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, size):
     low, high = np.array(corner), np.add(corner, size)
     some, places, step_mm = both(frame, start, end, circle)
-    place = place_inside(some, low, high)
+    place = find_place_inside(some, low, high)
     if ((places > low + 1e-9) & (places < high - 1e-9)).all(axis=1).any():
         assert place is not None
     if place is not None:
@@ -85,14 +91,17 @@ def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, s
 @given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
 def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
     """Only programs that were changed have one; all that circle and climb span is checked instead."""
-    some, places = ways_in(frame, ways([], [circle[:3]])), moved(frame, sampled(circle))
+    some, places = paths_in_frame(frame, ways([], [circle[:3]])), moved(frame, sampled(circle))
     low, high = bounds(some)
     assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
     away = np.linalg.norm(places, axis=1)
-    assert from_origin(some)[0] <= away.min() + 1e-9 and from_origin(some)[1] >= away.max() - 1e-9
+    assert (
+        distances_from_origin(some)[0] <= away.min() + 1e-9
+        and distances_from_origin(some)[1] >= away.max() - 1e-9
+    )
     box = np.array(corner), np.add(corner, size)
     if ((places > box[0]) & (places < box[1])).all(axis=1).any():
-        assert place_inside(some, *box) is not None
+        assert find_place_inside(some, *box) is not None
 
 
 def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
@@ -100,17 +109,17 @@ def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
     some = ways([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
     low, high = bounds(some)
     assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))
-    assert from_origin(some) == pytest.approx((math.hypot(4, 2), math.hypot(10, 2)))
-    assert place_inside(some, (3.9, -1, -3), (4.1, 1, -1)) == pytest.approx([4, 0, -2], abs=0.2)
+    assert distances_from_origin(some) == pytest.approx((math.hypot(4, 2), math.hypot(10, 2)))
+    assert find_place_inside(some, (3.9, -1, -3), (4.1, 1, -1)) == pytest.approx([4, 0, -2], abs=0.2)
 
 
 def test_ways_that_stay_in_a_place_or_run_along_a_side():
     box = (0, 0, 0), (10, 10, 10)
-    assert place_inside(ways([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
-    assert place_inside(ways([[(5, 5, 15)]]), *box) is None
-    assert place_inside(ways([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, "along a side is not inside"
-    assert place_inside(ways([[(-5, 5, 9.9), (15, 5, 9.9)]]), *box) == pytest.approx([5, 5, 9.9])
-    assert place_inside(ways([]), *box) is None
+    assert find_place_inside(ways([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
+    assert find_place_inside(ways([[(5, 5, 15)]]), *box) is None
+    assert find_place_inside(ways([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, "along a side is not inside"
+    assert find_place_inside(ways([[(-5, 5, 9.9), (15, 5, 9.9)]]), *box) == pytest.approx([5, 5, 9.9])
+    assert find_place_inside(ways([]), *box) is None
 
 
 @given(st.floats(0.05, 3.0), st.floats(5, 200), st.floats(5, 200), st.floats(1e-3, 2))
@@ -121,7 +130,7 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
         [(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)]
     )
     radii = blend_radii(path, Blending(tolerance_mm))
-    cut = blended(path, radii)[0]
+    cut = cut_corners(path, radii)[0]
     if len(cut) < 5:
         return
     third_side = np.linspace(cut[1], cut[3], 101)
@@ -135,16 +144,16 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
 
 def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
     half = ways([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
-    assert place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
-    assert place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
+    assert find_place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
+    assert find_place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
 
 
 def test_the_nearest_place_of_a_climbing_circle_is_on_its_way():
     climbing = ways([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # round the z axis: nearest where it passes z 0
-    assert from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
+    assert distances_from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
 
 
 def test_a_circle_that_only_grazes_a_box_is_found_in_it():
     flat = ways([], [((10, 0, 0), (10, 0, 0), (0, 0, 1))])
-    place = place_inside(flat, (-0.5, 9.9, -1), (0.5, 11, 1))
+    place = find_place_inside(flat, (-0.5, 9.9, -1), (0.5, 11, 1))
     assert place == pytest.approx((0, 10, 0))

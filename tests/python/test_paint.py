@@ -20,14 +20,14 @@ from brushsvg.machine.motion import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
     in_loads,
-    load_lasts_mm,
+    load_length_mm,
     painted_mm,
     too_long,
     visits,
     without_paint,
 )
 from brushsvg.machine.preflight import look
-from brushsvg.machine.program import visit, walked
+from brushsvg.machine.program import make_visit, walked
 from brushsvg.model.library import find_brush
 from brushsvg.show.evaluation.report import PaintedPlan, measure
 
@@ -114,7 +114,7 @@ def test_a_colour_that_nobody_serves_is_refused():
 
 
 def test_a_visit_goes_down_into_the_paint_and_drips_off():
-    section = visit(BLACK, BRUSH, find_cell())
+    section = make_visit(BLACK, BRUSH, find_cell())
     assert section.title == "paint: black"
     reported = [
         ("wait", step.seconds) if isinstance(step, Wait) else (step.meaning, *step.points_mm[-1])
@@ -130,7 +130,7 @@ def test_a_visit_goes_down_into_the_paint_and_drips_off():
         ("retract", -20, 10, 10),
     ]
     assert all(step.speed_mm_s <= 25 for step in section.moves if step.meaning not in ("travel", "retract"))
-    wiped = visit(ANY, BRUSH, find_cell()).moves
+    wiped = make_visit(ANY, BRUSH, find_cell()).moves
     assert wiped[-2].points_mm.tolist() == [[-14, 40, 3], [-10, 40, 3]]
     assert wiped[-1].points_mm.tolist() == [[-10, 40, 10]]
 
@@ -201,7 +201,7 @@ def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_h
 
 
 def test_a_person_dips_at_safe_height():
-    section = visit(Station("hand", (5.0, 6.0), by_hand=True), BRUSH, find_cell())
+    section = make_visit(Station("hand", (5.0, 6.0), by_hand=True), BRUSH, find_cell())
     assert section.moves[0].points_mm.tolist() == [[5, 6, 10]]
     assert section.steps[-1].seconds is None and section.steps[-1].message.endswith(": hand")
 
@@ -339,7 +339,7 @@ def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
 
     assert fetched(brush, reload) == [True, False, False, False, True, False], "nobody knows how it narrows"
     brush.paint = _core.Paint(0.4)
-    assert load_lasts_mm(brush, cell_with(reload)) == pytest.approx(-1000 * np.log(0.95) / 0.4)
+    assert load_length_mm(brush, cell_with(reload)) == pytest.approx(-1000 * np.log(0.95) / 0.4)
     assert fetched(brush, reload) == [True, False, False, True, False, False]
     assert fetched(brush, replace(reload, every_mm=90.0)) == [True, False, True, False, True, False]
     assert fetched(brush, replace(reload, narrower_percent=0.0)) == [True, False, False, False, True, False]

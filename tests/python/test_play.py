@@ -7,7 +7,7 @@ from shapely.geometry import LineString
 core = pytest.importorskip("brushsvg._core")
 
 from brushsvg.machine.cells.cell import Machine  # noqa: E402
-from brushsvg.machine.realised.passes import as_run, with_play  # noqa: E402
+from brushsvg.machine.realised.passes import as_run, passes_with_backlash  # noqa: E402
 
 
 def ways_in_small_steps(passes, backlash):
@@ -33,7 +33,7 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
         np.column_stack([rng.uniform(0, 60, (6, 2)), [0.0, -2.0, -4.0, -3.0, -1.0, 0.0]]) for _ in range(3)
     ]
     reported = [core.Pass(stroke=f"s{k}", poses_mm=poses, speed_mm_s=20.0) for k, poses in enumerate(passes)]
-    run = with_play(reported, (0.8, 0.5))
+    run = passes_with_backlash(reported, (0.8, 0.5))
     for one, target in zip(run, ways_in_small_steps(passes, (0.8, 0.5)), strict=True):
         poses = np.array(one.poses_mm)
         assert LineString(poses[:, :2]).hausdorff_distance(LineString(target[:, :2])) < 0.2

@@ -8,7 +8,7 @@ from diagnostics import are_reported, refused
 from programs import forbidden, program, whole
 
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.motion import SAFE_MEANINGS, duration_s
+from brushsvg.machine.motion import MEANINGS_AT_SAFE_HEIGHT, duration_s
 from brushsvg.machine.program import Job, unchecked_program
 
 
@@ -49,7 +49,7 @@ def test_nothing_fast_or_sideways_near_the_paper():
                 assert at[:2] == pytest.approx(point[:2]), f"{move.meaning} runs sideways"
             if min(at[2], point[2]) < cell.heights.clearance_mm:
                 assert move.speed_mm_s <= 5.0
-                assert move.meaning not in SAFE_MEANINGS
+                assert move.meaning not in MEANINGS_AT_SAFE_HEIGHT
             at = point
 
 
@@ -124,7 +124,7 @@ def test_no_move_on_the_way_down_or_up_is_faster_than_the_brush_may_go(limit):
     made = program(plan_of(STROKE, speed=min(limit, 20.0)), brush_of(limit), cell)
     speeds = {move.meaning: move.speed_mm_s for move in next(made.sections()).moves}
     assert speeds["approach"] == min(cell.speeds.approach_mm_s, limit)
-    assert all(speed <= limit for meaning, speed in speeds.items() if meaning not in SAFE_MEANINGS)
+    assert all(speed <= limit for meaning, speed in speeds.items() if meaning not in MEANINGS_AT_SAFE_HEIGHT)
 
 
 def test_the_workspace_ends_where_it_says():

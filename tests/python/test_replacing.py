@@ -7,7 +7,7 @@ import pytest
 from diagnostics import in_json, is_reported
 
 from brushsvg.cli.steps import replacing
-from brushsvg.machine.cells.cell import MOST_POINTS
+from brushsvg.machine.cells.cell import MAX_PROGRAM_POINTS
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"><g fill="none" '
@@ -64,7 +64,7 @@ def test_what_brushsvg_did_not_write_is_kept(desk, capsys):
 
 
 def test_a_program_in_several_files_replaces_none_of_others(desk, capsys, monkeypatch):
-    monkeypatch.setitem(MOST_POINTS, "fanuc", 60)
+    monkeypatch.setitem(MAX_PROGRAM_POINTS, "fanuc", 60)
     two = DRAWING.format(2).replace("</g>", '<path d="M20 50c10-20 30 20 50 0" stroke-width="2"/></g>')
     Path("a.svg").write_text(two)
     words = ("convert", "a.svg", "-o", "a.ls", "--cell", "lrmate200id")

@@ -102,7 +102,7 @@ def test_a_post_that_is_nowhere_and_tables_of_other_languages_are_refused(tmp_pa
         text_for(cell_with(tmp_path / "nowhere.py"))
     with refused("key-missing robodk"):
         parse_cell(write_cell(replace(cell_with(POST), robodk=None)))
-    with refused("key-missing"):
+    with refused("key-unused robodk"):
         parse_cell(write_cell(replace(cell_with(POST), language="krl")))
 
 

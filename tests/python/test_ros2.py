@@ -18,9 +18,9 @@ from test_urscript import ARC, BRUSH, STROKES, text_for
 from brushsvg import _core, write_plan
 from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.motion import program_in_robot_frame
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.trajectory import POSE, SLICE_S, timed
+from brushsvg.machine.trajectory import POSE_ROW, SLICE_S, make_timed_sections
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.readback import read_program
 
@@ -36,7 +36,7 @@ def made(cell):
 
 
 def table(cell) -> np.ndarray:
-    return np.vstack([rows for _, rows in timed(in_robot_frame(made(cell)))])
+    return np.vstack([rows for _, rows in make_timed_sections(program_in_robot_frame(made(cell)))])
 
 
 def run(text: str, cell):
@@ -86,7 +86,7 @@ def test_corners_that_cannot_be_cut_are_stopped_at_and_others_are_slow():
     stiff = replace(cell, blending=replace(cell.blending, tolerance_mm=0.0))
     assert table(gentle)[-1, 0] > 1.5 * rows[-1, 0]
     assert table(stiff)[-1, 0] > 1.2 * rows[-1, 0]
-    poses = rows[rows[:, 5] == POSE]
+    poses = rows[rows[:, 5] == POSE_ROW]
     middle = np.flatnonzero(poses[:, 4] == 20.0)[5:-5]
     speeds = np.linalg.norm(np.diff(poses[middle, 1:4], axis=0), axis=1) / np.diff(poses[middle, 0])
     assert speeds.max() > 19.0 and speeds.min() > 10.0, "the brush does not stop on its way"

@@ -15,7 +15,7 @@ from test_gcode import TWO, text_of
 from brushsvg import _core, write_plan
 from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
-from brushsvg.machine.posts.gcode_servo import grbl_servo, value_at
+from brushsvg.machine.posts.gcode_servo import grbl_servo, servo_values_at
 from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
 from brushsvg.model.library import find_brush
@@ -160,7 +160,13 @@ def test_only_what_grbl_knows():
 
 
 def test_values_follow_the_table():
-    assert [value_at(CELL.servo, height) for height in (-10, -5, 0, 5, 12)] == [200, 400, 600, 800, 1000]
+    assert [servo_values_at(CELL.servo, height) for height in (-10, -5, 0, 5, 12)] == [
+        200,
+        400,
+        600,
+        800,
+        1000,
+    ]
 
 
 def test_the_output_is_never_switched_off():

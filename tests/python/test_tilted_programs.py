@@ -22,12 +22,12 @@ from brushsvg import _core
 from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
-from brushsvg.machine.motion import in_robot_frame
+from brushsvg.machine.motion import program_in_robot_frame
 from brushsvg.machine.paint_reload import in_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import look
 from brushsvg.machine.program import out_of_arm, walked
-from brushsvg.machine.realised.tilt import broken_limits, in_steps
+from brushsvg.machine.realised.tilt import check_tilt_limits, split_turning_moves
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.against_regenerated import _ActComparison
@@ -185,7 +185,7 @@ def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
     cell = anyhow(name)
     tips, turned = COMMANDED[name](text_for(plan(TILTED), cell), cell)
     (on,), paper = strokes(tips, cell)
-    target = in_steps(plan(TILTED).passes[0])
+    target = split_turning_moves(plan(TILTED).passes[0])
     poses, leans = np.asarray(target.poses_mm), np.asarray(target.tool_axes)
     # approach and landing before, lift behind
     poses = np.vstack(
@@ -248,12 +248,12 @@ def test_an_xarm_receives_the_lines_as_written():
 def test_a_pass_without_a_place_is_left_as_it_is():
     """It is refused where the plan is simulated."""
     (a_pass,) = plan(TILTED, poses=np.where(np.arange(15).reshape(5, 3) == 6, np.nan, POSES)).passes
-    assert in_steps(a_pass) is a_pass
+    assert split_turning_moves(a_pass) is a_pass
 
 
 def test_the_plan_s_own_poses_are_among_those_of_a_robot():
     of = plan(TILTED)
-    steps = in_steps(of.passes[0])
+    steps = split_turning_moves(of.passes[0])
     for pose, axis in zip(of.passes[0].poses_mm, of.passes[0].tool_axes, strict=True):
         away = np.linalg.norm(steps.poses_mm - pose, axis=1) + np.linalg.norm(steps.tool_axes - axis, axis=1)
         assert away.min() < 1e-9
@@ -270,7 +270,7 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
     poses[[0, -1], 2] = 0.0
     held = axes(*random.uniform(0, 25, 6), towards_deg=random.uniform(0, 360, 6))
     one = _core.Pass("s", poses, 5.0, tool_axes=held)
-    steps = in_steps(one)
+    steps = split_turning_moves(one)
     on = lambda tips, leans: tips[:, :2] - leans * tips[:, 2:]  # noqa: E731
     leans = held[:, :2] / held[:, 2:]
     places, row = on(poses, leans), 0
@@ -540,10 +540,10 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
 def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     cell = brushsvg.find_cell("fr3")
     made = walked(in_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
-    table, message = (made_of(in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
+    table, message = (made_of(program_in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
     rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
     data = b"".join(message)
-    points = np.frombuffer(data[-len(rows) * ros2.POINT.itemsize :], dtype=ros2.POINT)
+    points = np.frombuffer(data[-len(rows) * ros2.POINT_DTYPE.itemsize :], dtype=ros2.POINT_DTYPE)
     reported = np.array([[float(each) for each in row[1:8]] for row in rows])
     assert np.hstack([points["place_m"], points["turn_xyzw"]]) == pytest.approx(reported, abs=1e-9)
     assert len(np.unique(points["turn_xyzw"], axis=0)) > 10
@@ -587,7 +587,7 @@ def test_a_tilt_may_exceed_the_limit_by_rounding_alone(tilt_deg, count):
     cell = brushsvg.find_cell("ur5e")
     cell = replace(cell, tool=replace(cell.tool, tilt_limit_deg=15.0, turn_deg_s=360.0))
     (a_pass,) = plan(axes(0, 5, 10, tilt_deg, 10)).passes
-    assert len(broken_limits(a_pass, cell)) == count
+    assert len(check_tilt_limits(a_pass, cell)) == count
 
 
 def test_a_tool_that_would_turn_too_fast_is_refused():
@@ -610,7 +610,7 @@ def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, t
     least, most = 1.0, 360.0
     for _ in range(40):
         middle = (least + most) / 2
-        is_too_fast = broken_limits(a_pass, replace(cell, tool=replace(cell.tool, turn_deg_s=middle)))
+        is_too_fast = check_tilt_limits(a_pass, replace(cell, tool=replace(cell.tool, turn_deg_s=middle)))
         least, most = (middle, most) if is_too_fast else (least, middle)
     assert 20 < most < 300
     cell = replace(cell, tool=replace(cell.tool, turn_deg_s=most))
@@ -629,7 +629,7 @@ def test_no_turn_on_the_spot():
 def test_a_place_that_stands_twice_is_no_turn():
     poses = [[20, 20, 0], [30, 20, -2], [30, 20, -2], [60, 20, 0]]
     (a_pass,) = plan(axes(10, 10, 10, 10), poses=poses).passes
-    assert broken_limits(a_pass, brushsvg.find_cell("ur5e")) == []
+    assert check_tilt_limits(a_pass, brushsvg.find_cell("ur5e")) == []
 
 
 def test_in_the_air_it_turns_as_slowly():

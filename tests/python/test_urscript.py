@@ -19,7 +19,7 @@ from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.frames import moved
 from brushsvg.machine.motion import Move
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.posts.urscript import _lines
+from brushsvg.machine.posts.urscript import _move_lines
 from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
 from brushsvg.model.library import find_brush
@@ -289,5 +289,5 @@ def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_pa
 def test_a_blend_is_left_out_only_where_it_would_be_written_as_none():
     points = np.array([[0.0, 0, -1], [1, 0, -1], [2, 1, -1], [3, 1, -1]])
     move = Move("paint", points, 20.0, blends_mm=np.array([0.004, 0.006, 0.05, 0.0]))
-    lines = "".join(_lines(move, np.eye(3), "a=1", 5)).splitlines()
+    lines = "".join(_move_lines(move, np.eye(3), "a=1", 5)).splitlines()
     assert [line.rpartition("r=")[2].strip(")") for line in lines[:3]] == ["0.00000", "0.00001", "0.00005"]

@@ -304,7 +304,7 @@ def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])
 def test_ways_are_checked_in_any_groups(monkeypatch, at_once):
     """Strokes on both sides of the robot, each way from one side to the other through it."""
-    monkeypatch.setattr(limits, "MOVES_AT_ONCE", at_once)
+    monkeypatch.setattr(limits, "MAX_MOVES_AT_ONCE", at_once)
     sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
     passes = [
         _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0)

@@ -1,5 +1,7 @@
 """
-The brush: simulation, inverse, marks. Millimetres, radians, paper frame.
+Simulation of a brush, its inverse, and the marks that it paints.
+
+Lengths are in mm, angles in radians, coordinates in the paper frame.
 """
 
 from __future__ import annotations
@@ -54,7 +56,6 @@ __all__: list[str] = [
     "compensate",
     "convex_hull",
     "coverage",
-    "coverage_of_pieces",
     "deviations_of_95",
     "excess_turning",
     "fill",
@@ -91,7 +92,6 @@ __all__: list[str] = [
     "verdicts",
     "wanted_coverage",
     "wanted_outline",
-    "wanted_pieces",
     "widest_points",
     "write_brush",
     "write_marks",
@@ -100,12 +100,22 @@ __all__: list[str] = [
 
 class Profile:
     """
-    A law of a brush: one parameter [mm] against press depth d [mm], max(floor + floor_slope d, c0 + c1 d + ...).
+    A law of a brush: one parameter [mm] against the press depth d [mm].
 
-    Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm; depths may be an array. coefficients: at most 11, in ascending powers of
-    d. calibrated_mm: (least, greatest) depth that was measured, None where nobody says; source: where it comes from, in words;
-    assumed: nobody measured it. half_interval_95, rmse_mm: how sure it is, by degrees_of_freedom values to spare. extra:
-    unknown keys of its file, as JSON. A value: it is not changed, but another one made.
+    The value is max(floor + floor_slope d, c0 + c1 d + ...). Profile([3.1, 0.86])(2.0) is 3.1 + 0.86 * 2 mm. The depth may
+    be an array.
+
+    coefficients: c0, c1, ..., in ascending powers of d, at most 11.
+    floor, floor_slope: the lower limit of the value, linear in d.
+    calibrated_mm: (least, greatest) depth that was measured; None if this is not known.
+    source: where the law comes from, in words.
+    assumed: True if the law was not measured.
+    half_interval_95: half of the 95 % interval of each coefficient.
+    rmse_mm: root mean square error of the fit.
+    degrees_of_freedom: number of spare values from which the scatter is known.
+    extra: unknown keys of the file, as JSON.
+
+    A Profile cannot be changed; make a new one instead.
     """
     @typing.overload
     def __call__(self, depth_mm: float) -> float: ...  # type: ignore[overload-overlap]
@@ -151,7 +161,9 @@ class Profile:
     @property
     def depth_range_mm(self) -> tuple[float, float] | None:
         """
-        Depths [mm] at which it is defined, of a law of a Brush: its depth_range_mm. None: any.
+        Depths [mm] at which the law is defined; None: at any depth.
+
+        For a law of a Brush, this is depth_range_mm of the Brush.
         """
     @property
     def extra(self) -> str: ...
@@ -168,13 +180,20 @@ class Profile:
 
 class Paint:
     """
-    What the way [mm] painted since the last dip does: marks are exp(-narrows_per_m way / 1000) times as wide.
+    The law by which marks narrow with the path painted since the last dip.
 
-    Paint(0.4).width_share(500) is exp(-0.2). The way is the TCP's on the paper. lasts_mm: the way after which hairs run dry,
-    None where nobody knows. calibrated_mm: (least, greatest) way that was measured; source: where it comes from, in words;
-    assumed: nobody measured it. covariance: of narrows_per_m, and lasts_mm where it is known, or empty, by
-    degrees_of_freedom values to spare. extra: unknown keys of its file, as JSON. A value: it is not changed, but another
-    one made.
+    After a path of s mm, marks are exp(-narrows_per_m s / 1000) times as wide. Paint(0.4).width_share(500) is exp(-0.2).
+    The path is the path of the TCP on the paper.
+
+    lasts_mm: path after which hairs run dry; None if this is not known.
+    calibrated_mm: (least, greatest) path that was measured.
+    source: where the law comes from, in words.
+    assumed: True if the law was not measured.
+    covariance: of narrows_per_m, and of lasts_mm if it is known; may be empty.
+    degrees_of_freedom: number of spare values from which the scatter is known.
+    extra: unknown keys of the file, as JSON.
+
+    A Paint cannot be changed; make a new one instead.
     """
     def __copy__(self) -> Paint: ...
     def __deepcopy__(self, memo: dict) -> Paint: ...
@@ -197,11 +216,15 @@ class Paint:
     def __setstate__(self, arg0: tuple) -> None: ...
     def way_to_share_mm(self, share: float) -> float:
         """
-        The way [mm] after which the width is that share of a freshly dipped brush's; infinite where it never is.
+        Return the path [mm] after which the width has fallen to a share.
+
+        The share is of a freshly dipped brush's width. The path is infinite if the width never falls so far.
         """
     def width_share(self, way_mm: float) -> float:
         """
-        Width over that of a freshly dipped brush, after a way [mm].
+        Return the share of the width that is left after a path [mm].
+
+        The share is of a freshly dipped brush's width.
         """
     @property
     def assumed(self) -> bool: ...
@@ -222,10 +245,11 @@ class Paint:
 
 class Footprint:
     """
-    The outline (n, 2) [mm] of the contact patch at one depth [mm].
+    The outline of the contact patch at one depth.
 
-    outline_mm, at depth_mm: a simple ring, counter-clockwise, unclosed, whose first point is the tip at (0, 0); x points
-    towards the TCP.
+    depth_mm: the depth [mm].
+    outline_mm: the outline (n, 2) [mm], a simple, unclosed, counter-clockwise ring. Its first point is the tip at (0, 0),
+        and x points towards the TCP.
     """
     def __copy__(self) -> Footprint: ...
     def __deepcopy__(self, memo: dict) -> Footprint: ...
@@ -242,10 +266,12 @@ class Footprint:
 
 class FootprintTable:
     """
-    The outlines of a brush at several depths, in tuples, depths ascending.
+    The outlines of a brush at several depths, in tuples, with ascending depths.
 
-    dragged: while the brush is drawn along; pressed: straight down, () where that is the same. All have equally many points,
-    between which outlines of other depths are blended one by one.
+    dragged: outlines while the brush is drawn along.
+    pressed: outlines of a brush pressed straight down; () if they equal dragged.
+
+    All outlines have the same number of points. At other depths, the outlines are blended point by point.
     """
     def __copy__(self) -> FootprintTable: ...
     def __deepcopy__(self, memo: dict) -> FootprintTable: ...
@@ -266,12 +292,19 @@ class FootprintTable:
 
 class Brush:
     """
-    Four laws against depth and the footprints; all lengths in mm, depths in mm from first contact down.
+    A brush: four laws against depth, and the footprints.
 
-    lag, tip_gap, tip_to_widest, half_width: the laws, each a Profile that refuses depths at which the brush cannot be; footprints: a FootprintTable. Outlines rule what is
-    painted, laws where the tool goes: they may differ by 0.5 mm. Begin with Brush() and set all of them, name and
-    depth_range_mm, or with the copy of a known one. Set each as a whole: it is a value that cannot be changed.
-    save_brush, simulate, compensate and convert refuse what no brush can be.
+    All lengths are in mm. Depths are in mm and increase downwards from first contact.
+
+    lag, tip_gap, tip_to_widest, half_width: the laws. Each is a Profile that refuses depths that the brush cannot have.
+    footprints: a FootprintTable.
+
+    The outlines of the footprints determine what is painted, and the laws determine where the tool goes. Outlines and
+    laws may differ by 0.5 mm.
+
+    To make a brush, start with Brush() and set all laws, footprints, name and depth_range_mm. Or start with a copy of a
+    known brush. Set each law, and the footprints, as a whole: these values cannot be changed. save_brush, simulate,
+    compensate and convert refuse a brush that is not valid.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -284,28 +317,32 @@ class Brush:
     def __setstate__(self, arg0: tuple) -> None: ...
     def depth_for_half_width(self, half_width_mm: float, where: str = "") -> float:
         """
-        Depth [mm] that paints a half width [mm]; Error with the reachable range when there is none.
+        Return the depth [mm] that paints a half width [mm].
+
+        where: the element that the error names.
+
+        Raises Error, with the reachable range, if no depth paints this half width.
         """
     def half_width_range_mm(self) -> list[float]:
         """
-        (least, greatest) half width [mm] within depth_range_mm.
+        Return the (least, greatest) half width [mm] within depth_range_mm.
         """
     def is_rigid(self) -> bool:
         """
-        Whether the lag is 0 everywhere: a pen.
+        Return whether the lag is 0 at all depths: a pen.
         """
     def lever_to_widest(self, depth_mm: float) -> float:
         """
-        e(d) = x_w(d) - b(d) [mm], signed.
+        Return e(d) = x_w(d) - b(d) [mm], signed.
         """
     def width_follows_depth(self) -> bool:
         """
-        Whether half_width depends on depth.
+        Return whether half_width depends on depth.
         """
     @property
     def covariance(self) -> tuple[tuple[float, ...], ...]:
         """
-        Of all coefficients, in the order of the four laws, or empty.
+        Covariance of all coefficients, in the order of the four laws; may be empty.
         """
     @covariance.setter
     def covariance(
@@ -314,21 +351,21 @@ class Brush:
     @property
     def depth_range_mm(self) -> tuple[float, float]:
         """
-        (least, greatest) depth [mm] to which it may be pressed.
+        (least, greatest) depth [mm] to which the brush may be pressed.
         """
     @depth_range_mm.setter
     def depth_range_mm(self, arg1: collections.abc.Sequence[float]) -> None: ...
     @property
     def extra(self) -> str:
         """
-        JSON object of the keys of its file that are not known, written back as read.
+        JSON object of the unknown keys of the brush's file, written back as read.
         """
     @extra.setter
     def extra(self, arg0: str) -> None: ...
     @property
     def footprints(self) -> FootprintTable:
         """
-        Outlines by depth: a FootprintTable.
+        Outlines of the contact patch by depth: a FootprintTable.
         """
     @footprints.setter
     def footprints(self, arg1: FootprintTable) -> None: ...
@@ -342,73 +379,84 @@ class Brush:
     @property
     def kind(self) -> str:
         """
-        round, liner (a round brush of long bristles), pen, or empty: round. Another one is refused.
+        Kind of the brush: round, liner, pen, or empty, which means round.
+
+        A liner is a round brush with long bristles. Other kinds are refused.
         """
     @kind.setter
     def kind(self, arg0: str) -> None: ...
     @property
     def lag(self) -> Profile:
         """
-        r(d): how far the centre of friction trails the TCP, bristles taut. A Profile, 0 everywhere for a pen.
+        r(d): distance of the centre of friction behind the TCP, bristles taut.
+
+        A Profile, 0 at all depths for a pen.
         """
     @lag.setter
     def lag(self, arg1: Profile) -> None: ...
     @property
     def max_speed_mm_s(self) -> float:
         """
-        The greatest speed [mm/s] at which the model holds; it has no inertia.
+        Greatest speed [mm/s] at which the model holds; the model has no inertia.
         """
     @max_speed_mm_s.setter
     def max_speed_mm_s(self, arg0: float) -> None: ...
     @property
     def name(self) -> str:
         """
-        What plans and messages call it.
+        Name of the brush in plans and messages.
         """
     @name.setter
     def name(self, arg0: str) -> None: ...
     @property
     def paint(self) -> Paint | None:
         """
-        How its mark narrows from dip to dip: a Paint, or None.
+        How the mark narrows between two dips into paint: a Paint, or None.
         """
     @paint.setter
     def paint(self, arg1: Paint | None) -> None: ...
     @property
     def paint_depth_mm(self) -> float:
         """
-        Depth [mm] to paint at where half_width does not depend on depth.
+        Painting depth [mm] if half_width does not depend on depth.
         """
     @paint_depth_mm.setter
     def paint_depth_mm(self, arg0: float) -> None: ...
     @property
     def sha256(self) -> str:
         """
-        Of the bytes of the file it was read from, or empty.
+        SHA-256 of the bytes of the file from which the brush was read, or empty.
         """
     @sha256.setter
     def sha256(self, arg0: str) -> None: ...
     @property
     def tip_gap(self) -> Profile:
         """
-        b(d): from the tip of the footprint to the centre of friction. A Profile.
+        b(d): distance from the tip of the footprint to the centre of friction.
+
+        A Profile.
         """
     @tip_gap.setter
     def tip_gap(self, arg1: Profile) -> None: ...
     @property
     def tip_to_widest(self) -> Profile:
         """
-        x_w(d): from the tip of the footprint to its widest section. A Profile.
+        x_w(d): distance from the tip of the footprint to its widest section.
+
+        A Profile.
         """
     @tip_to_widest.setter
     def tip_to_widest(self, arg1: Profile) -> None: ...
 
 class Settings:
     """
-    What a drawing says of an element to brushsvg itself; None where it says nothing.
+    The brushsvg settings of an element in a drawing; None if a setting is absent.
 
-    brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/reference/drawings.md; kind: of a stroke of the calibration
-    chart; extra: unknown keys of a plan.json, as JSON. A value that cannot be changed.
+    brush, end, order, passes, reload, skip, speed_mm_s, start, width_mm: see docs/reference/drawings.md.
+    kind: kind of a stroke on the calibration chart.
+    extra: unknown keys of a plan.json, as JSON.
+
+    A Settings cannot be changed; use replaced() to make a new one.
     """
     def __copy__(self) -> Settings: ...
     def __deepcopy__(self, memo: dict) -> Settings: ...
@@ -434,7 +482,7 @@ class Settings:
     def __setstate__(self, arg0: tuple) -> None: ...
     def replaced(self, **fields: object) -> Settings:
         """
-        A copy in which the fields that are given are these.
+        Return a copy in which the given fields have these values.
         """
     @property
     def brush(self) -> str | None: ...
@@ -461,11 +509,14 @@ class Settings:
 
 class StrokeId:
     """
-    Where in a drawing a stroke comes from.
+    The origin of a stroke in a drawing.
 
-    element: its id; part: which of its sub-paths, 0 for the only one; repeat: which of the times that it is painted; lane:
-    which of the passes that fill a shape wider than the brush; load: which of the loads of paint. name: element/part#repeat
-    ~lane+load, each where it says something; nobody takes it apart again.
+    element: id of the element.
+    part: number of the element's sub-path, 0 for the only one.
+    repeat: number of the repetition, if the stroke is painted several times.
+    lane: number of the pass that fills a shape wider than the brush.
+    load: number of the load of paint.
+    name: element/part#repeat~lane+load, without the parts that have their default. The name is never parsed.
     """
     def __copy__(self) -> StrokeId: ...
     def __deepcopy__(self, memo: dict) -> StrokeId: ...
@@ -492,10 +543,16 @@ class StrokeId:
 
 class Stroke:
     """
-    A middle line of cubics (n, 8) [mm] with half widths [(fraction of arc length, mm)].
+    A stroke: a middle line, with a width along it.
 
-    id: its name, made of origin, a StrokeId, and set by a name or one. middle_mm, half_width, wanted_mm, settings: to be
-    set as a whole. start_covered, end_covered: where it meets others of its shape, whose paint covers that end.
+    id: name of the stroke, made from origin. Set it to a name or to a StrokeId.
+    origin: a StrokeId.
+    middle_mm: cubics (n, 8) [mm].
+    half_width: half widths along the middle line [(fraction of arc length, mm)].
+    wanted_mm: rings of the target mark as drawn, or empty.
+    start_covered, end_covered: whether this end meets other strokes of the shape, whose paint covers the end.
+
+    Set middle_mm, half_width, wanted_mm and settings as a whole.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -514,14 +571,18 @@ class Stroke:
         tolerance_mm: float | None = None,
     ) -> Stroke:
         """
-        A stroke through points (n, 2) [mm], y up, in painting direction; closed where the last is the first again.
+        Make a stroke through points, in painting direction.
 
-        width_mm: one for all, or (n,), one at each point and linear in between. tolerance_mm: None for straight lines from
-        point to point; else cubics that pass each point within it, smooth but for corners that no smooth line follows; lines
-        where the points are too far apart for it.
+        The stroke is closed if the last point repeats the first one.
 
-        Error, naming the stroke: fewer than two points that differ, a number that is not finite or beyond 1e6 mm, a width that
-        is not positive.
+        points_mm: (n, 2) [mm], y up.
+        width_mm: one width for all points, or (n,), one width at each point, linear in between.
+        tolerance_mm: None: straight lines from point to point. Otherwise cubics that pass each point within the tolerance. The
+            cubics are smooth except at corners that no smooth line follows. Points too far apart for the tolerance are
+            joined by lines.
+
+        Raises Error, naming the stroke, for fewer than two different points, or a width that is not positive. Also raises
+        Error for a number that is not finite or beyond 1e6 mm.
         """
     def __copy__(self) -> Stroke: ...
     def __deepcopy__(self, memo: dict) -> Stroke: ...
@@ -541,7 +602,7 @@ class Stroke:
     def __setstate__(self, arg0: tuple) -> None: ...
     def replaced(self, **fields: object) -> Stroke:
         """
-        A copy in which the fields that are given are these.
+        Return a copy in which the given fields have these values.
         """
     @property
     def half_width(self) -> tuple[tuple[float, float], ...]: ...
@@ -568,9 +629,13 @@ class Stroke:
 
 class Arc:
     """
-    Poses first to last are on a circle about centre_mm (x, y), at constant depth.
+    A stretch of a pass on a circle, at constant depth.
 
-    direction: 1 counter-clockwise, -1 clockwise; neighbouring poses are less than 180 degrees apart on it.
+    first, last: indices of the first and the last pose on the circle.
+    centre_mm: centre (x, y) of the circle.
+    direction: 1 counter-clockwise, -1 clockwise.
+
+    Neighbouring poses are less than 180 degrees apart on the circle.
     """
     def __copy__(self) -> Arc: ...
     def __deepcopy__(self, memo: dict) -> Arc: ...
@@ -593,15 +658,19 @@ class Arc:
 
 class Pass:
     """
-    One stroke's motion.
+    The motion for one stroke.
 
-    stroke: the name of what it paints, made of origin, a StrokeId, and set by a name or one.
-    poses_mm: (n, 3) x, y, z = -depth [mm], straight moves in between, depth linear along each; read-only and not copied when read,
-    to be replaced as a whole. arcs: a tuple of Arc, ascending: these poses are followed on the true circle, whose chords
-    the straight moves are. speed_mm_s; layer, colour; settings, to be set as a whole;
-    load: which of its stroke's loads of paint it is, from 1, or 0 for a stroke that is whole; extra: unknown keys of the
-    file, as JSON. tool_axes: (n, 3) of each pose the unit vector from the tip up along the brush, in the frame of the paper,
-    tilted by at most 30 degrees; empty for a brush that is upright; given, read and replaced as poses_mm.
+    stroke: name of the stroke that the pass paints, made from origin. Set it to a name or to a StrokeId.
+    origin: a StrokeId.
+    poses_mm: (n, 3): x, y, z = -depth [mm]. Moves between poses are straight, with linear depth. The array is read-only
+        and not copied when you read it. Replace it as a whole.
+    arcs: a tuple of Arc, ascending. Poses of an arc are followed on the true circle, not on its chords.
+    speed_mm_s, layer, colour: of the pass.
+    settings: a Settings. Set it as a whole.
+    load: number of the load of paint within the stroke, from 1; 0 for a stroke that is not split.
+    extra: unknown keys of the file, as JSON.
+    tool_axes: (n, 3): for each pose the unit vector from the tip up along the brush, in the paper frame. The tilt is at
+        most 30 degrees. Empty for an upright brush. Like poses_mm, read-only, and replaced as a whole.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -657,10 +726,12 @@ class Pass:
 
 class Plan:
     """
-    TCP poses for every stroke, in the frame of the paper: plan.json as a value.
+    The TCP poses of all strokes, in the paper frame: plan.json as a value.
 
-    brush, brush_sha256: what it was made for; sheet_mm: (w, h); passes: a tuple with one Pass per stroke, in painting
-    order, to be set as a whole; extra: unknown keys of the file, as JSON.
+    brush, brush_sha256: name and file hash of the brush for which the plan was made.
+    sheet_mm: (width, height).
+    passes: a tuple with one Pass per stroke, in painting order. Set it as a whole.
+    extra: unknown keys of the file, as JSON.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -692,13 +763,15 @@ class Plan:
 
 class PassMarks:
     """
-    What the patch does during one pass; parallel rows (mm, rad), read only.
+    The motion of the contact patch in one pass, as parallel rows [mm, rad].
 
-    pose: the index of the plan's pose, with fractions in between. contact_mm[pose_rows] is the contact at each pose. Rows after
-    the last pose's are the lift on the spot of a pass that ends on the paper (the patch moves as the bristles straighten), rows
-    before the first pose's the brush being set down.
+    The rows are read-only.
 
-    lean_mm_per_mm (n, 2): how far the axis of a tilted brush goes sideways for each mm up; empty for one that is upright.
+    pose: index of the plan's pose, with fractions between two poses. contact_mm[pose_rows] is the contact at each pose.
+    lean_mm_per_mm: (n, 2), sideways distance of a tilted brush's axis for each mm up; empty for an upright brush.
+
+    A pass that ends on the paper has rows after the last pose, where the brush is lifted on the spot. There the patch
+    moves, because the bristles straighten. In the rows before the first pose, the brush is set down.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -729,7 +802,7 @@ class PassMarks:
     @property
     def pose_rows(self) -> numpy.typing.NDArray[numpy.int64]:
         """
-        For each pose of the pass the index of its row.
+        Index of the row of each pose.
         """
     @property
     def pull(self) -> numpy.typing.NDArray[numpy.float64]: ...
@@ -740,15 +813,16 @@ class PassMarks:
     @property
     def width_share(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        By how much narrower the brush paints than freshly dipped; empty: it does not.
+        Width as a share of a freshly dipped brush's width; empty: 1 in all rows.
         """
 
 class Marks:
     """
-    What is painted: marks.json as a value.
+    The marks that are painted: marks.json as a value.
 
-    passes: a tuple with a PassMarks per stroke; outline_mm: a tuple of rings [(n, 2) mm] of all paint together, filled by trace_outlines, outer
-    ones counter-clockwise, holes clockwise, unclosed.
+    passes: a tuple with one PassMarks per stroke.
+    outline_mm: a tuple of unclosed rings [(n, 2) mm] around all paint together, filled in by trace_outlines. Outer rings
+        are counter-clockwise, holes are clockwise.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -773,6 +847,10 @@ class Marks:
 class AxisBranch:
     """
     A stretch of the medial axis between two nodes.
+
+    start, end: indices of the nodes.
+    line: (k, 3), places on the axis: x, y, distance to the outline [mm].
+    part: rings of the part of the shape nearest to the branch.
     """
     def __copy__(self) -> AxisBranch: ...
     def __deepcopy__(self, memo: dict) -> AxisBranch: ...
@@ -792,7 +870,11 @@ class AxisBranch:
 
 class CommonArea:
     """
-    Areas [mm^2] of paint and target mark.
+    The areas that paint and target mark have in common and together.
+
+    common_mm2: area of the intersection [mm^2].
+    together_mm2: area of the union [mm^2].
+    overlap: common_mm2 / together_mm2; 1 if both are 0.
     """
     def __copy__(self) -> CommonArea: ...
     def __deepcopy__(self, memo: dict) -> CommonArea: ...
@@ -811,7 +893,11 @@ class CommonArea:
 
 class WorstPlace:
     """
-    Where paint and drawing differ most, and by how much.
+    The place where paint and drawing differ most.
+
+    at_mm: the place (x, y).
+    is_missing: True if paint is missing there, False if there is too much paint.
+    area_mm2: area of the missing or excess paint.
     """
     def __copy__(self) -> WorstPlace: ...
     def __deepcopy__(self, memo: dict) -> WorstPlace: ...
@@ -829,10 +915,12 @@ class WorstPlace:
 
 class Verdict:
     """
-    How well a pass paints its stroke.
+    A score of how well a pass paints its stroke.
 
-    overlap: common over joint area; width_error_mm: mean absolute difference of widths across the line, None where none can
-    be measured; excess_turning: of the mark's outline, in full turns; worst: a WorstPlace.
+    overlap: area of the intersection over area of the union.
+    width_error_mm: mean absolute difference of the widths across the line; None if no width can be measured.
+    excess_turning: excess turning of the mark's outline, in full turns.
+    worst: a WorstPlace.
     """
     def __copy__(self) -> Verdict: ...
     def __deepcopy__(self, memo: dict) -> Verdict: ...
@@ -852,10 +940,15 @@ class Verdict:
 
 class TrackingError:
     """
-    Distance of the widest point from the middle line [mm], from the first taut row to the last.
+    Distance [mm] of a mark's widest point from the middle line of its stroke.
 
-    largest_mm, where at_mm (x, y) it is; mean_mm over the length painted; within_tolerance; has_turn_in_place: at a corner
-    too sharp for the lever.
+    The distance is measured from the first taut row to the last.
+
+    largest_mm: the largest distance.
+    at_mm: the place (x, y) of the largest distance.
+    mean_mm: the mean distance over the painted length.
+    within_tolerance: whether the largest distance is within the tolerance.
+    has_turn_in_place: whether the brush turns in place, at a corner too sharp for the lever.
     """
     def __copy__(self) -> TrackingError: ...
     def __deepcopy__(self, memo: dict) -> TrackingError: ...
@@ -877,7 +970,11 @@ class TrackingError:
 
 class Compensated:
     """
-    A plan, the tracking error of each pass, and warnings, notices about strokes.
+    A plan with its tracking errors and warnings.
+
+    plan: the Plan.
+    tracking_errors: a TrackingError for each pass.
+    warnings: notices about strokes.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -891,7 +988,10 @@ class Compensated:
         self, other: Compensated, passes: collections.abc.Sequence[tuple[bool, int]]
     ) -> Compensated:
         """
-        One plan of passes of both: (whether it is the other's, its number), in order.
+        Combine passes of this plan and another plan into one plan.
+
+        other: the other Compensated.
+        passes: (whether the pass is from the other plan, its index there) for each pass of the new plan, in order.
         """
     @property
     def plan(self) -> Plan: ...
@@ -935,7 +1035,9 @@ class Norm:
 
 class LawShape:
     """
-    Constraints on a fitted law; positive and rising hold on range_mm.
+    Constraints on a law that is fitted.
+
+    positive and rising hold at all depths of range_mm.
     """
     def __copy__(self) -> LawShape: ...
     def __deepcopy__(self, memo: dict) -> LawShape: ...
@@ -959,7 +1061,7 @@ class LawShape:
 
 class LawFit:
     """
-    A fitted law, how sure it is, and what it leaves.
+    A fitted law, with its uncertainty and its residuals.
     """
     def __copy__(self) -> LawFit: ...
     def __deepcopy__(self, memo: dict) -> LawFit: ...
@@ -1026,10 +1128,12 @@ class Lines:
 
 class PaintedMark:
     """
-    What one pass painted.
+    The mark that one pass painted, with the path of the TCP.
 
-    stroke: its id; poses_mm (n, 3): the TCP's way, z = -depth; outline_mm: rings [(n, 2) mm], holes among them; arcs: of
-    the pass, followed on their circles.
+    stroke: id of the stroke.
+    poses_mm: path of the TCP (n, 3), z = -depth.
+    outline_mm: rings [(n, 2) mm] of the mark, including its holes.
+    arcs: arcs of the pass, which the TCP follows on their circles.
     """
     def __copy__(self) -> PaintedMark: ...
     def __deepcopy__(self, memo: dict) -> PaintedMark: ...
@@ -1056,7 +1160,10 @@ class PaintedMark:
 
 class Prior:
     """
-    What is known beforehand: a normal distribution; sigma 0: known, inf: nothing.
+    Prior knowledge of a number, as a normal distribution.
+
+    value: the mean.
+    sigma: the standard deviation. 0: the number is known; inf: nothing is known.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -1078,7 +1185,9 @@ class Prior:
 
 class MarkLaws:
     """
-    Laws as coefficients (ascending powers of depth), and a drop's shape.
+    Laws as coefficients (ascending powers of depth), and a footprint's shape.
+
+    The footprint has the shape of a drop.
     """
     def __copy__(self) -> MarkLaws: ...
     def __deepcopy__(self, memo: dict) -> MarkLaws: ...
@@ -1117,10 +1226,11 @@ class MarkLaws:
 
 class LawPrior:
     """
-    Laws that are known beforehand: laws is the mean.
+    Prior knowledge of the laws.
 
-    rows (k, n): each, over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and
-    widest_per_half, gives a standard normal number of what they differ from it.
+    laws: the mean.
+    rows: (k, n), over the coefficients of lag, tip_gap and half_width (their constant, 0, left out) and widest_per_half.
+        Each row turns the difference of these numbers from the mean into a standard normal number.
     """
     def __copy__(self) -> LawPrior: ...
     def __deepcopy__(self, memo: dict) -> LawPrior: ...
@@ -1137,12 +1247,19 @@ class LawPrior:
 
 class Machine:
     """
-    How a machine takes the tool elsewhere than it was commanded.
+    The systematic errors of a machine's motion.
 
-    Commanded to (x, y) from MarkFit.centre_mm and depth d it goes to x' = scale_x x + skew y + lean_x d, y' = scale_y y + lean_y d,
-    is tilt_x x + tilt_y y deeper, and on each axis stays behind by half its backlash. A smooth field takes it elsewhere
-    still: field_mm (2, 3), a, b and c of a u^2 + b u v + c v^2 for x and for y, u and v how far it was commanded to go from
-    field_middle_mm, over field_reach_mm.
+    The tool is commanded to (x, y), measured from MarkFit.centre_mm, and to the depth d. The machine moves the tool to
+
+        x' = scale_x x + skew y + lean_x d
+        y' = scale_y y + lean_y d
+
+    and by tilt_x x + tilt_y y deeper. On each axis the tool stays behind by half of the backlash. A smooth field adds
+    a u^2 + b u v + c v^2 [mm] to x and to y.
+
+    field_mm: (2, 3), the numbers a, b and c for x and for y.
+    field_middle_mm, field_reach_mm: u and v are the commanded distances from field_middle_mm, divided by
+        field_reach_mm.
     """
     def __copy__(self) -> Machine: ...
     def __deepcopy__(self, memo: dict) -> Machine: ...
@@ -1170,13 +1287,19 @@ class Machine:
 
 class MarkOptions:
     """
-    How marks are fitted; lengths in mm.
+    Options of fit_marks; lengths in mm.
 
-    deepest_mm: the laws hold on [0, deepest]. lag_terms, tip_gap_terms, half_width_terms: numbers per law, at most four.
-    widest_per_half, front_per_half, height_mm: Prior; laws: LawPrior or None. placement_mm, turn_rad, displacement_mm: sigmas of the sheet's shift
-    and turn, and of each mark's own displacement; 0: none. lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm:
-    sigmas of the machine's numbers; 0: it has no such error. departing: laws get more numbers if the marks ask for it. noise_mm: fit
-    nothing, say what to expect of such edges.
+    deepest_mm: the laws hold on [0, deepest_mm].
+    lag_terms, tip_gap_terms, half_width_terms: number of coefficients of each law, at most four.
+    widest_per_half, front_per_half, height_mm: a Prior each.
+    laws: LawPrior or None.
+    placement_mm, turn_rad: sigmas of the sheet's shift and turn; 0: none.
+    displacement_mm: sigma of each mark's own displacement; 0: none.
+    lean_mm_per_mm, axes, tilt_mm_per_mm, backlash_mm, field_mm: sigmas of the numbers of the Machine; 0: the machine does
+        not have this error.
+    departing: whether laws get more coefficients if the marks need them.
+    noise_mm: noise of the edges. If given, nothing is fitted, and the result is the covariance to expect from these
+        edges.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -1260,7 +1383,7 @@ class MarkOptions:
 
 class MarkResidual:
     """
-    One painted mark against its prediction.
+    Deviation of one painted mark from its prediction.
     """
     def __copy__(self) -> MarkResidual: ...
     def __deepcopy__(self, memo: dict) -> MarkResidual: ...
@@ -1286,9 +1409,13 @@ class MarkFit:
     """
     A brush fitted to marks.
 
-    covariance: over the coefficients of lag, tip_gap and half_width (without the constant 0 of both), widest_per_half,
-    front_per_half (of widest_by_depth and front_by_depth, where the ratios change with depth), height, shift x and y, turn;
-    where any of the machine was requested lean x and y, scale x and y, skew, tilt x and y, backlash x and y and the field's six.
+    covariance: of these numbers, in this order:
+        the coefficients of lag, and of tip_gap and half_width (without the constant 0 of both);
+        widest_per_half and front_per_half, or the coefficients of widest_by_depth and front_by_depth if the ratios change
+        with depth;
+        height, shift x and y, turn;
+        if any number of the machine was requested: lean x and y, scale x and y, skew, tilt x and y, backlash x and y, and
+        the six numbers of the field.
     """
     def __copy__(self) -> MarkFit: ...
     def __deepcopy__(self, memo: dict) -> MarkFit: ...
@@ -1332,29 +1459,41 @@ class MarkFit:
 
 def area(rings: collections.abc.Sequence[numpy.typing.ArrayLike]) -> float:
     """
-    Area [mm^2], clockwise rings, which are holes, taken off: negative where they outweigh.
+    Return the area of rings [mm^2].
+
+    Clockwise rings are holes, and their area is subtracted. The area is negative if the holes outweigh the rest.
     """
 
 def as_normal(t: numpy.typing.ArrayLike, degrees_of_freedom: float) -> typing.Any:
     """
-    Size of a normal value as unlikely as t with so many degrees of freedom; of each t, where there are many.
+    Return the size of a normal value that is as unlikely as Student's t.
+
+    t: a value, or an array of values.
     """
 
 def bristle_coefficients(sliding_end: str) -> numpy.typing.NDArray[numpy.float64]:
     """
-    c1 to c4 of w = c1 + c2 z + (c3 + c4 z) e^z + z^2/2, Lemma 1 with EI = load = exp(1 - z).
+    Return the coefficients c1 to c4 of a bristle's deflection, by Lemma 1.
+
+    The deflection is w(z) = c1 + c2 z + (c3 + c4 z) e^z + z^2/2, for EI = load = exp(1 - z).
+
+    sliding_end: "third_derivative" or "shear_free".
     """
 
 def bristle_deflection(
     coefficients: numpy.typing.ArrayLike, z: numpy.typing.ArrayLike
 ) -> typing.Any:
     """
-    w(z) for these coefficients, article (3) as it should read.
+    Return the deflection w(z) of a bristle with these coefficients.
+
+    The equation is article (3), corrected. z may be an array.
     """
 
 def check(brush: Brush) -> None:
     """
-    Error when the brush would lead a robot astray (negative lag, laws and outlines that disagree, ...).
+    Raise Error if the brush would make a robot go wrong.
+
+    Examples are a negative lag, or laws and outlines that disagree.
     """
 
 def clearance(
@@ -1362,7 +1501,7 @@ def clearance(
     points: numpy.typing.ArrayLike,
 ) -> list[float]:
     """
-    Distance [mm] of points (n, 2) from the outline, on whichever side of it.
+    Return the distance [mm] of points (n, 2) from the outline, on either side.
     """
 
 def common_area(
@@ -1371,7 +1510,9 @@ def common_area(
     brush: Brush,
 ) -> CommonArea:
     """
-    What passes of marks and the strokes they should be have in common, counted in pixels: a CommonArea.
+    Return the CommonArea of passes of marks and the strokes they should paint.
+
+    The areas are counted in pixels.
     """
 
 def common_areas(
@@ -1381,7 +1522,9 @@ def common_areas(
     brush: Brush,
 ) -> list[CommonArea]:
     """
-    The same of each of some groups, lists of numbers as touching() gives them: a CommonArea each.
+    Return a CommonArea for each group of strokes and their passes.
+
+    groups: lists of indices, as touching() returns them.
     """
 
 def compensate(
@@ -1398,25 +1541,36 @@ def compensate(
     end: str = "round",
 ) -> Compensated:
     """
-    Where the TCP must go for the paint to land on the strokes' middle lines: a Compensated.
+    Compute a plan for the TCP that puts the paint on the strokes' middle lines.
 
-    sheet_mm: (w, h), kept in the plan; None: of no sheet, to look at. method: "none", the TCP on the line; "constant",
-    ahead by lag_mm (None: the lag at each stroke's median depth); "closed", the inverse of the brush's law; "refined", from there on by least squares until
-    the outline of the mark fits the target best, kept where it overlaps better. tolerance_mm: how far the widest
-    point of the mark may be off the middle line once the brush is taut, between poses too; each pass is simulated and its
-    tracking error returned ("refined" moves the middle on purpose). speed_mm_s: of painting, at most
-    the brush's. progress: called with (strokes done, strokes). few_poses: closed only, no more poses than the tolerance
-    asks for. start, end: closed and refined, the terminals of strokes that do not set them: "pointed", as the footprint is
-    behind; "round", as it is in front, where a start is set down inside of the stroke, goes back to its beginning and turns
-    over; "butt", straight, a narrower mark goes into one corner, along the cut and into the other; "auto", the one that
-    suits the drawn end best.
+    Returns a Compensated. Each pass is simulated, and its tracking error is returned.
 
-    Error, naming the stroke, for widths or depths out of the brush's reach.
+    sheet_mm: (width, height), kept in the plan. None: the plan has no sheet and is only for viewing.
+    method: how the plan is computed:
+        "none": the TCP is on the middle line.
+        "constant": the TCP is ahead by lag_mm.
+        "closed": the inverse of the brush's laws.
+        "refined": the closed plan, moved by least squares until the outline of the mark fits the target best. The refined
+        plan is kept only if its mark overlaps the target better. Refining moves the middle of the mark on purpose.
+    tolerance_mm: largest allowed distance of the mark's widest point from the middle line. The limit applies once the
+        brush is taut, also between poses.
+    lag_mm: constant only. None: the lag at each stroke's median depth.
+    speed_mm_s: painting speed, at most the speed of the brush.
+    progress: called with (strokes done, strokes).
+    few_poses: closed only. Use no more poses than the tolerance needs.
+    start, end: closed and refined only. Terminals of the strokes that do not set their own:
+        "pointed": the shape of the footprint's rear.
+        "round": the shape of the footprint's front. At a start, the brush is set down inside the stroke. Then it goes back
+        to the stroke's beginning and turns over.
+        "butt": straight. A narrower mark goes into one corner, along the cut and into the other corner.
+        "auto": the terminal that suits the drawn end best.
+
+    Raises Error, naming the stroke, for widths or depths that the brush cannot reach.
     """
 
 def convex_hull(points: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Convex hull of points (n, 2), counter-clockwise.
+    Return the convex hull of points (n, 2), counter-clockwise.
     """
 
 @typing.overload
@@ -1427,7 +1581,9 @@ def coverage(
     px_per_mm: float,
 ) -> numpy.typing.NDArray[numpy.float32]:
     """
-    Painted fraction of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].
+    Return the painted fraction of each pixel, as float32 with row 0 at the top.
+
+    window_mm: (x, y, width, height) [mm] of the part of the paper.
     """
 
 @typing.overload
@@ -1437,21 +1593,18 @@ def coverage(
     px_per_mm: float,
 ) -> numpy.typing.NDArray[numpy.float32]:
     """
-    The same for filled rings, non-zero winding.
-    """
+    Return the fraction of each pixel that filled rings cover, as float32.
 
-def coverage_of_pieces(
-    convex_rings: collections.abc.Sequence[numpy.typing.ArrayLike],
-    window_mm: collections.abc.Sequence[float],
-    px_per_mm: float,
-) -> numpy.typing.NDArray[numpy.float32]:
-    """
-    The same for the union of convex counter-clockwise rings, which may overlap.
+    The rings are filled by the non-zero winding rule. Row 0 is at the top.
+
+    window_mm: (x, y, width, height) [mm] of the part of the paper.
     """
 
 def deviations_of_95(degrees_of_freedom: float | None = None) -> float:
     """
-    Half of a 95 % interval in standard deviations: Student's t, or normal where no degrees of freedom are known.
+    Return half of a 95 % interval, in standard deviations.
+
+    The interval is of Student's t, or of the normal distribution if degrees_of_freedom is None.
     """
 
 def excess_turning(
@@ -1459,14 +1612,20 @@ def excess_turning(
     wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> float:
     """
-    How much more the outlines of a mark turn than those of the target, in full turns; each as a polygon within 0.1 mm.
+    Return how much more a mark's outlines turn than the target's, in full turns.
+
+    Each outline is replaced by a polygon within 0.1 mm.
     """
 
 def fill(
     outlines: collections.abc.Sequence[numpy.typing.ArrayLike], rule: str = "nonzero"
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
-    Rings of the shape that closed outlines fill; they may cross and turn either way.
+    Return the rings of the shape that closed outlines fill.
+
+    The outlines may cross and turn either way.
+
+    rule: "nonzero" or "evenodd".
     """
 
 def first_crossings(
@@ -1475,15 +1634,27 @@ def first_crossings(
     ways: numpy.typing.ArrayLike,
 ) -> list[float]:
     """
-    How far ahead [mm] of each place (n, 2), along the unit vector in its row of ways (n, 2), the outline of rings is first crossed; infinite where it is not. Error where there are not as many ways as places.
+    Return how far ahead of each place the outline of rings is first crossed [mm].
+
+    The distance is infinite if the outline is not crossed.
+
+    places: (n, 2).
+    ways: (n, 2), the unit vector from each place along which to look.
+
+    Raises Error if there are not as many ways as places.
     """
 
 def fit_curve(
     line: numpy.typing.ArrayLike, tolerance_mm: float, closed: bool = False
 ) -> tuple[numpy.typing.NDArray[numpy.float64], list[tuple[float, float]]]:
     """
-    Few cubics (n, 8) along the points (k, 3) of x, y, half width [mm], and the half widths along them
-    [(fraction of arc length, mm)], within the tolerance.
+    Fit few cubics and half widths to a line of points, within a tolerance.
+
+    Returns the cubics (n, 8) [mm] and the half widths along them [(fraction of arc length, mm)].
+
+    line: points (k, 3): x, y, half width [mm].
+    tolerance_mm: largest distance from the points.
+    closed: whether the last point repeats the first one.
     """
 
 def fit_law(
@@ -1493,7 +1664,12 @@ def fit_law(
     scatter: collections.abc.Sequence[float] = [],
 ) -> LawFit:
     """
-    Law of a shape through measured values [mm] at depths [mm], by least squares or absolute residuals. scatter: of each value, up to a common factor; empty: alike.
+    Fit a law to values [mm] measured at depths [mm].
+
+    The fit minimises squares or absolute residuals.
+
+    shape: a LawShape, the constraints on the law.
+    scatter: scatter of each value, up to a common factor. Empty: all values scatter alike.
     """
 
 def fit_marks(
@@ -1502,17 +1678,23 @@ def fit_marks(
     options: MarkOptions = ...,
 ) -> MarkFit:
     """
-    Laws from painted marks and the TCP's way that painted each, by robust least squares through the simulator.
+    Fit laws to painted marks and to the TCP paths that painted them.
 
-    start: MarkLaws to begin from; without them lags of many lengths are tried. Error: no mark, numbers that are not finite,
-    marks that no brush paints along these ways.
+    The fit is by robust least squares through the simulator.
+
+    marks: a PaintedMark for each pass.
+    start: MarkLaws at which the fit begins. None: lags of many lengths are tried.
+    options: MarkOptions.
+
+    Raises Error if there is no mark, for numbers that are not finite, and for marks that no brush paints along these
+    paths.
     """
 
 def flatten(
     stroke: Stroke, tolerance_mm: float = 0.005
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Middle line as (n, 4): x, y, arc length, half width [mm].
+    Return the middle line as points (n, 4): x, y, arc length, half width [mm].
     """
 
 def follow_lags(
@@ -1524,17 +1706,20 @@ def follow_lags(
     """
     Follow the TCP of each pass with K other lags, at the rows of its marks.
 
-    marks: PassMarks of each pass, simulated with one upright brush. lags: Profiles that are positive on depth_range_mm. For
-    each pass: contacts [mm] and headings as unit vectors, (n, 2, K) each. In the air the contact is the TCP.
+    Returns for each pass the contacts [mm] and the headings as unit vectors, (n, 2, K) each. In the air, the contact is the
+    TCP. The result is exact at each row, by the closed form.
 
-    Exact at each row, by the closed form.
+    marks: PassMarks of each pass, simulated with one upright brush.
+    lags: K Profiles that are positive on depth_range_mm.
     """
 
 def footprint_at(
     table: FootprintTable, depth_mm: float, pull: float = 1.0
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Outline (n, 2) [mm] at a depth [mm], tip at the origin; pull = r'/r blends pressed (0) and dragged (1).
+    Return the outline (n, 2) [mm] at a depth [mm], with the tip at the origin.
+
+    pull: r'/r, which blends the pressed (0) and the dragged outline (1).
     """
 
 def from_angles(
@@ -1545,7 +1730,12 @@ def from_angles(
     lines: Lines = ...,
 ) -> dict:
     """
-    Lag and tip gap [mm] from angles [rad] after distances s [mm] of a straight drag (article (19) to (23)).
+    Compute lag and tip gap [mm] from the angles of a straight drag.
+
+    The equations are article (19) to (23).
+
+    alpha0, alpha, beta: angles [rad].
+    s_mm: distances of the drag after which alpha and beta were measured.
     """
 
 def interrupted(
@@ -1556,11 +1746,15 @@ def interrupted(
     backtrack_mm: float = 5.0,
 ) -> list[Pass]:
     """
-    A pass in parts, between which the brush is lifted to fetch paint.
+    Split a pass into parts, between which the brush is lifted to fetch paint.
 
-    first_mm: path of the TCP that the paint on the brush still lasts; every_mm: that it lasts after each visit; each part
-    begins backtrack_mm back in the mark of the one before, so that no gap shows. Parts are named stroke, stroke+2, ...
-    Error for a paint that lasts no more than twice the backtrack.
+    The parts are called stroke, stroke+2, ...
+
+    first_mm: path of the TCP for which the paint on the brush still lasts.
+    every_mm: path of the TCP for which the paint lasts after each refill.
+    backtrack_mm: how far back in the mark of the previous part each part begins, so that no gap shows.
+
+    Raises Error if the paint does not last for more than twice the backtrack.
     """
 
 def intersect(
@@ -1568,7 +1762,7 @@ def intersect(
     rings_b: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
-    What two shapes have in common, each given as for unite.
+    Return the intersection of two shapes, each given as for unite.
     """
 
 def medial_axis(
@@ -1577,11 +1771,16 @@ def medial_axis(
     least_limb: float | None = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], list[AxisBranch]]:
     """
-    Medial axis of a shape: nodes (n, 4) with x, y, distance to the outline [mm] and the largest corner dropped there
-    [squares of that distance], and branches between them, each with start, end (node numbers), line (k, 3) and part (rings).
+    Return the medial axis of a shape: its nodes and the branches between them.
 
-    rings: as `fill` returns them. least_share: what a branch must add to the disc it leaves, in squares of the radius; it
-    stays, too, if what is beyond some place on it adds as much to the disc there, and least_limb to the disc it leaves.
+    nodes: (n, 4): x, y, distance to the outline [mm], and the largest corner dropped at the node, in squares of the
+        distance.
+    branches: a list of AxisBranch, each with start and end (indices of nodes), line (k, 3) and part (rings).
+
+    rings: a shape as `fill` returns it.
+    least_share: the least area that a branch must add to the disc from which it starts, in squares of the disc's radius.
+    least_limb: a branch also stays if the part beyond some place on the branch adds least_share to the disc at this place.
+        The part must also add least_limb to the disc from which the branch starts. None: equal to least_share.
     """
 
 def narrow(
@@ -1590,10 +1789,12 @@ def narrow(
     dips_mm: collections.abc.Sequence[collections.abc.Sequence[float]],
 ) -> None:
     """
-    Fills width_share of every pass, as paint runs out along them: before trace_outlines and coverage.
+    Fill in width_share of each pass, as the paint runs out along the passes.
 
-    dips_mm: for each pass the ways [mm] of the TCP along it at which paint was just fetched, ascending: [0] before it, [] goes
-    on with the paint of the pass before.
+    Call this function before trace_outlines and coverage.
+
+    dips_mm: for each pass, the distances [mm] along the TCP's path at which paint was just fetched, ascending. [0]: just
+        before the pass. []: the pass continues with the paint of the previous pass.
     """
 
 def overlap(
@@ -1601,39 +1802,42 @@ def overlap(
     rings_b: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> float:
     """
-    Area of the intersection over area of the union, each given as for unite; 1 when both are empty.
+    Return the area of the intersection of two shapes over the area of their union.
+
+    The result is 1 if both shapes are empty. Each shape is given as for unite.
     """
 
 def painted_bounds(pass_marks: PassMarks, brush: Brush) -> list[float]:
     """
-    Left, bottom, right, top [mm] of everything one pass paints.
+    Return left, bottom, right and top [mm] of all that one pass paints.
     """
 
 def read_brush(text: str) -> Brush:
     """
-    brush.json; Error names the key.
+    Read a brush from the text of brush.json. Raises Error, naming the key.
     """
 
 def read_marks(text: str) -> Marks:
     """
-    marks.json; Error names the key.
+    Read marks from the text of marks.json. Raises Error, naming the key.
     """
 
 def read_plan(text: str) -> Plan:
     """
-    plan.json; Error names the key.
+    Read a plan from the text of plan.json. Raises Error, naming the key.
     """
 
 def refuse_tilted(passes: collections.abc.Sequence[Pass], upright: str) -> None:
     """
-    Error for the first pass whose brush is not upright everywhere.
+    Raise Error for the first pass whose brush is not upright at all poses.
 
-    upright: who keeps it upright, as the sentence begins: "cell ur5e holds the brush upright".
+    upright: the beginning of the error's sentence, which says what keeps the brush upright. An example is "cell ur5e holds
+        the brush upright".
     """
 
 def remarks(brush: Brush) -> list[Notice]:
     """
-    What is odd about an admissible brush: notices about its laws.
+    Return notices about unusual laws of a brush that check() accepts.
     """
 
 def search_strokes(
@@ -1662,12 +1866,17 @@ def search_strokes(
     ]
 ]:
     """
-    The strokes by which the mark of each shape costs least: for each (strokes, changed, added).
+    Search for the strokes with which the mark of each shape costs least.
 
-    shapes: (rings of the shape, strokes, the passes that paint them). detail: "draft", "normal" or "fine", how small an area
-    gets a stroke of its own. are_free: whether strokes may be moved, cut or left out, and not only added. strokes: for each that was
-    given what it is best painted as, [] for not at all; changed: whether that differs; added: (stroke, number of the stroke
-    that is nearest, rings of the area that it is for, rings of what it paints).
+    Returns (strokes, changed, added) for each shape:
+        strokes: for each given stroke, the strokes that paint it best; [] if it is best left out.
+        changed: for each given stroke, whether these strokes differ from the given stroke.
+        added: (stroke, index of the nearest stroke, rings of the area that the stroke is for, rings of its paint) for each
+        added stroke.
+
+    shapes: (rings of the shape, strokes, passes that paint the strokes) for each shape.
+    detail: "draft", "normal" or "fine": how small an area gets its own stroke.
+    are_free: True if strokes may also be moved, cut or left out. False: strokes are only added.
     """
 
 def simulate(
@@ -1680,21 +1889,28 @@ def simulate(
     may_rise: bool = False,
 ) -> Marks:
     """
-    What the brush does along a plan: Marks without outlines (see trace_outlines and coverage).
+    Simulate the brush along a plan.
 
-    tolerance_mm: how far the painted area between two rows may be off the hull of both; it has nothing to do with the
-    tolerance that a plan was made with. for_outlines: False leaves out the rows that only the outline needs: enough for
-    widest_points. progress: called with (passes done, passes).
+    Returns Marks without outlines. To fill in the outlines, use trace_outlines; for a picture, use coverage.
 
-    z = -depth. A pass that begins or ends below 0 is set down or lifted on the spot, with rows of its own: pose_rows of the
-    PassMarks finds the poses. may_rise: the passes are motions of a machine that may leave the paper, z > 0; there the brush
-    hangs free. Error for z > 0 otherwise, for a pass all of which is above the paper, and for a pose deeper than the brush may
-    be pressed.
+    z = -depth. If a pass begins or ends below 0, the brush is set down or lifted on the spot, in rows of its own. To find
+    the rows of the poses, use pose_rows of the PassMarks.
+
+    tolerance_mm: largest distance of the painted area between two rows from the hull of both. This tolerance is independent
+        of the tolerance with which the plan was made.
+    for_outlines: False leaves out the rows that only the outline needs. The other rows are enough for widest_points.
+    progress: called with (passes done, passes).
+    may_rise: True if the passes are motions of a machine that may leave the paper (z > 0). There the brush hangs free.
+
+    Raises Error for z > 0 without may_rise, and for a pass entirely above the paper. Also raises Error for a pose deeper
+    than the brush may be pressed.
     """
 
 def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:
     """
-    The pass with fewer poses, its mark's middle and edges within the tolerance of where they were.
+    Simplify a pass: return a pass with fewer poses.
+
+    The middle and the edges of the mark stay within the tolerance [mm] of where they were.
     """
 
 def thorns(
@@ -1702,12 +1918,17 @@ def thorns(
     wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> int:
     """
-    How many corners of a mark's outlines beyond 20 degrees stick out of the target by more than 0.3 mm; each outline as a polygon within 0.05 mm, target given as for unite.
+    Count the corners of a mark that stick out of the target.
+
+    Counted are corners of more than 20 degrees that stick out by more than 0.3 mm. Each outline is replaced by a polygon
+    within 0.05 mm. The target is given as for unite.
     """
 
 def touching(wanted: collections.abc.Sequence[Stroke]) -> list[list[int]]:
     """
-    Numbers of strokes whose target marks touch, a list per letter; those that stand alone are not named.
+    Group the strokes whose target marks touch: one list per letter.
+
+    Each list contains the indices of the strokes. A stroke that touches no other stroke is not listed.
     """
 
 def trace_outlines(
@@ -1716,14 +1937,16 @@ def trace_outlines(
     progress: collections.abc.Callable[[int, int], object] | None = None,
 ) -> None:
     """
-    Fills outline_mm of every pass and of the whole.
+    Fill in outline_mm of each pass, and outline_mm of all marks together.
     """
 
 def tracking_error_of(
     pass_: Pass, stroke: Stroke, brush: Brush, tolerance_mm: float = 0.05
 ) -> TrackingError:
     """
-    Miss of one pass against the stroke it should paint, by simulating it.
+    Return the TrackingError of a pass against the stroke that it should paint.
+
+    The pass is simulated.
     """
 
 def tracking_errors_of(
@@ -1733,7 +1956,9 @@ def tracking_errors_of(
     tolerance_mm: float = 0.05,
 ) -> list[TrackingError]:
     """
-    The same of passes and strokes in turn, on all processors: a Miss each.
+    Return a TrackingError for each pass, against the stroke with its index.
+
+    Each pass is simulated, on all processors. Raises Error if there are not as many strokes as passes.
     """
 
 def uncovered_areas(
@@ -1748,16 +1973,23 @@ def uncovered_areas(
     least_share: float,
 ) -> list[list[tuple[list[numpy.typing.NDArray[numpy.float64]], list[float], float]]]:
     """
-    The areas of each shape that its passes leave without paint, from a share of the shape on, the largest first.
+    Find the areas of each shape that its passes leave without paint.
 
-    shapes: as for search_strokes. For each a list of (rings [mm], (x, y) in it [mm], area [mm2]).
+    Returns for each shape a list of (rings [mm], a place (x, y) in the area [mm], area [mm2]), the largest area first.
+
+    shapes: as for search_strokes.
+    least_share: the least area, as a share of the shape's area.
     """
 
 def unite(
     rings: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
-    Union of shapes: counter-clockwise rings fill, the clockwise rings behind one are its holes. Error where clockwise ones outweigh.
+    Return the union of shapes.
+
+    Each counter-clockwise ring is filled. The clockwise rings after it are its holes.
+
+    Raises Error if the clockwise rings outweigh the others.
     """
 
 def verdicts(
@@ -1766,7 +1998,9 @@ def verdicts(
     brush: Brush,
 ) -> list[Verdict]:
     """
-    How well each pass of marks paints the stroke it should be: a Verdict each, on all processors.
+    Score how well each pass of marks paints its stroke.
+
+    Returns a Verdict for each pass, computed on all processors.
     """
 
 def wanted_coverage(
@@ -1775,43 +2009,43 @@ def wanted_coverage(
     px_per_mm: float,
 ) -> numpy.typing.NDArray[numpy.float32]:
     """
-    What strokes should cover of every pixel, float32, row 0 at the top; window = (x, y, width, height) [mm].
+    Return the fraction of each pixel that the strokes should cover, as float32.
+
+    Row 0 is at the top.
+
+    window_mm: (x, y, width, height) [mm] of the part of the paper.
     """
 
 def wanted_outline(
     stroke: Stroke, tolerance_mm: float = 0.005
 ) -> list[numpy.typing.NDArray[numpy.float64]]:
     """
-    Rings of the target mark: the path with its width, round caps and round joins.
-    """
+    Return the rings of the target mark.
 
-def wanted_pieces(
-    stroke: Stroke, tolerance_mm: float = 0.005
-) -> list[numpy.typing.NDArray[numpy.float64]]:
-    """
-    Convex rings whose union is the path with its width and round caps; no wanted_mm is looked at.
+    The target mark is wanted_mm of the stroke, if given. Otherwise the target mark is the path with its width, round caps
+    and round joins.
     """
 
 def widest_points(
     pass_marks: PassMarks, brush: Brush
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Centre of the widest section at every row (n, 2) [mm].
+    Return the centre of the widest section at each row (n, 2) [mm].
     """
 
 def write_brush(brush: Brush) -> str:
     """
-    The text of a brush.json.
+    Return the text of a brush.json.
     """
 
 def write_marks(marks: Marks) -> str:
     """
-    The text of a marks.json.
+    Return the text of a marks.json.
     """
 
 def write_plan(plan: Plan) -> str:
     """
-    The text of a plan.json.
+    Return the text of a plan.json.
     """
 
 MOST_ENTRIES: int = 10000000

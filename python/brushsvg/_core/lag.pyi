@@ -1,5 +1,5 @@
 """
-The law by which the contact patch trails the handle.
+Equations of the lag: how the contact patch trails the handle.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ def alpha_after(
     alpha0_rad: numpy.typing.ArrayLike, exponent: numpy.typing.ArrayLike
 ) -> typing.Any:
     """
-    alpha [rad] once the integral of ds / r is `exponent`, article (7).
+    Return alpha [rad] when the integral of ds / r is `exponent`, article (7).
     """
 
 def drag_arc(
     psi0_rad: float, curvature_per_mm: float, lag_mm: float, length_mm: float
 ) -> float:
     """
-    psi [rad] after an arc of the TCP at constant lag, taut.
+    Return psi [rad] of a taut brush after an arc of the TCP at constant lag.
     """
 
 def drag_straight(
@@ -41,7 +41,9 @@ def drag_straight(
     profile: brushsvg._core.Profile,
 ) -> tuple[float, float]:
     """
-    Contact [mm] after a straight move of a taut brush, article (5) to (7); the loose rule is not applied.
+    Return the contact [mm] after a straight move of a taut brush.
+
+    The equations are article (5) to (7). The rule for a loose brush is not applied.
     """
 
 def exponent(
@@ -51,7 +53,9 @@ def exponent(
     profile: brushsvg._core.Profile,
 ) -> typing.Any:
     """
-    Integral of ds / r over straight moves with depth linear along them, article (7); beyond 50 it stops counting.
+    Return the integral of ds / r over straight moves, article (7).
+
+    The depth is linear along each move. The summation stops beyond 50.
     """
 
 def follow(
@@ -61,7 +65,11 @@ def follow(
     contact_mm: tuple[float, float] | None = None,
 ) -> dict:
     """
-    Contact, heading and tension at each place of the TCP, taut and loose (article 2.1, 2.2).
+    Return contact, heading and tension at each position of the TCP.
+
+    The brush may be taut or loose (article 2.1 and 2.2).
+
+    contact_mm: the contact at the start. None: the brush touches down at the first position.
     """
 
 def tip_direction(
@@ -72,5 +80,5 @@ def tip_direction(
     tip_gap_mm: numpy.typing.ArrayLike,
 ) -> typing.Any:
     """
-    beta [rad], article (11), (12).
+    Return beta [rad] by article (11) and (12).
     """

@@ -1,1 +1,1 @@
-"""A plan to the text that a machine runs."""
+"""Turn a plan into a program for a machine."""

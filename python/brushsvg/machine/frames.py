@@ -1,4 +1,4 @@
-"""Frames in space: the paper's in the robot's, from a pose or from points that were taught. Arrays are (4, 4)."""
+"""Frames in space as (4, 4) matrices, made from a pose or from taught points."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ import numpy as np
 
 from ..errors import Error
 
-LEAST_TAUGHT_MM = 20.0  # closer points turn a touch of 0.2 mm into half a degree
+MIN_TAUGHT_GAP_MM = 20.0  # with closer points, an error of 0.2 mm turns the frame by half a degree
 
 
 def frame_of_pose(origin_mm, rotation_deg) -> np.ndarray:
-    """Origin and rotation about the fixed x, then y, then z axis [degrees]: Rz Ry Rx."""
+    """Return the frame with an origin and a rotation.
+
+    rotation_deg: angles about the fixed x, then y, then z axis [degrees]: Rz Ry Rx.
+    """
     frame = np.eye(4)
     frame[:3, :3] = rotation(rotation_deg)
     frame[:3, 3] = origin_mm
@@ -18,8 +21,11 @@ def frame_of_pose(origin_mm, rotation_deg) -> np.ndarray:
 
 
 def rotation(rotation_deg) -> np.ndarray:
-    """(3, 3) Rz Ry Rx of angles about the fixed axes x, y, z [degrees]; right angles are exact."""
-    turned = np.eye(3)
+    """Return the rotation Rz Ry Rx (3, 3) of angles [degrees].
+
+    The angles are about the fixed axes x, y and z. Right angles are exact.
+    """
+    result = np.eye(3)
     for axis, angle in enumerate(np.asarray(rotation_deg, dtype=float)):
         quarter = angle % 360 / 90
         c, s = (
@@ -30,12 +36,15 @@ def rotation(rotation_deg) -> np.ndarray:
         j, k = (axis + 1) % 3, (axis + 2) % 3
         about = np.eye(3)
         about[j, j], about[j, k], about[k, j], about[k, k] = c, -s, s, c
-        turned = about @ turned
-    return turned
+        result = about @ result
+    return result
 
 
 def rotation_deg(turned: np.ndarray) -> np.ndarray:
-    """(3,) angles [degrees] about the fixed axes x, y, z of a rotation (3, 3): what `rotation` makes it of."""
+    """Return the angles [degrees] of a rotation (3, 3), the inverse of `rotation`.
+
+    The angles are about the fixed axes x, y and z.
+    """
     about_x = np.arctan2(turned[2, 1], turned[2, 2])
     about_y = np.arctan2(-turned[2, 0], np.hypot(turned[2, 1], turned[2, 2]))
     about_z = np.arctan2(turned[1, 0], turned[0, 0])
@@ -43,37 +52,43 @@ def rotation_deg(turned: np.ndarray) -> np.ndarray:
 
 
 def zyz_deg(turned: np.ndarray) -> np.ndarray:
-    """(3,) angles [degrees] about z, then the new y, then the newest z of a rotation (3, 3)."""
+    """Return the z-y-z angles [degrees] of a rotation (3, 3).
+
+    The rotation is about z, then the new y, then the newest z.
+    """
     sideways = np.hypot(turned[0, 2], turned[1, 2])
     b = np.arctan2(sideways, turned[2, 2])
     if sideways > 1e-9:
         a, c = np.arctan2(turned[1, 2], turned[0, 2]), np.arctan2(turned[2, 1], -turned[2, 0])
-    else:  # both turn about one axis
+    else:  # the first and the last angle turn about the same axis
         a, c = 0.0, np.arctan2(turned[1, 0], turned[1, 1])
     return np.degrees([a, b, c])
 
 
 def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
-    """From the origin, a point along x, a point on the side of positive y, perhaps one more to try the plane.
+    """Return the frame that taught points define.
 
-    Error for points too close together or on one line, and when the last is more than flatness_mm off the
-    plane of the others.
+    points_mm: the origin, a point along x, a point on the side of positive y, and optionally a fourth point that checks
+        the plane.
+    flatness_mm: largest distance of the fourth point from the plane of the others.
+
+    Raises Error for points that are too close together or on one line, and for a fourth point outside of the plane.
     """
     points = np.asarray(points_mm, dtype=float)
     origin, along_x, on_left = points[:3]
     x, y = along_x - origin, on_left - origin
     for name, side in (("second", x), ("third", y)):
-        if np.linalg.norm(side) < LEAST_TAUGHT_MM:
+        if np.linalg.norm(side) < MIN_TAUGHT_GAP_MM:
             raise Error(
-                f"the {name} point is {np.linalg.norm(side):.1f} mm from the first, less than {LEAST_TAUGHT_MM:g} mm",
+                f"the {name} point is {np.linalg.norm(side):.1f} mm from the first, less than {MIN_TAUGHT_GAP_MM:g} mm",
                 code="paper-taught",
             )
     x /= np.linalg.norm(x)
     across = y - x * (x @ y)
-    if np.linalg.norm(across) < LEAST_TAUGHT_MM:
+    if np.linalg.norm(across) < MIN_TAUGHT_GAP_MM:
         raise Error(
             f"the third point is {np.linalg.norm(across):.1f} mm off the line of the other two, "
-            f"less than {LEAST_TAUGHT_MM:g} mm",
+            f"less than {MIN_TAUGHT_GAP_MM:g} mm",
             code="paper-taught",
         )
     frame = np.eye(4)
@@ -93,39 +108,48 @@ def frame_of_points(points_mm, flatness_mm: float) -> np.ndarray:
 
 
 def normal_tilt_deg(frame: np.ndarray) -> float:
-    """Angle between the frame's z axis and that of the frame it is given in."""
+    """Return the angle [degrees] of a frame's z axis.
+
+    It is the angle to the z axis of the frame in which the frame is given.
+    """
     return float(np.degrees(np.arctan2(np.hypot(frame[0, 2], frame[1, 2]), frame[2, 2])))
 
 
 def moved(frame: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(n, 3) points of the frame, in the frame that it is given in."""
+    """Transform points (n, 3) of a frame into the frame in which it is given."""
     return points @ frame[:3, :3].T + frame[:3, 3]
 
 
 def is_upright(frame: np.ndarray) -> bool:
-    """Whether a circle on the paper is one in the x-y plane of the frame it is given in."""
+    """Return whether a frame's z axis is upright.
+
+    Circles on the paper are then circles in the x-y plane of the frame in which the paper is given.
+    """
     return bool(np.allclose(frame[:3, 2], (0, 0, 1), atol=1e-9))
 
 
 def quaternion(turned: np.ndarray) -> np.ndarray:
-    """(4,) w, x, y, z of a rotation (3, 3), w not negative: the largest part is found first (Shepperd), so that half a
-    turn, at which a tool points down, is as exact as any other."""
+    """Return the quaternion w, x, y, z (4,) of a rotation (3, 3); w >= 0.
+
+    The largest part is found first (Shepperd's method). Half a turn, at which a tool points down, is therefore as exact
+    as any other rotation.
+    """
     squares = np.array([1 + turned.trace(), *(1 + 2 * turned.diagonal() - turned.trace())])
     largest = int(squares.argmax())
     m = turned
     skew = np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
     if largest == 0:
-        found = np.array([squares[0], *skew])
+        wxyz = np.array([squares[0], *skew])
     else:
         axis = largest - 1
-        found = np.array([skew[axis], *(m[axis] + m[:, axis])])
-        found[largest] = squares[largest]
-    found /= np.linalg.norm(found)
-    return -found if found[0] < 0 else found
+        wxyz = np.array([skew[axis], *(m[axis] + m[:, axis])])
+        wxyz[largest] = squares[largest]
+    wxyz /= np.linalg.norm(wxyz)
+    return -wxyz if wxyz[0] < 0 else wxyz
 
 
 def of_quaternion(wxyz) -> np.ndarray:
-    """(..., 3, 3) the rotations of unit quaternions (..., 4): w, x, y, z."""
+    """Return the rotations (..., 3, 3) of unit quaternions w, x, y, z (..., 4)."""
     w, x, y, z = np.moveaxis(np.asarray(wxyz, dtype=float), -1, 0)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -136,7 +160,10 @@ def of_quaternion(wxyz) -> np.ndarray:
 
 
 def of_rotation_vector(vector_rad) -> np.ndarray:
-    """(3, 3) the rotation of axis times angle [rad]. Rodrigues: I + sin t [n] + (1 - cos t) [n]^2."""
+    """Return the rotation (3, 3) of a rotation vector, axis times angle [rad].
+
+    Rodrigues: I + sin t [n] + (1 - cos t) [n]^2.
+    """
     angle = float(np.linalg.norm(vector_rad))
     x, y, z = np.asarray(vector_rad, dtype=float) / angle if angle > 0 else np.zeros(3)
     across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -144,12 +171,18 @@ def of_rotation_vector(vector_rad) -> np.ndarray:
 
 
 def apart_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(...) angle between rotations (..., 3, 3), exact for small ones, too: |a - b| = sqrt(8) sin(t / 2)."""
+    """Return the angles [degrees] between rotations (..., 3, 3).
+
+    Small angles are exact, too: |a - b| = sqrt(8) sin(t / 2).
+    """
     return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(a - b, axis=(-2, -1)) / np.sqrt(8), 0, 1)))
 
 
 def rotation_vector(turned: np.ndarray) -> np.ndarray:
-    """(3,) axis times angle [rad] of a rotation (3, 3), angle in [0, pi]."""
+    """Return the rotation vector (3,) of a rotation (3, 3).
+
+    It is axis times angle [rad], with the angle in [0, pi].
+    """
     turn = quaternion(turned)
     sine = np.linalg.norm(turn[1:])
     angle = 2 * np.arctan2(sine, turn[0])

@@ -1,4 +1,4 @@
-"""Write the header of a program: how it was made, for whom, its duration."""
+"""Header lines of a program: its origin, its machine and its duration."""
 
 from __future__ import annotations
 
@@ -11,23 +11,32 @@ from .program import WHOLE_JOB, Job
 TILT_LINE = "tilt: the brush is held as each move says"
 
 
-def header_of(title: str, brush: str, loads: PlanInLoads, notes, made: Program, job: Job) -> tuple[str, ...]:
-    """The header of a program; loads before the first one of the job are only counted."""
+def header_of(
+    title: str, brush: str, loads: PlanInLoads, notes, program: Program, job: Job
+) -> tuple[str, ...]:
+    """Return the header of a program.
+
+    Loads before the job's first stroke are only counted.
+    """
     return (
         f"title: {title}",
         f"brush: {brush}, {len(loads.loads)} strokes",
         _sheet_line(loads.sheet_mm),
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
-        *about(made, job),
-        f"length: {painting_mm(made):.0f} mm on the paper",
+        *common_lines(program, job),
+        f"length: {painting_mm(program):.0f} mm on the paper",
     )
 
 
 def border_header(
-    title: str, brush: str, count: int, sheet_mm, notes, around_mm, made: Program, job: Job
+    title: str, brush: str, count: int, sheet_mm, notes, around_mm, program: Program, job: Job
 ) -> tuple[str, ...]:
-    """The header of an air run round (left, bottom, right, top) [mm] of a job of so many strokes."""
+    """Return the header of an air run round a job.
+
+    count: number of strokes of the job.
+    around_mm: left, bottom, right and top of the job [mm].
+    """
     left, bottom, right, top = around_mm
     return (
         f"title: {title}",
@@ -35,29 +44,35 @@ def border_header(
         _sheet_line(sheet_mm),
         *notes,
         f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
-        *about(made, job),
+        *common_lines(program, job),
     )
 
 
-def height_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
-    """The header of strokes from the highest to the lowest height [mm], a step apart."""
+def height_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[str, ...]:
+    """Return the header of strokes that find the paper's height.
+
+    heights_mm: highest height, lowest height and step [mm].
+    """
     return (
         "title: height of the paper",
-        f"brush: {brush}, {sum(1 for _ in made.sections())} strokes",
+        f"brush: {brush}, {sum(1 for _ in program.sections())} strokes",
         _sheet_line(sheet_mm),
         "heights: {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
-        *about(made),
+        *common_lines(program),
     )
 
 
-def first_header(brush: str, sheet_mm, heights_mm, made: Program) -> tuple[str, ...]:
-    """The header of a first run with strokes from the highest to the lowest height [mm], a step apart."""
+def first_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[str, ...]:
+    """Return the header of a first run.
+
+    heights_mm: highest height, lowest height and step of its strokes [mm].
+    """
     return (
         "title: first run",
-        f"brush: {brush}, {sum(1 for each in made.sections() if each.title.startswith('stroke '))} strokes",
+        f"brush: {brush}, {sum(1 for section in program.sections() if section.title.startswith('stroke '))} strokes",
         _sheet_line(sheet_mm),
         "first: heights {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
-        *about(made),
+        *common_lines(program),
     )
 
 
@@ -65,26 +80,26 @@ def _sheet_line(sheet_mm) -> str:
     return "sheet: {:g} x {:g} mm".format(*sheet_mm)
 
 
-def about(made: Program, job: Job = WHOLE_JOB) -> list[str]:
-    """Lines of a header that every program has: machine, frame, time."""
+def common_lines(program: Program, job: Job = WHOLE_JOB) -> list[str]:
+    """Return the header lines that every program has: machine, frame and time."""
     lines = [
-        f"cell: {made.cell.name}, {made.cell.language}",
-        _frame_line(made),
-        f"time: about {clock(duration_s(made))}",
+        f"cell: {program.cell.name}, {program.cell.language}",
+        _frame_line(program),
+        f"time: about {clock(duration_s(program))}",
     ]
-    if made.tilts:
+    if program.tilts:
         lines.append(TILT_LINE)
     if job.z_offset_mm:
         lines.append(f"paper: {job.z_offset_mm:+.10g} mm against the cell's")
-    if made.cell.paper.example:
+    if program.cell.paper.example:
         lines.append("caution: the paper's place is the example of the cell file; teach yours")
     return lines
 
 
-def _frame_line(made: Program) -> str:
-    paper = made.cell.paper
+def _frame_line(program: Program) -> str:
+    paper = program.cell.paper
     at_origin = not (paper.taught_mm or any(paper.origin_mm) or any(paper.rotation_deg))
-    if at_origin or not POSTS[made.cell.language].in_robot_frame:
+    if at_origin or not POSTS[program.cell.language].in_robot_frame:
         return "frame: the sheet's lower left corner, mm; z 0 touches"
-    x, y, z = made.robot_from_frame[:3, 3]
+    x, y, z = program.robot_from_frame[:3, 3]
     return f"frame: the machine's, mm; sheet's corner at {x:.1f} {y:.1f} {z:.1f}"

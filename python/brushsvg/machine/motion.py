@@ -1,4 +1,4 @@
-"""What a robot does, step by step with its meaning: the words that posts put into a robot's language."""
+"""Moves, waits, sections and programs, which posts write as robot languages."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ import numpy as np
 from ..geometry import polylines
 from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
 from .frames import moved
-from .realised.distortion import commanded_high_mm
+from .realised.distortion import commanded_heights_mm
 
-SAFE_MEANINGS = ("travel", "retract")  # at or above safe height: as fast as the machine likes
+MEANINGS_AT_SAFE_HEIGHT = ("travel", "retract")  # at or above the safe height, where speed is not limited
 
 
 @dataclass(frozen=True)
 class Arc:
-    """A circle in the x-y plane; turn is 1 counter-clockwise, -1 clockwise."""
+    """A circle in the x-y plane.
+
+    turn: 1 for counter-clockwise, -1 for clockwise.
+    """
 
     centre_mm: tuple[float, float]
     turn: int
@@ -27,14 +30,17 @@ class Arc:
 
 @dataclass(frozen=True)
 class Move:
-    """Straight lines through points_mm (n, 3), at one speed; or, with arc, the circle through them.
+    """Straight lines at one speed, or a circle.
 
-    meaning: travel (at safe height), approach (down to the clearance), land (down to the first pose), paint (along the
-    poses), lift (up to the clearance), retract (up to safe height), dip (into the paint and out), wipe, look (slowly,
-    at safe height).
-    blends_mm: (n,) how far before each point the robot may begin to turn to the next; None: not at all.
-    axes: (n, 3) unit vectors from the tip up along the brush at each point, in the frame of the points, the tool turned
-    there the shortest way from upright; None: upright.
+    meaning: travel (at the safe height), approach (down to the clearance), land (down to the first pose), paint (along
+        the poses), lift (up to the clearance), retract (up to the safe height), dip (into the paint and out), wipe, or
+        look (slowly, at the safe height).
+    points_mm: (n, 3) points [mm].
+    speed_mm_s: speed of the tip [mm/s].
+    arc: the circle; None for straight lines.
+    blends_mm: (n,) how far before each point the robot may begin to turn to the next point; None for not at all.
+    axes: (n, 3) unit vectors from the tip up along the brush at each point, in the frame of the points. The tool is
+        turned there the shortest way from upright. None for an upright brush.
     """
 
     meaning: str
@@ -47,7 +53,10 @@ class Move:
 
 @dataclass(frozen=True)
 class Wait:
-    """Stand still for so long; seconds None: until a person, who is shown the message, lets the program go on."""
+    """A wait of some seconds.
+
+    If seconds is None, the program shows the message and waits for a person to continue it.
+    """
 
     seconds: float | None
     message: str = ""
@@ -55,14 +64,14 @@ class Wait:
 
 @dataclass(frozen=True)
 class Section:
-    """Steps that belong together, under a title: one stroke, one visit to the paint."""
+    """Steps with a common title: one stroke, or one visit to the paint."""
 
     title: str
     steps: tuple[Move | Wait, ...]
 
     @property
     def name(self) -> str:
-        """Of the stroke or the station."""
+        """Name of the stroke or the station."""
         return self.title.partition(": ")[2] or self.title
 
     @property
@@ -71,7 +80,10 @@ class Section:
 
     @property
     def drawn_mm_s(self) -> float:
-        """How fast a stroke is drawn at most; of a dab, its landing."""
+        """Highest speed [mm/s] at which a stroke is drawn.
+
+        For a dab, it is the speed of the landing.
+        """
         speeds = [
             [move.speed_mm_s for move in self.moves if move.meaning == kind] for kind in ("paint", "land")
         ]
@@ -80,10 +92,17 @@ class Section:
 
 @dataclass(frozen=True)
 class Program:
-    """header: lines for the reader, each beginning with a word of ours. sections() yields them one by one: a page of
-    strokes is never held twice. robot_from_frame: (4, 4), the frame of all points, in the robot's. rise_mm: how high
-    the tool is over everything, where it goes first; rise_in_robot_mm: the same in the robot's frame; touching_mm_s:
-    the most that the brush's tip may have where it touches; tilts: whether the brush is tilted anywhere."""
+    """Everything that a machine does for a job.
+
+    header: lines for the reader. Each line begins with a fixed word, such as "title".
+    cell: the cell that the program is for.
+    robot_from_frame: (4, 4) pose of the frame of all points in the robot's frame.
+    sections: yields the sections one by one, so that a page of strokes is never held twice.
+    rise_mm: height to which the tool rises first, clear of everything.
+    rise_in_robot_mm: this height in the robot's frame.
+    touching_mm_s: highest speed of the brush's tip on the paper [mm/s].
+    tilts: whether the brush is tilted anywhere.
+    """
 
     header: tuple[str, ...]
     cell: Cell
@@ -99,29 +118,35 @@ class Program:
         return _duration_s(self)
 
 
-def rise_over(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
-    """The height, in the frame that the paper's frame is given in, of the safe height's highest place [mm]."""
+def rise_height_mm(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
+    """Return the height [mm] of the highest place at the safe height.
+
+    frame: (4, 4) pose of the paper's frame in the frame in which the height is returned.
+    """
     margin = cell.workspace.margin_mm
     x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
     corners = np.array([(a, b) for a in x for b in y])
-    heights = commanded_high_mm(corners, cell.heights.safe_mm, cell.machine)
+    heights = commanded_heights_mm(corners, cell.heights.safe_mm, cell.machine)
     return float(moved(frame, np.column_stack([corners, heights]))[:, 2].max())
 
 
-def in_robot_frame(program: Program) -> Program:
-    """The same program with points in the robot's own frame; there are no arcs on paper that leans."""
+def program_in_robot_frame(program: Program) -> Program:
+    """Return a program with its points in the robot's own frame.
+
+    Programs for leaning paper have no arcs.
+    """
     frame = program.robot_from_frame
     if np.array_equal(frame, np.eye(4)):
         return program
 
     def sections() -> Iterator[Section]:
         for section in program.sections():
-            yield Section(section.title, tuple(_turned(step, frame) for step in section.steps))
+            yield Section(section.title, tuple(_move_step_to_frame(step, frame) for step in section.steps))
 
     return replace(program, robot_from_frame=np.eye(4), sections=sections, rise_mm=program.rise_in_robot_mm)
 
 
-def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
+def _move_step_to_frame(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
     if isinstance(step, Wait):
         return step
     arc = step.arc
@@ -133,7 +158,10 @@ def _turned(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
 
 
 def set_programmed_speeds(section: Section, cell: Cell) -> Section:
-    """Round speeds down for a language of whole speeds, but no lower than its least one."""
+    """Round speeds down for a language of whole speeds.
+
+    No speed becomes lower than the language's lowest speed.
+    """
     unit = LEAST_SPEED_MM_S.get(cell.language)
     if unit is None:
         return section
@@ -146,51 +174,66 @@ def set_programmed_speeds(section: Section, cell: Cell) -> Section:
     return Section(section.title, tuple(map(with_speed, section.steps)))
 
 
-def via(points_mm: np.ndarray) -> np.ndarray:
-    """Of the points of a circle after its first one, the one that determines it."""
+def via_point(points_mm: np.ndarray) -> np.ndarray:
+    """Return the intermediate point that defines a circle together with its two ends.
+
+    points_mm: points of the circle without its first point.
+    """
     return points_mm[(len(points_mm) - 1) // 2]
 
 
 def duration_s(program: Program) -> float:
-    """Time for the whole program: each move starts and ends at rest, with the cell's acceleration."""
+    """Return the duration [s] of a program.
+
+    Each move starts and ends at rest, with the cell's acceleration.
+    """
     return program.duration_s
 
 
 def _duration_s(program: Program) -> float:
-    total_s, here = 0.0, None
+    total_s, last_point = 0.0, None
     for step in (step for section in program.sections() for step in section.steps):
         if isinstance(step, Wait):
             total_s += step.seconds or 0.0
             continue
-        total_s += time_of_way_s(length_mm(step, here), step.speed_mm_s, program.cell)
-        total_s += settling_s(step, here, program.cell)
-        here = step.points_mm[-1]
+        total_s += duration_of_path_s(length_mm(step, last_point), step.speed_mm_s, program.cell)
+        total_s += settling_s(step, last_point, program.cell)
+        last_point = step.points_mm[-1]
     return total_s
 
 
-def settling_s(move: Move, here: np.ndarray | None, cell: Cell) -> float:
-    """How long a move stands still until its servo or pen has settled: after each way of the lift alone."""
+def settling_s(move: Move, here_mm: np.ndarray | None, cell: Cell) -> float:
+    """Return how long [s] a move waits for its servo or pen to settle.
+
+    It waits after each move of the lift alone.
+    """
     if cell.pen and cell.language == "marlin-servo":
         return cell.pen.settle_s if move.meaning in ("land", "lift") else 0.0
     if not cell.servo or not cell.servo.settle_s:
         return 0.0
-    if here is None:  # it is raised before it goes anywhere
+    if here_mm is None:  # the servo is raised before the first move
         return cell.servo.settle_s
-    ways = np.diff(np.vstack([here, move.points_mm]), axis=0)
-    return cell.servo.settle_s * int(np.count_nonzero(servo_stands(ways, cell) & (ways[:, 2] != 0)))
+    steps_mm = np.diff(np.vstack([here_mm, move.points_mm]), axis=0)
+    return cell.servo.settle_s * int(np.count_nonzero(servo_stands(steps_mm, cell) & (steps_mm[:, 2] != 0)))
 
 
 def painting_mm(program: Program) -> float:
-    """Length of the tool's path on the paper, circles as they are run."""
-    total_mm, here = 0.0, None
+    """Return the length [mm] of the tool's path on the paper.
+
+    Arcs count with their own length, not with that of their chords.
+    """
+    total_mm, last_point = 0.0, None
     for move in (move for section in program.sections() for move in section.moves):
-        total_mm += length_mm(move, here) if move.meaning == "paint" else 0.0
-        here = move.points_mm[-1]
+        total_mm += length_mm(move, last_point) if move.meaning == "paint" else 0.0
+        last_point = move.points_mm[-1]
     return total_mm
 
 
-def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
-    """From rest to rest: v rises at the acceleration, stays, falls; a short way never reaches the speed."""
+def duration_of_path_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
+    """Return the duration [s] of a path from rest to rest.
+
+    The speed rises with the cell's acceleration, stays constant, and falls. A short path never reaches the speed.
+    """
     a = cell.speeds.acceleration_mm_s2
     return (
         length_mm / speed_mm_s + speed_mm_s / a
@@ -199,23 +242,29 @@ def time_of_way_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float:
     )
 
 
-def length_mm(move: Move, here: np.ndarray | None) -> float:
-    """Of the path from where the tool is to the last point of the move, as distances() has it; moves have few points,
-    for which arrays take ten times as long."""
+def length_mm(move: Move, start_mm: np.ndarray | None) -> float:
+    """Return the length [mm] of a move from the tool's place.
+
+    It equals the last value of distances(). Most moves have few points, for which arrays are ten times slower.
+    """
     path = move.points_mm.tolist()
-    path.insert(0, path[0] if here is None else list(here))
+    path.insert(0, path[0] if start_mm is None else list(start_mm))
     steps = map(math.dist, path, path[1:])
     if move.arc is None:
         return sum(steps)
-    across = 2 * sum(math.dist(point[:2], move.arc.centre_mm) for point in path) / len(path)
-    return sum(across * math.asin(min(step / across, 1.0)) for step in steps) if across else 0.0
+    diameter_mm = 2 * sum(math.dist(point[:2], move.arc.centre_mm) for point in path) / len(path)
+    return (
+        sum(diameter_mm * math.asin(min(step / diameter_mm, 1.0)) for step in steps) if diameter_mm else 0.0
+    )
 
 
 def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
-    """(n,) path [mm] from where the tool is (the first point, where that is not known) to each point of the move."""
-    if (
-        len(move.points_mm) == 1 and here is not None and move.arc is None
-    ):  # most moves by far: no arrays for them
+    """Return the path lengths [mm] to each point of a move, (n,).
+
+    here: (3,) the tool's place. If it is None, the path begins at the first point.
+    """
+    # Nearly all moves have one point, for which arrays are slow.
+    if len(move.points_mm) == 1 and here is not None and move.arc is None:
         return np.array([math.dist(here, move.points_mm[0])])
     path = np.vstack([move.points_mm[:1] if here is None else here[None], move.points_mm])
     steps = polylines.steps(path)
@@ -226,7 +275,13 @@ def distances(move: Move, here: np.ndarray | None) -> np.ndarray:
 
 
 def times_s(along_mm: np.ndarray, length_mm: float, speed_mm_s: float, cell: Cell) -> np.ndarray:
-    """When a move of a length, from rest to rest, has come so far: v rises at the acceleration, stays, falls."""
+    """Return the times [s] at which a move reaches path lengths.
+
+    The move is from rest to rest. The speed rises with the cell's acceleration, stays constant, and falls.
+
+    along_mm: path lengths [mm].
+    length_mm: length of the move [mm].
+    """
     a, v = cell.speeds.acceleration_mm_s2, speed_mm_s
     ramp_mm = min(v * v / (2 * a), length_mm / 2)
     peak = np.sqrt(2 * a * ramp_mm)

@@ -1,4 +1,4 @@
-"""When the brush fetches paint: which stations are visited before which stroke, and where a long one is interrupted."""
+"""Reload paint: stations to visit before strokes, and splits of long strokes."""
 
 from __future__ import annotations
 
@@ -12,111 +12,127 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
-from .cells.cell import Cell, Station, briefly, robot_from_paper, why_no_waiting
+from .cells.cell import Cell, Station, reason_for_no_waiting, robot_from_paper, shorten_visit
 from .frames import is_upright
 from .posts import POSTS, circles_by
-from .realised.arc_chords import chords, cut_at_extremes, with_chords
-from .realised.distortion import goes_straight, in_lines_mm, is_similar
+from .realised.arc_chords import points_with_chords, split_arcs_at_extremes, with_chords
+from .realised.distortion import in_lines_mm, is_similar, keeps_lines
 from .realised.retimed import on_way
-from .realised.tilt import in_steps, refuse_where_upright
-from .tool_axes import axes_of, unit
+from .realised.tilt import refuse_tilt_without_tool, split_turning_moves
+from .tool_axes import axes_of, normalize
 
 
 @dataclass(frozen=True)
 class PlanInLoads:
-    """A plan as a machine runs it: each stroke in one or more passes, between which paint can be fetched.
+    """A plan as a machine runs it, with each stroke in one or more passes.
 
-    Not a plan, which its names show: what is counted here are loads, not strokes, and none is cut again. Of a part
-    load says which of its stroke it is, in a plan.json, too: as a rule plans are kept as they were planned, and cut for
-    the machine.
+    Paint can be fetched between the passes. This is not a plan: it counts loads instead of strokes, and no load is
+    split again. The attribute `load` of a part is its number in its stroke, also in a plan.json. As a rule, plans are
+    stored unsplit and are split for the machine.
+
+    lasts_mm: path length [mm] that a load of paint lasts; infinite unless the brush gives it and the cell counts it.
     """
 
     sheet_mm: tuple[float, float]
     loads: tuple
-    lasts_mm: float = math.inf  # of a brush that says so, on a cell that counts the way
+    lasts_mm: float = math.inf
 
     def strokes(self) -> list[str]:
-        """For each load the stroke that it paints, or a part of."""
+        """Return for each load the name of the stroke that it paints or continues."""
         names: list[str] = []
         for a_pass in self.loads:
             names.append(names[-1] if is_later_part(a_pass) else a_pass.stroke)
         return names
 
     def left(self, first_stroke: int) -> PlanInLoads:
-        """The loads from that one on, counted from 1."""
+        """Return the loads from number first_stroke on, counted from 1."""
         return PlanInLoads(self.sheet_mm, self.loads[first_stroke - 1 :], self.lasts_mm)
 
     def as_plan(self):
-        """For who simulates what is run."""
+        """Return the loads as a plan, for simulation."""
         return _core.Plan(sheet_mm=self.sheet_mm, passes=list(self.loads))
 
 
 def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
-    """Every stroke that is longer than one load of paint lasts in parts: stroke, stroke+2, ...
+    """Split strokes into parts that one load of paint can paint.
 
-    Whole are all strokes of cells that do not count the length, and those whose setting reload is false. What is a part
-    Whole are strokes already cut: a part stays as it is. What begins or ends below the paper is set down and lifted
-    there. For a machine without circles, arcs have poses enough for lines; where its axes have backlash, arcs end where
-    one turns back; where the cell has a map of the paper or a field, lines have enough for that.
-    Where the brush turns, there are poses enough for a robot that turns evenly between them. Error for a part that does
-    not follow the one before it, and for a tilted brush where the cell cannot tilt it.
+    The parts are named stroke, stroke+2, ... A stroke stays whole if the cell does not count the length, or if its
+    setting reload is false. Parts that are already split stay as they are. A pass that begins or ends below the paper
+    is set down or lifted there.
+
+    Passes are also prepared for the machine. Poses are added to
+
+    - arcs, for a machine without circles,
+    - lines, if the cell has a map of the paper or a field,
+    - moves that turn the brush, for a robot that turns evenly between poses.
+
+    If the axes have backlash, arcs are split where an axis turns back.
+
+    Raises Error for a part that does not follow the part before it, and for a tilted brush that the cell cannot tilt.
     """
-    refuse_where_upright(plan.passes, cell)
-    loads, last, lasts_mm = list(plan.passes), None, math.inf
+    refuse_tilt_without_tool(plan.passes, cell)
+    loads, previous, lasts_mm = list(plan.passes), None, math.inf
     for a_pass in loads:
-        if is_later_part(a_pass) and (last is None or last.load != a_pass.load - 1):
+        if is_later_part(a_pass) and (previous is None or previous.load != a_pass.load - 1):
             number = a_pass.load
             sentence = f"load {number} of a stroke stands where no load {number - 1} of it comes before"
             raise Error(sentence, a_pass.stroke, code="load-out-of-order")
-        last = a_pass
+        previous = a_pass
     if cell.reload and cell.reload.when == "length":
-        every_mm, back_mm = load_lasts_mm(brush, cell), cell.reload.backtrack_mm
+        every_mm, back_mm = load_length_mm(brush, cell), cell.reload.backtrack_mm
         lasts_mm = every_mm if brush.paint else math.inf
         loads = []
         for a_pass in plan.passes:
-            whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
-            loads += [a_pass] if whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
-    if not _writes_circles(cell):
+            is_whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
+            loads += [a_pass] if is_whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+    if not _can_write_circles(cell):
         loads = map(with_chords, loads)
     elif cell.machine and any(cell.machine.backlash_mm):
         axes = robot_from_paper(cell)[:2, 0]
-        loads = (cut_at_extremes(each, float(np.arctan2(axes[1], axes[0]))) for each in loads)
-    if not goes_straight(cell.machine):
-        loads = (_in_lines(each, cell.machine) for each in map(in_steps, loads))
+        loads = (split_arcs_at_extremes(load, float(np.arctan2(axes[1], axes[0]))) for load in loads)
+    if not keeps_lines(cell.machine):
+        loads = (_split_for_map(load, cell.machine) for load in map(split_turning_moves, loads))
     else:
-        loads = map(in_steps, loads)
-    return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_from_paper_to_paper, loads)), lasts_mm)
+        loads = map(split_turning_moves, loads)
+    return PlanInLoads(tuple(plan.sheet_mm), tuple(map(_start_and_end_on_paper, loads)), lasts_mm)
 
 
-def _in_lines(a_pass, machine):
+def _split_for_map(a_pass, machine):
     axes = axes_of(a_pass)
     rows = in_lines_mm(
         np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine
     )
-    return on_way(a_pass, rows[:, :3], (), None if axes is None else unit(rows[:, 3:]))
+    return on_way(a_pass, rows[:, :3], (), None if axes is None else normalize(rows[:, 3:]))
 
 
-def load_lasts_mm(brush: _core.Brush, cell: Cell) -> float:
-    """The way that a load of paint lasts, for a cell that counts it: its own, until the brush's hairs run dry, and
-    until marks are as much narrower as the cell allows, whichever is the shortest. Error where no part could be so
-    short."""
+def load_length_mm(brush: _core.Brush, cell: Cell) -> float:
+    """Return the path length [mm] that a load of paint lasts.
+
+    The cell must count the length. It is the smallest of three lengths: the cell's own, the length until the hairs run
+    dry, and the length until the marks narrow by the amount that the cell allows.
+
+    Raises Error if no part of a stroke could be that short.
+    """
     reload = cell.reload
-    ways = [reload.every_mm]
+    limits_mm = [reload.every_mm]
     if brush.paint and brush.paint.lasts_mm:
-        ways.append(brush.paint.lasts_mm)
+        limits_mm.append(brush.paint.lasts_mm)
     if brush.paint and reload.narrower_percent:
-        ways.append(brush.paint.way_to_share_mm(1 - reload.narrower_percent / 100))
-    if min(ways) <= 2 * reload.backtrack_mm:
+        limits_mm.append(brush.paint.way_to_share_mm(1 - reload.narrower_percent / 100))
+    if min(limits_mm) <= 2 * reload.backtrack_mm:
         sentence = (
-            f"paint of brush {brush.name} lasts for {min(ways):.1f} mm on cell {cell.name}, which must be more than "
-            f"twice backtrack_mm {reload.backtrack_mm:g}"
+            f"paint of brush {brush.name} lasts for {min(limits_mm):.1f} mm on cell {cell.name}, which must be more "
+            f"than twice backtrack_mm {reload.backtrack_mm:g}"
         )
         raise Error(sentence, code="load-too-short")
-    return min(ways)
+    return min(limits_mm)
 
 
 def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
-    """A notice where the cell allows marks to get narrower, and the brush does not say that they do."""
+    """Report that a limit of narrowing has no effect.
+
+    The cell has the limit, but the brush does not say how its marks narrow.
+    """
     if not cell.reload or not cell.reload.narrower_percent or brush.paint:
         return []
     sentence = (
@@ -125,9 +141,12 @@ def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
     return [Notice("", sentence, code="paint-unknown", advice='measure it: "paint" of a brush file')]
 
 
-def _writes_circles(cell: Cell) -> bool:
-    """On paper that leans a robot's circles would be in no plane that it knows, and a machine that is commanded other
-    places than the true ones may need ellipses."""
+def _can_write_circles(cell: Cell) -> bool:
+    """Return whether the plan's arcs can be written as circles.
+
+    On leaning paper, circles would not be in a plane that the robot knows. A machine with corrected positions may need
+    ellipses.
+    """
     post = POSTS.get(cell.language)
     if not is_similar(cell.machine):
         return False
@@ -136,13 +155,13 @@ def _writes_circles(cell: Cell) -> bool:
     return not post or not post.in_robot_frame or is_upright(robot_from_paper(cell))
 
 
-def _from_paper_to_paper(a_pass):
-    """The pass; where it begins or ends below the paper, set down or lifted on the spot there."""
+def _start_and_end_on_paper(a_pass):
+    """Add a landing or lift on the spot if a pass begins or ends below the paper."""
     poses = np.asarray(a_pass.poses_mm)
     below = poses[[0, -1], 2] < 0 if len(poses) else np.zeros(2, dtype=bool)
     if not below.any():
         return a_pass
-    ends = poses[[0, -1]] * (1, 1, 0) + 0.0  # no -0
+    ends = poses[[0, -1]] * (1, 1, 0) + 0.0  # adding 0.0 turns -0.0 into 0.0
     before, after = ends[:1][below[:1]], ends[1:][below[1:]]
     arcs = [
         _core.Arc(arc.first + len(before), arc.last + len(before), arc.centre_mm, arc.direction)
@@ -155,11 +174,14 @@ def _from_paper_to_paper(a_pass):
 
 
 def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:
-    """A notice of the stroke for parts that are longer than a load of paint lasts, unless they may not be cut."""
+    """Report strokes with parts that are longer than a load of paint lasts.
+
+    Strokes that must not be split are not reported.
+    """
     if not cell.reload or cell.reload.when != "length":
         return []
-    every_mm, deepest_mm = load_lasts_mm(brush, cell), brush.depth_range_mm[1]
-    last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the lift comes back over its own mark
+    every_mm, deepest_mm = load_length_mm(brush, cell), brush.depth_range_mm[1]
+    last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the brush lifts over its own mark
     sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
     return [
         Notice(
@@ -173,133 +195,163 @@ def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]
 
 
 def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
-    """For each load the stations to visit before it, none before loads that are not run; () for a cell without paint
-    and for strokes of one colour, or where nobody can be waited for.
+    """Return for each load the stations to visit before it.
 
-    Paint is fetched before the first stroke, before every change of colour, before every stroke or layer where the
-    cell says so, and where what is on the brush would not last. More paint of the same colour is a short visit. A
-    stroke's setting reload asks for paint or goes without. Error for a colour that no station serves.
+    Loads before first_stroke are not run and have no visits. For a cell without paint, the visits are changes of the
+    pen. The result is then () if all strokes have one colour, or if the program cannot wait for a person.
+
+    Paint is fetched before the first stroke and before every change of colour. It is also fetched before every stroke
+    or layer if the cell says so, and when the paint on the brush would not last. More paint of the same colour needs
+    only a short visit. A stroke's setting reload requests paint or does without it, instead of the cell's rule.
+
+    Raises Error for a colour that no station serves.
     """
     if not cell.reload:
-        return _pens(loads, cell, first_stroke) if may_pause(cell) else ()
-    painted, due = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
-    found, last, used_mm = [()] * len(painted), None, 0.0
-    with suppress(Error):  # what no station serves is not on the brush
-        last = painted[-1] if painted and _station_for(painted[-1], cell) else None
-    for number, a_pass in enumerate(due, len(painted) + 1):
-        station = _station_for(a_pass, cell)
+        return _pen_visits(loads, cell, first_stroke) if may_pause(cell) else ()
+    painted, left_loads = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
+    visits_of_loads, last_pass, used_mm = [()] * len(painted), None, 0.0
+    with suppress(Error):  # a colour that no station serves is not on the brush
+        last_pass = painted[-1] if painted and _find_station(painted[-1], cell) else None
+    for number, a_pass in enumerate(left_loads, len(painted) + 1):
+        station = _find_station(a_pass, cell)
         length_mm = painted_mm(a_pass)
-        changed = last is not None and _station_for(last, cell) != station
-        wash = [each for each in cell.stations if each.name == cell.reload.wash]
-        fetch = (
-            last is None
-            or changed
+        is_new_colour = last_pass is not None and _find_station(last_pass, cell) != station
+        wash_stations = [candidate for candidate in cell.stations if candidate.name == cell.reload.wash]
+        is_fetching = (
+            last_pass is None
+            or is_new_colour
             or number == first_stroke
-            or _is_due(a_pass, last, used_mm + length_mm, cell.reload, loads.lasts_mm)
+            or _needs_paint(a_pass, last_pass, used_mm + length_mm, cell.reload, loads.lasts_mm)
         )
-        if last is not None and not changed and number != first_stroke:
-            wash, station = [briefly(each) for each in wash if cell.reload.rinse], briefly(station)
-        elif not changed:
-            wash = []
-        found.append((*wash, station) if fetch else ())
-        used_mm = length_mm + (0.0 if fetch else used_mm)
-        last = a_pass
-    return tuple(found)
+        if last_pass is not None and not is_new_colour and number != first_stroke:
+            wash_stations, station = (
+                [shorten_visit(candidate) for candidate in wash_stations if cell.reload.rinse],
+                shorten_visit(station),
+            )
+        elif not is_new_colour:
+            wash_stations = []
+        visits_of_loads.append((*wash_stations, station) if is_fetching else ())
+        used_mm = length_mm + (0.0 if is_fetching else used_mm)
+        last_pass = a_pass
+    return tuple(visits_of_loads)
 
 
 def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
-    """For each pass the ways [mm] of the TCP along it at which paint was just fetched, as `narrow` takes them.
+    """Return for each pass the path lengths [mm] at which paint was fetched.
 
-    passes: of the plan, or the loads themselves. Where no cell fetches paint every pass begins freshly dipped but those
-    that are to be painted without: with what the pass before them left.
+    `narrow` needs this result. The path lengths are measured along the path of the TCP.
+
+    If the cell does not fetch paint, every pass begins freshly dipped. Only passes with reload set to false continue
+    with the paint left by the pass before.
+
+    passes: passes of the plan, or the loads themselves.
     """
     if not cell.reload:
         return dips_without_cell(passes)
-    requested, found, k = visits(loads, cell), [], 0
+    visits_of_loads, dips_of_passes, load_index = visits(loads, cell), [], 0
     for a_pass in passes:
-        dips = [0.0] if requested[k] else []
-        k += 1
-        while not a_pass.load and k < len(loads.loads) and is_later_part(loads.loads[k]):
-            dips.append(_begins_at_mm(a_pass, loads.loads[k], dips[-1] if dips else 0.0))
-            k += 1
-        found.append(dips)
-    return found
+        dips = [0.0] if visits_of_loads[load_index] else []
+        load_index += 1
+        while not a_pass.load and load_index < len(loads.loads) and is_later_part(loads.loads[load_index]):
+            dips.append(_part_start_mm(a_pass, loads.loads[load_index], dips[-1] if dips else 0.0))
+            load_index += 1
+        dips_of_passes.append(dips)
+    return dips_of_passes
 
 
 def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[list[float]]:
-    """The same of a plan's passes, with a cell or without."""
+    """Return dips_mm for the passes of a plan, with or without a cell."""
     if cell:
-        with suppress(Error):  # a colour that no station serves is reported where a program is made
+        with suppress(Error):  # the error is reported when the program is made
             return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
     return dips_without_cell(plan.passes)
 
 
 def dips_without_cell(passes) -> list[list[float]]:
-    """The same where nobody fetches paint by a program."""
-    return [[] if k and each.settings.reload is False else [0.0] for k, each in enumerate(passes)]
+    """Return dips_mm for passes whose paint is not fetched by a program."""
+    return [
+        [] if number and a_pass.settings.reload is False else [0.0] for number, a_pass in enumerate(passes)
+    ]
 
 
-def _begins_at_mm(stroke, part, after_mm: float) -> float:
-    """The way along a stroke at which one of its parts begins, its landing counted: by the moves that both share, and
-    that are further along the stroke than the part before began. Where there is none, by its first pose."""
-    line, poses = (chords(np.asarray(each.poses_mm), each.arcs)[:, :2] for each in (stroke, part))
-    along, way = lengths(line), lengths(poses)
-    start, step = line[:-1], np.diff(line, axis=0)
-    size = np.maximum((step**2).sum(axis=1), 1e-18)
-    share = np.clip((((poses[:, None] - start) * step).sum(axis=2)) / size, 0.0, 1.0)
-    off = np.linalg.norm(start + share[..., None] * step - poses[:, None], axis=2)
-    place = along[:-1] + share * np.sqrt(size)
-    off[place <= after_mm] = np.inf
-    nearest = off.argmin(axis=1)
-    rows = np.arange(len(poses))
-    at, off = place[rows, nearest], off[rows, nearest]
-    shared = (off[:-1] < SHARED_MM) & (off[1:] < SHARED_MM) & (np.abs(np.diff(at) - np.diff(way)) < SHARED_MM)
-    begins = (at - way)[:-1]
-    if not shared.any():
-        return float(max(at[0], after_mm + SHARED_MM))
-    return float(max(np.median(begins[shared]), after_mm + SHARED_MM))
+def _part_start_mm(stroke, part, after_mm: float) -> float:
+    """Return the path length [mm] along a stroke at which a part begins.
+
+    The part's landing is included. It is found from the moves that the stroke and the part share, beyond the beginning
+    of the part before. If they share none, it is found from the part's first pose.
+
+    after_mm: path length at which the part before begins.
+    """
+    stroke_points, part_points = (
+        points_with_chords(np.asarray(a_pass.poses_mm), a_pass.arcs)[:, :2] for a_pass in (stroke, part)
+    )
+    along_mm, way_mm = lengths(stroke_points), lengths(part_points)
+    start, step = stroke_points[:-1], np.diff(stroke_points, axis=0)
+    squared_lengths = np.maximum((step**2).sum(axis=1), 1e-18)
+    fraction = np.clip((((part_points[:, None] - start) * step).sum(axis=2)) / squared_lengths, 0.0, 1.0)
+    offset_mm = np.linalg.norm(start + fraction[..., None] * step - part_points[:, None], axis=2)
+    places_mm = along_mm[:-1] + fraction * np.sqrt(squared_lengths)
+    offset_mm[places_mm <= after_mm] = np.inf
+    nearest = offset_mm.argmin(axis=1)
+    rows = np.arange(len(part_points))
+    place_mm, offset_mm = places_mm[rows, nearest], offset_mm[rows, nearest]
+    is_shared = (
+        (offset_mm[:-1] < MAX_SHARED_OFFSET_MM)
+        & (offset_mm[1:] < MAX_SHARED_OFFSET_MM)
+        & (np.abs(np.diff(place_mm) - np.diff(way_mm)) < MAX_SHARED_OFFSET_MM)
+    )
+    part_starts_mm = (place_mm - way_mm)[:-1]
+    if not is_shared.any():
+        return float(max(place_mm[0], after_mm + MAX_SHARED_OFFSET_MM))
+    return float(max(np.median(part_starts_mm[is_shared]), after_mm + MAX_SHARED_OFFSET_MM))
 
 
-SHARED_MM = (
-    0.02  # arcs of both are cut into chords at other places, which are up to 0.01 mm off their circles
-)
+# Largest distance between moves that a stroke and its part share. Their arcs are divided into chords at different
+# places, and each chord is up to 0.01 mm away from its circle.
+MAX_SHARED_OFFSET_MM = 0.02
 
 
 def may_pause(cell: Cell) -> bool:
-    """Whether the program stops for another pen, or takes it by itself."""
-    return cell.pause_per_colour and (has_pens(cell) or not why_no_waiting(cell))
+    """Return whether the program stops for another pen, or takes it by itself."""
+    return cell.pause_per_colour and (has_pens(cell) or not reason_for_no_waiting(cell))
 
 
 def has_pens(cell: Cell) -> bool:
-    """Whether the machine takes pens of several colours by itself."""
+    """Return whether the machine takes pens of several colours by itself."""
     return bool(cell.pen and cell.pen.colours)
 
 
 def pen(colour: str) -> Station:
-    """Wait for a person, or the plotter, to change the pen or brush: at the safe height, from any place."""
+    """Return a station at which a person or the plotter changes the pen or brush.
+
+    It has no place: the tool waits at the safe height above any place.
+    """
     return Station(f"pen {colour.lower().lstrip('#')}", (), by_hand=True)
 
 
-def _pens(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
+def _pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
     if has_pens(cell):
-        return _pens_of_plotter(loads, cell, first_stroke)
-    changed = [False] + [
+        return _plotter_pen_visits(loads, cell, first_stroke)
+    is_new_pen = [False] + [
         bool(a.colour and b.colour) and a.colour.lower() != b.colour.lower() for a, b in pairwise(loads.loads)
     ]
-    changed[:first_stroke] = [False] * len(
-        changed[:first_stroke]
-    )  # with which one it begins the person sees to
-    if not any(changed):
+    # The person mounts the first pen before the program starts.
+    is_new_pen[:first_stroke] = [False] * len(is_new_pen[:first_stroke])
+    if not any(is_new_pen):
         return ()
     return tuple(
-        (pen(a_pass.colour),) if is_new else () for a_pass, is_new in zip(loads.loads, changed, strict=True)
+        (pen(a_pass.colour),) if is_new else ()
+        for a_pass, is_new in zip(loads.loads, is_new_pen, strict=True)
     )
 
 
-def _pens_of_plotter(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
-    """The first pen is taken, too. Strokes without a colour are drawn with pen 1. Error for a colour that none has."""
+def _plotter_pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
+    """Return for each load the pen that a plotter takes before it.
+
+    The first pen is included. Strokes without a colour are drawn with pen 1. Raises Error for a colour that no pen has.
+    """
     colours = [colour.lower() for colour in cell.pen.colours]
-    found, last = [()] * (first_stroke - 1), ""
+    visits_of_loads, last_colour = [()] * (first_stroke - 1), ""
     for a_pass in loads.loads[first_stroke - 1 :]:
         colour = a_pass.colour.lower() or colours[0]
         if colour not in colours:
@@ -308,32 +360,35 @@ def _pens_of_plotter(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple
                 a_pass.stroke,
                 code="colour-not-served",
             )
-        found.append((pen(colour),) if colour != last else ())
-        last = colour
-    return tuple(found)
+        visits_of_loads.append((pen(colour),) if colour != last_colour else ())
+        last_colour = colour
+    return tuple(visits_of_loads)
 
 
 def pens_changed(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> int:
-    """How often strokes ask for another pen than the one before, on a cell without paint."""
-    taken = () if cell.reload else _pens(loads, cell, first_stroke)
+    """Return how often the pen changes between strokes, on a cell without paint."""
+    taken = () if cell.reload else _pen_visits(loads, cell, first_stroke)
     return sum(map(bool, taken)) - (1 if taken and has_pens(cell) else 0)
 
 
 def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[Notice]:
-    """Return a notice if strokes of several colours are painted in one run without an explicit option."""
+    """Report strokes of several colours that are painted in one run.
+
+    Cells with pause_per_colour set to false are not reported.
+    """
     if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
         return []
-    sentence = f"strokes of several colours are painted with one pen: {why_no_waiting(cell)}"
+    sentence = f"strokes of several colours are painted with one pen: {reason_for_no_waiting(cell)}"
     return [Notice("", sentence, code="colours-as-one", advice="--per-colour writes a program for each")]
 
 
 def painted_mm(a_pass: _core.Pass) -> float:
-    """Length of the TCP's path on the paper [mm]."""
+    """Return the length of the TCP's path on the paper [mm]."""
     poses = np.asarray(a_pass.poses_mm)
-    return length(chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
+    return length(points_with_chords(poses, a_pass.arcs) if len(a_pass.arcs) else poses)
 
 
-def _is_due(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:
+def _needs_paint(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:
     if is_later_part(a_pass):
         return True
     requested = a_pass.settings.reload
@@ -347,15 +402,15 @@ def _is_due(a_pass, last, used_mm: float, reload, lasts_mm: float) -> bool:
 
 
 def is_later_part(a_pass: _core.Pass) -> bool:
-    """Whether a load goes on with the stroke that the load before it paints."""
+    """Return whether a load continues the stroke of the load before it."""
     return a_pass.load > 1
 
 
-def _station_for(a_pass, cell: Cell) -> Station:
+def _find_station(a_pass, cell: Cell) -> Station:
     colour = a_pass.colour.lower()
     stations = [station for station in cell.stations if station.name != cell.reload.wash]
     for station in stations:
-        if colour in [each.lower() for each in station.colours]:
+        if colour in [served_colour.lower() for served_colour in station.colours]:
             return station
     for station in stations:
         if not station.colours:

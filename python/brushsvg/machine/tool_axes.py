@@ -1,83 +1,98 @@
-"""How a tilted brush is held: turned about its tip, which stays where it is, the shortest way from upright."""
+"""Tilted tool axes: the brush turns about its tip, the shortest way."""
 
 from __future__ import annotations
 
 import numpy as np
 
-# An axis that leans by less is upright: no program has less, and plans are rounded to 1e-7.
-UPRIGHT = 1e-6
+# Largest lean of an upright axis. No program has a smaller lean, and plans are rounded to 1e-7.
+MAX_UPRIGHT_LEAN = 1e-6
 
 
 def axes_of(a_pass) -> np.ndarray | None:
-    """(n, 3) unit vectors from the tip up along the brush; None where the pass is upright throughout."""
+    """Return the unit vectors (n, 3) of a pass, from the tip up along the brush.
+
+    Returns None if the whole pass is upright.
+    """
     axes = np.asarray(a_pass.tool_axes, dtype=float).reshape(-1, 3)
-    if not len(axes) or is_upright(axes).all():
+    if not len(axes) or is_axis_upright(axes).all():
         return None
-    return unit(axes)
+    return normalize(axes)
 
 
 def is_tilted(a_pass) -> bool:
-    """Whether the brush leans anywhere on a pass."""
+    """Return whether the brush leans anywhere on a pass."""
     return axes_of(a_pass) is not None
 
 
-def unit(axes: np.ndarray) -> np.ndarray:
+def normalize(axes: np.ndarray) -> np.ndarray:
     return axes / np.linalg.norm(axes, axis=-1, keepdims=True)
 
 
-def is_upright(axes: np.ndarray) -> np.ndarray:
-    """(...) which of axes (..., 3) on the paper do not lean."""
-    return np.hypot(axes[..., 0], axes[..., 1]) < UPRIGHT
+def is_axis_upright(axes: np.ndarray) -> np.ndarray:
+    """Return which axes (..., 3) in the paper's frame are upright, (...)."""
+    return np.hypot(axes[..., 0], axes[..., 1]) < MAX_UPRIGHT_LEAN
 
 
-def is_upright_on(axes: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """(...) the same on paper with a normal (3,)."""
-    return between_deg(axes, normal) < np.degrees(UPRIGHT)
+def is_parallel(axes: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return which axes (..., 3) are parallel to the paper's normal (3,), (...)."""
+    return between_deg(axes, normal) < np.degrees(MAX_UPRIGHT_LEAN)
 
 
 def turned_to(axes: np.ndarray, upright: np.ndarray) -> np.ndarray:
-    """(..., 3, 3) the tool, its z against axes (..., 3): turned from where it is upright (3, 3) the shortest way, about
-    the line across both directions, so that it turns about its own axis no more than it must.
+    """Return the rotations (..., 3, 3) of the tool along axes (..., 3).
 
-    Rodrigues: with n the axis upright, v = n x a and c = n . a, R = I + [v] + [v]^2 / (1 + c), for a not -n.
+    The tool's z axis points against the axis. The tool is turned the shortest way from its upright rotation (3, 3),
+    about the line across both directions. It therefore turns as little as possible about its own axis.
+
+    Rodrigues: with the upright axis n, the axis a, v = n x a and c = n . a, R = I + [v] + [v]^2 / (1 + c).
+    The axis a must not be -n.
     """
     normal = -upright[:, 2]
-    across = np.cross(normal, axes)
-    x, y, z = np.moveaxis(across, -1, 0)
-    none = np.zeros_like(x)
-    skew = np.stack([none, -z, y, z, none, -x, -y, x, none], axis=-1).reshape(*x.shape, 3, 3)
+    cross = np.cross(normal, axes)
+    x, y, z = np.moveaxis(cross, -1, 0)
+    zeros = np.zeros_like(x)
+    skew = np.stack([zeros, -z, y, z, zeros, -x, -y, x, zeros], axis=-1).reshape(*x.shape, 3, 3)
     cosine = np.asarray(axes @ normal)[..., None, None]
     return (np.eye(3) + skew + skew @ skew / (1 + cosine)) @ upright
 
 
 def between_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(...) angle between unit vectors (..., 3), exact for small ones, too."""
+    """Return the angles [degrees] between unit vectors (..., 3).
+
+    Small angles are exact, too.
+    """
     return np.degrees(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
 
 
-def across(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(..., 3) unit vectors about which unit vectors (..., 3) turn to others the shortest way; 0 where they do not."""
-    found = np.cross(a, b)
-    size = np.linalg.norm(found, axis=-1, keepdims=True)
-    return np.divide(found, size, out=np.zeros_like(found), where=size > 0)
+def rotation_axes(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the axes (..., 3) of the shortest turns between unit vectors (..., 3).
+
+    The axis is 0 for equal vectors.
+    """
+    normals = np.cross(a, b)
+    lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
+    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
 
 
-def turned_on(a: np.ndarray, b: np.ndarray, part: float) -> np.ndarray:
-    """(3,) a unit vector that is turned by a part of the way to another one."""
-    whole = np.radians(between_deg(a, b))
-    if whole < 1e-9:
+def turned_on(a: np.ndarray, b: np.ndarray, fraction: float) -> np.ndarray:
+    """Turn a unit vector (3,) by a fraction of the angle to another unit vector."""
+    angle_rad = np.radians(between_deg(a, b))
+    if angle_rad < 1e-9:
         return b
-    return (np.sin((1 - part) * whole) * a + np.sin(part * whole) * b) / np.sin(whole)
+    return (np.sin((1 - fraction) * angle_rad) * a + np.sin(fraction * angle_rad) * b) / np.sin(angle_rad)
 
 
 def tilts_deg(axes: np.ndarray) -> np.ndarray:
-    """(...) how far axes (..., 3) lean from the paper's normal."""
+    """Return the angles [degrees] of axes (..., 3) to the paper's normal."""
     return np.degrees(np.arctan2(np.hypot(axes[..., 0], axes[..., 1]), axes[..., 2]))
 
 
-def mixed(axes: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """(m, 3) axes at fractional rows (m,) of axes (n, 3), by what they lean for each mm up, as predictions have it."""
+def mixed(axes: np.ndarray, row_positions: np.ndarray) -> np.ndarray:
+    """Interpolate axes (n, 3) at fractional rows (m,).
+
+    The lean for each mm upwards is interpolated, as in predictions.
+    """
     leans = axes[:, :2] / axes[:, 2:]
     rows = np.arange(len(axes))
-    lean = np.column_stack([np.interp(at, rows, leans[:, k]) for k in (0, 1)])
-    return unit(np.column_stack([lean, np.ones(len(lean))]))
+    mixed_leans = np.column_stack([np.interp(row_positions, rows, leans[:, k]) for k in (0, 1)])
+    return normalize(np.column_stack([mixed_leans, np.ones(len(mixed_leans))]))

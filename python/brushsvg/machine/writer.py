@@ -1,4 +1,4 @@
-"""A plan to the text that a machine runs: paint fetched, header written, file encoded."""
+"""Write a plan as a machine program: paint, header and files."""
 
 from __future__ import annotations
 
@@ -13,16 +13,19 @@ from ..files import write_files
 from .cells.cell import Cell
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
-from .motion import Program, duration_s, in_robot_frame
+from .motion import Program, duration_s, program_in_robot_frame
 from .paint_reload import PlanInLoads, in_loads, visits
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
 from .program import WHOLE_JOB, Job, Walked, out_of_arm, unchecked_program, walked
-from .realised.backlash import undone
+from .realised.backlash import compensate_backlash
 
 
 def post_for(suffix: str, cell: Cell) -> Post:
-    """How the cell's language is written. Error when it cannot be, or not in a file of that extension."""
+    """Return the post for a cell's language.
+
+    Raises Error if the language cannot be written, or not in a file with this extension.
+    """
     post = POSTS.get(cell.language)
     if post is None:
         raise Error(
@@ -32,7 +35,7 @@ def post_for(suffix: str, cell: Cell) -> Post:
             code="language-unknown",
         )
     if suffix not in post.extensions:
-        other = cells_for(suffix)
+        other = cells_for_extension(suffix)
         raise Error(
             f"the extension {suffix!r} is neither .json, for a plan, nor {' or '.join(post.extensions)}, for "
             f"{post.title}, which cell {cell.name} speaks"
@@ -43,8 +46,8 @@ def post_for(suffix: str, cell: Cell) -> Post:
     return post
 
 
-def cells_for(suffix: str) -> list[str]:
-    """Names of the cells that come along whose programs have this extension."""
+def cells_for_extension(suffix: str) -> list[str]:
+    """Return the names of the shipped cells whose programs have this extension."""
     languages = {name for name, post in POSTS.items() if suffix in post.extensions}
     return [name for name in cell_names() if find_cell(name).language in languages]
 
@@ -58,9 +61,15 @@ def encode(
     cell: Cell | None = None,
     job: Job = WHOLE_JOB,
 ) -> bytes | Iterator[str]:
-    """The plan as the bytes of a plan.json or a program in the cell's language, in pieces, by the file's extension.
+    """Encode a plan as a plan.json or as a program.
 
-    Error for any other extension, and for a program where a limit of brush or cell is broken.
+    The program is in the cell's language. The extension decides between the two.
+
+    suffix: extension of the file, with its dot.
+
+    Returns the bytes of a plan.json, or the pieces of a program.
+
+    Raises Error for any other extension, and if a program breaks a limit of the brush or the cell.
     """
     cell = cell or find_cell()
     if suffix == ".json":
@@ -75,18 +84,22 @@ def encode(
 def encoded(
     suffix: str, plan: _core.Plan, walk: Walked, brush: _core.Brush, title: str, notes: Iterable[str] = ()
 ) -> bytes | Iterator[str]:
-    """The same for who has gone through the plan's loads before. Error where something forbids to run them."""
-    made = walk.allowed()
+    """Encode a plan whose loads have been checked already, like encode.
+
+    Raises Error if the check found a problem.
+    """
+    program = walk.allowed()
     if suffix == ".json":
         return _core.write_plan(plan).encode()
-    header = header_of(title or "untitled", brush.name, walk.loads, notes, made, walk.job)
-    return text_of(post_for(suffix, made.cell), replace(made, header=header), suffix)
+    header = header_of(title or "untitled", brush.name, walk.loads, notes, program, walk.job)
+    return text_of(post_for(suffix, program.cell), replace(program, header=header), suffix)
 
 
 def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | str | Iterator[str]]:
-    """The same in the files of a language where one program cannot hold a long job: {"": the first, name: another}.
+    """Split an encoded program into files.
 
-    A name that begins with "-" is appended to the first file's, as `beside` does.
+    Some languages cannot hold a long job in one program. Returns {"": first file, name: another file}. A name that
+    begins with "-" is appended to the first file's name, see path_next_to.
     """
     post = parted_post(suffix)
     if post is None:
@@ -96,18 +109,21 @@ def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | st
 
 
 def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
-    """The same by the paths of those files."""
+    """Return the files of an encoded program by their paths."""
     parts = in_parts(Path(path).suffix.lower(), pieces)
     return {path_next_to(path, name): text for name, text in parts.items()}
 
 
 def parted_post(suffix: str) -> Post | None:
-    """The language of an extension, where long jobs of it are several files."""
+    """Return the post of an extension if its long jobs are several files, else None."""
     return next((post for post in POSTS.values() if post.parted and suffix in post.extensions), None)
 
 
 def path_next_to(path: str | os.PathLike[str], name: str) -> str:
-    """The path of another program of the same job. name: "" for the one at the path."""
+    """Return the path of another program of the same job.
+
+    name: "" for the program at the path itself. A name that begins with "-" is appended to the stem.
+    """
     if not name:
         return os.fspath(path)
     path = Path(path)
@@ -115,34 +131,40 @@ def path_next_to(path: str | os.PathLike[str], name: str) -> str:
 
 
 def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str], str]) -> dict[str, str]:
-    """The files that a program's text calls, and those that they call, with their texts: in the order of the calls.
+    """Return the texts of the files that a program calls.
 
-    path: of the program, which need not exist yet; read: the text of a file.
+    Indirect calls are included. The files are in the order of the calls.
+
+    path: path of the program, which need not exist yet.
+    read: returns the text of a file.
     """
-    post, texts, found = parted_post(Path(path).suffix.lower()), [text], {}
-    for one in texts if post else []:
-        for file in (path_next_to(path, name) for name in post.called(one)):
-            if file not in found:
-                found[file] = read(file)
-                texts.append(found[file])
-    return found
+    post, unread_texts, called_texts = parted_post(Path(path).suffix.lower()), [text], {}
+    for program_text in unread_texts if post else []:
+        for file in (path_next_to(path, name) for name in post.called(program_text)):
+            if file not in called_texts:
+                called_texts[file] = read(file)
+                unread_texts.append(called_texts[file])
+    return called_texts
 
 
-def text_of(post: Post, made: Program, suffix: str = "") -> Iterator[str]:
-    """The program in a robot's language, in pieces, as files of an extension have it."""
-    made = undone(in_robot_frame(made)) if post.in_robot_frame else made
-    pieces = post.others.get(suffix, post.write)(made)
+def text_of(post: Post, program: Program, suffix: str = "") -> Iterator[str]:
+    """Return the pieces of a program in a robot's language.
+
+    suffix: extension of the file.
+    """
+    program = compensate_backlash(program_in_robot_frame(program)) if post.in_robot_frame else program
+    pieces = post.others.get(suffix, post.write)(program)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 
 def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
-    """Return all that the machine does, paint included, for a picture: limits are not checked."""
+    """Make the whole program, including paint, for a picture. Limits are not checked."""
     job = replace(job, visits=visits(loads, cell, job.first_stroke))
     return unchecked_program(loads, brush, cell, job)
 
 
 def time_s(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
-    """Estimated time, paint included; limits are not looked at."""
+    """Estimate the duration [s] of a plan, including paint. Limits are not checked."""
     return duration_s(whole_program(loads, brush, cell, job))
 
 
@@ -153,16 +175,18 @@ def write_program(
     title: str = "",
     cell: Cell | None = None,
 ) -> None:
-    """Write a plan as plan.json or a program in the cell's language, by the extension of path.
+    """Write a plan as a plan.json or as a program.
 
-    Error, and nothing written, when paint leaves the sheet or a limit of brush or cell is broken.
+    The program is in the cell's language. The extension of path decides between the two.
+
+    Raises Error, and writes nothing, if paint leaves the sheet or a limit of the brush or the cell is broken.
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
     need(plan, _core.Plan, "a plan")
     need(brush, _core.Brush, "a brush")
     need(title, str, "a title")
-    # a cell made by hand must be one that a file may hold: each key within its range
+    # a cell that was made in Python must be valid as a file: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     suffix = Path(path).suffix.lower()
     cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from brushsvg.machine.cells.cell import (
-    CONTACT_BY,
+    CONTACT_KEYS,
     Contact,
     Machine,
     Paper,
     Reload,
     Station,
-    why_no_backlash,
+    reason_for_no_backlash,
 )
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.model.library import find_brush
@@ -80,9 +80,9 @@ def _with_arcs(cell):
 def _turned(cell):
     """On paper that is askew, and higher; arms that can feel stop where the tool is pressed, other axes have
     backlash."""
-    if not why_no_backlash(cell):
+    if not reason_for_no_backlash(cell):
         cell = replace(cell, machine=Machine(backlash_mm=(0.4, 0.25)))
-    if by := CONTACT_BY.get(cell.language):
+    if by := CONTACT_KEYS.get(cell.language):
         cell = replace(cell, contact=Contact(**{by: 3 if by == "sensitivity" else 12.5}))
     if cell.language in FLAT:
         near = (15.0, 10.0, 0.0) if cell.motors else (40.0, 30.0, 0.0)  # to where motors begin

@@ -1,4 +1,4 @@
-"""An arm's joints: where they put the flange, and all angles that put it somewhere, which the library ssik finds."""
+"""Forward and inverse kinematics of an arm; ssik solves the inverse."""
 
 from __future__ import annotations
 
@@ -13,19 +13,24 @@ from ...errors import Error, lacking
 from ..cells.cell import Arm
 from ..frames import frame_of_pose
 
-MM = 1e-3  # ssik's lengths are in metres
-# A prebuilt arm may be off its links in the cell by the rounding of the file that it was built from. 0.01 mm is less
-# than any arm repeats a place by; a link of another arm is off by more.
-PREBUILT_MM = 0.01
+M_PER_MM = 1e-3  # lengths of ssik are in metres
+# Largest difference of the flange's pose between a prebuilt arm and the links in the cell. The two may differ by the
+# rounding of the file that the arm was built from. 0.01 mm is less than the repeatability of any arm, and the links of
+# another arm differ by more.
+MAX_PREBUILT_DIFFERENCE_MM = 0.01
 
-THERE = 1e-8  # how far off, in mm and rad, Newton's steps may end
-MOST_STEP_RAD = 0.02  # a longer one is no rounding: at a singularity it leads anywhere
+NEWTON_TOLERANCE = 1e-8  # largest error of the flange's pose after Newton's steps, in mm and rad
+# Largest Newton step of a joint. A longer step does not correct rounding, and near a singularity may go anywhere.
+MAX_NEWTON_STEP_RAD = 0.02
 
 
 @dataclass(frozen=True)
-class Joints:
-    """solutions: from a flange frame (4, 4) [mm, robot's frame] to all angles (k, 6) [rad, each in (-pi, pi]] that put
-    the flange there, limits are not checked; k = 0 where there are none."""
+class JointSolver:
+    """An arm with a function that finds its joint angles.
+
+    solutions: maps a flange pose (4, 4) [mm, robot's frame] to all joint angles (k, 6) [rad, each in (-pi, pi]] that
+        put the flange there. k is 0 if there are none. Joint limits are not checked.
+    """
 
     arm: Arm
     solutions: Callable[[np.ndarray], np.ndarray]
@@ -36,48 +41,66 @@ def is_installed() -> bool:
 
 
 @lru_cache(maxsize=8)
-def joints_of(arm: Arm) -> Joints:
-    """Error where ssik is not installed, does not know the prebuilt arm, or has it with other links."""
+def joints_of(arm: Arm) -> JointSolver:
+    """Make the solver for the joint angles of an arm.
+
+    Raises Error if ssik is not installed, does not know the prebuilt arm, or has this arm with other links.
+    """
     try:
         import ssik
     except ImportError:
         raise lacking("the joints of an arm need", "ssik") from None
-    return Joints(arm, _of_prebuilt(arm, ssik) if arm.prebuilt else _of_links(arm, ssik))
+    return JointSolver(arm, _solver_of_prebuilt(arm, ssik) if arm.prebuilt else _solver_of_links(arm, ssik))
 
 
-def frames(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
-    """(..., n + 1, 4, 4) in the robot's frame [mm]: that about whose z each joint (..., n) turns, the flange's last."""
+def joint_frames_of(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
+    """Return the frames of the joints and the flange, (..., n + 1, 4, 4).
+
+    They are in the robot's frame [mm]. Each joint (..., n) turns about the z axis of its frame. The flange's frame is
+    the last one.
+    """
     joints_rad = np.asarray(joints_rad, dtype=float)
-    base, links, flange = _fixed(arm)
+    base, links, flange = _fixed_frames(arm)
     theta = joints_rad + np.radians([row[3] for row in arm.dh])
     c, s = np.cos(theta)[..., None], np.sin(theta)[..., None]
-    steps = np.empty((*theta.shape, 4, 4))  # about z by theta, and along the link
+    steps = np.empty((*theta.shape, 4, 4))  # turn about z by theta, then move along the link
     steps[..., 0, :] = c * links[:, 0] - s * links[:, 1]
     steps[..., 1, :] = s * links[:, 0] + c * links[:, 1]
     steps[..., 2:, :] = links[:, 2:]
-    found = np.empty((*theta.shape[:-1], len(links) + 1, 4, 4))
-    found[..., 0, :, :] = base
+    joint_frames = np.empty((*theta.shape[:-1], len(links) + 1, 4, 4))
+    joint_frames[..., 0, :, :] = base
     for number in range(len(links)):
-        found[..., number + 1, :, :] = found[..., number, :, :] @ steps[..., number, :, :]
-    found[..., -1, :, :] = found[..., -1, :, :] @ flange
-    return found
+        joint_frames[..., number + 1, :, :] = joint_frames[..., number, :, :] @ steps[..., number, :, :]
+    joint_frames[..., -1, :, :] = joint_frames[..., -1, :, :] @ flange
+    return joint_frames
 
 
 def flange_rates(arm: Arm, joints_rad: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
-    """(..., 6, n): how the tip at tip_mm (3,), held by the flange, moves [mm/rad] and turns with each joint."""
-    return rates_at(frames(arm, joints_rad), tip_mm)
+    """Return how the tip moves and turns with each joint, (..., 6, n).
+
+    The units are mm/rad and rad/rad.
+
+    tip_mm: (3,) place of the tip, which the flange holds, in the robot's frame.
+    """
+    return flange_rates_at(joint_frames_of(arm, joints_rad), tip_mm)
 
 
-def rates_at(there: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
-    """The same for frames (..., n + 1, 4, 4)."""
-    axes, arms = there[..., :-1, :3, 2], tip_mm - there[..., :-1, :3, 3]
+def flange_rates_at(joint_frames: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
+    """Return flange_rates for given frames of joints and flange.
+
+    joint_frames: (..., n + 1, 4, 4) frames, see joint_frames_of.
+    """
+    axes, arms = joint_frames[..., :-1, :3, 2], tip_mm - joint_frames[..., :-1, :3, 3]
     (u, v, w), (x, y, z) = np.moveaxis(axes, -1, 0), np.moveaxis(arms, -1, 0)
     return np.stack([v * z - w * y, w * x - u * z, u * y - v * x, u, v, w], axis=-2)
 
 
 @lru_cache(maxsize=64)
-def _fixed(arm: Arm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What does not turn: the base; of each link along z by d, along x by a, about x by alpha; the flange."""
+def _fixed_frames(arm: Arm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the constant transforms of an arm: the base, the links and the flange.
+
+    The transform of a link moves along z by d and along x by a, and turns about x by alpha.
+    """
     links = np.array([frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh])
     nowhere = (0.0, 0.0, 0.0)
     return (
@@ -87,71 +110,95 @@ def _fixed(arm: Arm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-def _of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
+def _solver_of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     a, alpha, d, theta = np.array(arm.dh).T
-    made = ssik.Manipulator.from_dh(np.radians(alpha), a * MM, d * MM)
-    base, _, flange = _fixed(arm)
-    into, behind = np.linalg.inv(base), np.linalg.inv(flange)
-    return _solver(made.solve, into, behind, np.radians(theta))
+    manipulator = ssik.Manipulator.from_dh(np.radians(alpha), a * M_PER_MM, d * M_PER_MM)
+    base, _, flange = _fixed_frames(arm)
+    ssik_from_robot, ssik_flange_offset = np.linalg.inv(base), np.linalg.inv(flange)
+    return _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.radians(theta))
 
 
-def _of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
-    """The arm that ssik has ready; its frames at base and flange may be other ones, turned about z or anyhow."""
+def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the solver of an arm that ssik provides.
+
+    Its base frame may be turned about z by half a turn, and its flange frame may be turned in any way.
+    """
     if not any(each.name == f"{arm.prebuilt}_ik" for each in ssik.list_arms()):
         sentence = f"ssik has no arm {arm.prebuilt!r} ready"
         raise Error(sentence, where="arm.prebuilt", code="cell-arm")
-    made = ssik.Manipulator.from_prebuilt(arm.prebuilt)
-    tried = np.random.default_rng(0).uniform(-1.0, 1.0, (5, len(arm.dh)))
-    ours = frames(arm, tried)[:, -1]
-    theirs = np.array([_scaled(made.fk(each), 1 / MM) for each in tried])
+    manipulator = ssik.Manipulator.from_prebuilt(arm.prebuilt)
+    sample_angles = np.random.default_rng(0).uniform(-1.0, 1.0, (5, len(arm.dh)))
+    our_flanges = joint_frames_of(arm, sample_angles)[:, -1]
+    ssik_flanges = np.array([_scale_origin(manipulator.fk(each), 1 / M_PER_MM) for each in sample_angles])
     for half_turns in (0.0, 180.0):
-        into = frame_of_pose((0, 0, 0), (0, 0, half_turns))
-        behind = np.linalg.inv(ours[0]) @ np.linalg.inv(into) @ theirs[0]
-        if np.abs(into @ ours @ behind - theirs).max() < PREBUILT_MM:
-            rough = _solver(made.solve, into, behind, np.zeros(len(arm.dh)))
-            return lambda flange: _on_these_links(arm, rough(flange), flange)
+        ssik_from_robot = frame_of_pose((0, 0, 0), (0, 0, half_turns))
+        ssik_flange_offset = np.linalg.inv(our_flanges[0]) @ np.linalg.inv(ssik_from_robot) @ ssik_flanges[0]
+        if (
+            np.abs(ssik_from_robot @ our_flanges @ ssik_flange_offset - ssik_flanges).max()
+            < MAX_PREBUILT_DIFFERENCE_MM
+        ):
+            solve_roughly = _make_solver(
+                manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh))
+            )
+            return lambda flange: _refine_on_links(arm, solve_roughly(flange), flange)
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
     raise Error(sentence, where="arm.prebuilt", code="cell-arm")
 
 
-def _on_these_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
-    """Angles found for links that are rounded otherwise, on those of the cell: two steps of Newton's are enough, more
-    near a singularity."""
-    return towards(arm, angles, flange, 5, MOST_STEP_RAD)[0]
+def _refine_on_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
+    """Refine angles of differently rounded links for the links of the cell.
+
+    Two Newton steps are enough, except near a singularity.
+    """
+    return refine_angles(arm, angles, flange, 5, MAX_NEWTON_STEP_RAD)[0]
 
 
-def towards(
+def refine_angles(
     arm: Arm, angles: np.ndarray, flange: np.ndarray, steps: int, most_step_rad: float
 ) -> tuple[np.ndarray, np.ndarray | None]:
-    """Angles (k, 6) that put the flange at (4, 4), from angles that put it near, by at most so many steps of Newton's;
-    a step that would be longer than that is none. And, where all are there, the frames of the joints, else None."""
+    """Refine joint angles for a flange pose by Newton's steps.
+
+    angles: (k, 6) angles that put the flange near the pose.
+    flange: (4, 4) the pose.
+    steps: largest number of steps.
+    most_step_rad: longest step of a joint. A longer step is left out.
+
+    Returns the angles, and the frames of the joints if all solutions have converged, else None.
+    """
     for number in range(steps + 1):
-        there = frames(arm, angles)
-        rates = rates_at(there, flange[:3, 3])
-        turned = flange[:3, :3] @ there[:, -1, :3, :3].swapaxes(-1, -2)
+        joint_frames = joint_frames_of(arm, angles)
+        rates = flange_rates_at(joint_frames, flange[:3, 3])
+        turned = flange[:3, :3] @ joint_frames[:, -1, :3, :3].swapaxes(-1, -2)
         turn = [turned[:, k - 1, k - 2] - turned[:, k - 2, k - 1] for k in (0, 1, 2)]
-        off = np.concatenate([flange[:3, 3] - there[:, -1, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
-        if np.abs(off).max(initial=0.0) < THERE and np.abs(there[:, -1] - flange).max(initial=0.0) < THERE:
-            return angles, there
+        error = np.concatenate(
+            [flange[:3, 3] - joint_frames[:, -1, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1
+        )
+        if (
+            np.abs(error).max(initial=0.0) < NEWTON_TOLERANCE
+            and np.abs(joint_frames[:, -1] - flange).max(initial=0.0) < NEWTON_TOLERANCE
+        ):
+            return angles, joint_frames
         if number == steps:
             break
         try:
-            step = np.linalg.solve(rates, off[..., None])[..., 0]
-        except np.linalg.LinAlgError:  # at a singularity to the last digit
+            step = np.linalg.solve(rates, error[..., None])[..., 0]
+        except np.linalg.LinAlgError:  # exactly at a singularity
             break
         longest = np.abs(step).max(axis=-1, keepdims=True)
         angles = angles + np.where(longest < most_step_rad, step, 0.0)
     return angles, None
 
 
-def _solver(solve, into: np.ndarray, behind: np.ndarray, theta: np.ndarray):
+def _make_solver(solve, ssik_from_robot: np.ndarray, ssik_flange_offset: np.ndarray, theta: np.ndarray):
     def solutions(flange: np.ndarray) -> np.ndarray:
-        found = solve(_scaled(into @ flange @ behind, MM), respect_limits=False)
-        angles = np.array([each.q for each in found]).reshape(-1, len(theta)) - theta
+        solutions_found = solve(
+            _scale_origin(ssik_from_robot @ flange @ ssik_flange_offset, M_PER_MM), respect_limits=False
+        )
+        angles = np.array([solution.q for solution in solutions_found]).reshape(-1, len(theta)) - theta
         return np.pi - (np.pi - angles) % (2 * np.pi)
 
     return solutions
 
 
-def _scaled(frame: np.ndarray, factor: float) -> np.ndarray:
+def _scale_origin(frame: np.ndarray, factor: float) -> np.ndarray:
     return np.vstack([np.hstack([frame[:3, :3], factor * frame[:3, 3:]]), frame[3:]])

@@ -1,4 +1,4 @@
-"""The robot's side of the table: the place of the paper, how high, how fast and how far the tool may go, the paint."""
+"""Cells: the paper's place, limits of height, speed and space, and paint."""
 
 from __future__ import annotations
 
@@ -53,12 +53,11 @@ class Paper:
     example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
 
 
-FANUC_CONFIGURATION = "N U T, 0, 0, 0"
-ROS_FRAMES = "base_link", "tool0"  # as ROS-Industrial names them
-MOST_TILT_DEG = 30.0  # of a plan.json
-TURN_DEG_S = (
-    45.0  # a quarter of what most joints of arms turn by in a second: some turn further than the tool does
-)
+DEFAULT_FANUC_CONFIGURATION = "N U T, 0, 0, 0"
+DEFAULT_ROS_FRAMES = "base_link", "tool0"  # the names that ROS-Industrial uses
+MOST_TILT_DEG = 30.0  # largest tilt of the brush in a plan.json
+# A quarter of the speed of most arm joints: some joints turn further than the tool does.
+DEFAULT_TOOL_TURN_DEG_S = 45.0
 
 
 @dataclass(frozen=True)
@@ -74,13 +73,15 @@ class Tool:
         "how far a plan may tilt the brush from the paper's normal", 0, 30, default=MOST_TILT_DEG
     )
     turn_deg_s: float = _number(
-        "how fast the tool may turn where a plan tilts it", 0.1, 360, default=TURN_DEG_S
+        "how fast the tool may turn where a plan tilts it", 0.1, 360, default=DEFAULT_TOOL_TURN_DEG_S
     )
     configuration: str = _key(
-        "fanuc: of the arm over the sheet, as the pendant shows it", "text", default=FANUC_CONFIGURATION
+        "fanuc: of the arm over the sheet, as the pendant shows it",
+        "text",
+        default=DEFAULT_FANUC_CONFIGURATION,
     )
-    base_frame: str = _key("ros2: the robot's frame", "text", default=ROS_FRAMES[0])
-    flange_frame: str = _key("ros2: the link whose poses are written", "text", default=ROS_FRAMES[1])
+    base_frame: str = _key("ros2: the robot's frame", "text", default=DEFAULT_ROS_FRAMES[0])
+    flange_frame: str = _key("ros2: the link whose poses are written", "text", default=DEFAULT_ROS_FRAMES[1])
 
 
 @dataclass(frozen=True)
@@ -107,8 +108,8 @@ class Speeds:
     )
 
 
-BLEND_STEP_MM = 1.0
-RAMP_S = 0.5
+DEFAULT_BLEND_STEP_MM = 1.0
+DEFAULT_RAMP_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -118,10 +119,13 @@ class Blending:
     tolerance_mm: float = _number("at most so far from the joint; 0: joints are met exactly", 0, 10)
     radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
     step_mm: float = _number(
-        "dobot: blends are written in steps of so much, rounded down", 0.001, 1, default=BLEND_STEP_MM
+        "dobot: blends are written in steps of so much, rounded down", 0.001, 1, default=DEFAULT_BLEND_STEP_MM
     )
     ramp_s: float = _number(
-        "fanuc: how long the arm takes to its speed, by which CNT cuts corners", 0.02, 5, default=RAMP_S
+        "fanuc: how long the arm takes to its speed, by which CNT cuts corners",
+        0.02,
+        5,
+        default=DEFAULT_RAMP_S,
     )
 
 
@@ -278,7 +282,7 @@ class Arm:
 
 
 def joint_number(arm: Arm, joint: int) -> int:
-    """What the pendant calls a joint, counted from 0."""
+    """Return the pendant's number of a joint, which is counted from 0 here."""
     return int(arm.numbers[joint]) if arm.numbers else joint + 1
 
 
@@ -306,8 +310,11 @@ class Station:
     stir_turns: int = _key("how many circles", "whole", 1, 20, default=2)
 
 
-def briefly(station: Station) -> Station:
-    """A short visit: without stirring. The same station where nothing is stirred."""
+def shorten_visit(station: Station) -> Station:
+    """Return a station for a short visit, without stirring.
+
+    A station where nothing is stirred is returned unchanged.
+    """
     return replace(station, name=f"{station.name}, short", stir_mm=0.0) if station.stir_mm else station
 
 
@@ -391,39 +398,46 @@ TABLES = {
     "arm": Arm,
 }
 OPTIONAL_TABLES = ("tool", "servo", "pen", "motors", "contact", "reload", "machine", "robodk", "arm")
-NEEDED_BY = {
+REQUIRED_TABLES = {
     "grbl-servo": ("servo",),
     "ebb": ("servo", "motors"),
     "hpgl": ("pen",),
     "marlin-servo": ("pen",),
     "robodk": ("tool", "robodk"),
 } | dict.fromkeys(("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2"), ("tool",))
-CONTACT_BY = {"urscript": "force_n", "xarm": "sensitivity"}  # the key for the contact that ends a program
-OF_JOINTS = "joints of an arm have play of their own"
-NO_BACKLASH = dict.fromkeys(  # and why it is not undone
-    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"), OF_JOINTS
+CONTACT_KEYS = {"urscript": "force_n", "xarm": "sensitivity"}  # the key that sets when contact ends a program
+JOINT_PLAY_REASON = "joints of an arm have play of their own"
+NO_BACKLASH_REASONS = dict.fromkeys(  # languages for which backlash is not compensated, with the reason
+    ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"),
+    JOINT_PLAY_REASON,
 ) | {"ebb": "its motors share x and y, and have play of their own"}
 LEAST_BACKLASH_MM = 0.01
-LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # of PathAccLim
+LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # the smallest value that PathAccLim accepts
+# Lowest speed of a line. All speeds of a program are whole multiples of it.
 LEAST_SPEED_MM_S = {
     "dobot": 1.0,
     "fanuc": 1.0,
     "hpgl": 10.0,
     "ebb": 0.1,
-}  # of a line; all speeds are whole multiples of it
-LEAST_SERVO_SPEED_MM_S = 1 / 60  # grbl runs a lower feed at this one
-UNITS_MM = {"hpgl": 0.025}  # of places in languages that know no fractions
-ARCS_IN_SEGMENTS = ("marlin", "klipper")  # whose firmware makes lines of circles, where it knows any
-RADII_MM = {"fluidnc": 0.005}  # a circle's ends may be so much further from its centre than each other
-MOST_POINTS = {"fanuc": 1000}  # of one program: longer jobs are parted between strokes
-MOST_LINES = {"urscript": 1000, "krl": 2500}  # the same; a stroke that has more is a program by itself
-RELOADS = ("length", "stroke", "layer")
+}
+MIN_SERVO_SPEED_MM_S = 1 / 60  # grbl replaces a lower feed by this one
+UNITS_MM = {"hpgl": 0.025}  # size of a whole unit in languages without fractions
+# Firmware that divides circles into lines, if it supports circles at all.
+ARCS_IN_SEGMENTS = ("marlin", "klipper")
+# Largest difference of the distances from a circle's centre to the two ends of the circle.
+MAX_RADIUS_DIFFERENCE_MM = {"fluidnc": 0.005}
+MAX_PROGRAM_POINTS = {"fanuc": 1000}  # longer jobs are split into several programs between strokes
+# Longer jobs are split into several programs. A stroke with more lines becomes a program by itself.
+MAX_PROGRAM_LINES = {"urscript": 1000, "krl": 2500}
+RELOAD_OCCASIONS = ("length", "stroke", "layer")
 
 
 def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
-    """(4, 4): the paper's frame in the robot's, the paper z_offset_mm higher than the cell says.
+    """Return the pose (4, 4) of the paper's frame in the robot's frame.
 
-    Error when taught points do not make a plane or the fourth one is not in it.
+    z_offset_mm: how much higher the paper is than the cell says.
+
+    Raises Error if the taught points do not form a plane, or if the fourth point is not in the plane.
     """
     paper = cell.paper
     if paper.taught_mm:
@@ -435,25 +449,30 @@ def robot_from_paper(cell: Cell, z_offset_mm: float = 0.0) -> np.ndarray:
 
 
 def unit_mm(cell: Cell) -> float:
-    """Return the distance between places of x, and of y, that the cell's language can express; of motors, twice the
-    greatest shift by rounding."""
+    """Return the smallest step [mm] in x or y that the language can express.
+
+    For motors, return twice the largest shift that rounding can cause.
+    """
     if cell.motors:
         return _unit_of_motors_mm(cell.motors)
     return UNITS_MM.get(cell.language, 10.0**-cell.decimals)
 
 
-def rounded(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
-    """Points (n, 3) of a program as the cell's language has them."""
+def round_points(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
+    """Round points (n, 3) [mm] to the positions that the cell's language can express."""
     points = np.round(points_mm, cell.decimals)
     if cell.motors:
-        points[:, :2] = places_of(steps_of(points_mm, cell.motors), cell.motors)
+        points[:, :2] = mm_from_step_counts(steps_from_mm(points_mm, cell.motors), cell.motors)
     if unit := UNITS_MM.get(cell.language):
         points[:, :2] = np.round(np.rint(np.asarray(points_mm)[:, :2] / unit) * unit, cell.decimals)
     return points
 
 
-def steps_of(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
-    """(n, 2) where the motors are at points (n, 2 or 3), in whole steps from the origin."""
+def steps_from_mm(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
+    """Return motor positions (n, 2) in whole steps from the origin.
+
+    points_mm: (n, 2 or 3) points [mm].
+    """
     return np.rint(np.asarray(points_mm)[:, :2] @ _steps_from_mm(motors)).astype(int)
 
 
@@ -462,8 +481,8 @@ def _steps_from_mm(motors: Motors) -> np.ndarray:
     return np.transpose(motors.steps_per_mm)
 
 
-def places_of(steps: np.ndarray, motors: Motors) -> np.ndarray:
-    """(n, 2) x and y [mm] for steps (n, 2)."""
+def mm_from_step_counts(steps: np.ndarray, motors: Motors) -> np.ndarray:
+    """Return x and y (n, 2) [mm] for motor positions (n, 2) in steps."""
     return steps @ mm_from_steps(motors).T
 
 
@@ -474,93 +493,116 @@ def _unit_of_motors_mm(motors: Motors) -> float:
 
 @lru_cache(maxsize=8)
 def mm_from_steps(motors: Motors) -> np.ndarray:
-    """(2, 2) how far x and y go for a step of each motor."""
+    """Return how far [mm] x and y move for one step of each motor, (2, 2)."""
     return np.linalg.inv(motors.steps_per_mm)
 
 
 def value_mm(cell: Cell) -> float:
-    """The most that one value of the servo changes the height by [mm]."""
+    """Return the largest height change [mm] of one value of the servo."""
     steps = np.diff(np.array(cell.servo.table), axis=0)
     return float(np.abs(steps[:, 0] / steps[:, 1]).max())
 
 
 def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
-    """(n,) which steps (n, 3) are a servo's lift alone: rounding need not leave their sideways part."""
+    """Return which steps (n, 3) [mm] only lift or lower the servo, (n,).
+
+    Their sideways part may vanish in rounding.
+    """
     return np.hypot(steps_mm[:, 0], steps_mm[:, 1]) < 0.5 * unit_mm(cell)
 
 
 def servo_parts(ways_mm: np.ndarray, cell: Cell, longer_mm: float = 0.0) -> np.ndarray:
-    """(n,) how many parts a servo's straight ways (n, 3) have: one for each step of height, as long as rounding leaves
-    each a move. longer_mm: of each way seen from above, by which the rounding of its ends may change the number."""
+    """Return the number of parts (n,) of a servo's straight paths (n, 3) [mm].
+
+    A path has one part for each step of height, but no more parts than rounding leaves as moves.
+    longer_mm: extra length of each path seen from above, because rounding its ends may change the number.
+    """
     steps = np.ceil(np.abs(ways_mm[:, 2]) / cell.servo.step_mm - 1e-9)
     lengths_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]) + longer_mm
-    return np.maximum(1, np.minimum(lengths_mm // least_part_mm(cell), steps)).astype(int)
+    return np.maximum(1, np.minimum(lengths_mm // min_part_mm(cell), steps)).astype(int)
 
 
 def ends_rounded_mm(cell: Cell) -> float:
-    """By how much the rounding of both ends may change the length of a way."""
+    """Return how much [mm] rounding both ends may change the length of a path."""
     return 2**0.5 * unit_mm(cell)
 
 
-def servo_is_outrun(
+def is_too_steep_for_servo(
     ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False
 ) -> np.ndarray:
-    """(n,) which straight ways (n, 3) are too steep for a servo that moves along: its height would change by more than
-    two steps in a part, no step being less than a value; or by more than STEEP times its length, whose parts say little
-    once they are rounded; or the feed, slowed down for it, would be less than the firmware runs. are_rounded: as a
-    program has them, which may be steeper than what was planned, by as much."""
+    """Return which straight paths are too steep for a moving servo, (n,).
+
+    A path is too steep in three cases:
+
+    - The height would change by more than two steps in one part. A step is at least one servo value.
+    - The height would change by more than MAX_SERVO_SLOPE times the path's length. Its rounded parts would say little.
+    - The feed, slowed down for the servo, would be below the lowest feed of the firmware.
+
+    ways_mm: (n, 3) displacement of each path [mm].
+    are_rounded: whether the paths were read from a program. Rounding may have made them steeper than planned, and
+    the limits allow for that.
+    """
     rises_mm = np.abs(ways_mm[:, 2])
     flat_mm, length_mm = np.hypot(ways_mm[:, 0], ways_mm[:, 1]), np.linalg.norm(ways_mm, axis=1)
-    # as many parts as are written at least; of what is read, at most
+    # the smallest number of parts that is written, or the largest number that may have been read
     parts = servo_parts(ways_mm, cell, ends_rounded_mm(cell) if are_rounded else -ends_rounded_mm(cell))
     if are_rounded:
         rises_mm, flat_mm = np.maximum(rises_mm - value_mm(cell), 0.0), flat_mm + ends_rounded_mm(cell)
         length_mm = np.hypot(flat_mm, rises_mm)
-    least_mm_s = LEAST_SPEED_MM_S.get(cell.language, LEAST_SERVO_SPEED_MM_S)
+    min_speed_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SERVO_SPEED_MM_S)
     step_mm = max(cell.servo.step_mm, value_mm(cell))
     has_few_parts = rises_mm > 2 * step_mm * parts
-    is_steep = rises_mm > STEEP * flat_mm
-    is_slow = speed_mm_s * flat_mm < least_mm_s * length_mm
+    is_steep = rises_mm > MAX_SERVO_SLOPE * flat_mm
+    is_slow = speed_mm_s * flat_mm < min_speed_mm_s * length_mm
     return (rises_mm > step_mm + 1e-9) & (has_few_parts | is_steep | is_slow) & ~servo_stands(ways_mm, cell)
 
 
-STEEP = 10.0  # of a way that a servo's brush is pressed before, or lifted after, on the spot
+# Largest slope of a path along which the servo moves. On a steeper path the brush is pressed on the spot before the
+# path, or lifted on the spot after it.
+MAX_SERVO_SLOPE = 10.0
 
 
-def least_part_mm(cell: Cell) -> float:
-    """Parts of a way that are as long are moves, however their ends are rounded."""
+def min_part_mm(cell: Cell) -> float:
+    """Return the length [mm] from which a part of a path stays a move.
+
+    Rounding of its ends does not turn such a part into nothing.
+    """
     return least_move_mm(cell) + 2**0.5 * unit_mm(cell)
 
 
 def least_move_mm(cell: Cell) -> float:
-    """No move is shorter, between places as they are written: of rounded ones the square of a distance is whole, in
-    units, and none is as long as that by a hair."""
+    """Return the length [mm] of the shortest move between rounded positions.
+
+    The squared distance of rounded positions is a whole number of squared units. Half a unit is added to the square,
+    so that no distance is close to this limit.
+    """
     unit = unit_mm(cell)
-    return unit * (max(2.0, round(LEAST_MM / unit)) ** 2 + 0.5) ** 0.5
+    return unit * (max(2.0, round(MIN_MOVE_MM / unit)) ** 2 + 0.5) ** 0.5
 
 
-# no move is shorter, nor than two units of the last decimal: rounded, it would go anywhere or nowhere, and a robot that
-# blends would stop for it; longer ones are seen where a tiny brush turns
-LEAST_MM = 2e-3
+# Length of the shortest move, which is also at least two units of the last decimal. Rounding would turn a shorter move
+# in any direction or delete it, and a robot that blends would stop for it. A larger limit would be visible where a tiny
+# brush turns.
+MIN_MOVE_MM = 2e-3
 
 
-def entries(table) -> dict[str, Entry]:
-    """The keys that a table of a cell file may have, with what each means."""
+def entries_of(table) -> dict[str, Entry]:
+    """Return the keys that a table of a cell file may have, each with its Entry."""
     return {item.name: item.metadata["entry"] for item in fields(table) if "entry" in item.metadata}
 
 
-def required(table) -> set[str]:
-    """Those of its keys that must be there."""
+def required_keys_of(table) -> set[str]:
+    """Return the keys that a table of a cell file must have."""
     return {item.name for item in fields(table) if "entry" in item.metadata and item.default is MISSING}
 
 
 def tables_of(cell: Cell) -> dict[str, object]:
-    """Return the tables that the cell has, in a dictionary of names."""
+    """Return the tables that the cell has, keyed by table name."""
     return {name: getattr(cell, name) for name in TABLES if is_dataclass(getattr(cell, name))}
 
 
-def why_no_waiting(cell: Cell) -> str:
-    """Why a program for this cell cannot wait for a person; "" where it can."""
+def reason_for_no_waiting(cell: Cell) -> str:
+    """Return why a program for this cell cannot wait for a person, or "" if it can."""
     if cell.language == "ros2":
         return "a trajectory cannot wait for a person"
     if cell.motors:
@@ -570,40 +612,49 @@ def why_no_waiting(cell: Cell) -> str:
     return "a servo's brush falls while the program waits" if cell.servo else ""
 
 
-def why_no_backlash(cell: Cell) -> str:
-    """Why backlash is not undone for this cell; "" where it is."""
-    return OF_JOINTS if cell.arm else NO_BACKLASH.get(cell.language, "")
+def reason_for_no_backlash(cell: Cell) -> str:
+    """Return why backlash is not compensated for this cell, or "" if it is."""
+    return JOINT_PLAY_REASON if cell.arm else NO_BACKLASH_REASONS.get(cell.language, "")
 
 
 def not_undone(cell: Cell) -> dict[str, str]:
-    """The keys of a table machine that this machine cannot undo, each with the reason."""
-    found = {}
-    if cell.servo:  # at its steps a way would jump sideways
-        found |= dict.fromkeys(
+    """Return the keys of the table machine that cannot be corrected on a cell.
+
+    The values of the result are the reasons.
+    """
+    reasons = {}
+    if cell.servo:  # the tool would jump sideways at each step of the servo
+        reasons |= dict.fromkeys(
             ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps"
         )
     if cell.pen:
         keys = ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm", "height_mm")
-        found |= dict.fromkeys(keys, "a pen knows no height")
-    if why := why_no_backlash(cell):
-        found["backlash_mm"] = why
-    return found
+        reasons |= dict.fromkeys(keys, "a pen knows no height")
+    if reason := reason_for_no_backlash(cell):
+        reasons["backlash_mm"] = reason
+    return reasons
 
 
-ALONG_RAD = 0.1  # an axis that is turned by less goes along the paper's edge, as far as its play shows
+# An axis that is turned by less counts as parallel to the paper's edge: its backlash looks the same.
+MAX_AXIS_MISALIGNMENT_RAD = 0.1
 
 
 def axes_along_paper(cell: Cell) -> tuple[int, int] | None:
-    """Which of the machine's axes go along x and along y of the paper; None where it is askew, or backlash is not
-    undone."""
-    if why_no_backlash(cell):
+    """Return which of the machine's axes run along x and along y of the paper.
+
+    Returns None if the paper is askew, or if backlash is not compensated.
+    """
+    if reason_for_no_backlash(cell):
         return None
     turned = np.abs(robot_from_paper(cell)[:2, :2])
-    if min(turned.max(axis=0)) < np.cos(ALONG_RAD):
+    if min(turned.max(axis=0)) < np.cos(MAX_AXIS_MISALIGNMENT_RAD):
         return None
     return (0, 1) if turned[0, 0] > turned[0, 1] else (1, 0)
 
 
-def least_backlash_mm(cell: Cell) -> float:
-    """Less is none: its half is no whole unit, and taking it up no move."""
+def min_backlash_mm(cell: Cell) -> float:
+    """Return the smallest backlash [mm] that can be compensated.
+
+    Half of a smaller backlash is less than a whole unit, and taking it up would not be a move.
+    """
     return max(LEAST_BACKLASH_MM, 2 * unit_mm(cell))

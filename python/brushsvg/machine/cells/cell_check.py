@@ -1,4 +1,4 @@
-"""Check whether a cell makes sense: contradictions of several keys are refused, oddities are reported."""
+"""Check that the keys of a cell agree, and report unusual values."""
 
 from __future__ import annotations
 
@@ -10,40 +10,47 @@ import numpy as np
 
 from ...errors import Error, Notice
 from ..frames import moved, normal_tilt_deg
-from ..move_extents import from_origin, ways
-from ..realised.smooth_field import steepest
+from ..move_extents import distances_from_origin, ways
+from ..realised.smooth_field import max_field_slope
 from ..workspace_limits import astray
 from .cell import (
     ARCS_IN_SEGMENTS,
-    CONTACT_BY,
-    FANUC_CONFIGURATION,
+    CONTACT_KEYS,
+    DEFAULT_FANUC_CONFIGURATION,
     LEAST_ACCELERATION_MM_S2,
     LEAST_SPEED_MM_S,
-    NEEDED_BY,
-    RELOADS,
+    RELOAD_OCCASIONS,
+    REQUIRED_TABLES,
     Cell,
     Machine,
     Speeds,
     Station,
-    entries,
-    least_backlash_mm,
+    entries_of,
+    min_backlash_mm,
     not_undone,
+    reason_for_no_waiting,
     robot_from_paper,
     value_mm,
-    why_no_waiting,
 )
 
-STEEP_DEG = (
-    45.0  # from here on paper is painted from the robot's side alone; flatter, an arm may reach across it
-)
-LEAST_GRID_MM, MOST_MAP_MM = 5.0, 5.0  # how far apart a map's lines are at least, and how high or low it is
-MOST_BENT = 0.1  # of a field, mm in a mm: as far off as scale and skew may be; from 1 on a sheet would fold
-JOINTS = 6  # of an arm: with more of them, angles for a place are no longer few
-COARSEST_VALUE_MM = 0.5  # of height, that a servo's value may change: half of it is what depths are off by
+# Tilt from which paper counts as a wall that is painted from the robot's side only.
+# An arm may reach across flatter paper.
+MIN_WALL_TILT_DEG = 45.0
+# Smallest spacing of the grid lines of a height map, and largest height or depth in the map.
+MIN_GRID_SPACING_MM, MAX_MAP_MM = 5.0, 5.0
+# Largest slope of a displacement field in mm per mm, equal to the limit of scale and skew.
+# A slope of 1 or more would fold the sheet.
+MAX_FIELD_SLOPE = 0.1
+ARM_JOINT_COUNT = 6  # with more joints, an arm reaches a place with infinitely many joint angles
+# Largest height that one value of a servo may change. Depths are off by up to half of it.
+MAX_SERVO_VALUE_MM = 0.5
 
 
 def check(cell: Cell) -> None:
-    """Raise Error, with the key in `where`, for contradictions that no single key shows."""
+    """Check a cell for contradictions between its keys.
+
+    Raises Error with the key in `where`.
+    """
     heights = cell.heights
     if not heights.clearance_mm <= heights.safe_mm:
         raise Error(
@@ -52,11 +59,11 @@ def check(cell: Cell) -> None:
             code="cell-heights",
         )
     _check_tables(cell)
-    least = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
-    if cell.speeds.acceleration_mm_s2 < least:
-        greatest = entries(Speeds)["acceleration_mm_s2"].greatest
+    min_mm_s2 = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
+    if cell.speeds.acceleration_mm_s2 < min_mm_s2:
+        max_mm_s2 = entries_of(Speeds)["acceleration_mm_s2"].greatest
         raise Error(
-            f"{cell.speeds.acceleration_mm_s2:g} mm/s2 is outside the range [{least:g}, {greatest:g}] "
+            f"{cell.speeds.acceleration_mm_s2:g} mm/s2 is outside the range [{min_mm_s2:g}, {max_mm_s2:g}] "
             f"mm/s2 of language {cell.language!r}",
             where="speeds.acceleration_mm_s2",
             code="out-of-range",
@@ -69,7 +76,7 @@ def check(cell: Cell) -> None:
         _check_map(cell.machine.map_mm)
     if cell.machine:
         _check_field(cell.machine)
-        _check_undone(cell)
+        _check_corrections(cell)
     if cell.pen:
         _check_pen(cell)
     if cell.motors:
@@ -84,9 +91,12 @@ def check(cell: Cell) -> None:
 
 
 def _check_tables(cell: Cell) -> None:
-    """Error for a table that the language needs and the cell lacks, or that only other languages use."""
-    for table in sorted({table for tables in NEEDED_BY.values() for table in tables}):
-        languages = [language for language, tables in NEEDED_BY.items() if table in tables]
+    """Raise Error if a table of the cell is missing or unused.
+
+    A table is unused if only other languages use it.
+    """
+    for table in sorted({table for tables in REQUIRED_TABLES.values() for table in tables}):
+        languages = [language for language, tables in REQUIRED_TABLES.items() if table in tables]
         is_given = getattr(cell, table) is not None
         if cell.language in languages and not is_given:
             raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
@@ -98,16 +108,16 @@ def _check_tables(cell: Cell) -> None:
 
 
 def _check_contact(cell: Cell) -> None:
-    by = CONTACT_BY.get(cell.language)
-    if by is None:
+    used_key = CONTACT_KEYS.get(cell.language)
+    if used_key is None:
         raise Error(
             f"language {cell.language!r} has no word for contact: what stops its arm is set on the controller",
             where="contact",
             code="cell-contact",
         )
-    for key in CONTACT_BY.values():
-        if bool(getattr(cell.contact, key)) != (key == by):
-            says = "needs" if key == by else "does not use"
+    for key in CONTACT_KEYS.values():
+        if bool(getattr(cell.contact, key)) != (key == used_key):
+            says = "needs" if key == used_key else "does not use"
             raise Error(
                 f"language {cell.language!r} {says} {key}", where=f"contact.{key}", code="cell-contact"
             )
@@ -117,11 +127,13 @@ def _check_arm(cell: Cell) -> None:
     arm = cell.arm
     if cell.tool is None:
         raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
-    if len(arm.dh) != JOINTS:
-        raise Error(f"the arm has {len(arm.dh)} rows of links, not {JOINTS}", where="arm.dh", code="cell-arm")
+    if len(arm.dh) != ARM_JOINT_COUNT:
+        raise Error(
+            f"the arm has {len(arm.dh)} rows of links, not {ARM_JOINT_COUNT}", where="arm.dh", code="cell-arm"
+        )
     for key in ("limits_deg", "speeds_deg_s", "posture_deg", "numbers"):
-        if len(given := getattr(arm, key)) != JOINTS and (given or key == "limits_deg"):
-            sentence = f"{len(given)} values are given for {JOINTS} joints"
+        if len(values := getattr(arm, key)) != ARM_JOINT_COUNT and (values or key == "limits_deg"):
+            sentence = f"{len(values)} values are given for {ARM_JOINT_COUNT} joints"
             raise Error(sentence, where=f"arm.{key}", code="cell-arm")
     if any(number % 1 or number <= before for before, number in pairwise((0, *arm.numbers))):
         sentence = f"{[*arm.numbers]} are no numbers of joints, each larger than the one before"
@@ -132,7 +144,8 @@ def _check_arm(cell: Cell) -> None:
             raise Error(sentence, where="arm.limits_deg", code="cell-arm")
 
 
-OWN = {  # keys that one language has, and why another has none
+# Each key that only one language has, with this language and the reason why another language refuses the key.
+KEYS_OF_ONE_LANGUAGE = {
     "blending.step_mm": ("dobot", "has no steps of blends: they are as fine as its decimals"),
     "blending.ramp_s": ("fanuc", "gives blends in mm, for any time to speed"),
     "tool.configuration": ("fanuc", "gives no configuration of the arm"),
@@ -145,8 +158,8 @@ OWN = {  # keys that one language has, and why another has none
 
 
 def _check_own_keys(cell: Cell) -> None:
-    """Refuse the keys of one language in a cell of another."""
-    for key, (language, why) in OWN.items():
+    """Raise Error for keys of one language in a cell of another language."""
+    for key, (language, why) in KEYS_OF_ONE_LANGUAGE.items():
         name, _, entry = key.partition(".")
         table = getattr(cell, name)
         if table and getattr(table, entry) != getattr(type(table), entry) and cell.language != language:
@@ -157,10 +170,10 @@ def _check_own_keys(cell: Cell) -> None:
             where="arc_segment_mm",
             code="out-of-range",
         )
-    if cell.language == "fanuc" and not re.fullmatch(CONFIGURATION, cell.tool.configuration):
+    if cell.language == "fanuc" and not re.fullmatch(FANUC_CONFIGURATION_PATTERN, cell.tool.configuration):
         raise Error(
             f"{cell.tool.configuration[:40]!r} is no configuration as the pendant shows it, such as "
-            f"{FANUC_CONFIGURATION!r}",
+            f"{DEFAULT_FANUC_CONFIGURATION!r}",
             where="tool.configuration",
             code="out-of-range",
         )
@@ -170,17 +183,17 @@ def _check_own_keys(cell: Cell) -> None:
             raise Error(sentence, where=f"tool.{key}", code="name-invalid")
 
 
-CONFIGURATION = r"[NF] [UD] [TB], -?\d, -?\d, -?\d"
+FANUC_CONFIGURATION_PATTERN = r"[NF] [UD] [TB], -?\d, -?\d, -?\d"
 
 
 def _check_speeds(cell: Cell) -> None:
-    least = LEAST_SPEED_MM_S.get(cell.language, 0.0)
-    for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
-        if (speed := getattr(cell.speeds, name)) < least:
+    min_mm_s = LEAST_SPEED_MM_S.get(cell.language, 0.0)
+    for key in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
+        if (speed := getattr(cell.speeds, key)) < min_mm_s:
             raise Error(
-                f"{speed:g} mm/s is outside the range [{least:g}, {entries(Speeds)[name].greatest:g}] mm/s of "
+                f"{speed:g} mm/s is outside the range [{min_mm_s:g}, {entries_of(Speeds)[key].greatest:g}] mm/s of "
                 f"language {cell.language!r}",
-                where=f"speeds.{name}",
+                where=f"speeds.{key}",
                 code="out-of-range",
             )
 
@@ -237,28 +250,31 @@ LARGEST_SHEET_MM = 1e5
 
 
 def out_of_reach(cell: Cell) -> list[Notice]:
-    """A notice of the key where no sheet of any size has a point that the tool may go to, on it or above it."""
-    found: list[Notice] = []
+    """Report a workspace in which the tool can reach no point of a sheet of any size.
+
+    The sheet is checked at the paper and at the safe height. Each notice names the key.
+    """
+    notices: list[Notice] = []
     for height_mm in (0.0, cell.heights.safe_mm):
-        found = found or _beyond(cell, height_mm)
-    return found
+        notices = notices or _sheet_out_of_reach(cell, height_mm)
+    return notices
 
 
-def _beyond(cell: Cell, height_mm: float) -> list[Notice]:
+def _sheet_out_of_reach(cell: Cell, height_mm: float) -> list[Notice]:
     box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
     ends = (-cell.workspace.margin_mm, LARGEST_SHEET_MM)
     sheet = np.array([(ends[a], ends[b], height_mm) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
-    left = moved(robot_from_paper(cell), sheet)
+    reachable = moved(robot_from_paper(cell), sheet)
     at = f"at height {height_mm:g} mm the whole sheet"
     for axis, name in enumerate("xyz" if box_mm else ""):
         low, high = box_mm[0][axis], box_mm[1][axis]
         for bound, sign, where in ((low, 1.0, "below"), (high, -1.0, "above")):
-            left = _clipped(left, sign * (left[:, axis] - bound))
-            if not len(left):
+            reachable = _clip_polygon(reachable, sign * (reachable[:, axis] - bound))
+            if not len(reachable):
                 sentence = f"{at} has {name} {where} {bound:g} mm, outside the range [{low:g}, {high:g}] mm of the box"
                 return [Notice("workspace.box_mm", sentence, code="sheet-out-of-reach")]
     if reach_mm:
-        nearest_mm, farthest_mm = _distances_mm(left)
+        nearest_mm, farthest_mm = _distances_from_origin_mm(reachable)
         if nearest_mm > reach_mm[1] or farthest_mm < reach_mm[0]:
             away = (
                 f"{nearest_mm:.0f} mm and more"
@@ -271,8 +287,11 @@ def _beyond(cell: Cell, height_mm: float) -> list[Notice]:
     return []
 
 
-def _clipped(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
-    """Return the part of a flat polygon (n, 3) where `inside` (n,), which is linear on it, is not negative."""
+def _clip_polygon(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """Clip a flat polygon (n, 3) to the side where `inside` is not negative.
+
+    inside: (n,) values of a linear function at the corners.
+    """
     kept = []
     for k in range(len(corners)):
         a, b = inside[k - 1], inside[k]
@@ -283,9 +302,12 @@ def _clipped(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
     return np.array(kept).reshape(-1, 3)
 
 
-def _distances_mm(corners: np.ndarray) -> tuple[float, float]:
-    """The least and the greatest distance [mm] of a flat convex polygon (n, 3) from the origin."""
-    nearest, farthest = from_origin(ways([[*corners, corners[0]]]))
+def _distances_from_origin_mm(corners: np.ndarray) -> tuple[float, float]:
+    """Return the range of distances [mm] of a flat convex polygon from the origin.
+
+    corners: (n, 3) corners of the polygon [mm].
+    """
+    nearest, farthest = distances_from_origin(ways([[*corners, corners[0]]]))
     sides = np.roll(corners, -1, axis=0) - corners
     normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
     if size := np.linalg.norm(normal):
@@ -325,8 +347,8 @@ def _check_pen(cell: Cell) -> None:
             raise Error(sentence, where="pen.colours", code="colour-invalid")
 
 
-MOST_STEPS_S = 25_000  # of each motor of an EBB
-MOST_VALUE = 65_535  # of its servo
+MOST_STEPS_S = 25_000  # largest step rate of each motor of an EBB, in steps per second
+MAX_EBB_SERVO_VALUE = 65_535  # largest pulse width of the servo of an EBB, in 1/12 microseconds
 
 
 def _check_motors(cell: Cell) -> None:
@@ -334,17 +356,17 @@ def _check_motors(cell: Cell) -> None:
     if np.linalg.cond(rows) > 1e3:
         sentence = "both motors turn for the same way: no place can be reached by them"
         raise Error(sentence, where="motors.steps_per_mm", code="out-of-range")
-    most_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
+    max_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
     for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
-        if (speed := getattr(cell.speeds, name)) > most_mm_s:
+        if (speed := getattr(cell.speeds, name)) > max_mm_s:
             raise Error(
-                f"{speed:g} mm/s is outside the range [{LEAST_SPEED_MM_S['ebb']:g}, {most_mm_s:.1f}] mm/s, in which no "
+                f"{speed:g} mm/s is outside the range [{LEAST_SPEED_MM_S['ebb']:g}, {max_mm_s:.1f}] mm/s, in which no "
                 f"motor makes more than {MOST_STEPS_S} steps in a second",
                 where=f"speeds.{name}",
                 code="out-of-range",
             )
-    if (value := max(row[1] for row in cell.servo.table)) > MOST_VALUE:
-        sentence = f"value {value:g} is outside the range [0, {MOST_VALUE}] of 1/12 microseconds"
+    if (value := max(row[1] for row in cell.servo.table)) > MAX_EBB_SERVO_VALUE:
+        sentence = f"value {value:g} is outside the range [0, {MAX_EBB_SERVO_VALUE}] of 1/12 microseconds"
         raise Error(sentence, where="servo.table", code="servo-table")
 
 
@@ -379,9 +401,9 @@ def _check_servo(cell: Cell) -> None:
             where="servo.table",
             code="servo-table",
         )
-    if (value := value_mm(cell)) > COARSEST_VALUE_MM:
+    if (value := value_mm(cell)) > MAX_SERVO_VALUE_MM:
         raise Error(
-            f"one value changes the height by {value:.2g} mm, outside the range [0, {COARSEST_VALUE_MM:g}] mm: depths "
+            f"one value changes the height by {value:.2g} mm, outside the range [0, {MAX_SERVO_VALUE_MM:g}] mm: depths "
             "would be off by half of it",
             where="servo.table",
             code="servo-coarse",
@@ -395,17 +417,17 @@ def _check_servo(cell: Cell) -> None:
         )
 
 
-def _check_undone(cell: Cell) -> None:
+def _check_corrections(cell: Cell) -> None:
     for key, why in not_undone(cell).items():
         values = np.atleast_1d(getattr(cell.machine, key)).tolist()
         if np.any(values):
             sentence = f"{key} {values} is outside the range [0, 0] of this machine: {why}"
             raise Error(sentence, where=f"machine.{key}", code="cell-machine")
-    least = least_backlash_mm(cell)
+    min_mm = min_backlash_mm(cell)
     for value in cell.machine.backlash_mm:
-        if 0 < value < least:
+        if 0 < value < min_mm:
             raise Error(
-                f"backlash_mm {value:g} is neither 0 nor in the range [{least:g}, 3] mm",
+                f"backlash_mm {value:g} is neither 0 nor in the range [{min_mm:g}, 3] mm",
                 where="machine.backlash_mm",
                 code="cell-machine",
             )
@@ -431,17 +453,17 @@ def _check_map(map_mm: tuple) -> None:
             f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine"
         )
     for axis, lines in (("x", xs), ("y", ys)):
-        for one, other in pairwise(lines):
-            if other - one < LEAST_GRID_MM:
+        for before, after in pairwise(lines):
+            if after - before < MIN_GRID_SPACING_MM:
                 raise Error(
-                    f"{axis} {one:g} and {other:g} mm are less than {LEAST_GRID_MM:g} mm apart",
+                    f"{axis} {before:g} and {after:g} mm are less than {MIN_GRID_SPACING_MM:g} mm apart",
                     where=where,
                     code="cell-machine",
                 )
     for x, y, height in map_mm:
-        if abs(height) > MOST_MAP_MM:
+        if abs(height) > MAX_MAP_MM:
             raise Error(
-                f"{height:g} mm at x {x:g}, y {y:g} mm is outside the range [{-MOST_MAP_MM:g}, {MOST_MAP_MM:g}] mm",
+                f"{height:g} mm at x {x:g}, y {y:g} mm is outside the range [{-MAX_MAP_MM:g}, {MAX_MAP_MM:g}] mm",
                 where=where,
                 code="cell-machine",
             )
@@ -453,9 +475,9 @@ def _check_field(machine: Machine) -> None:
     if 0 < len(missing) < len(keys):
         sentence = f"a field needs {', '.join(keys)}: there is no {missing[0]}"
         raise Error(sentence, where=f"machine.{missing[0]}", code="key-missing")
-    if machine.field_mm and (slope := steepest(machine)) > MOST_BENT:
+    if machine.field_mm and (slope := max_field_slope(machine)) > MAX_FIELD_SLOPE:
         sentence = (
-            f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MOST_BENT:g}]: with "
+            f"the field changes by up to {slope:.3g} mm in a mm, outside the range [0, {MAX_FIELD_SLOPE:g}]: with "
             f"field_reach_mm {[*machine.field_reach_mm]} its numbers are too large"
         )
         raise Error(sentence, where="machine.field_mm", code="cell-machine")
@@ -467,7 +489,7 @@ def _check_paint(cell: Cell) -> None:
         where = f"station {number}"
         if names.index(station.name) != number - 1:
             raise Error(f"the name {station.name!r} is given twice", where=where, code="name-taken")
-        _check_heights_of(station, cell, where)
+        _check_station_heights(station, cell, where)
         for colour in station.colours:
             if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
                 raise Error(
@@ -491,9 +513,11 @@ def _check_paint(cell: Cell) -> None:
         )
     if not cell.reload:
         return
-    if cell.reload.when not in RELOADS:
+    if cell.reload.when not in RELOAD_OCCASIONS:
         raise Error(
-            f"{cell.reload.when!r} is none of {', '.join(RELOADS)}", where="reload.when", code="cell-reload"
+            f"{cell.reload.when!r} is none of {', '.join(RELOAD_OCCASIONS)}",
+            where="reload.when",
+            code="cell-reload",
         )
     if not cell.stations:
         raise Error("there is no station to reload at", where="reload", code="cell-reload")
@@ -509,9 +533,9 @@ def _check_paint(cell: Cell) -> None:
         raise Error("rinse needs wash, the station of the water", where="reload.rinse", code="cell-reload")
 
 
-def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
+def _check_station_heights(station: Station, cell: Cell, where: str) -> None:
     if station.by_hand:
-        if why := why_no_waiting(cell):
+        if why := reason_for_no_waiting(cell):
             raise Error(f"{why}: by_hand cannot be", where=where, code="cell-station")
         return
     top = cell.heights.safe_mm - cell.heights.clearance_mm
@@ -539,7 +563,8 @@ def _check_heights_of(station: Station, cell: Cell, where: str) -> None:
             )
 
 
-USUAL = (  # (key, least, greatest, what is unusual beyond them)
+# (key, smallest usual value, largest usual value, why a value outside this range is unusual)
+USUAL_RANGES = (
     ("heights.safe_mm", 2.0, 200.0, "clips, vessels and drops of paint stand higher; or the way up is long"),
     ("heights.lowest_mm", -50.0, -0.5, "few brushes bend so far; or nothing is painted"),
     ("speeds.travel_mm_s", 1.0, 1000.0, "few machines are so fast or slow"),
@@ -568,30 +593,33 @@ OF_EXAMPLE = Notice(
 
 
 def remarks(cell: Cell) -> list[Notice]:
-    """Return a notice of the key for a value that is odd, but may be intended."""
-    found = []
-    for key, least, greatest, why in USUAL:
+    """Report values that are unusual but may be intended. Each notice names the key."""
+    notices = []
+    for key, least, greatest, why in USUAL_RANGES:
         table, _, name = key.partition(".")
         value = getattr(getattr(cell, table), name, None)
         if value is not None and not least <= value <= greatest:
             sentence = f"{value:g} is outside the usual range [{least:g}, {greatest:g}]: {why}"
-            found.append(Notice(key, sentence, code="unusual-value", about=key))
+            notices.append(Notice(key, sentence, code="unusual-value", about=key))
     if cell.servo and (value := value_mm(cell)) > 0.1:
         sentence = f"one value changes the height by {value:.2g} mm: depths are off by half of it"
-        found.append(Notice("servo.table", sentence, code="servo-coarse"))
+        notices.append(Notice("servo.table", sentence, code="servo-coarse"))
     if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
         sentence = f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm"
-        found.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
+        notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
     if cell.paper.example:
-        found.append(OF_EXAMPLE)
-    return found + _faces_away(cell) + _corner(cell)
+        notices.append(OF_EXAMPLE)
+    return notices + _check_facing(cell) + _check_sheet_corner(cell)
 
 
-def _faces_away(cell: Cell) -> list[Notice]:
-    """Paper on a wall, of which the robot stands at the back: the points were taught the other way round."""
+def _check_facing(cell: Cell) -> list[Notice]:
+    """Report paper on a wall that faces away from the robot.
+
+    The points were probably taught the other way round.
+    """
     frame = robot_from_paper(cell)
     tilt_deg, ahead_mm = normal_tilt_deg(frame), float(frame[:2, 2] @ frame[:2, 3])
-    if not cell.tool or tilt_deg < STEEP_DEG or ahead_mm <= 0:
+    if not cell.tool or tilt_deg < MIN_WALL_TILT_DEG or ahead_mm <= 0:
         return []
     sentence = (
         f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: "
@@ -600,10 +628,13 @@ def _faces_away(cell: Cell) -> list[Notice]:
     return [Notice("paper", sentence, code="paper-faces-away")]
 
 
-def _corner(cell: Cell) -> list[Notice]:
-    """The sheet's corner may be out of reach, where nothing is painted near it."""
+def _check_sheet_corner(cell: Cell) -> list[Notice]:
+    """Report a sheet corner that the tool cannot reach.
+
+    Such a cell is not refused: perhaps nothing is painted near the corner.
+    """
     corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
     return [
-        replace(each, where="workspace", sentence=f"over the sheet's lower left corner {each.sentence}")
-        for each in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
+        replace(notice, where="workspace", sentence=f"over the sheet's lower left corner {notice.sentence}")
+        for notice in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
     ]

@@ -1,4 +1,4 @@
-"""Cells as TOML files: found, read with every key checked, written with every key explained."""
+"""Cells as TOML files: find, read, check and write them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ...errors import Error, need, shown
 from ...files import find_file, names_in, read_bytes, toml_document
-from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries, required, tables_of
+from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries_of, required_keys_of, tables_of
 from .cell_check import check
 
 SHIPPED = Path(__file__).parents[2] / "data" / "cells"
@@ -20,27 +20,32 @@ FORMAT, VERSION = "brushsvg/cell", 1
 
 
 def cell_names() -> list[str]:
-    """Names of the cells that come with the package, in alphabetical order."""
+    """Return the names of the shipped cells in alphabetical order."""
     return names_in(SHIPPED, ".toml")
 
 
 def own_name(name: str) -> str:
-    """What a cell of somebody's own is called instead of a name that comes along: programs that name it would be taken
-    for that one's."""
+    """Return a name for a user's own cell that is not the name of a shipped cell.
+
+    Programs contain the name of their cell, and would otherwise be taken for programs of the shipped cell.
+    """
     return f"my-{name}" if name in cell_names() else name
 
 
 def find_cell(name_or_path: str | os.PathLike[str] = DEFAULT_CELL) -> Cell:
-    """The shipped cell of a name, or the cell in a .toml file.
+    """Return the shipped cell with a name, or the cell in a .toml file.
 
-    Error for an unknown name, a file that cannot be read and a cell that is refused; the latter two have the
-    file in `file`, the last the key in `where`.
+    Raises Error for an unknown name, a file that cannot be read, and a cell that is refused. For the last two, `file`
+    is the path of the file. For a refused cell, `where` is the key.
     """
     return read_cell(find_file("cell", SHIPPED, ".toml", name_or_path))
 
 
 def read_cell(path: str | os.PathLike[str]) -> Cell:
-    """The cell in a cell.toml. Error, with the path in `file` and the key in `where`, when it is refused."""
+    """Read the cell in a cell.toml.
+
+    Raises Error if the cell is refused, with the path in `file` and the key in `where`.
+    """
     data = read_bytes(path)
     try:
         return parse_cell(data.decode("utf-8"))
@@ -54,7 +59,10 @@ def read_cell(path: str | os.PathLike[str]) -> Cell:
 
 
 def parse_cell(text: str) -> Cell:
-    """The cell that a TOML text describes. Error naming the key that is missing, unknown or out of range."""
+    """Parse the TOML text of a cell.
+
+    Raises Error that names the key if a key is missing, unknown or out of range.
+    """
     document = toml_document(text, "cell")
     if document.pop("format", None) != FORMAT:
         raise Error(
@@ -74,10 +82,11 @@ def parse_cell(text: str) -> Cell:
         if name not in parts and name not in OPTIONAL_TABLES:
             raise Error(f"the cell file lacks the table {name}", where=name, code="key-missing")
     cell = Cell(
-        **_read(Cell, document, ""),
-        **{name: TABLES[name](**_read(TABLES[name], part, name)) for name, part in parts.items()},
+        **_read_table(Cell, document, ""),
+        **{name: TABLES[name](**_read_table(TABLES[name], part, name)) for name, part in parts.items()},
         stations=tuple(
-            Station(**_read(Station, part, f"station {number}")) for number, part in enumerate(stations, 1)
+            Station(**_read_table(Station, part, f"station {number}"))
+            for number, part in enumerate(stations, 1)
         ),
     )
     check(cell)
@@ -85,46 +94,46 @@ def parse_cell(text: str) -> Cell:
 
 
 def write_cell(cell: Cell) -> str:
-    """The cell as TOML that parse_cell reads back, each key with a word on its meaning."""
+    """Return the cell as TOML for parse_cell, each key with an explanation."""
     need(cell, Cell, "a cell")
-    lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_lines(cell)]
+    lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_table_lines(cell)]
     for name, table in tables_of(cell).items():
-        lines += ["", *_comment(type(table).__doc__), f"[{name}]", *_lines(table)]
+        lines += ["", *_comment_lines(type(table).__doc__), f"[{name}]", *_table_lines(table)]
     for station in cell.stations:
-        lines += ["", *_comment(Station.__doc__), "[[stations]]", *_lines(station)]
+        lines += ["", *_comment_lines(Station.__doc__), "[[stations]]", *_table_lines(station)]
     return "\n".join([*lines, ""])
 
 
-MOST_ROWS = 1000  # of one key: no table of a servo and no shop is longer
+MAX_ROWS = 1000  # largest number of rows of one key; no servo table and no workshop needs more
 
 
-def _read(table, values, where: str) -> dict:
-    known = entries(table)
+def _read_table(table, values, where: str) -> dict:
+    entries_by_key = entries_of(table)
     prefix = f"{where}." if where else ""
     if not isinstance(values, dict):
         raise Error(f"{where} must be a table", where=where, code="wrong-type")
     for key in values:
-        if key not in known:
+        if key not in entries_by_key:
             raise Error(
-                f"a cell has no key {prefix}{key}; known here: {', '.join(known)}",
+                f"a cell has no key {prefix}{key}; known here: {', '.join(entries_by_key)}",
                 where=prefix + key,
                 code="key-unknown",
             )
-    for key in required(table):
+    for key in required_keys_of(table):
         if key not in values:
             raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
-    return {key: _value(known[key], value, prefix + key) for key, value in values.items()}
+    return {key: _read_value(entries_by_key[key], value, prefix + key) for key, value in values.items()}
 
 
-def _value(entry: Entry, value, where: str):
+def _read_value(entry: Entry, value, where: str):
     if entry.kind == "text":
-        return _text(value, where)
+        return _read_text(value, where)
     if entry.kind == "texts":
         if not isinstance(value, list):
             raise Error(
                 f"{where} must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type"
             )
-        return tuple(_text(item, where) for item in value)
+        return tuple(_read_text(item, where) for item in value)
     if entry.kind == "yes":
         if not isinstance(value, bool):
             raise Error(
@@ -132,21 +141,21 @@ def _value(entry: Entry, value, where: str):
             )
         return value
     if entry.kind in ("number", "whole"):
-        return _number(entry, value, where)
-    return _rows(entry, entry.kind, value, where)
+        return _read_number(entry, value, where)
+    return _read_rows(entry, entry.kind, value, where)
 
 
-def _text(value, where: str) -> str:
+def _read_text(value, where: str) -> str:
     if not isinstance(value, str) or not value.isprintable() or not value or len(value) > 200:
         raise Error(f"{where} must be one line of text", where=where, code="wrong-type")
     return value
 
 
-def _number(entry: Entry, value, where: str):
+def _read_number(entry: Entry, value, where: str):
     types = int if entry.kind == "whole" else int | float
     if isinstance(value, bool) or not isinstance(value, types) or value != value or abs(value) == math.inf:
-        said = "a whole number" if entry.kind == "whole" else "a finite number"
-        raise Error(f"{where} must be {said}, not {str(value)[:40]}", where=where, code="wrong-type")
+        expected = "a whole number" if entry.kind == "whole" else "a finite number"
+        raise Error(f"{where} must be {expected}, not {str(value)[:40]}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
         raise Error(
             f"{where} {shown(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]",
@@ -156,10 +165,10 @@ def _number(entry: Entry, value, where: str):
     return value if entry.kind == "whole" else float(value)
 
 
-def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
+def _read_rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
     count = shape[0]
-    if isinstance(value, list) and len(value) > MOST_ROWS:
-        sentence = f"{where} has {len(value)} rows, more than {MOST_ROWS}"
+    if isinstance(value, list) and len(value) > MAX_ROWS:
+        sentence = f"{where} has {len(value)} rows, more than {MAX_ROWS}"
         raise Error(sentence, where=where, code="out-of-range")
     if not isinstance(value, list) or (count is not None and len(value) != count):
         raise Error(
@@ -168,43 +177,49 @@ def _rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
             code="wrong-type",
         )
     if len(shape) == 1:
-        return tuple(_number(entry, item, where) for item in value)
+        return tuple(_read_number(entry, item, where) for item in value)
     rows = enumerate(value)
-    return tuple(_rows(entry, shape[1:], item, f"{where}[{number}]") for number, item in rows)
+    return tuple(_read_rows(entry, shape[1:], item, f"{where}[{number}]") for number, item in rows)
 
 
 def _shape_in_words(shape: tuple) -> str:
-    """(None, 2, 3) is a list of lists of 2 rows of 3 numbers."""
+    """Describe the shape of a value in words.
+
+    For example, (None, 2, 3) is a list of rows of 2 rows of 3 numbers.
+    """
     if len(shape) == 1:
         return "a list of numbers" if shape[0] is None else f"{shape[0]} numbers"
-    within = _shape_in_words(shape[1:])
-    return f"a list of rows of {within}" if shape[0] is None else f"{shape[0]} rows of {within}"
+    inner = _shape_in_words(shape[1:])
+    return f"a list of rows of {inner}" if shape[0] is None else f"{shape[0]} rows of {inner}"
 
 
-def _lines(table) -> list[str]:
-    """The keys of a table as TOML; those that hold what is theirs without a word stay away."""
+def _table_lines(table) -> list[str]:
+    """Return the keys of a table as TOML lines.
+
+    Keys with their default value are left out.
+    """
     lines = []
     for item in fields(table):
         entry = item.metadata.get("entry")
         value = getattr(table, item.name)
         if entry is None or value == item.default:
             continue
-        text = f"{item.name} = {_toml(value)}"
+        text = f"{item.name} = {_to_toml(value)}"
         if len(text) + len(entry.help) <= 110:
             lines.append(f"{text}  # {entry.help}")
         else:
-            lines += [*_comment(entry.help), text]
+            lines += [*_comment_lines(entry.help), text]
     return lines
 
 
-def _comment(text: str) -> list[str]:
+def _comment_lines(text: str) -> list[str]:
     return textwrap.wrap(text, 108, initial_indent="# ", subsequent_indent="# ")
 
 
-def _toml(value) -> str:
+def _to_toml(value) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, tuple):
-        return "[" + ", ".join(map(_toml, value)) + "]"
-    # JSON's escapes are TOML's, except those beyond 16 bits
+        return "[" + ", ".join(map(_to_toml, value)) + "]"
+    # the escapes of JSON are valid in TOML, except those of characters beyond 16 bits
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

@@ -1,4 +1,4 @@
-"""A cell in words and numbers."""
+"""Description of a cell in words and numbers."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import itertools
 
 
 def cell_page(cell) -> str:
-    """All that a cell file says, one fact a line."""
+    """Return everything that a cell file says, one fact per line."""
     heights, speeds, workspace, blending = cell.heights, cell.speeds, cell.workspace, cell.blending
     rows = [
         ("language", cell.language),
-        ("paper", _paper(cell.paper)),
+        ("paper", _paper_text(cell.paper)),
         ("travels at", f"{heights.safe_mm:g} mm above the paper, {speeds.travel_mm_s:g} mm/s"),
         (
             "comes down at",
@@ -21,14 +21,14 @@ def cell_page(cell) -> str:
         ("workspace", f"the sheet and {workspace.margin_mm:g} mm around it"),
     ]
     if workspace.box_mm:
-        rows.append(("", _box(*workspace.box_mm)))
+        rows.append(("", _box_text(*workspace.box_mm)))
     if workspace.reach_mm:
         rows.append(("", "{:g} to {:g} mm from the robot's origin".format(*workspace.reach_mm)))
-    rows += [("", f"not in {_box(*corners)}") for corners in workspace.keep_out_mm]
+    rows += [("", f"not in {_box_text(*corners)}") for corners in workspace.keep_out_mm]
     joints = f"cut by at most {blending.tolerance_mm:g} mm" if blending.tolerance_mm else "exact"
     rows.append(("corners", joints))
     if cell.tool:
-        rows.append(("tool", f"tip at {_point(cell.tool.tcp_mm)} mm from the flange"))
+        rows.append(("tool", f"tip at {_point_text(cell.tool.tcp_mm)} mm from the flange"))
     if cell.servo:
         ends = (cell.servo.table[0], cell.servo.table[-1])
         rows.append(("servo", " to ".join(f"{value:g} at {height:g} mm" for height, value in ends)))
@@ -39,30 +39,32 @@ def cell_page(cell) -> str:
         pens = f", pens of {', '.join(cell.pen.colours)}" if cell.pen.colours else ""
         rows.append(("pen", f"up or at {cell.pen.down_mm:g} mm{pens}"))
     if cell.contact:
-        hard = f"more than {cell.contact.force_n:g} N" if cell.contact.force_n else "a collision"
-        rows.append(("contact", f"{hard} ends the program"))
+        limit_text = f"more than {cell.contact.force_n:g} N" if cell.contact.force_n else "a collision"
+        rows.append(("contact", f"{limit_text} ends the program"))
     if cell.reload:
-        rows.append(("fetches paint", _reload(cell.reload)))
-    rows += [("station", f"{each.name} at {_point(each.place_mm)} mm") for each in cell.stations]
+        rows.append(("fetches paint", _reload_text(cell.reload)))
+    rows += [
+        ("station", f"{station.name} at {_point_text(station.place_mm)} mm") for station in cell.stations
+    ]
     width = max(len(name) for name, _ in rows)
     lines = [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
     return "\n".join(lines)
 
 
-def _box(low, high) -> str:
+def _box_text(low, high) -> str:
     sides = itertools.chain(*zip(low, high, strict=True))
     return "x {:g} to {:g}, y {:g} to {:g}, z {:g} to {:g} mm".format(*sides)
 
 
-def _paper(paper) -> str:
+def _paper_text(paper) -> str:
     if paper.taught_mm:
-        return f"taught by {len(paper.taught_mm)} points, the first at {_point(paper.taught_mm[0])} mm"
-    turned = f", turned by {_point(paper.rotation_deg)} degrees" if any(paper.rotation_deg) else ""
+        return f"taught by {len(paper.taught_mm)} points, the first at {_point_text(paper.taught_mm[0])} mm"
+    turned = f", turned by {_point_text(paper.rotation_deg)} degrees" if any(paper.rotation_deg) else ""
     example = " (an example: teach yours)" if paper.example else ""
-    return f"lower left corner at {_point(paper.origin_mm)} mm of the robot's frame{turned}{example}"
+    return f"lower left corner at {_point_text(paper.origin_mm)} mm of the robot's frame{turned}{example}"
 
 
-def _reload(reload) -> str:
+def _reload_text(reload) -> str:
     when = {
         "length": f"every {reload.every_mm:g} mm",
         "stroke": "before every stroke",
@@ -74,5 +76,5 @@ def _reload(reload) -> str:
     return when[reload.when] + (narrower if reload.when == "length" else "")
 
 
-def _point(values) -> str:
+def _point_text(values) -> str:
     return ", ".join(f"{value:g}" for value in values)

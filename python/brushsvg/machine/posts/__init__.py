@@ -1,4 +1,4 @@
-"""One robot language per file: moves -> text. POSTS names them all."""
+"""Posts: one robot language per file. POSTS lists all of them."""
 
 from __future__ import annotations
 
@@ -12,14 +12,20 @@ if TYPE_CHECKING:
 
 
 class Post(NamedTuple):
-    """title: for people; extensions: of its files; write: the program as pieces of 7-bit text, one after another.
+    """A robot language and the function that writes it.
 
-    in_robot_frame: points are in the robot's frame; else in the paper's, which the program then defines.
-    circles_by: what defines a circle, its "centre" or a "pose" on its way; "": it is run as lines. Where a firmware
-    makes lines of circles, its cell says how long these are, 0 if no circles are written: see circles_by.
-    line_end: as the controller's own files have it; has_tabs: so have they, too.
-    parted: the module that knows the several files of a long job; None: there is but one.
-    others: what writes files of other extensions in another way.
+    title: name of the language for people.
+    extensions: extensions of its files.
+    write: returns the program as successive pieces of 7-bit text.
+    in_robot_frame: whether points are in the robot's frame. Otherwise they are in the paper's frame, which the program
+        then defines.
+    circles_by: how a circle is defined: by its "centre" or by a "pose" on it; "" if circles are run as lines. For a
+        firmware that divides circles into lines, the cell gives the length of the lines, or 0 if no circles are
+        written. See the function circles_by.
+    line_end: line ending of the controller's own files.
+    has_tabs: whether the controller's own files have tabs.
+    parted: returns the module that handles the several files of a long job; None if there is only one file.
+    others: functions that write files of other extensions in another way.
     """
 
     title: str
@@ -33,17 +39,19 @@ class Post(NamedTuple):
     others: Mapping[str, Callable[[Program], Iterator[str | bytes]]] = MappingProxyType({})
 
     def programs(self, text: str) -> dict[str, str]:
-        """Return the texts of the files of a job, in a dictionary of names, "" for the requested one. A name that
-        begins with "-" goes on with that file's."""
+        """Return the texts of a job's files, keyed by file name.
+
+        The name of the requested file is "". A name that begins with "-" is appended to the requested file's name.
+        """
         return self.parted().programs(text) if self.parted else {"": text}
 
     def called(self, text: str) -> list[str]:
-        """Names of the files that a program goes on in."""
+        """Return the names of the files with which a program continues."""
         return self.parted().called(text) if self.parted else []
 
 
 def _linuxcnc(program: Program) -> Iterator[str]:
-    from .gcode import linuxcnc  # loaded for who writes, not for who only asks what can be written
+    from .gcode import linuxcnc  # loaded only when a program is written, not to list the languages
 
     return linuxcnc(program)
 
@@ -169,16 +177,19 @@ def _robodk(program: Program) -> Iterator[str]:
 
 
 def sources_of_post(cell: Cell) -> list[str]:
-    """The files that decide, next to the cell itself, what is written for it: those of a post that it names."""
+    """Return the paths of further files on which a program depends.
+
+    These are the files of a RoboDK post that the cell names.
+    """
     if cell.robodk is None:
         return []
-    from .robodk import sources
+    from .robodk import find_sources
 
-    return sources(cell.robodk.post)
+    return find_sources(cell.robodk.post)
 
 
 def circles_by(cell: Cell) -> str:
-    """Return what defines a circle on this cell, see Post."""
+    """Return how a circle is defined on a cell, see Post."""
     from ..cells.cell import ARCS_IN_SEGMENTS
 
     post = POSTS.get(cell.language)
@@ -188,7 +199,7 @@ def circles_by(cell: Cell) -> str:
 
 
 GCODE = (".ngc", ".gcode", ".nc")
-POSTS = {  # by the language a cell names
+POSTS = {  # by the language that a cell names
     "linuxcnc": Post("G-code for LinuxCNC", GCODE, _linuxcnc),
     "grbl": Post("G-code for grbl", GCODE, _dialect),
     "fluidnc": Post("G-code for FluidNC", GCODE, _dialect),

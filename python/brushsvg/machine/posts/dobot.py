@@ -1,5 +1,7 @@
-"""Moves -> Lua (.lua) for Dobot's CR and Nova arms, controller 4: millimetres, degrees, the paper as user frame 1, the
-brush's tip as tool 1."""
+"""Write Lua (.lua) for Dobot's CR and Nova arms with controller 4.
+
+Units are millimetres and degrees. The paper is user frame 1, and the brush's tip is tool 1.
+"""
 
 from __future__ import annotations
 
@@ -8,90 +10,108 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import rotation_deg
-from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, blends_mm, body, down, numbers, turned_at
-from .text import number, plain, rows
+from ..motion import Move, Program, Wait, via_point
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    down,
+    join_numbers,
+    tool_rotations_at,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
-INDEX = 1  # of the frames in the controller's lists, whose 0 are the base and the flange
+INDEX = (
+    1  # index of the user frame and the tool in the controller's lists; index 0 is the base and the flange
+)
 DOBOT_END = "end: the brush is held up"
 
 
 def dobot(program: Program) -> Iterator[str]:
-    """One chunk that runs from top to bottom. Points are those of the user frame: to teach the paper anew, only its
-    line has to change. An index that is not in the controller's list stops the project at its first line."""
+    """Write one chunk that runs from top to bottom.
+
+    Points are in the user frame. To teach the paper anew, only the line of the user frame has to change. An index that
+    is not in the controller's list stops the project at its first line.
+    """
     cell, decimals = program.cell, program.cell.decimals
     frame = program.robot_from_frame
-    paper = _pose(frame[:3, 3], rotation_deg(frame[:3, :3]), decimals)
-    tool = _pose(cell.tool.tcp_mm, cell.tool.rotation_deg, decimals)
+    paper = _pose_text(frame[:3, 3], rotation_deg(frame[:3, :3]), decimals)
+    tool = _pose_text(cell.tool.tcp_mm, cell.tool.rotation_deg, decimals)
     yield "".join(map(comment, program.header))
     yield f"SetUser({INDEX}, {paper})\nSetTool({INDEX}, {tool})\nUser({INDEX})\nTool({INDEX})\nCP(0)\n"
-    stands = down(cell.tool.spin_deg)
-    upright = numbers(rotation_deg(stands), DEGREE_DECIMALS)
+    upright_rotation = down(cell.tool.spin_deg)
+    upright = join_numbers(rotation_deg(upright_rotation), DEGREE_DECIMALS)
     yield f"\nfunction on_paper(x, y, z)\n  return {{pose = {{x, y, z, {upright}}}}}\nend\n"
     if program.tilts:
         yield "\nfunction tilted(x, y, z, rx, ry, rz)\n  return {pose = {x, y, z, rx, ry, rz}}\nend\n"
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(number(program.rise_mm, decimals), speed),
-        _wait,
-        lambda move: _lines(move, stands, cell.blending.step_mm, decimals),
+        lambda speed: _rise_lines(format_number(program.rise_mm, decimals), speed),
+        _wait_lines,
+        lambda move: _move_lines(move, upright_rotation, cell.blending.step_mm, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(DOBOT_END)
 
 
 def comment(text: str) -> str:
-    return f"-- {plain(text, LINE_LIMIT - 3)}\n"
+    return f"-- {plain_text(text, LINE_LIMIT - 3)}\n"
 
 
-def _rise(height: str, speed_mm_s: float) -> str:
+def _rise_lines(height: str, speed_mm_s: float) -> str:
     return (
         f"here = GetPose({INDEX}, {INDEX}).pose\n"
         f"if here[3] < {height} then\n"
         f"  here[3] = {height}\n"
-        f"  MovL({{pose = here}}, {{speed = {whole_mm_s(speed_mm_s)}}})\n"
+        f"  MovL({{pose = here}}, {{speed = {round_down_speed_mm_s(speed_mm_s)}}})\n"
         "end\n"
     )
 
 
-def _lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> Iterator[str]:
-    speed = f"speed = {whole_mm_s(move.speed_mm_s)}"
+def _move_lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> Iterator[str]:
+    speed = f"speed = {round_down_speed_mm_s(move.speed_mm_s)}"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"Arc({point}, {point}, {{{speed}}})", values, decimals)
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
+        yield from format_rows(f"Arc({point}, {point}, {{{speed}}})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm))
     if move.blends_mm is not None:
         blends = np.floor(blends_mm(move, decimals) / step_mm + 1e-9) * step_mm
     blend = "r = %.0f" if step_mm == 1 else f"r = %.{decimals}f"
     if move.axes is not None:
-        for point, turned, r in zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True):
-            place = numbers(point, decimals)
-            angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
+        for point, turned, r in zip(
+            move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True
+        ):
+            place = join_numbers(point, decimals)
+            angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
             options = f"{speed}, {blend % r}" if r > 0 else speed
             yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{options}}})\n"
         return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:
-            yield from rows(f"MovL({point}, {{{speed}, {blend}}})", values[run], decimals)
+            yield from format_rows(f"MovL({point}, {{{speed}, {blend}}})", values[run], decimals)
         else:
-            yield from rows(f"MovL({point}, {{{speed}}})", values[run, :3], decimals)
+            yield from format_rows(f"MovL({point}, {{{speed}}})", values[run, :3], decimals)
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
-        return f'print("{plain(step.message, 60).translate(QUIET)}")\nPause()\n'
+        return f'print("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}")\nPause()\n'
     return f"Wait({round(1e3 * step.seconds)})\n"
 
 
-def whole_mm_s(speed_mm_s: float) -> int:
-    """Rounded down, so that a limit is kept; but not to 0, at which a machine stands still."""
+def round_down_speed_mm_s(speed_mm_s: float) -> int:
+    """Round a speed down to whole mm/s, but not to 0.
+
+    Rounding down keeps limits, and a machine would stand still at 0.
+    """
     return max(int(np.floor(speed_mm_s + 1e-6)), 1)
 
 
-def _pose(origin_mm, turned_deg, decimals: int) -> str:
-    return f"{{{numbers(origin_mm, decimals)}, {numbers(turned_deg, DEGREE_DECIMALS)}}}"
+def _pose_text(origin_mm, turned_deg, decimals: int) -> str:
+    return f"{{{join_numbers(origin_mm, decimals)}, {join_numbers(turned_deg, DEGREE_DECIMALS)}}}"

@@ -1,4 +1,7 @@
-"""Moves -> DRL (.drl) for Doosan robots: millimetres, degrees, the paper as a user coordinate system."""
+"""Write DRL (.drl) for Doosan robots.
+
+Units are millimetres and degrees. The paper is a user coordinate system.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,25 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import zyz_deg
-from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
-from .text import number, plain, rows
+from ..motion import Move, Program, Wait, via_point
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    down,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 from .xarm import NAMES_LETTERS
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
 SPEED_DECIMALS = 3
-TURNS = "30.000"  # degrees/s, of the tool, and degrees/s^2: where a plan tilts it faster the arm slows down
+# Limits of the tool's turn in degrees/s and degrees/s^2. The arm slows down where a plan turns the tool faster.
+TURN_SPEED_LIMITS = "30.000"
 TCP = "brush"
 DOOSAN_END = "end: the brush is held up"
 
@@ -30,73 +43,75 @@ STOPS = f"""    tp_popup("TCP {TCP} is not as long as the cell says", DR_PM_ALAR
 
 
 def doosan(program: Program) -> Iterator[str]:
-    """One script that runs from top to bottom. Points are those of the user coordinate system: to teach the paper
-    anew, only its line has to change. Scripts choose a tool by its name alone: that it is as long as the cell says is
-    checked before anything moves."""
+    """Write one script that runs from top to bottom.
+
+    Points are in the user coordinate system. To teach the paper anew, only the line of this system has to change. A
+    script can choose a tool only by its name. The script therefore checks the tool's length before anything moves.
+    """
     cell, decimals = program.cell, program.cell.decimals
     frame = program.robot_from_frame
-    paper = f"{numbers(frame[:3, 3], decimals)}, {numbers(zyz_deg(frame[:3, :3]), DEGREE_DECIMALS)}"
+    paper = f"{join_numbers(frame[:3, 3], decimals)}, {join_numbers(zyz_deg(frame[:3, :3]), DEGREE_DECIMALS)}"
     yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))
     yield CHECKS
-    yield f"if abs(tip_mm - {number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
-    yield f"set_accx({rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURNS})\n"
+    yield f"if abs(tip_mm - {format_number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
+    yield f"set_accx({format_rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURN_SPEED_LIMITS})\n"
     yield f"paper = set_user_cart_coord(posx({paper}), ref=DR_BASE)\nset_ref_coord(paper)\n"
-    stands = down(cell.tool.spin_deg)
-    upright = numbers(zyz_deg(stands), DEGREE_DECIMALS)
+    upright_rotation = down(cell.tool.spin_deg)
+    upright = join_numbers(zyz_deg(upright_rotation), DEGREE_DECIMALS)
     yield f"\n\ndef on_paper(x, y, z):\n    return posx(x, y, z, {upright})\n\n"
     if program.tilts:
         yield "\ndef tilted(x, y, z, a, b, c):\n    return posx(x, y, z, a, b, c)\n\n"
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(number(program.rise_mm, decimals), speed),
-        _wait,
-        lambda move: _lines(move, stands, decimals),
+        lambda speed: _rise_lines(format_number(program.rise_mm, decimals), speed),
+        _wait_lines,
+        lambda move: _move_lines(move, upright_rotation, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(DOOSAN_END)
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
-def _rise(height: str, speed_mm_s: float) -> str:
+def _rise_lines(height: str, speed_mm_s: float) -> str:
     return (
-        f"here = get_current_posx(paper)[0]\n{_speed(speed_mm_s)}"
+        f"here = get_current_posx(paper)[0]\n{_speed_line(speed_mm_s)}"
         f"if here[2] < {height}:\n    here[2] = {height}\n    movel(here)\n"
     )
 
 
-def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    yield _speed(move.speed_mm_s)
+def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
+    yield _speed_line(move.speed_mm_s)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"movec({point}, {point})", values, decimals)
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
+        yield from format_rows(f"movec({point}, {point})", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     if move.axes is not None:
         for point, turned, blend in zip(
-            move.points_mm, turned_at(move, upright), blends.tolist(), strict=True
+            move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True
         ):
-            place = numbers(point, decimals)
-            angles = "" if turned is None else f", {numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
-            radius = f", radius={number(blend, decimals)}" if blend > 0 else ""
+            place = join_numbers(point, decimals)
+            angles = "" if turned is None else f", {join_numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
+            radius = f", radius={format_number(blend, decimals)}" if blend > 0 else ""
             yield f"movel({'tilted' if angles else 'on_paper'}({place}{angles}){radius})\n"
         return
     values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:
-            yield from rows(f"movel({point}, radius=%.{decimals}f)", values[run], decimals)
+            yield from format_rows(f"movel({point}, radius=%.{decimals}f)", values[run], decimals)
         else:
-            yield from rows(f"movel({point})", values[run, :3], decimals)
+            yield from format_rows(f"movel({point})", values[run, :3], decimals)
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
-        return f'tp_popup("{plain(step.message, 60).translate(QUIET)}", DR_PM_MESSAGE, 1)\n'
-    return f"wait({number(step.seconds, 3)})\n"
+        return f'tp_popup("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}", DR_PM_MESSAGE, 1)\n'
+    return f"wait({format_number(step.seconds, 3)})\n"
 
 
-def _speed(speed_mm_s: float) -> str:
-    return f"set_velx({rounded_down(speed_mm_s, SPEED_DECIMALS)}, {TURNS})\n"
+def _speed_line(speed_mm_s: float) -> str:
+    return f"set_velx({format_rounded_down(speed_mm_s, SPEED_DECIMALS)}, {TURN_SPEED_LIMITS})\n"

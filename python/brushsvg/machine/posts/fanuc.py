@@ -1,4 +1,7 @@
-"""Moves -> TP (.ls) for FANUC robots: millimetres, degrees, the paper as user frame 1, the brush's tip as tool 1."""
+"""Write TP (.ls) for FANUC robots.
+
+Units are millimetres and degrees. The paper is user frame 1, and the brush's tip is tool 1.
+"""
 
 from __future__ import annotations
 
@@ -9,129 +12,152 @@ from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
-from ..cells.cell import MOST_POINTS, Cell
+from ..cells.cell import MAX_PROGRAM_POINTS, Cell
 from ..frames import rotation_deg
-from ..motion import Move, Program, Section, Wait, via
-from .dobot import whole_mm_s
-from .script import Words, blends_mm, down, part_name, section_lines, turned_at
-from .text import ENDS, number, plain, rows
+from ..motion import Move, Program, Section, Wait, via_point
+from .dobot import round_down_speed_mm_s
+from .script import LanguageWords, blends_mm, down, name_part, tool_rotations_at, write_section
+from .text import STATEMENT_ENDS, format_number, format_rows, plain_text
 
-LINE_LIMIT = 100  # of a remark, on as many lines as it needs
-REMARK = 32  # letters of one line of it
-DEGREE_DECIMALS, POINT_DECIMALS = 5, 3  # of the angles of frames and of points
+LINE_LIMIT = 100  # letters of a remark, which may need several lines
+REMARK_LETTERS = 32  # letters of one line of a remark
+DEGREE_DECIMALS, POINT_DECIMALS = 5, 3  # decimals of the angles of frames and of points
 MAIN = "BRUSHSVG"
-INDEX = 1  # of the user frame, the tool, and the registers that set them
-RISE, HEIGHT = 2, 1  # position register and register of the rise
-HELD_BYTES = 20_000_000  # of text, before it goes to a file
+INDEX = 1  # number of the user frame, the tool, and the registers that set them
+RISE_REGISTER, HEIGHT_REGISTER = 2, 1  # position register and register that the rise uses
+MAX_TEXT_IN_MEMORY_BYTES = 20_000_000  # larger text is kept in a file
 FANUC_END = "end: the brush is held up"
 
 
 def fanuc(program: Program) -> Iterator[str]:
-    """One program, or, where it has more points than one may have, a main one that calls others, each with whole
-    strokes. Points are those of the user frame: to teach the paper anew, only its lines have to change."""
+    """Write a program for a FANUC robot.
+
+    A job with too many points for one program becomes a main program that calls others, each with whole strokes. Points
+    are in the user frame. To teach the paper anew, only the lines of the user frame have to change.
+    """
     cell = program.cell
-    setup = "".join(map(comment, program.header)) + _setup(program)
+    setup = "".join(map(comment, program.header)) + _setup_lines(program)
     end = comment(FANUC_END)
-    points, lines, calls, risen = _Points(cell), "", [], False
-    with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
+    points, section_text, calls, risen = _ProgramPoints(cell), "", [], False
+    with SpooledTemporaryFile(MAX_TEXT_IN_MEMORY_BYTES, "w+", encoding="ascii") as held_file:
         for section in program.sections():
-            if points.count and points.count + _count(section) > MOST_POINTS["fanuc"]:
-                calls.append(part_name(setup, len(calls) + 1))
-                held.write(_program(calls[-1], lines, points))
-                points, lines = _Points(cell), ""
-            lines += "".join(section_lines(section, _words(program, points), risen))
+            if points.count and points.count + _count_points(section) > MAX_PROGRAM_POINTS["fanuc"]:
+                calls.append(name_part(setup, len(calls) + 1))
+                held_file.write(_write_program(calls[-1], section_text, points))
+                points, section_text = _ProgramPoints(cell), ""
+            section_text += "".join(write_section(section, _language_words(program, points), risen))
             risen = risen or bool(section.moves)
         if not calls:
-            yield _program(MAIN, setup + lines + end, points)
+            yield _write_program(MAIN, setup + section_text + end, points)
             return
-        calls.append(part_name(setup, len(calls) + 1))
-        held.write(_program(calls[-1], lines, points))
+        calls.append(name_part(setup, len(calls) + 1))
+        held_file.write(_write_program(calls[-1], section_text, points))
         called = "".join(f" : CALL {call} ;\n" for call in calls)
-        yield _program(MAIN, setup + called + end, _Points(cell))
-        held.seek(0)
-        while piece := held.read(1_000_000):
+        yield _write_program(MAIN, setup + called + end, _ProgramPoints(cell))
+        held_file.seek(0)
+        while piece := held_file.read(1_000_000):
             yield piece
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs in a dictionary of names, the main one's as ""."""
-    found = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
-    named = {re.match(r"/PROG +(\S*)", each)[1]: each for each in found}
-    return {"" if name == MAIN else name: each for name, each in named.items()}
+    """Return the texts of a stream of programs, keyed by program name.
+
+    The main program has the name "".
+    """
+    program_texts = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
+    texts_by_name = {
+        re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in program_texts
+    }
+    return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
 
 
 def called(text: str) -> list[str]:
-    """Names of the programs that one calls, in order, each once."""
-    found = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
-    return list(dict.fromkeys(each[1] for each in found))
+    """Return the names of the programs that a program calls.
+
+    They are in order and without repetition.
+    """
+    calls = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
+    return list(dict.fromkeys(call[1] for call in calls))
 
 
 def comment(text: str) -> str:
-    """As remarks of so many letters: what goes on begins with a plus."""
-    left, lines = plain(text, LINE_LIMIT).translate(ENDS), []
-    while left or not lines:
+    """Return a comment as remarks of at most REMARK_LETTERS letters.
+
+    Each continuation begins with a plus.
+    """
+    rest, lines = plain_text(text, LINE_LIMIT).translate(STATEMENT_ENDS), []
+    while rest or not lines:
         begin = "+" if lines else ""
-        kept = left[: REMARK - len(begin)]
-        if len(kept) < len(left):
+        kept = rest[: REMARK_LETTERS - len(begin)]
+        if len(kept) < len(rest):
             kept = kept.rstrip(" ") or kept
         lines.append(f" : !{begin}{kept} ;\n")
-        left = left[len(kept) :]
+        rest = rest[len(kept) :]
     return "".join(lines)
 
 
-class _Points:
-    """Of one program: each has its number there, a place, and angles where the brush is tilted."""
+class _ProgramPoints:
+    """The numbered points of one program, with the angles of the tool."""
 
     def __init__(self, cell: Cell):
         self.decimals, self.count = cell.decimals, 0
         self.held: list[tuple[np.ndarray, tuple[str, str, str]]] = []
-        self.stands = down(cell.tool.spin_deg)
-        self.upright = _angles(self.stands)
+        self.upright_rotation = down(cell.tool.spin_deg)
+        self.upright = _wpr_angles(self.upright_rotation)
         x, y, z = (f"{axis} = %.{cell.decimals}f  mm" for axis in "XYZ")
         self.place = (
             f"P[%d]{{\n   GP1:\n\tUF : {INDEX}, UT : {INDEX},\t\tCONFIG : '{cell.tool.configuration}',\n"
             f"\t{x},\t{y},\t{z},\n"
         )
 
-    def more(self, move: Move, points_mm: np.ndarray) -> np.ndarray:
-        """(n,) the numbers of new points (n, 3), all those of a move where it tilts the brush."""
+    def add(self, move: Move, points_mm: np.ndarray) -> np.ndarray:
+        """Add points (n, 3) and return their numbers (n,).
+
+        If the move tilts the brush, the points must be all points of the move.
+        """
         first = self.count + 1
         if move.axes is None:
             self.held.append((points_mm, self.upright))
         else:
-            turns = turned_at(move, self.stands)
-            angles = (self.upright if turned is None else _angles(turned) for turned in turns)
+            turns = tool_rotations_at(move, self.upright_rotation)
+            angles = (self.upright if turned is None else _wpr_angles(turned) for turned in turns)
             self.held += zip(points_mm[:, None], angles, strict=True)
         self.count += len(points_mm)
         return np.arange(first, self.count + 1)
 
     def text(self) -> str:
         rows_text, first = "", 1
-        for angles, alike in itertools.groupby(self.held, lambda each: each[1]):
-            places = np.vstack([points_mm for points_mm, _ in alike])
+        for angles, points_of_angles in itertools.groupby(self.held, lambda entry: entry[1]):
+            places = np.vstack([points_mm for points_mm, _ in points_of_angles])
             values = np.column_stack([np.arange(first, first + len(places)), places])
             w, p, r = angles
-            held = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
-            rows_text += "".join(rows(self.place + held, values, self.decimals))
+            angles_text = f"\tW = {w} deg,\tP = {p} deg,\tR = {r} deg\n}};"
+            rows_text += "".join(format_rows(self.place + angles_text, values, self.decimals))
             first += len(places)
         return rows_text
 
 
-def _angles(turned: np.ndarray) -> tuple[str, str, str]:
-    """W, P and R of the tool (3, 3): about the fixed axes x, y and z."""
-    w, p, r = (number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
+def _wpr_angles(turned: np.ndarray) -> tuple[str, str, str]:
+    """Return W, P and R of a rotation (3, 3).
+
+    They are the tool's angles about the fixed axes x, y and z.
+    """
+    w, p, r = (format_number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
     return w, p, r
 
 
-def _program(name: str, lines: str, points: _Points) -> str:
+def _write_program(name: str, lines: str, points: _ProgramPoints) -> str:
     return (
         f'/PROG  {name}\n/ATTR\nCOMMENT\t\t= "brushsvg";\nPROTECT\t\t= READ_WRITE;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n'
         f"/MN\n{lines}/POS\n{points.text()}/END\n"
     )
 
 
-def _setup(program: Program) -> str:
-    """The register holds a place of the arm first, so that it has all six values."""
+def _setup_lines(program: Program) -> str:
+    """Return the lines that set the user frame and the tool.
+
+    The register first gets a place of the arm, so that it has all six values.
+    """
     cell = program.cell
     paper, tool = program.robot_from_frame, cell.tool
     frames = (
@@ -140,51 +166,51 @@ def _setup(program: Program) -> str:
     )
     lines = [f"PR[{INDEX}]=LPOS"]
     for name, origin_mm, turned_deg in frames:
-        values = [number(value, cell.decimals) for value in origin_mm]
-        values += [number(angle, DEGREE_DECIMALS) for angle in turned_deg]
-        lines += [f"PR[{INDEX},{k}]={_constant(value)}" for k, value in enumerate(values, 1)]
+        values = [format_number(value, cell.decimals) for value in origin_mm]
+        values += [format_number(angle, DEGREE_DECIMALS) for angle in turned_deg]
+        lines += [f"PR[{INDEX},{k}]={_parenthesize_negative(value)}" for k, value in enumerate(values, 1)]
         lines.append(f"{name}[{INDEX}]=PR[{INDEX}]")
     lines += [f"UFRAME_NUM={INDEX}", f"UTOOL_NUM={INDEX}"]
     return "".join(f" : {line} ;\n" for line in lines)
 
 
-def _constant(value: str) -> str:
+def _parenthesize_negative(value: str) -> str:
     return f"({value})" if value.startswith("-") else value
 
 
-def _words(program: Program, points: _Points) -> Words:
-    height = number(program.rise_mm, program.cell.decimals)
-    return Words(
+def _language_words(program: Program, points: _ProgramPoints) -> LanguageWords:
+    height = format_number(program.rise_mm, program.cell.decimals)
+    return LanguageWords(
         comment,
-        lambda speed: _rise(height, speed),
-        _wait,
-        lambda move: _lines(move, points, program.cell.blending.ramp_s),
+        lambda speed: _rise_lines(height, speed),
+        _wait_lines,
+        lambda move: _move_lines(move, points, program.cell.blending.ramp_s),
     )
 
 
-def _count(section: Section) -> int:
+def _count_points(section: Section) -> int:
     return sum(len(move.points_mm) if move.arc is None else 2 for move in section.moves)
 
 
-def _rise(height: str, speed_mm_s: float) -> str:
+def _rise_lines(height: str, speed_mm_s: float) -> str:
     lines = (
-        f"PR[{RISE}]=LPOS",
-        f"R[{HEIGHT}]=PR[{RISE},3]",
-        f"IF (R[{HEIGHT}]<{height}) THEN",
-        f"PR[{RISE},3]={_constant(height)}",
-        f"L PR[{RISE}] {whole_mm_s(speed_mm_s)}mm/sec FINE",
+        f"PR[{RISE_REGISTER}]=LPOS",
+        f"R[{HEIGHT_REGISTER}]=PR[{RISE_REGISTER},3]",
+        f"IF (R[{HEIGHT_REGISTER}]<{height}) THEN",
+        f"PR[{RISE_REGISTER},3]={_parenthesize_negative(height)}",
+        f"L PR[{RISE_REGISTER}] {round_down_speed_mm_s(speed_mm_s)}mm/sec FINE",
         "ENDIF",
     )
     return "".join(f" : {line} ;\n" for line in lines)
 
 
-def _lines(move: Move, points: _Points, ramp_s: float) -> Iterator[str]:
-    speed = whole_mm_s(move.speed_mm_s)
+def _move_lines(move: Move, points: _ProgramPoints, ramp_s: float) -> Iterator[str]:
+    speed = round_down_speed_mm_s(move.speed_mm_s)
     if move.arc is not None:
-        numbers = points.more(move, np.vstack([via(move.points_mm), move.points_mm[-1]]))
+        numbers = points.add(move, np.vstack([via_point(move.points_mm), move.points_mm[-1]]))
         yield " : C P[{}]\n :  P[{}] {}mm/sec FINE ;\n".format(*numbers, speed)
         return
-    numbers = points.more(move, move.points_mm)
+    numbers = points.add(move, move.points_mm)
     percent = np.zeros(len(numbers))
     if move.blends_mm is not None:
         percent = np.minimum(
@@ -197,12 +223,15 @@ def _lines(move: Move, points: _Points, ramp_s: float) -> Iterator[str]:
 
 
 def cnt_mm(percent: float, speed_mm_s: float, ramp_s: float) -> float:
-    """How far before a point the next move begins at most [mm]: with CNT100 when the arm begins to slow down, v T / 2
-    before it, with less that share of its time later, of which the way is no larger a share."""
+    """Return the largest distance [mm] before a point at which the next move begins.
+
+    With CNT100, the next move begins when the arm begins to slow down, v T / 2 before the point. With a smaller CNT, it
+    begins later by the corresponding share of T. The distance is at most this share of v T / 2.
+    """
     return percent / 100 * speed_mm_s * ramp_s / 2
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
         return comment(f"stop: {step.message}") + " : PAUSE ;\n"
-    return f" : WAIT {number(np.ceil(100 * step.seconds - 1e-6) / 100, 2)}(sec) ;\n"
+    return f" : WAIT {format_number(np.ceil(100 * step.seconds - 1e-6) / 100, 2)}(sec) ;\n"

@@ -1,4 +1,7 @@
-"""Moves -> G-code for grbl machines whose brush hangs on a servo: M3 S... sets a value instead of a height."""
+"""Write G-code for grbl machines with the brush on a servo.
+
+M3 S... sets a value instead of a height.
+"""
 
 from __future__ import annotations
 
@@ -11,157 +14,184 @@ import numpy as np
 
 from ..cells.cell import Cell, Servo, servo_parts, servo_stands
 from ..motion import Move, Program, Wait
-from .gcode import DIALECTS, HELD_UP, MODES, grbl_comment, wait
-from .text import ROWS_AT_ONCE, feed_mm_min, number, rows
+from .gcode import DIALECTS, HELD_UP, MODE_WORDS, grbl_comment, write_wait
+from .text import MAX_ROWS_AT_ONCE, feed_of_speed_mm_min, format_number, format_rows
 
-TOUCHING = (
+# In these moves the lift goes at the programmed speed. In the air it moves at once.
+TOUCHING_MEANINGS = (
     "land",
     "paint",
     "lift",
     "dip",
     "wipe",
-)  # here the lift goes at the programmed speed; in the air at once
+)
 
 
 def grbl_servo(program: Program) -> Iterator[str]:
-    """Heights become values of the servo's table, held along each line; a line is split where the height
-    changes by more than the servo's step. The machine must run in grbl's laser mode ($32=1), in which a new S
-    takes effect with the move that it stands in and does not stop it. There grbl switches the output off where
-    the motion mode is not G1, G2 or G3, at M5 and at M2, and the brush would fall: so all is G1, from the first line
-    to the last, and the program ends without M2, the brush held up."""
+    """Write a program for grbl with the brush on a servo.
+
+    Heights become values of the servo's table, and each line has one value. A line is split where the height changes
+    by more than the servo's step.
+
+    The machine must run in grbl's laser mode ($32=1). In this mode, a new S takes effect with its own move and does not
+    stop the machine. However, grbl then switches the output off at M5, at M2, and in motion modes other than G1, G2 and
+    G3, and the brush would fall. All moves are therefore G1, and the program ends without M2, with the brush held up.
+    """
     servo = program.cell.servo
     yield "".join(grbl_comment(line) for line in program.header)
     yield grbl_comment("note: set $32=1, so that S changes along with the moves")
-    yield f"{MODES}\n"
-    feed = feed_mm_min(program.cell.speeds.travel_mm_s)
+    yield f"{MODE_WORDS}\n"
+    feed = feed_of_speed_mm_min(program.cell.speeds.travel_mm_s)
     yield f"G1 F{feed:.1f}\n"
     here, value = None, 0
     for section in program.sections():
-        if here is None:  # up before going anywhere
+        if here is None:  # raise the brush before the first move
             here = np.array([0.0, 0.0, program.rise_mm])
-            value = int(value_at(servo, here[2]))
+            value = int(servo_values_at(servo, here[2]))
             yield f"M3 S{value}\n"
-            yield f"G4 P{number(servo.settle_s, 3)}\n" if servo.settle_s else ""
+            yield f"G4 P{format_number(servo.settle_s, 3)}\n" if servo.settle_s else ""
         yield "\n" + grbl_comment(section.title)
         for step in section.steps:
             if isinstance(step, Wait):
-                yield wait(step, DIALECTS["grbl-servo"])
+                yield write_wait(step, DIALECTS["grbl-servo"])
                 continue
-            feed_word = feed_mm_min(step.speed_mm_s)
+            feed_word = feed_of_speed_mm_min(step.speed_mm_s)
             if feed_word != feed:
                 yield f"F{feed_word:.1f}\n"
                 feed = feed_word
-            fastest = program.touching_mm_s if step.meaning in TOUCHING else math.inf
-            value, feed = yield from _lines(step, here, value, program.cell, fastest, feed)
+            fastest = program.touching_mm_s if step.meaning in TOUCHING_MEANINGS else math.inf
+            value, feed = yield from _move_lines(step, here, value, program.cell, fastest, feed)
             here = step.points_mm[-1]
     yield "\n" + grbl_comment(HELD_UP)
 
 
-def value_at(servo: Servo, height_mm):
-    """The servo's value for a height, or for each of an array."""
-    return np.rint(np.interp(height_mm, *_by_height(servo.table))).astype(int)
+def servo_values_at(servo: Servo, height_mm):
+    """Return the servo's value for a height [mm] or an array of heights."""
+    return np.rint(np.interp(height_mm, *_table_by_height(servo.table))).astype(int)
 
 
 def height_at(servo: Servo, value: float) -> float:
-    """The height that a value gives."""
-    return float(np.interp(value, *_by_value(servo.table)))
+    """Return the height [mm] for a servo's value."""
+    return float(np.interp(value, *_table_by_value(servo.table)))
 
 
 @lru_cache(maxsize=8)
-def _by_height(table: tuple) -> tuple[np.ndarray, np.ndarray]:
+def _table_by_height(table: tuple) -> tuple[np.ndarray, np.ndarray]:
     heights, values = np.array(sorted(table), dtype=float).T
     return heights, values
 
 
 @lru_cache(maxsize=8)
-def _by_value(table: tuple) -> tuple[np.ndarray, np.ndarray]:
+def _table_by_value(table: tuple) -> tuple[np.ndarray, np.ndarray]:
     heights, values = np.array(sorted(table, key=lambda row: row[1]), dtype=float).T
     return values, heights
 
 
-def _lines(
+def _move_lines(
     move: Move, here: np.ndarray, value: int, cell: Cell, fastest_mm_s: float, feed: float
 ) -> Generator[str, None, tuple[int, float]]:
-    """A move's lines, and the servo's value and the feed [mm/min] that hold afterwards; value, feed: those before;
-    fastest_mm_s: of the tip."""
+    """Yield the lines of a move, and return the value and the feed after it.
+
+    They are the servo's value and the feed [mm/min].
+
+    value, feed: value and feed before the move.
+    fastest_mm_s: highest speed of the tip.
+    """
     servo = cell.servo
     path = np.concatenate([here[None], move.points_mm])
-    way = path[1:] - path[:-1]
-    still = servo_stands(way, cell)
-    begins = (np.flatnonzero(still[1:] != still[:-1]) + 1).tolist() if len(still) > 1 else []
-    for first, end in pairwise([0, *begins, len(still)]):
-        if not still[first]:
-            feeds = feeds_mm_min(way[first:end], move.speed_mm_s, fastest_mm_s)
-            value, feed = yield from _ways(path[first:end], way[first:end], feeds, feed, cell)
+    steps = path[1:] - path[:-1]
+    is_lift = servo_stands(steps, cell)
+    run_starts = (np.flatnonzero(is_lift[1:] != is_lift[:-1]) + 1).tolist() if len(is_lift) > 1 else []
+    for first, end in pairwise([0, *run_starts, len(is_lift)]):
+        if not is_lift[first]:
+            feeds = line_feeds_mm_min(steps[first:end], move.speed_mm_s, fastest_mm_s)
+            value, feed = yield from _line_parts(path[first:end], steps[first:end], feeds, feed, cell)
             continue
-        step_mm = servo.step_mm if move.meaning in TOUCHING else np.inf
+        step_mm = servo.step_mm if move.meaning in TOUCHING_MEANINGS else np.inf
         for from_mm, to_mm in pairwise(path[first : end + 1, 2].tolist()):
-            lifts = lifted(from_mm, to_mm, value, move.speed_mm_s, step_mm, servo)
+            lifts = lift_steps(from_mm, to_mm, value, move.speed_mm_s, step_mm, servo)
             if lifts:
-                yield _lifts(lifts, servo.settle_s)
+                yield _lift_lines(lifts, servo.settle_s)
                 value = lifts[-1][0]
     return value, feed
 
 
-@lru_cache(maxsize=256)  # most strokes of a drawing are landed and lifted alike
-def _lifts(lifts: tuple[tuple[int, int], ...], settle_s: float) -> str:
-    lines = "".join(f"M3 S{value}\nG4 P{number(wait_ms / 1e3, 3)}\n" for value, wait_ms in lifts)
-    return lines + (f"G4 P{number(settle_s, 3)}\n" if settle_s else "")
+@lru_cache(maxsize=256)  # most strokes of a drawing have the same landing and lift
+def _lift_lines(lifts: tuple[tuple[int, int], ...], settle_s: float) -> str:
+    lines = "".join(f"M3 S{value}\nG4 P{format_number(wait_ms / 1e3, 3)}\n" for value, wait_ms in lifts)
+    return lines + (f"G4 P{format_number(settle_s, 3)}\n" if settle_s else "")
 
 
 @lru_cache(maxsize=256)
-def lifted(
+def lift_steps(
     from_mm: float, to_mm: float, value: int, speed_mm_s: float, step_mm: float, servo: Servo
 ) -> tuple[tuple[int, int], ...]:
-    """The lift alone: step by step its value and how long to wait [ms], as long as the way takes at the speed. The way
-    is that between the values, which are whole: after a line it begins where its last part was held."""
-    feed_mm_s = feed_mm_min(speed_mm_s) / 60
+    """Return the steps of a lift, each with its value and its wait [ms].
+
+    The lift has no sideways move. The waits give the lift its speed. Heights are those of the whole values, so a lift
+    after a line begins at the height of the line's last part.
+    """
+    feed_mm_s = feed_of_speed_mm_min(speed_mm_s) / 60
     count = max(1, math.ceil(abs(to_mm - from_mm) / step_mm - 1e-9))
-    servo_values = value_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
+    servo_values = servo_values_at(servo, from_mm + (to_mm - from_mm) * np.arange(1, count + 1) / count)
     servo_values = np.concatenate([[value], servo_values])
     servo_values = servo_values[np.concatenate([[True], servo_values[1:] != servo_values[:-1]])]
-    at_mm = np.interp(servo_values, *_by_value(servo.table))
+    at_mm = np.interp(servo_values, *_table_by_value(servo.table))
     waits_ms = np.ceil(1e3 * np.abs(at_mm[1:] - at_mm[:-1]) / feed_mm_s).astype(int)
     return tuple(zip(servo_values[1:].tolist(), waits_ms.tolist(), strict=True))
 
 
-def _ways(
+def _line_parts(
     starts: np.ndarray, ways: np.ndarray, feeds: np.ndarray, feed: float, cell: Cell
 ) -> Generator[str, None, tuple[int, float]]:
-    """Straight lines at their feeds, each in parts on which the height is the one half way along the part; the last
-    part's value and feed. starts, ways: (n, 3) of each line; feed: the one before."""
+    """Yield straight lines at their feeds.
+
+    Returns the servo's value and the feed of the last part. Each line is written in parts. The height of a part is the
+    height at its middle.
+
+    starts, ways: (n, 3) start and displacement of each line.
+    feeds: (n,) feed of each line [mm/min].
+    feed: feed before the first line [mm/min].
+    """
     decimals = cell.decimals
     pattern = f"G1 X%.{decimals}f Y%.{decimals}f S%d"
-    for first in range(0, len(ways), ROWS_AT_ONCE):
-        start, way = starts[first : first + ROWS_AT_ONCE], ways[first : first + ROWS_AT_ONCE]
+    for first in range(0, len(ways), MAX_ROWS_AT_ONCE):
+        start, way = starts[first : first + MAX_ROWS_AT_ONCE], ways[first : first + MAX_ROWS_AT_ONCE]
         counts = servo_parts(way, cell)
-        which = np.repeat(np.arange(len(way)), counts)
-        number = np.arange(1, len(which) + 1) - (np.cumsum(counts) - counts)[which]
-        start, way, counts = start[which], way[which], counts[which]
-        points = start + way * (number / counts)[:, None]
-        points[:, 2] = values = value_at(cell.servo, start[:, 2] + way[:, 2] * (number - 0.5) / counts)
-        text = "".join(rows(pattern, points, decimals))
-        at = feeds[first + which]
-        changes = [0] * bool(at[0] != feed) + (np.flatnonzero(at[1:] != at[:-1]) + 1).tolist()
-        if changes:
+        line_numbers = np.repeat(np.arange(len(way)), counts)
+        part_numbers = np.arange(1, len(line_numbers) + 1) - (np.cumsum(counts) - counts)[line_numbers]
+        start, way, counts = start[line_numbers], way[line_numbers], counts[line_numbers]
+        points = start + way * (part_numbers / counts)[:, None]
+        points[:, 2] = values = servo_values_at(
+            cell.servo, start[:, 2] + way[:, 2] * (part_numbers - 0.5) / counts
+        )
+        text = "".join(format_rows(pattern, points, decimals))
+        part_feeds = feeds[first + line_numbers]
+        changed_rows = [0] * bool(part_feeds[0] != feed) + (
+            np.flatnonzero(part_feeds[1:] != part_feeds[:-1]) + 1
+        ).tolist()
+        if changed_rows:
             lines = text.split("\n")
-            for k in changes:
-                lines[k] = f"F{at[k]:.1f}\n{lines[k]}"
+            for k in changed_rows:
+                lines[k] = f"F{part_feeds[k]:.1f}\n{lines[k]}"
             text = "\n".join(lines)
-        feed = at[-1]
+        feed = part_feeds[-1]
         yield text
     return int(values[-1]), feed
 
 
-def feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
-    """(n,) the feed [mm/min] of each line (n, 3). It is that of the way without the lift: where both together
-    would be faster than the tip may be, it is lower, in hundredths of the fastest, so that few lines change it."""
-    feeds = np.full(len(way), feed_mm_min(speed_mm_s))
+def line_feeds_mm_min(way: np.ndarray, speed_mm_s: float, fastest_mm_s: float) -> np.ndarray:
+    """Return the feed [mm/min] of each line (n, 3), (n,).
+
+    A feed does not include the lift. If the lift would make the tip too fast, the feed is lower. It is then a multiple
+    of a hundredth of the highest feed, so that few lines change it.
+    """
+    feeds = np.full(len(way), feed_of_speed_mm_min(speed_mm_s))
     if math.isinf(fastest_mm_s):
         return feeds
-    part = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)
-    is_steep = speed_mm_s > fastest_mm_s * part + 1e-9
-    part = np.where(part > 0.1, np.floor(100 * part + 1e-9) / 100, part)
+    flat_share = np.linalg.norm(way[:, :2], axis=1) / np.linalg.norm(way, axis=1)
+    is_steep = speed_mm_s > fastest_mm_s * flat_share + 1e-9
+    flat_share = np.where(flat_share > 0.1, np.floor(100 * flat_share + 1e-9) / 100, flat_share)
     for k in np.flatnonzero(is_steep):
-        feeds[k] = feed_mm_min(fastest_mm_s * part[k])
+        feeds[k] = feed_of_speed_mm_min(fastest_mm_s * flat_share[k])
     return feeds

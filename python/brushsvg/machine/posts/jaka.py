@@ -1,4 +1,7 @@
-"""Moves -> JAKA script (.jks) for JAKA robots: millimetres, degrees, points in the robot's own frame."""
+"""Write JAKA script (.jks) for JAKA robots.
+
+Units are millimetres and degrees. Points are in the robot's own frame.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,16 @@ import numpy as np
 
 from ..cells.cell import Blending
 from ..frames import rotation, rotation_deg
-from ..motion import Move, Program, Wait, via
-from .script import Words, body, numbers, rounded_down, turned_at, upright_deg
-from .text import number, plain, rows
+from ..motion import Move, Program, Wait, via_point
+from .script import (
+    LanguageWords,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    upright_deg,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
@@ -19,76 +29,88 @@ JAKA_END = "end: the brush is held up"
 
 
 def jaka(program: Program) -> Iterator[str]:
-    """A program for the robot's base frame. A move takes a variable that holds the pose, so each is two lines.
+    """Write a program in the robot's base frame.
 
-    The last number of a move is how exactly its end is met: 0 for exactly, else the next move may begin before. It is
-    never more than the blending's tolerance, so that no corner is cut by more whether the controller takes it as the
-    way that is left or as how far the path may pass the corner.
+    A move needs a variable with its pose, so each move has two lines.
+
+    The last number of a move is the tolerance of its end. With 0 the end is met exactly, otherwise the next move may
+    begin earlier. The number is never more than the blending's tolerance. The corner is then cut by at most this
+    tolerance, whether the controller reads the number as the remaining path or as the distance to the corner.
     """
     cell, decimals = program.cell, program.cell.decimals
     yield "".join(map(comment, program.header))
     yield "set_user_frame_id(0)\n"
-    yield f"tool = [{numbers(cell.tool.tcp_mm, decimals)}, {numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
-    yield "set_tool(tool)\n"
-    turned = numbers(upright_deg(cell), DEGREE_DECIMALS)
-    upright = rotation(upright_deg(cell))
-    acceleration = number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
-    words = Words(
-        comment,
-        lambda speed: _rise(program.rise_mm, speed, acceleration, decimals),
-        _wait,
-        lambda move: _lines(move, turned, upright, acceleration, cell.blending, decimals),
+    yield (
+        f"tool = [{join_numbers(cell.tool.tcp_mm, decimals)}, "
+        f"{join_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)}]\n"
     )
-    yield from body(program, words)
+    yield "set_tool(tool)\n"
+    turned = join_numbers(upright_deg(cell), DEGREE_DECIMALS)
+    upright = rotation(upright_deg(cell))
+    acceleration = format_number(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)
+    words = LanguageWords(
+        comment,
+        lambda speed: _rise_lines(program.rise_mm, speed, acceleration, decimals),
+        _wait_lines,
+        lambda move: _move_lines(move, turned, upright, acceleration, cell.blending, decimals),
+    )
+    yield from write_sections(program, words)
     yield "\n" + comment(JAKA_END)
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
-def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
-    """By what is missing, along the base's z axis, turned as the tool is."""
-    height = number(height_mm, decimals)
+def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
+    """Return a rise to a height along the base's z axis.
+
+    The tool's orientation does not change.
+    """
+    height = format_number(height_mm, decimals)
     return (
         "here = get_atl_tcp_pose()\n"
         f"if(here[2] < {height}):\n"
         f"  rise = ({height} - here[2])\n"
         "  up = [0, 0, rise, 0, 0, 0]\n"
-        f"  movl(up, 1, {_speed(speed_mm_s)}, {acceleration}, 0)\n"
+        f"  movl(up, 1, {_speed_text(speed_mm_s)}, {acceleration}, 0)\n"
         "end\n"
     )
 
 
-def _lines(
+def _move_lines(
     move: Move, turned: str, upright: np.ndarray, acceleration: str, blending: Blending, decimals: int
 ) -> Iterator[str]:
-    speed = _speed(move.speed_mm_s)
+    speed = _speed_text(move.speed_mm_s)
     pose = f"[%.{decimals}f, %.{decimals}f, %.{decimals}f, {turned}]"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
         pattern = f"via = {pose}\nto = {pose}\nmovc(via, to, 0, {speed}, {acceleration}, 0)"
-        yield from rows(pattern, values, decimals)
+        yield from format_rows(pattern, values, decimals)
         return
     cut_mm = np.zeros(len(move.points_mm))
     if move.blends_mm is not None:
         cut_mm[:-1] = np.minimum(move.blends_mm[:-1], blending.tolerance_mm)
     values = np.column_stack([move.points_mm, np.floor(cut_mm * 10.0**decimals) / 10.0**decimals])
     if move.axes is not None:
-        for row, held in zip(values, turned_at(move, upright), strict=True):
-            angles = turned if held is None else numbers(rotation_deg(held), DEGREE_DECIMALS)
-            yield f"to = [{numbers(row[:3], decimals)}, {angles}]\n"
-            yield f"movl(to, 0, {speed}, {acceleration}, {number(row[3], decimals)})\n"
+        for row, rotation_there in zip(values, tool_rotations_at(move, upright), strict=True):
+            angles = (
+                turned
+                if rotation_there is None
+                else join_numbers(rotation_deg(rotation_there), DEGREE_DECIMALS)
+            )
+            yield f"to = [{join_numbers(row[:3], decimals)}, {angles}]\n"
+            yield f"movl(to, 0, {speed}, {acceleration}, {format_number(row[3], decimals)})\n"
         return
     pattern = f"to = {pose}\nmovl(to, 0, {speed}, {acceleration}, %.{decimals}f)"
-    yield from rows(pattern, values, decimals)
+    yield from format_rows(pattern, values, decimals)
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
         return comment(f"stop: {step.message}") + "pause()\n"
-    return f"sleep({number(step.seconds, 3)})\n"
+    return f"sleep({format_number(step.seconds, 3)})\n"
 
 
-def _speed(speed_mm_s: float) -> str:
-    return rounded_down(speed_mm_s, SPEED_DECIMALS)
+def _speed_text(speed_mm_s: float) -> str:
+    return format_rounded_down(speed_mm_s, SPEED_DECIMALS)

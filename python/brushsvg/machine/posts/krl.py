@@ -1,4 +1,7 @@
-"""Moves -> KRL (.src) for KUKA robots: millimetres, degrees, the paper as BASE, the brush's tip as TOOL."""
+"""Write KRL (.src) for KUKA robots.
+
+Units are millimetres and degrees. The paper is BASE, and the brush's tip is TOOL.
+"""
 
 from __future__ import annotations
 
@@ -10,130 +13,166 @@ from tempfile import SpooledTemporaryFile
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
-from ..motion import Move, Program, Wait, via
-from .script import Words, blends_mm, down, numbers, part_name, parts, rounded_down, turned_at
-from .text import number, plain, rows
+from ..motion import Move, Program, Wait, via_point
+from .script import (
+    LanguageWords,
+    blends_mm,
+    down,
+    format_rounded_down,
+    join_numbers,
+    name_part,
+    split_into_parts,
+    tool_rotations_at,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
-SPEED_DECIMALS = 6  # of m/s
-HELD_BYTES = 20_000_000  # of text, before it goes to a file
+SPEED_DECIMALS = 6  # decimals of speeds in m/s
+MAX_TEXT_IN_MEMORY_BYTES = 20_000_000  # larger text is kept in a file
 MAIN = "brushsvg"
 RISES = "DECL E6POS here\n"
-AROUND = 3  # lines of a program that is called, next to its moves
+LINES_AROUND_PART = 3  # lines of a called program in addition to its moves
 KRL_END = "end: the brush is held up"
 
 
 def krl(program: Program) -> Iterator[str]:
-    """One .src without a .dat: all points stand in it; of a long job a main one that calls others, each with whole
-    strokes. They are those of the BASE: to teach the paper anew, only its line has to change. The first move goes to
-    where the robot is, as a first one must be PTP."""
+    """Write a program for a KUKA robot.
+
+    The program is one .src with all points, without a .dat. A long job becomes a main program that calls others, each
+    with whole strokes. Points are in the BASE. To teach the paper anew, only the line of the BASE has to change. The
+    first move must be a PTP, so it goes to the robot's own place.
+    """
     cell, decimals = program.cell, program.cell.decimals
-    acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
+    acceleration = format_rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     header = "".join(map(comment, program.header))
     setup = "BAS(#INITMOV, 0)\n"
-    setup += f"$TOOL = {_frame(tool, decimals)}\n$BASE = {_frame(program.robot_from_frame, decimals)}\n"
+    setup += (
+        f"$TOOL = {_frame_text(tool, decimals)}\n$BASE = {_frame_text(program.robot_from_frame, decimals)}\n"
+    )
     if program.tilts:
-        setup += "$ORI_TYPE = #VAR\n"  # #CONSTANT, of a program before, would hold the tool as it was
+        setup += (
+            "$ORI_TYPE = #VAR\n"  # #CONSTANT, set by an earlier program, would keep the tool's orientation
+        )
     setup += f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
     upright = down(cell.tool.spin_deg)
-    turned = _angles(rotation_deg(upright))
-    words = Words(
+    turned = _abc_text(rotation_deg(upright))
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(number(program.rise_mm, decimals), speed),
-        _wait,
+        lambda speed: _rise_lines(format_number(program.rise_mm, decimals), speed),
+        _wait_lines,
         lambda move: (
-            _lines(move, turned, decimals) if move.axes is None else _tilted(move, upright, decimals)
+            _move_lines(move, turned, decimals)
+            if move.axes is None
+            else _tilted_lines(move, upright, decimals)
         ),
     )
-    made = parts(program, words, AROUND, rises_again=False)
+    part_texts = split_into_parts(program, words, LINES_AROUND_PART, rises_again=False)
     end = comment(KRL_END) + "END\n"
-    first, second = next(made), next(made, None)
+    first, second = next(part_texts), next(part_texts, None)
     if second is None:
         yield f"DEF {MAIN}()\n{header}{RISES}{setup}{first}\n{end}"
         return
     calls, setup = "", header + setup
-    with SpooledTemporaryFile(HELD_BYTES, "w+", encoding="ascii") as held:
-        for count, moves in enumerate(itertools.chain((first, second), made), 1):
-            name = part_name(setup, count)
+    with SpooledTemporaryFile(MAX_TEXT_IN_MEMORY_BYTES, "w+", encoding="ascii") as held_file:
+        for count, moves in enumerate(itertools.chain((first, second), part_texts), 1):
+            name = name_part(setup, count)
             calls += f"{name}()\n"
-            held.write(f"DEF {name}()\n{RISES if count == 1 else ''}{moves}END\n")
+            held_file.write(f"DEF {name}()\n{RISES if count == 1 else ''}{moves}END\n")
         yield f"DEF {MAIN}()\n{setup}{calls}{end}"
-        held.seek(0)
-        while piece := held.read(1_000_000):
+        held_file.seek(0)
+        while piece := held_file.read(1_000_000):
             yield piece
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs in a dictionary of names, the main one's as ""."""
-    found = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
-    named = {re.match(r"DEF (\w+)", each)[1]: each for each in found}
-    return {"" if name == MAIN else name: each for name, each in named.items()}
+    """Return the texts of a stream of programs, keyed by program name.
+
+    The main program has the name "".
+    """
+    program_texts = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
+    texts_by_name = {re.match(r"DEF (\w+)", program_text)[1]: program_text for program_text in program_texts}
+    return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
 
 
 def called(text: str) -> list[str]:
-    """Names of the programs that one calls, in order, each once."""
-    found = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
-    return list(dict.fromkeys(each[1].upper() for each in found))
+    """Return the names of the programs that a program calls.
+
+    They are in order and without repetition.
+    """
+    calls = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
+    return list(dict.fromkeys(call[1].upper() for call in calls))
 
 
 def comment(text: str) -> str:
-    return f"; {plain(text, LINE_LIMIT - 2)}\n"
+    return f"; {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
-def _rise(height: str, speed_mm_s: float) -> str:
+def _rise_lines(height: str, speed_mm_s: float) -> str:
     return (
-        f"here = $POS_ACT\n{_speed(speed_mm_s)}"
+        f"here = $POS_ACT\n{_speed_line(speed_mm_s)}"
         f"IF here.Z < {height} THEN\n  here.Z = {height}\n  LIN here\nENDIF\n"
     )
 
 
-def _lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
-    yield _speed(move.speed_mm_s)
+def _move_lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
+    yield _speed_line(move.speed_mm_s)
     point = f"{{X %.{decimals}f, Y %.{decimals}f, Z %.{decimals}f, {turned}}}"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"CIRC {point}, {point}", values, decimals)
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
+        yield from format_rows(f"CIRC {point}, {point}", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     values, is_blended = np.column_stack([blends, move.points_mm]), blends > 0
     for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
         if is_blended[run[0]]:
-            yield from rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
+            yield from format_rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
         else:
-            yield from rows(f"LIN {point}", values[run, 1:], decimals)
+            yield from format_rows(f"LIN {point}", values[run, 1:], decimals)
 
 
-def _tilted(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
-    yield _speed(move.speed_mm_s)
+def _tilted_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
+    """Yield the lines of a move that tilts the brush.
+
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
+    """
+    yield _speed_line(move.speed_mm_s)
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
-    stands = _angles(rotation_deg(upright))
-    rows_of = zip(move.points_mm, turned_at(move, upright), blends.tolist(), strict=True)
+    upright_angles = _abc_text(rotation_deg(upright))
+    rows_of = zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True)
     for point, turned, blend in rows_of:
-        x, y, z = numbers(point, decimals).split(", ")
-        angles = stands if turned is None else _angles(rotation_deg(turned))
+        x, y, z = join_numbers(point, decimals).split(", ")
+        angles = upright_angles if turned is None else _abc_text(rotation_deg(turned))
         place = f"{{X {x}, Y {y}, Z {z}, {angles}}}"
-        yield f"$APO.CDIS = {number(blend, decimals)}\nLIN {place} C_DIS\n" if blend > 0 else f"LIN {place}\n"
+        yield (
+            f"$APO.CDIS = {format_number(blend, decimals)}\nLIN {place} C_DIS\n"
+            if blend > 0
+            else f"LIN {place}\n"
+        )
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
         return comment(f"stop: {step.message}") + "HALT\n"
-    return f"WAIT SEC {number(step.seconds, 3)}\n"
+    return f"WAIT SEC {format_number(step.seconds, 3)}\n"
 
 
-def _speed(speed_mm_s: float) -> str:
-    return f"$VEL.CP = {rounded_down(speed_mm_s / 1e3, SPEED_DECIMALS)}\n"
+def _speed_line(speed_mm_s: float) -> str:
+    return f"$VEL.CP = {format_rounded_down(speed_mm_s / 1e3, SPEED_DECIMALS)}\n"
 
 
-def _frame(frame: np.ndarray, decimals: int) -> str:
-    x, y, z = numbers(frame[:3, 3], decimals).split(", ")
-    return f"{{X {x}, Y {y}, Z {z}, {_angles(rotation_deg(frame[:3, :3]))}}}"
+def _frame_text(frame: np.ndarray, decimals: int) -> str:
+    x, y, z = join_numbers(frame[:3, 3], decimals).split(", ")
+    return f"{{X {x}, Y {y}, Z {z}, {_abc_text(rotation_deg(frame[:3, :3]))}}}"
 
 
-def _angles(about_xyz_deg: np.ndarray) -> str:
-    """A turns about z, then B about the new y, then C about the newest x: the same as fixed x, y, z backwards."""
-    a, b, c = numbers(about_xyz_deg[::-1], DEGREE_DECIMALS).split(", ")
+def _abc_text(about_xyz_deg: np.ndarray) -> str:
+    """Return A, B and C for angles about the fixed axes x, y and z.
+
+    A turns about z, then B about the new y, then C about the newest x. These are the angles about fixed axes in reverse
+    order.
+    """
+    a, b, c = join_numbers(about_xyz_deg[::-1], DEGREE_DECIMALS).split(", ")
     return f"A {a}, B {b}, C {c}"

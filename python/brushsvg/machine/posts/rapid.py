@@ -1,4 +1,7 @@
-"""Moves -> RAPID (.mod) for ABB robots: millimetres, the paper as a work object, the brush's tip as the tool."""
+"""Write RAPID (.mod) for ABB robots.
+
+Units are millimetres. The paper is a work object, and the brush's tip is the tool.
+"""
 
 from __future__ import annotations
 
@@ -7,17 +10,26 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, quaternion
-from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, blends_mm, body, down, numbers, rounded_down, turned_at
-from .text import number, plain, rows
+from ..motion import Move, Program, Wait, via_point
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    down,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
-TURN_DECIMALS = 7  # of quaternions: a tenth of a micrometre at a metre
+TURN_DECIMALS = 7  # decimals of quaternions: a tenth of a micrometre at a distance of a metre
 SPEED_DECIMALS = 3
 STRING_LIMIT = 60
 RAPID_END = "end: the brush is held up"
-BRUSH_KG = 0.5  # nobody has weighed it; a load of 0 would be refused
-USED = r"brush\WObj:=paper"
+BRUSH_KG = 0.5  # an assumed weight, because the robot refuses a load of 0
+TOOL_AND_WORK_OBJECT = r"brush\WObj:=paper"
 
 _FUNCTIONS = """
   FUNC speeddata mm_s(num speed)
@@ -34,18 +46,21 @@ _FUNCTIONS = """
 
 
 def rapid(program: Program) -> Iterator[str]:
-    """A module whose routine paint does all. The points are those of the work object paper: to teach it anew, only its
-    line has to change. Configurations are free: the robot keeps the one in which it was put over the sheet."""
+    """Write a module whose routine `paint` does everything.
+
+    Points are in the work object `paper`. To teach the paper anew, only the line of the work object has to change.
+    Configurations are free, so the robot keeps the configuration in which it was put over the sheet.
+    """
     cell, decimals = program.cell, program.cell.decimals
-    acceleration = rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
+    acceleration = format_rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     load = f"[{BRUSH_KG}, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]"
-    stands = down(cell.tool.spin_deg)
-    upright = _turned(stands)
-    paper = _pose(program.robot_from_frame, decimals)
+    upright_rotation = down(cell.tool.spin_deg)
+    upright = _quaternion_text(upright_rotation)
+    paper = _pose_text(program.robot_from_frame, decimals)
     yield "MODULE brushsvg\n"
     yield "".join(map(comment, program.header))
-    yield f"  LOCAL PERS tooldata brush := [TRUE, {_pose(tool, decimals)}, {load}];\n"
+    yield f"  LOCAL PERS tooldata brush := [TRUE, {_pose_text(tool, decimals)}, {load}];\n"
     yield (
         f'  LOCAL PERS wobjdata paper := [FALSE, TRUE, "", {paper}, [[0, 0, 0], [1, 0, 0, 0]]];\n'
         "  LOCAL VAR robtarget here;\n\n"
@@ -62,67 +77,77 @@ def rapid(program: Program) -> Iterator[str]:
     yield _FUNCTIONS
     yield "\n  PROC paint()\n    ConfL \\Off;\n"
     yield f"    PathAccLim TRUE \\AccMax:={acceleration}, TRUE \\DecelMax:={acceleration};\n"
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: _rise(program.rise_mm, speed, decimals),
-        _wait,
-        lambda move: _lines(move, stands, decimals),
+        lambda speed: _rise_lines(program.rise_mm, speed, decimals),
+        _wait_lines,
+        lambda move: _move_lines(move, upright_rotation, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield "\n" + comment(RAPID_END) + "  ENDPROC\nENDMODULE\n"
 
 
 def comment(text: str) -> str:
-    return f"  ! {plain(text, LINE_LIMIT - 4)}\n"
+    return f"  ! {plain_text(text, LINE_LIMIT - 4)}\n"
 
 
-def _rise(height_mm: float, speed_mm_s: float, decimals: int) -> str:
-    height = number(height_mm, decimals)
+def _rise_lines(height_mm: float, speed_mm_s: float, decimals: int) -> str:
+    height = format_number(height_mm, decimals)
     return (
         "    here := CRobT(\\Tool:=brush \\WObj:=paper);\n"
         f"    IF here.trans.z < {height} THEN\n"
         f"      here.trans.z := {height};\n"
-        f"      MoveL here, mm_s({rounded_down(speed_mm_s, SPEED_DECIMALS)}), fine, {USED};\n"
+        f"      MoveL here, mm_s({format_rounded_down(speed_mm_s, SPEED_DECIMALS)}), fine, {TOOL_AND_WORK_OBJECT};\n"
         "    ENDIF\n"
     )
 
 
-def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    speed = f"mm_s({rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
+def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
+    speed = f"mm_s({format_rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]])
-        yield from rows(f"    MoveC {point}, {point}, {speed}, fine, {USED};", values, decimals)
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
+        yield from format_rows(
+            f"    MoveC {point}, {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", values, decimals
+        )
         return
     if move.axes is not None:
-        yield from _tilted(move, upright, speed, decimals)
+        yield from _tilted_lines(move, upright, speed, decimals)
         return
     if move.blends_mm is None:
-        yield from rows(f"    MoveL {point}, {speed}, fine, {USED};", move.points_mm, decimals)
+        yield from format_rows(
+            f"    MoveL {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", move.points_mm, decimals
+        )
         return
     values = np.column_stack([move.points_mm, blends_mm(move, decimals)])
-    yield from rows(f"    MoveL {point}, {speed}, within(%.{decimals}f), {USED};", values, decimals)
+    yield from format_rows(
+        f"    MoveL {point}, {speed}, within(%.{decimals}f), {TOOL_AND_WORK_OBJECT};", values, decimals
+    )
 
 
-def _tilted(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
-    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
+def _tilted_lines(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
+    """Yield the lines of a move that tilts the brush.
+
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
+    """
     blends = None if move.blends_mm is None else blends_mm(move, decimals)
-    for k, (point, turned) in enumerate(zip(move.points_mm, turned_at(move, upright), strict=True)):
-        place = numbers(point, decimals)
-        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_turned(turned)})"
-        zone = "fine" if blends is None else f"within({number(blends[k], decimals)})"
-        yield f"    MoveL {place}, {speed}, {zone}, {USED};\n"
+    for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):
+        place = join_numbers(point, decimals)
+        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_quaternion_text(turned)})"
+        zone = "fine" if blends is None else f"within({format_number(blends[k], decimals)})"
+        yield f"    MoveL {place}, {speed}, {zone}, {TOOL_AND_WORK_OBJECT};\n"
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
-        return f'    TPWrite "{plain(step.message, STRING_LIMIT).translate(QUIET)}";\n    Stop;\n'
-    return f"    WaitTime \\InPos, {number(step.seconds, 3)};\n"
+        return f'    TPWrite "{plain_text(step.message, STRING_LIMIT).translate(QUOTE_REPLACEMENTS)}";\n    Stop;\n'
+    return f"    WaitTime \\InPos, {format_number(step.seconds, 3)};\n"
 
 
-def _pose(frame: np.ndarray, decimals: int) -> str:
-    return f"[[{numbers(frame[:3, 3], decimals)}], [{_turned(frame[:3, :3])}]]"
+def _pose_text(frame: np.ndarray, decimals: int) -> str:
+    return f"[[{join_numbers(frame[:3, 3], decimals)}], [{_quaternion_text(frame[:3, :3])}]]"
 
 
-def _turned(turned: np.ndarray) -> str:
-    return numbers(quaternion(turned), TURN_DECIMALS)
+def _quaternion_text(turned: np.ndarray) -> str:
+    return join_numbers(quaternion(turned), TURN_DECIMALS)

@@ -1,4 +1,4 @@
-"""What every language needs: comments that stay comments, numbers that nobody misreads."""
+"""Text for all languages: safe comments and unambiguous numbers."""
 
 from __future__ import annotations
 
@@ -10,15 +10,20 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 BRACKETS = {ord("("): "[", ord(")"): "]"}
-AT_ONCE = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
-ENDS = {ord(";"): ","}  # an instruction of TP, and of HP-GL
-QUOTES = {ord('"'): "'"}  # that end a comment of HP-GL
-NAMED = 40  # letters of a name that no line of a program is too short for
-ROWS_AT_ONCE = 10_000  # of points that become text: some megabytes, for any stroke length
+IMMEDIATE_COMMANDS = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
+STATEMENT_ENDS = {ord(";"): ","}  # ends an instruction of TP and of HP-GL
+QUOTES = {ord('"'): "'"}  # ends a comment of HP-GL
+NAMED = 40  # length of a name that fits in a line of any program
+MAX_ROWS_AT_ONCE = (
+    10_000  # points that become text at once; limits the memory to some megabytes for long strokes
+)
 
 
-def plain(text: str, room: int) -> str:
-    """One line of 7-bit text of at most room letters: accents go, what has no such letter becomes '?'."""
+def plain_text(text: str, room: int) -> str:
+    """Return a text as one line of 7-bit text with at most `room` letters.
+
+    Accents are removed, and other letters become '?'.
+    """
     letters = unicodedata.normalize("NFKD", text)
     letters = "".join(letter for letter in letters if not unicodedata.combining(letter))
     letters = "".join(
@@ -28,35 +33,50 @@ def plain(text: str, room: int) -> str:
 
 
 def spelled(text: str) -> str:
-    """A text with no letter that some language leaves out: what any program makes of it, until it is cut."""
-    return plain(text, len(text) * 18).translate(BRACKETS | AT_ONCE | ENDS | QUOTES)
+    """Return a text as every language can write it, not yet shortened."""
+    return plain_text(text, len(text) * 18).translate(BRACKETS | IMMEDIATE_COMMANDS | STATEMENT_ENDS | QUOTES)
 
 
-def make_unique(names: Sequence[str]) -> list[str]:
-    """The names, with their number where a program would write them like another one, or as nothing at all."""
-    short = [spelled(name)[:NAMED] for name in names]
-    has_own = [
-        short.count(each) == 1 and re.search("[0-9A-Za-z]", each) and not each.startswith("station ")
-        for each in short
+def make_unique_names(names: Sequence[str]) -> list[str]:
+    """Return names that stay distinct in a program.
+
+    A name that a program would write like another name, or as nothing, gets its number.
+    """
+    short_names = [spelled(name)[:NAMED] for name in names]
+    has_own_name = [
+        short_names.count(short_name) == 1
+        and re.search("[0-9A-Za-z]", short_name)
+        and not short_name.startswith("station ")
+        for short_name in short_names
     ]
     return [
-        name if own else f"station {number}, {name}"
-        for number, (name, own) in enumerate(zip(names, has_own, strict=True), 1)
+        name if is_kept else f"station {number}, {name}"
+        for number, (name, is_kept) in enumerate(zip(names, has_own_name, strict=True), 1)
     ]
 
 
-def number(value: float, decimals: int) -> str:
-    """Fixed decimals, a point in any locale, no minus sign before a zero."""
+def format_number(value: float, decimals: int) -> str:
+    """Format a number with fixed decimals.
+
+    It has a point in any locale, and a zero has no minus sign.
+    """
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 
-def rows(pattern: str, values: np.ndarray, decimals: int) -> Iterator[str]:
-    """A line for every row of values (n, k), by a pattern with k places such as %.4f, in pieces of many lines."""
-    for first in range(0, len(values), ROWS_AT_ONCE):
-        part = np.round(values[first : first + ROWS_AT_ONCE], decimals) + 0.0  # -0.0 + 0.0 is 0.0
+def format_rows(pattern: str, values: np.ndarray, decimals: int) -> Iterator[str]:
+    """Yield text with a line for every row of values (n, k), in pieces of many lines.
+
+    pattern: a line with k fields such as %.4f.
+    """
+    for first in range(0, len(values), MAX_ROWS_AT_ONCE):
+        # Adding 0.0 turns -0.0 into 0.0.
+        part = np.round(values[first : first + MAX_ROWS_AT_ONCE], decimals) + 0.0
         yield "\n".join([pattern] * len(part)) % tuple(part.ravel().tolist()) + "\n"
 
 
-def feed_mm_min(speed_mm_s: float) -> float:
-    """mm/min in steps of 0.1, rounded down, so that a limit is kept; but not to 0, at which a machine stands still."""
+def feed_of_speed_mm_min(speed_mm_s: float) -> float:
+    """Return the feed [mm/min] of a speed, rounded down to a multiple of 0.1.
+
+    Rounding down keeps limits. The feed is never 0, at which a machine would stand still.
+    """
     return max(math.floor(600.0 * speed_mm_s + 1e-6), 1) / 10

@@ -1,4 +1,7 @@
-"""Moves -> URScript for Universal Robots: metres, rotation vectors, the paper as a plane of its own."""
+"""Write URScript for Universal Robots.
+
+Units are metres, and rotations are rotation vectors. Points are on the paper's plane.
+"""
 
 from __future__ import annotations
 
@@ -8,46 +11,51 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
-from ..motion import Move, Program, Wait, via
-from .script import QUIET, Words, down, parts, turned_at
-from .text import number, plain, rows
+from ..motion import Move, Program, Wait, via_point
+from .script import QUOTE_REPLACEMENTS, LanguageWords, down, split_into_parts, tool_rotations_at
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
-LEAST_BLEND_M = 5e-6  # what would be written as less is no blend
-M = 1e-3
-WATCHED = "  watching = run watch()\n"
+MIN_BLEND_M = 5e-6  # a smaller blend is written as 0
+M_PER_MM = 1e-3
+START_WATCH = "  watching = run watch()\n"
 BEGIN, END = "def brushsvg():\n", "end\nbrushsvg()\n"
 NEXT = "brushsvg: go on with part"
 
 
 def urscript(program: Program) -> Iterator[str]:
-    """A program that can be run from the pendant or sent to the robot; a long job is several, each of them whole, that
-    run one after the other. The points are those of the paper's plane: to teach the paper anew, only the line that sets
-    it has to change."""
+    """Write a program that can be run from the pendant or sent to the robot.
+
+    A long job becomes several complete programs that run one after the other. Points are on the paper's plane. To teach
+    the paper anew, only the line that sets the plane has to change.
+    """
     decimals = program.cell.decimals + 3
     tool = program.cell.tool
     tcp = frame_of_pose(np.array(tool.tcp_mm), tool.rotation_deg)
-    acceleration = number(program.cell.speeds.acceleration_mm_s2 * M, 4)
-    header = "".join(f"  # {plain(line, LINE_LIMIT - 4)}\n" for line in program.header)
-    setup = f"  set_tcp({_pose(tcp, decimals)})\n  paper = {_pose(program.robot_from_frame, decimals)}\n"
+    acceleration = format_number(program.cell.speeds.acceleration_mm_s2 * M_PER_MM, 4)
+    header = "".join(f"  # {plain_text(line, LINE_LIMIT - 4)}\n" for line in program.header)
+    setup = f"  set_tcp({_pose_text(tcp, decimals)})\n  paper = {_pose_text(program.robot_from_frame, decimals)}\n"
     upright = down(tool.spin_deg)
     setup += "  def on_paper(x, y, z):\n"
-    setup += f"    return pose_trans(paper, p[x, y, z, {_vector(upright, decimals)}])\n  end\n"
+    setup += f"    return pose_trans(paper, p[x, y, z, {_rotation_text(upright, decimals)}])\n  end\n"
     if program.tilts:
         setup += "  def tilted(x, y, z, rx, ry, rz):\n"
         setup += "    return pose_trans(paper, p[x, y, z, rx, ry, rz])\n  end\n"
     contact = program.cell.contact
     if contact:
-        setup += _watch(contact.force_n)
-    begin = f"  zero_ftsensor()\n{WATCHED}" if contact else ""  # held high, where nothing presses
-    words = Words(
-        lambda title: f"  # {plain(title, LINE_LIMIT - 4)}\n",
-        lambda speed: _rise(program.rise_mm, speed, acceleration, decimals) + begin,
-        lambda step: _wait(step, contact is not None),
-        lambda move: _lines(move, upright, acceleration, decimals),
+        setup += _watch_thread(contact.force_n)
+    # The tool is high, and nothing presses on the sensor.
+    begin = f"  zero_ftsensor()\n{START_WATCH}" if contact else ""
+    words = LanguageWords(
+        lambda title: f"  # {plain_text(title, LINE_LIMIT - 4)}\n",
+        lambda speed: _rise_lines(program.rise_mm, speed, acceleration, decimals) + begin,
+        lambda step: _wait_lines(step, contact is not None),
+        lambda move: _move_lines(move, upright, acceleration, decimals),
     )
-    around = (BEGIN + header + setup + END).count("\n") + 2  # its number, and the next one's
-    for count, moves in enumerate(parts(program, words, around, rises_again=True), 1):
+    around = (BEGIN + header + setup + END).count(
+        "\n"
+    ) + 2  # two more lines: the number of the part, and the number of the next part
+    for count, moves in enumerate(split_into_parts(program, words, around, rises_again=True), 1):
         if count > 1:
             yield f'  textmsg("{NEXT} {count}")\n{END}'
         part = f"  # part: {count}\n" if count > 1 else ""
@@ -57,35 +65,43 @@ def urscript(program: Program) -> Iterator[str]:
 
 
 def programs(text: str) -> dict[str, str]:
-    """The texts of a stream of programs by what their files' names end in, the first one's as ""."""
-    found = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
-    return {part_file(count) if count > 1 else "": each for count, each in enumerate(found, 1)}
+    """Return the texts of a stream of programs.
+
+    The keys are the ends of their file names. The first program has the key "".
+    """
+    part_texts = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
+    return {
+        part_suffix(count) if count > 1 else "": part_text for count, part_text in enumerate(part_texts, 1)
+    }
 
 
-def part_file(count: int) -> str:
+def part_suffix(count: int) -> str:
     return f"-part{count}"
 
 
 def called(text: str) -> list[str]:
-    """What the name of the file ends in that is run next, if any."""
-    found = re.findall(rf'^ *textmsg\("{NEXT} (\d{{1,6}})"\) *$', text, re.MULTILINE)
-    return [part_file(int(count)) for count in found]
+    """Return the end of the name of the next file, if there is one."""
+    part_numbers = re.findall(rf'^ *textmsg\("{NEXT} (\d{{1,6}})"\) *$', text, re.MULTILINE)
+    return [part_suffix(int(count)) for count in part_numbers]
 
 
-def _rise(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
-    height = number(height_mm * M, decimals)
+def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
+    height = format_number(height_mm * M_PER_MM, decimals)
     return (
         "  here = pose_trans(pose_inv(paper), get_actual_tcp_pose())\n"
         f"  if here[2] < {height}:\n"
         f"    movel(pose_trans(paper, p[here[0], here[1], {height}, here[3], here[4], here[5]]), "
-        f"a={acceleration}, v={number(speed_mm_s * M, 4)})\n"
+        f"a={acceleration}, v={format_number(speed_mm_s * M_PER_MM, 4)})\n"
         "  end\n"
     )
 
 
-def _watch(force_n: float) -> str:
-    """A thread that runs with the moves: the whole program ends where the tool is pressed harder."""
-    newtons = number(force_n, 1)
+def _watch_thread(force_n: float) -> str:
+    """Return a thread that ends the whole program on hard contact.
+
+    The limit is force_n.
+    """
+    newtons = format_number(force_n, 1)
     return (
         "  thread watch():\n"
         "    while True:\n"
@@ -99,55 +115,69 @@ def _watch(force_n: float) -> str:
     )
 
 
-def _lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) -> Iterator[str]:
-    speed = number(max(np.floor(move.speed_mm_s * M * 1e5) / 1e5, 1e-5), 5)
+def _move_lines(move: Move, upright: np.ndarray, acceleration: str, decimals: int) -> Iterator[str]:
+    speed = format_number(max(np.floor(move.speed_mm_s * M_PER_MM * 1e5) / 1e5, 1e-5), 5)
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
-        values = np.array([[*via(move.points_mm), *move.points_mm[-1]]]) * M
-        yield from rows(
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]]) * M_PER_MM
+        yield from format_rows(
             f"  movec({point}, {point}, a={acceleration}, v={speed}, r=0.0, mode=1)", values, decimals
         )
         return
     if move.axes is not None:
-        yield from _tilted(move, upright, f"a={acceleration}, v={speed}", decimals)
+        yield from _tilted_lines(move, upright, f"a={acceleration}, v={speed}", decimals)
         return
-    points = move.points_mm * M
+    points = move.points_mm * M_PER_MM
     if move.blends_mm is None or len(points) == 1:
-        yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points, decimals)
+        yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points, decimals)
         return
-    blends = move.blends_mm[:-1, None] * M
-    blends = np.where(blends < LEAST_BLEND_M, 0.0, blends)
-    # movep keeps the speed of the tool; the last one stops, since what follows may turn back, which movep cannot
+    blends = move.blends_mm[:-1, None] * M_PER_MM
+    blends = np.where(blends < MIN_BLEND_M, 0.0, blends)
+    # movep keeps the speed of the tool. The last move stops, because the next one may turn back, which movep cannot.
     values = np.hstack([points[:-1], blends])
-    yield from rows(f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals)
-    yield from rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
+    yield from format_rows(
+        f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals
+    )
+    yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
 
 
-def _tilted(move: Move, upright: np.ndarray, at_most: str, decimals: int) -> Iterator[str]:
-    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
+def _tilted_lines(move: Move, upright: np.ndarray, at_most: str, decimals: int) -> Iterator[str]:
+    """Yield the lines of a move that tilts the brush.
+
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
+    """
     last = len(move.points_mm) - 1
-    blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M
-    for k, (point, turned) in enumerate(zip(move.points_mm * M, turned_at(move, upright), strict=True)):
-        place = ", ".join(number(value, decimals) for value in point)
-        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_vector(turned, decimals)})"
+    blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M_PER_MM
+    for k, (point, turned) in enumerate(
+        zip(move.points_mm * M_PER_MM, tool_rotations_at(move, upright), strict=True)
+    ):
+        place = ", ".join(format_number(value, decimals) for value in point)
+        place = (
+            f"on_paper({place})" if turned is None else f"tilted({place}, {_rotation_text(turned, decimals)})"
+        )
         if move.blends_mm is None or k == last:
             yield f"  movel({place}, {at_most})\n"
         else:
-            blend = blends[k] if blends[k] >= LEAST_BLEND_M else 0.0
-            yield f"  movep({place}, {at_most}, r={number(blend, decimals)})\n"
+            blend = blends[k] if blends[k] >= MIN_BLEND_M else 0.0
+            yield f"  movep({place}, {at_most}, r={format_number(blend, decimals)})\n"
 
 
-def _wait(step: Wait, is_watched: bool) -> str:
+def _wait_lines(step: Wait, is_watched: bool) -> str:
     if step.seconds is None:
-        asks = f'  popup("{plain(step.message, 60).translate(QUIET)}", "brushsvg", False, False, blocking=True)\n'
-        return f"  kill watching\n{asks}{WATCHED}" if is_watched else asks  # a hand may be at the brush
-    return f"  sleep({number(step.seconds, 3)})\n"
+        popup = (
+            f'  popup("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}", '
+            '"brushsvg", False, False, blocking=True)\n'
+        )
+        # A person may touch the brush during the wait.
+        return f"  kill watching\n{popup}{START_WATCH}" if is_watched else popup
+    return f"  sleep({format_number(step.seconds, 3)})\n"
 
 
-def _pose(frame: np.ndarray, decimals: int) -> str:
-    place = ", ".join(number(value * M, decimals) for value in frame[:3, 3])
-    return f"p[{place}, {_vector(frame[:3, :3], decimals)}]"
+def _pose_text(frame: np.ndarray, decimals: int) -> str:
+    place = ", ".join(format_number(value * M_PER_MM, decimals) for value in frame[:3, 3])
+    return f"p[{place}, {_rotation_text(frame[:3, :3], decimals)}]"
 
 
-def _vector(turned: np.ndarray, decimals: int) -> str:
-    return ", ".join(number(value, decimals) for value in rotation_vector(turned))
+def _rotation_text(turned: np.ndarray, decimals: int) -> str:
+    return ", ".join(format_number(value, decimals) for value in rotation_vector(turned))

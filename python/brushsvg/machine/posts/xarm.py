@@ -1,4 +1,7 @@
-"""Moves -> Python (.py) for UFACTORY xArm by the vendor's SDK: millimetres, degrees, points in the arm's base frame."""
+"""Write Python (.py) for UFACTORY xArm with the vendor's SDK.
+
+Units are millimetres and degrees. Points are in the arm's base frame.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +12,27 @@ import numpy as np
 
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Wait
-from .script import QUIET, Words, blends_mm, body, numbers, rounded_down, turned_at, upright_deg
-from .text import number, plain, rows
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    blends_mm,
+    format_rounded_down,
+    join_numbers,
+    tool_rotations_at,
+    upright_deg,
+    write_sections,
+)
+from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
 SPEED_DECIMALS = 3
-# of a blend: the SDK does not say whether a radius is the circle's, or how far before the corner it begins; for turns
-# of up to 100 degrees, where brushsvg blends, so much cuts a corner by no more than the tolerance in both readings
-BLENDED = 0.8
+# Fraction of a blend's distance that is written as its radius. The SDK does not say whether a radius is the radius of
+# the circle or the distance before the corner. brushsvg blends turns of up to 100 degrees. With this fraction, both
+# readings cut the corner by at most the tolerance.
+BLEND_FRACTION = 0.8
 XARM_END = "end: the brush is held up"
-NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # sets the encoding of a file in Python
+NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # text that Python would read as the encoding of the file
 
 BEFORE = """import sys
 
@@ -75,58 +88,67 @@ AFTER = "arrive()\narm.disconnect()\n"
 
 
 def xarm(program: Program) -> Iterator[str]:
-    """A script for a computer next to the arm, which sends the moves one by one; the SDK waits while the arm's list of
-    them is full. Turns of the brush are lines: the SDK defines a circle by its share of a whole one, not by its end."""
+    """Write a script for a computer next to the arm.
+
+    The computer sends the moves one by one. The SDK waits while the arm's queue of moves is full. Circles are written
+    as lines, because the SDK defines a circle by its share of a whole turn and not by its end.
+    """
     cell, decimals = program.cell, program.cell.decimals
-    tool = numbers(cell.tool.tcp_mm, decimals), numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
+    tool = join_numbers(cell.tool.tcp_mm, decimals), join_numbers(cell.tool.rotation_deg, DEGREE_DECIMALS)
     yield NAMES_LETTERS.sub("coding ", "".join(map(comment, program.header)))
     yield BEFORE
-    yield f"\nUPRIGHT = ({numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
+    yield f"\nUPRIGHT = ({join_numbers(upright_deg(cell), DEGREE_DECIMALS)})\n"
     yield f"TOOL = [{tool[0]}, {tool[1]}]\n"
-    yield f"MOST = {rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
+    yield f"MOST = {format_rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}\n"
     yield FUNCTIONS.replace(BEFORE_ARM, TILTED + BEFORE_ARM) if program.tilts else FUNCTIONS
     if cell.contact:
         yield f"done(arm.set_collision_sensitivity({cell.contact.sensitivity}))\n"
     yield READY
     upright = rotation(upright_deg(cell))
-    words = Words(
+    words = LanguageWords(
         comment,
-        lambda speed: f"rise({number(program.rise_mm, decimals)}, {rounded_down(speed, SPEED_DECIMALS)})\n",
-        _wait,
-        lambda move: _lines(move, upright, decimals),
+        lambda speed: (
+            f"rise({format_number(program.rise_mm, decimals)}, {format_rounded_down(speed, SPEED_DECIMALS)})\n"
+        ),
+        _wait_lines,
+        lambda move: _move_lines(move, upright, decimals),
     )
-    yield from body(program, words)
+    yield from write_sections(program, words)
     yield f"\n{AFTER}" + comment(XARM_END)
 
 
 def comment(text: str) -> str:
-    return f"# {plain(text, LINE_LIMIT - 2)}\n"
+    return f"# {plain_text(text, LINE_LIMIT - 2)}\n"
 
 
-def _lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    speed = rounded_down(move.speed_mm_s, SPEED_DECIMALS)
+def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
+    speed = format_rounded_down(move.speed_mm_s, SPEED_DECIMALS)
     point = f"go(%.{decimals}f, %.{decimals}f, %.{decimals}f, {speed}"
     if move.axes is not None:
-        yield from _tilted(move, upright, speed, decimals)
+        yield from _tilted_lines(move, upright, speed, decimals)
         return
     if move.blends_mm is None:
-        yield from rows(f"{point}, None)", move.points_mm, decimals)
+        yield from format_rows(f"{point}, None)", move.points_mm, decimals)
         return
-    values = np.column_stack([move.points_mm, blends_mm(move, decimals, BLENDED)])
-    yield from rows(f"{point}, %.{decimals}f)", values, decimals)
+    values = np.column_stack([move.points_mm, blends_mm(move, decimals, BLEND_FRACTION)])
+    yield from format_rows(f"{point}, %.{decimals}f)", values, decimals)
 
 
-def _tilted(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
-    """The same moves, each with how the tool is held at its end; where that is upright as all others are written."""
-    blends = None if move.blends_mm is None else blends_mm(move, decimals, BLENDED)
-    for k, (point, turned) in enumerate(zip(move.points_mm, turned_at(move, upright), strict=True)):
-        place = numbers(point, decimals)
-        radius = "None" if blends is None else number(blends[k], decimals)
-        angles = "" if turned is None else f", {numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
+def _tilted_lines(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
+    """Yield the lines of a move that tilts the brush.
+
+    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
+    moves.
+    """
+    blends = None if move.blends_mm is None else blends_mm(move, decimals, BLEND_FRACTION)
+    for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):
+        place = join_numbers(point, decimals)
+        radius = "None" if blends is None else format_number(blends[k], decimals)
+        angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
         yield f"{'lean' if angles else 'go'}({place}{angles}, {speed}, {radius})\n"
 
 
-def _wait(step: Wait) -> str:
+def _wait_lines(step: Wait) -> str:
     if step.seconds is None:
-        return f'stop("{plain(step.message, 60).translate(QUIET)}")\n'
-    return f"rest({number(step.seconds, 3)})\n"
+        return f'stop("{plain_text(step.message, 60).translate(QUOTE_REPLACEMENTS)}")\n'
+    return f"rest({format_number(step.seconds, 3)})\n"

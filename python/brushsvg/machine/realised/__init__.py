@@ -1,1 +1,1 @@
-"""The motion that an inexact machine makes of a pass."""
+"""The true motion of an inexact machine, and commands that correct it."""

@@ -1,4 +1,4 @@
-"""The same pass on another way."""
+"""Passes on other paths."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from ... import _core
 
 
 def on_way(a_pass, poses_mm, arcs, tool_axes=None):
-    """Return the pass, with all its settings, along other poses (n, 3) and arcs; tool_axes: (n, 3) how the brush is
-    held there. Error for a tilted one where that is not known."""
+    """Return a pass with all its settings along other poses (n, 3) and arcs.
+
+    tool_axes: (n, 3) the brush's axes at the poses. If they are None, a pass with a tilted brush raises Error.
+    """
     if tool_axes is None:
         _core.refuse_tilted([a_pass], "a pass is moved to another way with the brush upright")
     return _core.Pass(
