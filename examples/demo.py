@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from brushsvg.cli.console import RefusedError, about, say_notice, warn
+from brushsvg.cli.console import RefusedError, refuse_errors, say_notice, warn
 from brushsvg.files import write_files
 from brushsvg.jobs import outputs, prediction
 from brushsvg.jobs.comparison_picture import comparison_png
@@ -62,7 +62,7 @@ if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     try:
-        with about(sys.argv[1]):
+        with refuse_errors(sys.argv[1]):
             main(Path(sys.argv[1]), Path(sys.argv[2]))
     except RefusedError as refused:
         for notice in refused.why:
