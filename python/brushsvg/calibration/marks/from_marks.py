@@ -15,7 +15,7 @@ from ...model import footprint_shapes
 from ...model.confidence import half_interval_mm, places
 from ...model.laws.fitted import need_fits
 from ..numbers.from_widths import outlines_assumed
-from ..numbers.plausibility import BEYOND
+from ..numbers.plausibility import MAX_DEPTH_PER_MEASURED
 from .ink_depletion import RanDry
 from .machine_found import PARTS, Number, ask_for, numbers
 from .mark_input import UPRIGHT, Painted, depths_painted, middle
@@ -88,7 +88,7 @@ def calibrate_marks(
             "depth_range_mm",
             code="depth-out-of-range",
         )
-    if deepest > BEYOND * painted.deepest_mm:
+    if deepest > MAX_DEPTH_PER_MEASURED * painted.deepest_mm:
         raise Error(
             f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
             f'mm: paint deeper ones, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',

@@ -1,4 +1,4 @@
-"""What a calibration of measured numbers found: a verdict, its laws, what to measure next; and as a picture."""
+"""Report a calibration of measured numbers: a verdict, the laws, what to measure next; and a picture of it."""
 
 from __future__ import annotations
 
@@ -11,24 +11,26 @@ from ..law_text import coefficients, in_short, laws_table, name_and_depths
 
 
 def report(made) -> Report:
-    """What `brushsvg calibrate` prints. made: a from_measurements.Calibration."""
+    """Return the report that `brushsvg calibrate` prints. made: a from_measurements.Calibration."""
     brush = made.brush
-    odd = sum(len(fitted.list_outliers()) for fitted in made.laws)
+    outlier_count = sum(len(fitted.list_outliers()) for fitted in made.laws)
     assumed = [fitted.name for fitted in made.laws if fitted.fit is None]
-    unsure = [
+    without_interval = [
         fitted.name for fitted in made.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
     ]
-    but = [
+    reservations = [
         f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured"
         if assumed
         else "",
-        f"{plural(odd, 'value')} should be measured again" if odd else "",
-        f"{' and '.join(unsure)} has too few values for a confidence interval" if unsure else "",
+        f"{plural(outlier_count, 'value')} should be measured again" if outlier_count else "",
+        f"{' and '.join(without_interval)} has too few values for a confidence interval"
+        if without_interval
+        else "",
         *(notice.sentence for notice in made.doubts),
     ]
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}",
-        *(_how_known(brush, fitted) for fitted in made.laws),
+        *(_describe_fit(brush, fitted) for fitted in made.laws),
     ]
     for fitted in made.laws:
         lines += [f"{fitted.name}: {remark}" for remark in (*fitted.list_outliers(), *fitted.remarks)]
@@ -38,10 +40,10 @@ def report(made) -> Report:
         "",
         *coefficients(brush),
     ]
-    return Report(verdict([], but), (*lines, *_next(made)), tuple(details))
+    return Report(verdict([], reservations), (*lines, *_suggest_next(made)), tuple(details))
 
 
-def _how_known(brush, fitted) -> str:
+def _describe_fit(brush, fitted) -> str:
     law = getattr(brush, fitted.name)
     if fitted.fit is None:
         return f"{fitted.name}: assumed: {law.source}"
@@ -52,8 +54,11 @@ def _how_known(brush, fitted) -> str:
     return f"{known}, R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
 
 
-def _next(made) -> list[str]:
-    """Where one more measurement says most: the law that is least known for its size, at its widest place."""
+def _suggest_next(made) -> list[str]:
+    """Suggest the most useful next measurement.
+
+    It is the law with the largest interval for its size, at the depth where the interval is widest.
+    """
     brush = made.brush
     if assumed := [fitted.name for fitted in made.laws if fitted.fit is None]:
         return [f"next: measure {' and '.join(assumed)}, so far assumed"]
@@ -73,7 +78,7 @@ def _next(made) -> list[str]:
 
 
 def report_picture(made, suffix: str) -> bytes:
-    """The laws with bands, footprints and the data; .svg or .png, needs the extra plot."""
+    """Draw the laws with bands, the footprints and the data as .svg or .png. Needs the extra plot."""
     data = {
         fitted.name: np.array([(p.depth_mm, p.value_mm) for p in fitted.points]).reshape(-1, 2)
         for fitted in made.laws
