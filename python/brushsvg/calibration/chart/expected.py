@@ -9,7 +9,7 @@ from ...model.confidence import law_band
 from ...model.describe import LAWS
 from ..marks.from_marks import expected_brush, expected_machine, expected_marks
 from ..marks.machine_found import PARTS
-from ..marks.paint_found import Expected, expected_paint
+from ..marks.paint_found import ExpectedPaint, expected_paint
 
 ROWS = 4
 
@@ -44,7 +44,7 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     return "\n".join([*lines, *_of_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
 
 
-def _of_paint(paint: Expected) -> list[str]:
+def _of_paint(paint: ExpectedPaint) -> list[str]:
     alike = f"depth explains {100 * paint.explained_by_depth:.0f} % of how far each stroke is from the dip"
     if paint.is_refused:
         return [

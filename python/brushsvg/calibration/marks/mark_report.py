@@ -1,4 +1,4 @@
-"""What painted marks show of a brush: a verdict, laws, confidence, residuals, what moved; and as a picture."""
+"""Report a fit of painted marks: verdict, laws, confidence, residuals and displacements; and draw it as a picture."""
 
 from __future__ import annotations
 
@@ -21,36 +21,40 @@ from .from_marks import (
     MIN_CHI_SQUARE,
     front_ratio,
     height_at,
-    simulated,
+    simulate_fitted_brush,
     widest_ratio,
 )
-from .stray_marks import OUTLYING
+from .stray_marks import MAX_RESIDUAL_SIGMAS
 
-FOREIGN = 0.1  # of all points, masked: more than blots and gaps
-ALIKE, GOOD_FIT = (
-    0.5,
-    0.9,
-)  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
-UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
-WORST_MARKS = 3
-PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
+MAX_MASKED_SHARE = 0.1  # share of all points: if more are masked, they are not only blots and gaps
+# Overlap of painted and predicted marks: least usable and least good one. Photographs of hairy strokes have 0.6 to 0.8.
+MIN_USABLE_OVERLAP, MIN_GOOD_OVERLAP = 0.5, 0.9
+MAX_SIZE_PER_SIGMA, MAX_RMS_PER_SIGMA = (
+    3.0,
+    1.5,
+)  # times the expected size, for one number and for the rms of the displacements
+WORST_MARKS = 3  # number of marks that the report lists
+PAINT, PREDICTED, PATH = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
 def report(made, of_photo: bool = False) -> Report:
-    """What `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph, which has
-    flags and no measurement file.
+    """Return the report that `brushsvg calibrate` prints.
 
-    Do not use: marks overlap with their predictions by 0.5 or less without displacements.
-    Usable, but: by less than 0.9; the fit stopped before it converged; marks were left out or are astray; the sheet
-    differs from what was expected; a tenth of the edges is masked; too few depths were painted for the usual lag.
+    made: a from_marks.MarkCalibration. of_photo: the marks come from a photograph, for which remedies are flags
+    instead of keys of a measurement file.
+
+    "Do not use" means that marks overlap with their predictions by 0.5 or less without displacements. "Usable, but"
+    means one of the following: the overlap is less than 0.9; the fit stopped before it converged; marks were left out
+    or are astray; the sheet differs from the expected one; a tenth of the edges is masked; too few depths were painted
+    for the usual lag.
     """
     brush, fit = made.brush, made.fit
     in_place, moved = overlaps(made)
     unexpected = _unexpected(made, of_photo)
-    against, low = coinciding(moved)
+    reasons_against, low_overlap = judge_overlap(moved)
     strays = plural(len(made.strays), "mark")
-    but = [
-        *low,
+    reservations = [
+        *low_overlap,
         "" if fit.converged else NOT_CONVERGED,
         (f"{strays} had to be left out" if made.strays_left_out else f"the fit is unlike {strays}")
         if made.strays
@@ -59,7 +63,9 @@ def report(made, of_photo: bool = False) -> Report:
         "was expected"
         if unexpected
         else "",
-        f"{100 * fit.left_aside:.0f} % of the edges had to be masked" if fit.left_aside > FOREIGN else "",
+        f"{100 * fit.left_aside:.0f} % of the edges had to be masked"
+        if fit.left_aside > MAX_MASKED_SHARE
+        else "",
         f"only {made.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
     found = machine_found.numbers(fit, made.covariance, made.expected)
@@ -68,51 +74,60 @@ def report(made, of_photo: bool = False) -> Report:
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(made.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {moved:.3f}, by {in_place:.3f} with the displacements of marks (mean "
         "of intersection over union)",
-        *(_paint(made) if brush.paint else []),
-        _displaced(made),
-        _worst(made),
+        *(_describe_paint(made) if brush.paint else []),
+        _describe_displacements(made),
+        _list_worst_marks(made),
         *(
             ["the machine has faults that its cell can undo: the details have a table for the cell file"]
             if cell
             else []
         ),
-        *_astray(made),
+        *_describe_strays(made),
         *unexpected,
-        *_unlike(fit, moved),
-        *_few_depths(made),
+        *_warn_of_poor_fit(fit, moved),
+        *_warn_of_few_depths(made),
         *fit.remarks,
     ]
-    details = [*laws_table(brush), "", _tail(made), *_departing(made)]
-    details += ["", *_moved(made), "", *_stays(made), *(["", "for the cell:", *cell] if cell else [])]
-    return Report(verdict(against, but), tuple(lines), (*details, "", *coefficients(brush)))
+    details = [*laws_table(brush), "", _describe_tail(made), *_list_departing_laws(made)]
+    details += [
+        "",
+        *_describe_sheet_and_machine(made),
+        "",
+        *_describe_residuals(made),
+        *(["", "for the cell:", *cell] if cell else []),
+    ]
+    return Report(verdict(reasons_against, reservations), tuple(lines), (*details, "", *coefficients(brush)))
 
 
-def coinciding(moved: float) -> tuple[list[str], list[str]]:
-    """What the overlap of painted and predicted marks, without displacements, says of a brush."""
-    return overlap_reasons(moved, "painted and predicted marks", GOOD_FIT, ALIKE + 1e-9)
+def judge_overlap(moved: float) -> tuple[list[str], list[str]]:
+    """Return the reasons against a brush, and reservations, from the overlap of painted and predicted marks.
+
+    moved: the mean overlap without displacements.
+    """
+    return overlap_reasons(moved, "painted and predicted marks", MIN_GOOD_OVERLAP, MIN_USABLE_OVERLAP + 1e-9)
 
 
-def _displaced(made) -> str:
+def _describe_displacements(made) -> str:
     sizes = [math.hypot(*residual.displacement_mm) for residual in made.fit.marks]
-    far = int(np.argmax(sizes))
+    farthest = int(np.argmax(sizes))
     half = _core.deviations_of_95() * float(
         np.sqrt(made.covariance[height_at(made.fit), height_at(made.fit)])
     )
     return (
         f"{paper_height(made.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), "
-        f"{made.painted.marks[far].stroke} most, by {sizes[far]:.2f} mm"
+        f"{made.painted.marks[farthest].stroke} most, by {sizes[farthest]:.2f} mm"
     )
 
 
-def _worst(made) -> str:
-    """The marks that fit worst."""
+def _list_worst_marks(made) -> str:
+    """List the marks that fit worst."""
     rms_mm = np.array([residual.rms_mm for residual in made.fit.marks])
     worst = np.argsort(-rms_mm, kind="stable")[:WORST_MARKS]
     listed = ", ".join(f"{made.painted.marks[k].stroke} {rms_mm[k]:.2f} mm" for k in worst)
     return f"worst marks, by the residual of their edges (rms): {listed}"
 
 
-def _paint(made) -> list[str]:
+def _describe_paint(made) -> list[str]:
     paint, bends = made.brush.paint, made.paint_bends
     half = paint_interval_per_m(paint)
     known = "" if paint.narrows_per_m > half else ": these marks do not show that they do"
@@ -133,7 +148,7 @@ def _paint(made) -> list[str]:
     return lines
 
 
-def _tail(made) -> str:
+def _describe_tail(made) -> str:
     gain = made.round_tail_gain
     if abs(gain) < MIN_CHI_SQUARE:
         return "these marks do not show whether the footprint's tail is pointed or round; it is taken to be pointed"
@@ -143,7 +158,7 @@ def _tail(made) -> str:
     )
 
 
-def _few_depths(made) -> list[str]:
+def _warn_of_few_depths(made) -> list[str]:
     terms = len(made.brush.lag.coefficients)
     if terms >= LAG_TERMS:
         return []
@@ -153,8 +168,8 @@ def _few_depths(made) -> list[str]:
     ]
 
 
-def _departing(made) -> list[str]:
-    """Which laws have more than the usual numbers of coefficients."""
+def _list_departing_laws(made) -> list[str]:
+    """List the laws that have more than the usual number of coefficients."""
     laws = made.fit.laws
     departing = [
         name
@@ -176,7 +191,7 @@ def _departing(made) -> list[str]:
 
 
 def _unexpected(made, of_photo: bool = False) -> list[str]:
-    """Return the values that are too large for the sigmas of the fit, which then pull at the laws."""
+    """Return a sentence for each value that is too large for the sigmas of the fit, and therefore biases the laws."""
     fit, expected = made.fit, made.expected
     astray = {stray.mark.stroke for stray in made.strays}
     displaced = [
@@ -185,28 +200,34 @@ def _unexpected(made, of_photo: bool = False) -> list[str]:
         if mark.stroke not in astray
     ]
     turn_deg, turn_sigma_deg = math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad)
-    found = (
+    checks = (
         (
             "displacement_mm",
             "marks are displaced (rms) by",
             _rms(displaced),
             expected.displacement_mm,
-            UNLIKELY_RMS,
+            MAX_RMS_PER_SIGMA,
         ),
         (
             "placement_mm",
             "the sheet is shifted by",
             max(map(abs, fit.shift_mm)),
             expected.placement_mm,
-            UNLIKELY,
+            MAX_SIZE_PER_SIGMA,
         ),
-        ("height_mm", "the paper's height is off by", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
-        ("turn_deg", "the sheet is turned by", turn_deg, turn_sigma_deg, UNLIKELY),
+        (
+            "height_mm",
+            "the paper's height is off by",
+            abs(fit.height_mm),
+            expected.height_mm.sigma,
+            MAX_SIZE_PER_SIGMA,
+        ),
+        ("turn_deg", "the sheet is turned by", turn_deg, turn_sigma_deg, MAX_SIZE_PER_SIGMA),
     )
     return [
         f"{what} {size:.2g} {_unit(key)}, but the fit expects {sigma:.2g} {_unit(key)} (standard deviation). This "
-        f"biases the laws{_remedy(key, _rounded_up(size), of_photo)}"
-        for key, what, size, sigma, times in found
+        f"biases the laws{_remedy(key, _round_up(size), of_photo)}"
+        for key, what, size, sigma, times in checks
         if size > times * sigma > 0
     ]
 
@@ -228,7 +249,7 @@ def _remedy(key: str, sigma: float, of_photo: bool) -> str:
     return of_flags.get(key, ": compare the picture (--marks-picture) with the page that you painted")
 
 
-def _astray(made) -> list[str]:
+def _describe_strays(made) -> list[str]:
     if made.strays_left_out and made.strays:
         names = ", ".join(stray.mark.stroke for stray in made.strays)
         return [f"left out, not being where or what the other marks say: {names}"]
@@ -236,13 +257,13 @@ def _astray(made) -> list[str]:
 
 
 def list_strays(made) -> list[Notice]:
-    """Of each mark that is not where or what the others say: where it was found and where expected, what it costs."""
-    out = []
+    """Return a notice for each stray mark: its found and expected place, and the cost of leaving it out."""
+    notices = []
     for stray in made.strays:
-        (rings,) = predicted_marks(made, [stray.mark])
+        (rings,) = predict_outlines(made, [stray.mark])
         found, expected = (
-            _extent(np.vstack(each))
-            for each in (stray.mark.outline_mm, on_sheet(made, rings) or [np.zeros((1, 2))])
+            _describe_extent(np.vstack(shape))
+            for shape in (stray.mark.outline_mm, to_sheet_frame(made, rings) or [np.zeros((1, 2))])
         )
         if stray.is_displaced:
             dx, dy = stray.displacement_mm
@@ -255,17 +276,17 @@ def list_strays(made) -> list[Notice]:
                 f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
                 "is on the mark, or it is smeared or torn"
             )
-        sentence = f"{what}; found in {found}, expected in {expected}; {_cost(made, stray.mark)}"
-        out.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
-    return out
+        sentence = f"{what}; found in {found}, expected in {expected}; {_describe_cost(made, stray.mark)}"
+        notices.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
+    return notices
 
 
-def _extent(points: np.ndarray) -> str:
+def _describe_extent(points: np.ndarray) -> str:
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return f"x [{x0:.1f}, {x1:.1f}], y [{y0:.1f}, {y1:.1f}] mm"
 
 
-def _cost(made, mark) -> str:
+def _describe_cost(made, mark) -> str:
     if not made.strays_left_out:
         return "look at the picture, and leave it out if it is not the mark of this stroke"
     depth = deepest_mm(mark)
@@ -275,19 +296,19 @@ def _cost(made, mark) -> str:
     return f"it is left out: {alike} other marks are {depth:.4g} mm deep, the lag is known there to +- {half:.2f} mm"
 
 
-def _unlike(fit, moved: float) -> list[str]:
-    """moved: overlap without the displacements."""
+def _warn_of_poor_fit(fit, moved: float) -> list[str]:
+    """Return warnings about many masked points and a small overlap. moved: the overlap without displacements."""
     out = []
-    if fit.left_aside > FOREIGN:
+    if fit.left_aside > MAX_MASKED_SHARE:
         out.append(
             f"{100 * fit.left_aside:.0f} % of the edge points are masked outliers, outside the range [0, "
-            f"{100 * FOREIGN:.0f}] %: the tail and the confidence intervals may be wrong; clean the outlines of blots, "
-            "borders and slits"
+            f"{100 * MAX_MASKED_SHARE:.0f}] %: the tail and the confidence intervals may be wrong; clean the "
+            "outlines of blots, borders and slits"
         )
-    if moved <= ALIKE:
+    if moved <= MIN_USABLE_OVERLAP:
         out.append(
-            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{ALIKE:g}, 1]: look at the "
-            "picture before use"
+            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{MIN_USABLE_OVERLAP:g}, 1]: look "
+            "at the picture before use"
         )
     return out
 
@@ -296,14 +317,14 @@ def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def _rounded_up(size: float) -> float:
-    """To one digit."""
+def _round_up(size: float) -> float:
+    """Round up to one significant digit."""
     unit = 10.0 ** math.floor(math.log10(size))
     return unit * math.ceil(size / unit)
 
 
-def _moved(made) -> list[str]:
-    """Place of the sheet and errors of the machine: found along with the laws."""
+def _describe_sheet_and_machine(made) -> list[str]:
+    """Describe the position of the sheet and the errors of the machine, which are fitted together with the laws."""
     fit = made.fit
     half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
     first = height_at(fit)
@@ -320,7 +341,7 @@ def _moved(made) -> list[str]:
     return lines
 
 
-def _stays(made) -> list[str]:
+def _describe_residuals(made) -> list[str]:
     fit = made.fit
     lines = [
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
@@ -332,14 +353,14 @@ def _stays(made) -> list[str]:
             "intervals hold that"
         )
     if fit.left_aside > 0.01:
-        bound = f"residual above {OUTLYING:g} standard deviations"
+        bound = f"residual above {MAX_RESIDUAL_SIGMAS:g} standard deviations"
         lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
     if fit.slim > 0.01:
         lines.append(
             f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals"
         )
     outliers = [
-        mark.stroke for mark, found in zip(made.painted.marks, fit.marks, strict=True) if found.outlier
+        mark.stroke for mark, residual in zip(made.painted.marks, fit.marks, strict=True) if residual.outlier
     ]
     if outliers:
         lines.append(
@@ -351,30 +372,30 @@ def _stays(made) -> list[str]:
 def overlaps(made) -> tuple[float, float]:
     """Return the mean overlap of painted with predicted marks, in place and without their displacements.
 
-    It shows how well the brush predicts where paint will be, which is more than the confidence of its laws.
+    The overlap shows how well the brush predicts the position of paint. The confidence of its laws shows less.
     """
     marks, in_place, moved = made.painted.marks, [], []
-    predicted = predicted_marks(made, marks)
+    predicted = predict_outlines(made, marks)
     for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        in_place.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
-        moved.append(_core.overlap(_home(made, mark.outline_mm, residual.displacement_mm), rings))
+        in_place.append(_core.overlap(_to_plan_frame(made, mark.outline_mm, (0.0, 0.0)), rings))
+        moved.append(_core.overlap(_to_plan_frame(made, mark.outline_mm, residual.displacement_mm), rings))
     return float(np.mean(in_place)), float(np.mean(moved))
 
 
 def report_picture(made, suffix: str) -> bytes:
-    """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
+    """Draw the laws with bands, and the painted and predicted outlines of the best, median and worst mark."""
     figure = new_figure((11, 11))
     laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
     brush_picture_on(laws, made.brush)
     order = np.argsort([residual.rms_mm for residual in made.fit.marks])
     chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
-    predicted = predicted_marks(made, [made.painted.marks[int(k)] for _, k in chosen])
+    predicted = predict_outlines(made, [made.painted.marks[int(k)] for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
         mark, residual = made.painted.marks[int(k)], made.fit.marks[int(k)]
-        fill_rings(axes, _home(made, mark.outline_mm, residual.displacement_mm), PAINT)
+        fill_rings(axes, _to_plan_frame(made, mark.outline_mm, residual.displacement_mm), PAINT)
         for ring in rings:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
-        axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
+        axes.plot(*mark.poses_mm[:, :2].T, color=PATH, linewidth=0.8)
         axes.set_aspect("equal")
         title = f"{what}: {shortened(mark.stroke, 16)}, {residual.rms_mm:.2f} mm (rms)"
         axes.set_title(title, fontsize=9, color=INK)
@@ -383,14 +404,14 @@ def report_picture(made, suffix: str) -> bytes:
     return encoded(figure, suffix)
 
 
-def _home(made, rings, displacement) -> list[np.ndarray]:
+def _to_plan_frame(made, rings, displacement) -> list[np.ndarray]:
     """Transform rings of the sheet to the frame of the plan, with the fitted pose of the sheet."""
     fit = made.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
 
 
-def on_sheet(made, rings) -> list[np.ndarray]:
+def to_sheet_frame(made, rings) -> list[np.ndarray]:
     """Transform rings of the plan to the frame of the painted sheet, with its fitted pose."""
     fit = made.fit
     centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
@@ -401,9 +422,9 @@ def deepest_mm(mark) -> float:
     return float(-np.array(mark.poses_mm)[:, 2].min())
 
 
-def predicted_marks(made, marks: list) -> list:
-    """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
-    brush, traces = simulated(made, marks)
+def predict_outlines(made, marks: list) -> list:
+    """Return the rings that the fitted brush paints along the paths of these marks, in the frame of the plan."""
+    brush, traces = simulate_fitted_brush(made, marks)
     painted = _core.Marks()
     painted.passes = traces
     _core.trace_outlines(painted, brush)

@@ -10,7 +10,7 @@ from ...model.describe import LAWS
 from ...model.plot import brush_picture
 from ...reporting.report_text import Report, verdict
 from ..law_text import coefficients, depths_shown, in_short, law_table, name_and_depths, paper_height
-from ..marks.mark_report import coinciding, overlaps
+from ..marks.mark_report import judge_overlap, overlaps
 from ..marks.mark_report import report as of_edges
 from ..marks.mark_report import report_picture as picture_of_edges
 
@@ -43,7 +43,7 @@ def report(made, of_photo: bool = False) -> Report:
     ]
     by_edges = "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals"
     details = [*law_table(depths, columns), by_edges, "", *coefficients(brush)]
-    return Report(verdict(*coinciding(now_moved)), tuple(lines), tuple(details))
+    return Report(verdict(*judge_overlap(now_moved)), tuple(lines), tuple(details))
 
 
 KINDS = {

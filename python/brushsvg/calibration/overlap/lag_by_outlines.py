@@ -20,7 +20,7 @@ from ...errors import Error
 from ...geometry.rings import signed_area
 from ...model.confidence import LAWS, places
 from ..marks.from_marks import LAG_TERMS, MarkCalibration
-from ..marks.stray_marks import OUTLYING
+from ..marks.stray_marks import MAX_RESIDUAL_SIGMAS
 
 ROUNDS = 8
 SETTLED_MM = 0.01  # of the lag, at any depth
@@ -155,7 +155,7 @@ class _Edges:
         displacements, as in the fit; neighbouring points count for less than as many independent ones."""
         expected, fit = self.made.expected, self.made.fit
         noise = max(LEAST_NOISE_MM, 1.4826 * float(np.median(np.abs(off))))
-        weight = np.clip(1 - (off / (OUTLYING * noise)) ** 2, 0.0, 1.0)  # the root of Tukey's
+        weight = np.clip(1 - (off / (MAX_RESIDUAL_SIGMAS * noise)) ** 2, 0.0, 1.0)  # the root of Tukey's
         alike = noise * np.sqrt(fit.samples / max(fit.effective_samples, 1.0))
         first = slopes.shape[1] - 1 - displaced.size
         known = np.zeros((1 + displaced.size, slopes.shape[1]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...reporting.report_text import Report, verdict
 from ..law_text import HALF_95, coefficients, depths_shown, law_table, name_and_depths, paper_height, values
-from ..marks.mark_report import coinciding, overlaps
+from ..marks.mark_report import judge_overlap, overlaps
 
 
 def report(found) -> Report:
@@ -12,7 +12,7 @@ def report(found) -> Report:
     brush, own, before = found.brush, found.own, found.before
     was, now = overlaps(before)[1], overlaps(found.made)[1]
     worse = "these outlines predict the marks worse than drops or eggs do: look at the dabs once more"
-    against, but = coinciding(now)
+    against, but = judge_overlap(now)
     lines = [
         f"{name_and_depths(brush)}: the lag of {len(found.made.painted.marks)} painted marks by the outlines of brush "
         f"{own.name}; all else is that brush's",

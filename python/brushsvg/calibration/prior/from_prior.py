@@ -25,16 +25,16 @@ from ..marks.from_marks import (
     HALF_TERMS,
     LAG_TERMS,
     brush_of,
+    change_by_edges,
+    change_by_wetter_marks,
     height_at,
-    moved_by_edges,
-    over_brush,
     refuse_many,
-    refuse_unlike,
-    wetter_where_wider,
+    refuse_many_outliers,
+    to_brush_covariance,
 )
 from ..marks.machine_found import ask_for
 from ..marks.mark_input import Painted, depths_painted
-from ..marks.stray_marks import Stray, strays
+from ..marks.stray_marks import Stray, find_strays
 from .prior import DEPTHS, KnownLaws, known_laws, numbers_of, root_of_inverse
 
 # Ratio of a law's standard deviations after and before, at some depth: above it, the marks add nothing to the law.
@@ -95,8 +95,8 @@ def update_brush(
         options.displacement_mm = displacement_mm
     ask_for(options, machine)
     fit, wider = _fit_wide_enough(painted.marks, known, options)
-    refuse_unlike(fit, painted)
-    astray = tuple(strays(painted.marks, fit))
+    refuse_many_outliers(fit, painted)
+    astray = tuple(find_strays(painted.marks, fit))
     if astray:
         refuse_many(astray, painted)
         gone = {each.mark.stroke for each in astray}
@@ -105,8 +105,8 @@ def update_brush(
     laws, covariance = _followed(known, known.widened(wider), fit, painted.deepest_mm)
     if edge_mm > 0:
         for moved in (
-            moved_by_edges(fit, painted.marks, options, edge_mm),
-            wetter_where_wider(fit, options.deepest_mm, edge_mm),
+            change_by_edges(fit, painted.marks, options, edge_mm),
+            change_by_wetter_marks(fit, options.deepest_mm, edge_mm),
         ):
             covariance += np.outer(moved, moved)
     left = _doubts_left(known.widened(wider), covariance, known.laws, brush)
@@ -239,7 +239,7 @@ def _brush_of(brush, known: KnownLaws, laws, covariance, learned: set[str], name
         learned = learned | {"tip_to_widest"}  # it is counted in half widths
     made = brush_of(laws, name, brush.depth_range_mm, covariance)
     fitted = places(made)
-    whole = over_brush(laws, covariance)
+    whole = to_brush_covariance(laws, covariance)
     for law in LAWS:
         setattr(made, law, _law(getattr(brush, law), getattr(made, law), law in learned, painted, brush.name))
     made.kind, made.max_speed_mm_s, made.paint_depth_mm = (
