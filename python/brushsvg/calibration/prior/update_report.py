@@ -1,4 +1,4 @@
-"""What a painted job shows of a brush that was known before: a verdict, law by law, and in tables."""
+"""Report the update of a known brush by a painted job: a verdict, the changes of each law, and tables."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from ..law_text import (
 from ..marks.machine_found import cell_table, describe_numbers, numbers
 from .from_prior import found_height
 
-OFF_MM = 0.05  # a prior is reported to be taken another way where that moves a law by more
+MIN_REPORTED_OFFSET_MM = 0.05  # the report mentions a different form of the prior if it moves a law by more
 
 
 def report(made) -> Report:
-    """What `brushsvg calibrate --prior` prints. made: a from_prior.Updated."""
+    """Return the report that `brushsvg calibrate --prior` prints. made: a from_prior.Updated."""
     brush, fit, count = made.brush, made.fit, len(made.painted.marks)
     laws = [law for law in LAWS if made.is_learned(law)]
-    but = [
+    reservations = [
         "" if fit.converged else NOT_CONVERGED,
         "" if laws else "the marks show nothing new: the brush is as it was before",
         f"{plural(len(made.strays), 'mark')} had to be left out" if made.strays else "",
@@ -35,22 +35,22 @@ def report(made) -> Report:
     lines = [
         f"{name_and_depths(brush)}: {made.before.name}, updated by {plural(count, 'mark')} painted at depths to "
         f"{made.painted.deepest_mm:.3g} mm",
-        *(f"{law}: {_describe(made, law)}" for law in LAWS),
-        *_remarks(made),
+        *(f"{law}: {_describe_law(made, law)}" for law in LAWS),
+        *_list_remarks(made),
     ]
     found = numbers(fit, made.covariance, made.options)
     table = cell_table(fit, made.options, found)
-    details = [*_table(made, laws), *_stays(made)]
-    details += [f"{law}, the prior: {made.known.how[law]}{_taken(made, law)}" for law in LAWS]
+    details = [*_compare_laws(made, laws), *_describe_residuals(made)]
+    details += [f"{law}, the prior: {made.known.how[law]}{_describe_prior(made, law)}" for law in LAWS]
     details += [
         *(["", "of the machine:"] if found else []),
         *describe_numbers(found),
         *(["", *table] if table else []),
     ]
-    return Report(verdict([], but), tuple(lines), (*details, "", *coefficients(brush)))
+    return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
 
 
-def _remarks(made) -> list[str]:
+def _list_remarks(made) -> list[str]:
     lines = []
     if made.painted.deepest_mm < made.brush.depth_range_mm[1]:
         lines.append(
@@ -64,7 +64,7 @@ def _remarks(made) -> list[str]:
     return lines
 
 
-def _describe(made, law: str) -> str:
+def _describe_law(made, law: str) -> str:
     share, depth = made.doubts_left[law]
     if not made.is_learned(law):
         with_width = law == "tip_to_widest" and made.is_learned("half_width")
@@ -74,17 +74,17 @@ def _describe(made, law: str) -> str:
     return f"learned from the marks: its intervals are {share:.2f} times as wide as before, at depth {depth:.3g} mm"
 
 
-def _taken(made, law: str) -> str:
-    """How else the prior was taken than it stands in its file."""
+def _describe_prior(made, law: str) -> str:
+    """Describe how the prior that was used differs from the brush file."""
     words = ""
-    if (off := made.known.off_mm[law]) > OFF_MM and made.is_learned(law):
+    if (off := made.known.off_mm[law]) > MIN_REPORTED_OFFSET_MM and made.is_learned(law):
         words += f"; as the law that marks are fitted with, {off:.2f} mm off at most"
     if (wider := made.wider.get(law, 1.0)) > 1.0:
         words += f"; taken {wider:.1f} times as wide, since the marks are that far from it"
     return words
 
 
-def _table(made, laws: list[str]) -> list[str]:
+def _compare_laws(made, laws: list[str]) -> list[str]:
     if not laws:
         return []
     depths = depths_shown(made.brush)
@@ -99,7 +99,7 @@ def _table(made, laws: list[str]) -> list[str]:
     ]
 
 
-def _stays(made) -> list[str]:
+def _describe_residuals(made) -> list[str]:
     fit = made.fit
     rms = math.sqrt(np.mean([np.square(residual.displacement_mm).sum() for residual in fit.marks]))
     return [
