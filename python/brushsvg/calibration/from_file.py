@@ -36,7 +36,9 @@ def fit_measurements(
     aim: Literal["edges", "overlap"] = "edges",
     progress: Callable[[str], object] | None = None,
 ) -> Calibration | MarkCalibration | OverlapCalibration:
-    """Fit a brush to measured numbers or painted marks; see jobs.calibrating.CalibrationOptions.
+    """Fit a brush to measured numbers or painted marks.
+
+    The options are described in jobs.calibrating.CalibrationOptions.
 
     measured: a path, or the contents of a measurement .json. Raises Error for a file that cannot be read, for
     measurements that leave a law undetermined, and for measurements that no brush can have.

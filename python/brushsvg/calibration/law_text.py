@@ -1,4 +1,4 @@
-"""Describe the laws of a calibrated brush: tables of values with intervals, coefficients, and ranges."""
+"""Describe the laws of a calibrated brush in words and tables."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def depths_shown(brush, deepest_mm: float | None = None) -> np.ndarray:
 
 
 def values(brush, law: str, depths: np.ndarray) -> list[str]:
-    """Return the values of a law at depths, with half the 95 % interval if it is known."""
+    """Return the values of a law at depths, with half the 95 % interval."""
     band = law_band(brush, law, depths)
     halves = [f" +- {half:.2f}" for half in band[0]] if band else [""] * len(depths)
     at = [getattr(brush, law).extrapolated(depth) for depth in depths]
@@ -36,7 +36,10 @@ def values(brush, law: str, depths: np.ndarray) -> list[str]:
 
 
 def law_table(depths: np.ndarray, columns: Iterable[tuple[str, Sequence[str]]]) -> list[str]:
-    """Return the lines of a table: a column of depths, and columns given as (name, cells)."""
+    """Return the lines of a table of laws over depths.
+
+    columns: (name, cells) of each column.
+    """
     names, cells = zip(*columns, strict=True)
     head = ("depth", *names)
     return table(head, zip((f"{depth:5.2f}" for depth in depths), *cells, strict=True))
@@ -49,7 +52,7 @@ def laws_table(brush) -> list[str]:
 
 
 def coefficients(brush, laws: Iterable[str] = LAWS) -> list[str]:
-    """Return the polynomial of each law, with the intervals of its coefficients if they are known."""
+    """Return the polynomial of each law, with intervals if they are known."""
     lines = []
     for name in laws:
         law = getattr(brush, name)
@@ -60,7 +63,7 @@ def coefficients(brush, laws: Iterable[str] = LAWS) -> list[str]:
 
 
 def in_short(brush) -> str:
-    """Return the ranges of lag and width over all depths, with their largest intervals."""
+    """Return the ranges of lag and width, with their largest intervals."""
     depths = np.linspace(*brush.depth_range_mm, 21)
     parts = []
     for name, law, times in (("lag", "lag", 1.0), ("width", "half_width", 2.0)):

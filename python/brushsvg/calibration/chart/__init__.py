@@ -1,1 +1,1 @@
-"""Charts of strokes for the calibration of a brush: layout, file and page to print."""
+"""Charts for the calibration of a brush: layout, file and page to print."""

@@ -1,4 +1,4 @@
-"""Make dabs: the brush is set down, bent in one direction while it is pressed, and taken back the same way.
+"""Make dabs: press the brush down, bent in one direction, and lift it again.
 
 A brush that is pressed straight down bends in an unknown direction. The tool therefore runs forward by nearly the lag
 while it goes down, and back while it comes up. It is never further from the patch than the lag, so the patch rests
@@ -94,7 +94,10 @@ def is_of_dabs(chart) -> bool:
 
 
 def dabs_of(read) -> list[Dab]:
-    """Return the dabs of a photograph; dabs without paint have no rings. read: a photograph.Read."""
+    """Return the dabs of a photograph; dabs without paint have no rings.
+
+    read: a photograph.Read.
+    """
     dabs = []
     for dab_pass in read.chart.plan.passes:
         try:

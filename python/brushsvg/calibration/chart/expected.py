@@ -15,7 +15,10 @@ TABLE_ROWS = 4  # depths in the table of laws
 
 
 def chart_report(chart, brush, noise_mm: float) -> str:
-    """Describe strokes, depths and the expected 95 % intervals for marks whose edges are known to noise_mm."""
+    """Describe the strokes of a chart and the expected 95 % intervals.
+
+    noise_mm: standard deviation of the edges of the marks.
+    """
     depths = sorted({stroke.depth_mm for stroke in chart.strokes if stroke.kind == "angular"})
     width, height = chart.plan.sheet_mm
     lines = [

@@ -1,4 +1,7 @@
-"""Read and write chart.json: the markers, strokes and plan with which a painted chart is read, in mm on the sheet."""
+"""Read and write chart.json, with which a painted chart is read.
+
+It has the markers, the strokes and the plan, in mm on the sheet.
+"""
 
 from __future__ import annotations
 

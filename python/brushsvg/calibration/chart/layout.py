@@ -1,4 +1,4 @@
-"""Arrange the calibration chart: strokes that show the laws of a brush, as a plan of a sheet.
+"""Arrange the strokes of a calibration chart on a sheet, as a plan.
 
 Each set of strokes is painted at one depth. The straight stroke has a slow landing (b). The angular stroke has an
 auxiliary stroke parallel to its second line (r). The arc and the reversal show r while the brush turns, and when the
@@ -62,7 +62,10 @@ MAX_SHEET_SIDE_MM = 10_000.0
 
 @dataclass(frozen=True)
 class Stroke:
-    """One stroke of a chart. box_mm: left, bottom, right and top of the space for its mark."""
+    """One stroke of a chart.
+
+    box_mm: left, bottom, right and top of the space for its mark.
+    """
 
     id: str
     kind: str
@@ -72,7 +75,10 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Marker:
-    """An ArUco marker. corners_mm: on the sheet, upper left first, clockwise as seen from above."""
+    """An ArUco marker.
+
+    corners_mm: on the sheet, upper left first, clockwise as seen from above.
+    """
 
     id: int
     corners_mm: tuple[tuple[float, float], ...]
@@ -89,7 +95,10 @@ class Label:
 
 @dataclass(frozen=True)
 class Bar:
-    """A line to measure with a ruler: its start, and its length if the page has its true size."""
+    """A line to measure with a ruler.
+
+    at_mm: its start. length_mm: its length if the page has its true size.
+    """
 
     at_mm: tuple[float, float]
     length_mm: float
@@ -158,7 +167,9 @@ def chart(
     dabs: bool = False,
     one_load: bool = False,
 ) -> Chart:
-    """Make a calibration chart for a brush whose depth range, lag and width are roughly known.
+    """Make a calibration chart for a brush that is roughly known.
+
+    The depth range, the lag and the width of the brush must be roughly right.
 
     strokes: "few", "normal" or "many"; None for as many as fit on the sheet. deepest_mm: the greatest depth that the
     machine can reach, if less than the brush allows. dabs: make a chart of dabs, which shows the outlines of a brush
@@ -229,7 +240,10 @@ def _marker_side(sheet_mm: tuple[float, float]) -> float:
 
 
 def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
-    """Yield ranges, down from the inner edge, for the markers near the middle of the left and right side."""
+    """Yield ranges for the markers near the middle of the left and right side.
+
+    The ranges count down from the inner edge of the sheet.
+    """
     if sheet_mm[1] >= BETWEEN * side:
         for share in MARKER_HEIGHT_SHARES:
             middle = share * sheet_mm[1] - EDGE_MM
@@ -237,7 +251,10 @@ def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[f
 
 
 def _depth_choices() -> Iterator[tuple[int, int]]:
-    """Yield numbers of depths and repeats, the fewest first. The four coefficients of a law need four depths."""
+    """Yield numbers of depths and repeats, the fewest first.
+
+    The four coefficients of a law need four depths.
+    """
     yield from ((depths, 1) for depths in range(DEPTH_COUNTS["few"], MAX_DEPTHS + 1))
     yield from ((MAX_DEPTHS, repeats) for repeats in range(2, MAX_REPEATS + 1))
 
@@ -278,7 +295,10 @@ def _dab_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]:
 
 
 def _poses_along(depth: float, points, ramp: float = LIFT_SLOPE) -> np.ndarray:
-    """Return poses along points (n, 2) at one depth, landing along the first line and lifting along the last."""
+    """Return poses along points (n, 2) at one depth.
+
+    They land along the first line and lift along the last.
+    """
     points = np.array(points, float)
     first, last = _unit_vector(points[1] - points[0]), _unit_vector(points[-1] - points[-2])
     down, up = points[0] + depth / ramp * first, points[-1] - depth / LIFT_SLOPE * last
@@ -325,7 +345,10 @@ def _auxiliary(brush, depth: float, shallow: float) -> Drawn:
 
 
 def _arc(brush, depth: float, direction: int) -> Drawn:
-    """Draw a third of a circle after a straight line, with a radius that keeps the brush taut."""
+    """Draw a third of a circle after a straight line.
+
+    The radius keeps the brush taut.
+    """
     radius = 1.6 * max(brush.lag(depth), 2.0)
     start = depth / LIFT_SLOPE + 0.7 * brush.lag(depth) + 2.0
     count = 49  # chords stay within 0.01 mm of the arc, so programs may ignore the arc
@@ -338,7 +361,10 @@ def _arc(brush, depth: float, direction: int) -> Drawn:
 
 
 def _reversal(brush, depth: float) -> Drawn:
-    """Draw a line nearly back along the first: the patch rests for almost two lags, then turns."""
+    """Draw a line nearly back along the first line.
+
+    The patch rests for almost two lags, then turns.
+    """
     back = math.radians(155.0)
     first = _length_before_corner(brush, depth)
     second = 3.5 * brush.lag(depth) + 3.0 + depth / LIFT_SLOPE
@@ -358,7 +384,10 @@ def _references(brush, depth: float) -> Iterator[tuple[Drawn, ...]]:
 def room_for(
     brush, strokes: list[Drawn], lag_shares=LAG_SHARES, wider: float = WIDTH_FACTOR, beyond_mm: float = 0.0
 ) -> Iterator[tuple[float, float, float, float]]:
-    """Yield the box of each mark, for brushes that trail a little less and more, and paint a little wider."""
+    """Yield the box of the mark of each stroke.
+
+    The box has space for brushes that trail a little less and more, and paint a little wider.
+    """
     plan = _make_plan(brush, (1e4, 1e4), [(f"{k}", stroke, (0.0, 0.0)) for k, stroke in enumerate(strokes)])
     law = np.array(brush.lag.coefficients)
     bounds = []
@@ -381,7 +410,9 @@ def _pack_units(
     enough: float = 0.0,
     marker_gap: tuple[float, float] | None = None,
 ) -> tuple[list[tuple[_StrokeUnit, float, float]], float]:
-    """Pack units on a strip of the given width, each as near to the top as it fits, in steps of 1 mm.
+    """Pack units on a strip of the given width.
+
+    Each unit is placed as near to the top as it fits, in steps of 1 mm.
 
     Several orders with large units early, and upright and turned units, are tried. The best packing wins, or the first
     that is at most `enough` tall. marker_gap: range of heights of the markers on the left and right.
@@ -443,12 +474,18 @@ def _running_maximum(taken: np.ndarray, wide: int) -> np.ndarray:
 
 
 def _top_of_middle_marker(side: float) -> float:
-    """Return the top of the marker below the bar, down from the inner edge of the sheet."""
+    """Return the top of the marker below the bar.
+
+    It counts down from the inner edge of the sheet.
+    """
     return TICK_MM + QUIET * side
 
 
 def _turn_unit(unit: _StrokeUnit) -> _StrokeUnit:
-    """Turn a unit by 90 degrees counter-clockwise; reference strokes and dabs keep their directions."""
+    """Turn a unit by 90 degrees counter-clockwise.
+
+    Reference strokes and dabs keep their directions.
+    """
     if unit.strokes[0].kind in ("reference", KIND):
         return unit
     strokes = []
@@ -517,14 +554,20 @@ def _marker_places(
 
 
 def _place_bar(sheet_mm, side: float) -> Bar:
-    """Place a bar that fills the space between the upper markers, in whole centimetres if it is longer than one."""
+    """Place a bar that fills the space between the upper markers.
+
+    Its length is in whole centimetres if it is longer than one.
+    """
     room = sheet_mm[0] - 2 * (EDGE_MM + side + QUIET * side)
     length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
     return Bar(((sheet_mm[0] - length) / 2, sheet_mm[1] - EDGE_MM - TICK_MM / 2), length)
 
 
 def _make_titles(brush, sheet_mm, side: float, mark: str, bar: Bar) -> list[Label]:
-    """Write the chart's name next to the lower markers, and what to measure below the bar."""
+    """Write the chart's name next to the lower markers.
+
+    The length to measure is written below the bar.
+    """
     width, height = sheet_mm
     left = EDGE_MM + side + 3
     parts = 2 if width >= BETWEEN * side else 1  # a marker is in between
@@ -537,7 +580,10 @@ def _make_titles(brush, sheet_mm, side: float, mark: str, bar: Bar) -> list[Labe
 
 
 def _make_label(stroke: Stroke, number: int, at_mm: tuple[float, float], width_mm: float) -> Label:
-    """Label a stroke with its id and depth if they fit, else with its id, or with a letter and its number."""
+    """Label a stroke with the longest text that fits.
+
+    The texts are its id and depth, its id, or a letter and its number.
+    """
     texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, f"{KIND_LETTERS[stroke.kind]}{number}")
     fitting = (text for text in texts if len(text) * LETTER_WIDTH_MM <= width_mm)
     return Label(next(fitting, texts[-1]), at_mm, width_mm)

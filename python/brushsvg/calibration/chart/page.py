@@ -1,4 +1,6 @@
-"""Draw the page on which a chart is painted, as vectors in mm: ArUco markers, a bar to measure and labels.
+"""Draw the page on which a chart is painted, as vectors in mm.
+
+The page has ArUco markers, a bar to measure and labels.
 
 The page is white where strokes will be painted.
 """
@@ -24,7 +26,10 @@ INCH_MM = 25.4
 
 
 def chart_page(chart: Chart, more=()) -> str:
-    """Return the page of a chart as an SVG to print at 100 %. more: additional black rings."""
+    """Return the page of a chart as an SVG to print at 100 %.
+
+    more: additional black rings.
+    """
     width, height = chart.plan.sheet_mm
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
@@ -46,7 +51,10 @@ def chart_page(chart: Chart, more=()) -> str:
 
 
 def chart_pdf(chart: Chart, more=()) -> bytes:
-    """Return the page of a chart as a PDF of its size. Raises Error if matplotlib is missing."""
+    """Return the page of a chart as a PDF of its size.
+
+    more: additional black rings. Raises Error if matplotlib is missing.
+    """
     try:
         import matplotlib
         from matplotlib.patches import PathPatch
@@ -81,7 +89,10 @@ def marker_modules(marker_id: int, dictionary: str) -> np.ndarray:
 
 
 def marker_rings(marker: Marker, dictionary: str) -> list[np.ndarray]:
-    """Return the black modules of a marker as one shape [mm], because single modules show seams."""
+    """Return the black modules of a marker as one shape [mm].
+
+    Single modules would show seams.
+    """
     black = marker_modules(marker.id, dictionary)
     (left, top), (right, _), *_ = marker.corners_mm
     step = (right - left) / len(black)
@@ -110,7 +121,10 @@ def bar_rings(bar: Bar, beyond_mm: float = 0.0) -> list[np.ndarray]:
 
 
 def label_box(label: Label) -> tuple[float, float, float, float]:
-    """Return left, bottom, right and top of the letters of a label, for letters of mean width."""
+    """Return left, bottom, right and top of the letters of a label.
+
+    The letters are assumed to have their mean width.
+    """
     (x, y), size = label.at_mm, _text_size(label)
     return x, y - 0.25 * size, x + LETTER_WIDTH_PER_SIZE * size * len(label.text), y + size
 

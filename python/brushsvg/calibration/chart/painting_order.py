@@ -9,7 +9,9 @@ KINDS = ("straight", "angular", "arc", "reversal")
 
 
 def shallow_to_deep(strokes: list[tuple[str, float]]) -> list[int]:
-    """Return the indices of (kind, depth [mm]) with references first, then from shallow to deep.
+    """Return the indices of strokes with references first, then by depth.
+
+    strokes: (kind, depth [mm]), ordered from shallow to deep.
 
     If paint runs out, it then does so where most of it is used.
     """
@@ -42,7 +44,10 @@ def early_and_late(strokes: list[tuple[str, float]]) -> list[int]:
 
 
 def _by_kind(strokes: list[tuple[str, float]], alike: list[int], first: int) -> list[int]:
-    """Order the strokes of one depth: one of each kind, starting at kind `first`, then the repeats."""
+    """Order the strokes of one depth: one of each kind, then the repeats.
+
+    first: the number of the kind that is painted first.
+    """
     of_kind = {kind: [k for k in alike if strokes[k][0] == kind] for kind in KINDS}
     kinds = KINDS[first % len(KINDS) :] + KINDS[: first % len(KINDS)]
     repeats = max(map(len, of_kind.values()))

@@ -1,4 +1,7 @@
-"""Read a photograph of a painted chart: its strokes as marks in mm, and the quality of the picture."""
+"""Read the marks of a painted chart from photographs.
+
+The quality of the pictures is checked as well.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +52,9 @@ MAX_SHEET_DIFFERENCE_MM = (
 
 @dataclass(frozen=True)
 class Read:
-    """The contents of a photograph: the flattened picture, the view of the camera, and the marks of the strokes.
+    """The contents of a photograph.
+
+    flat: the flattened picture. view: the view of the camera. marks: the marks of the strokes.
 
     is_rescaled: the page was not printed at 100 %, so only its strokes show its position.
     """
@@ -178,7 +183,9 @@ def _read_photo(
 def _moved_page(
     chart: Chart, page: _Page, size: float, stroke_boxes, pixels, view: View, refusal: Error
 ) -> _Page:
-    """Return the page at the position of its strokes, if they are not where the page should have them.
+    """Return the page at the position of its strokes.
+
+    It is needed if the strokes are not where the page should have them.
 
     A page of a known size may have been scaled about a point other than its middle. Raises Error with the scale if the
     page seems to have been printed at another scale, and the refusal in all other cases.
@@ -237,7 +244,10 @@ def _refuse_compressed(data: bytes) -> None:
 
 
 def _refuse_another_sheet(photo_marks: Marks, mean_marks: Marks, name: str) -> None:
-    """Raise Error if the marks of a photograph are too far from the mean of all photographs."""
+    """Raise Error if a photograph differs from the mean of all photographs.
+
+    The positions of its marks are compared.
+    """
     both = [stroke for stroke in photo_marks.outlines_mm if stroke in mean_marks.outlines_mm]
     offsets = [
         np.vstack(photo_marks.outlines_mm[stroke]).mean(axis=0)
@@ -322,7 +332,7 @@ def describe_reading(read: Read) -> str:
 
 
 def remarks(read: Read) -> list[Notice]:
-    """Return notices that a person should read before a brush is made from the photograph."""
+    """Return notices to read before a brush is made from the photograph."""
     notices = []
     view = read.view
     if view.residual_mm > 0.5 * view.most_residual_mm:

@@ -1,4 +1,7 @@
-"""Average dabs to one outline per depth, in the frame of the patch; bad dabs are left out and named in remarks."""
+"""Average dabs to one outline per depth, in the frame of the patch.
+
+Bad dabs are left out and named in remarks.
+"""
 
 from __future__ import annotations
 
@@ -101,7 +104,10 @@ class Outlines:
     remarks: tuple[Notice, ...]
 
     def predicted_mm(self) -> dict[str, np.ndarray]:
-        """Return the predicted outline (n, 2) [mm] on the sheet for the name of each dab that was not left out."""
+        """Return the predicted outline of each dab that was not left out.
+
+        The outlines (n, 2) [mm] are on the sheet, by the name of the dab.
+        """
         out = {}
         for shape in self.shapes:
             for seen in shape.seen:
@@ -268,7 +274,9 @@ def _to_patch_frame(dab: Dab, sheet: _Sheet) -> PatchDab:
 
 
 def _fit_axis_offset(seen: list[PatchDab]) -> tuple[Callable[[float], float], float]:
-    """Return the distance of the centroid of a dab from the axis as a function of depth, and its significance.
+    """Fit the distance of the centroids of dabs from the axis.
+
+    Return the distance as a function of depth, and its significance.
 
     The distance is smaller than the scatter of single dabs. The significance is its ratio to the distance by chance.
     """
@@ -292,7 +300,10 @@ def _group_by_depth(seen: list[PatchDab], across) -> list[_DabsOfDepth]:
 
 
 class _DabsOfDepth:
-    """The dabs of one depth, sampled on common rays from their middle, with spacing from an ellipse of their size."""
+    """The dabs of one depth, sampled on common rays from their middle.
+
+    The spacing of the rays comes from an ellipse of the size of the dabs.
+    """
 
     def __init__(self, depth: float, seen: list[PatchDab], across_mm: float):
         self.depth = depth
@@ -337,7 +348,10 @@ class _DabsOfDepth:
         return np.array(out)
 
     def remove_strangers(self, most_mm: float) -> list[Notice]:
-        """Leave out dabs that differ by more than most_mm, the worst first, and return notices about them."""
+        """Leave out dabs that differ by more than most_mm, the worst first.
+
+        Return notices about them.
+        """
         remarks = []
         while len(self.seen) > MIN_DABS_PER_DEPTH:
             away = self.distances_mm()
@@ -354,13 +368,16 @@ class _DabsOfDepth:
         return remarks
 
     def by_heading_mm(self) -> dict[float, np.ndarray]:
-        """Return the distance of the mean of the dabs of each heading from the mean of all."""
+        """Return the distance of the mean of each heading from the mean of all dabs."""
         heading = np.round(np.degrees([each.dab.heading_rad for each in self.seen])) % 360
         all_ = self.reach.mean(axis=0)
         return {h: self._to_mm(self.reach[heading == h].mean(axis=0) - all_) for h in np.unique(heading)}
 
     def asymmetry(self) -> float:
-        """Return the difference of the two sides, relative to the difference that chance causes in the mean."""
+        """Return the difference of the two sides, relative to chance.
+
+        Chance is the expected difference of the mean of equal sides.
+        """
         apart = self._to_mm(self.reach - _mirror(self.reach))
         chance = np.mean(apart.var(axis=0, ddof=1)) / len(apart)
         return float(np.sqrt(np.mean(apart.mean(axis=0) ** 2) / max(chance, 1e-12)))
@@ -385,12 +402,15 @@ class _DabsOfDepth:
 
 
 def _mirror(reach: np.ndarray) -> np.ndarray:
-    """Return distances along rays (..., n) that start at the tip, mirrored at the axis."""
+    """Mirror distances along rays (..., n), which start at the tip, at the axis."""
     return np.roll(reach[..., ::-1], 1, axis=-1)
 
 
 def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
-    """Return the rms difference, over the outline, of the heading whose dabs differ most, averaged over depths."""
+    """Return the largest rms difference of a heading from all dabs [mm].
+
+    It is taken over the outline and averaged over depths.
+    """
     off: dict[float, list[np.ndarray]] = {}
     for shape in shapes:
         for heading, distance in shape.by_heading_mm().items():
@@ -399,7 +419,9 @@ def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
 
 
 def _smooth_outline(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:
-    """Return the outline with the least curvature within unsure_mm (rms) and MAX_SMOOTHING_MM.
+    """Return the outline with the least curvature near the given one.
+
+    It stays within unsure_mm (rms) and MAX_SMOOTHING_MM.
 
     The outline may have a corner at the tip.
     """
@@ -434,7 +456,10 @@ def widths_at(outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _remove_drag(points: np.ndarray, by_mm: float) -> np.ndarray:
-    """Remove the length that a dragged patch swept, from the widest part of the outline."""
+    """Remove the length that a dragged patch swept.
+
+    It is removed from the widest part of the outline.
+    """
     if by_mm <= 0:
         return points
     x, wide = widths_at(points)

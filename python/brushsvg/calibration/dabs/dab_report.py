@@ -1,4 +1,7 @@
-"""Report a calibration from dabs: outlines, laws, omissions and limits, in words and as a picture."""
+"""Report a calibration from dabs, in words and as a picture.
+
+The report has outlines, laws, omissions and limits.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,10 @@ DAB_COLOUR, BEFORE_COLOUR = "#3f8fd9", "#c0392b"
 
 
 def report(made) -> Report:
-    """Return the report that `brushsvg calibrate` prints. made: a from_dabs.DabCalibration."""
+    """Return the report that `brushsvg calibrate` prints.
+
+    made: a from_dabs.DabCalibration.
+    """
     brush, outlines, shapes = made.brush, made.outlines, made.outlines.shapes
     count = sum(len(shape.seen) for shape in shapes)
     shift, turn = outlines.shift_mm, math.degrees(outlines.turn_rad)
@@ -52,7 +58,7 @@ _MEASURED_LAWS = ("tip_gap", "tip_to_widest", "half_width")
 
 
 def _find_hidden_fronts(brush: _core.Brush) -> list[float]:
-    """Return the depths at which the front may have been painted before the brush was that deep."""
+    """Return the depths at which a lesser depth may have painted the front."""
     shapes = brush.footprints.dragged
     fronts = [float(shape.outline_mm[:, 0].max()) - brush.tip_gap(shape.depth_mm) for shape in shapes]
     return [
@@ -71,7 +77,10 @@ def _describe_hidden_fronts(depths: list[float]) -> str:
 
 
 def report_picture(made, suffix: str) -> bytes:
-    """Draw laws and footprints with the data, and for each depth its dabs, their mean and the outline before."""
+    """Draw laws and footprints with the data, and the dabs of each depth.
+
+    Dabs are drawn with their mean and with the outline before.
+    """
     shapes = made.outlines.shapes
     figure = new_figure((11, 10))
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.7, 1))

@@ -1,4 +1,6 @@
-"""Make a brush from dabs: its outlines, and the laws of width, widest section and tip gap that agree with them.
+"""Make a brush from dabs.
+
+It has the outlines of the dabs, and laws of width, widest section and tip gap that agree with them.
 
 Dabs do not show the lag. It is the lag of the brush for which the dabs were landed.
 """
@@ -141,7 +143,10 @@ def _values_of_law(law: str, shape: Shape) -> np.ndarray:
 
 
 def _breadth(outline: np.ndarray) -> float:
-    """Return the distance between the means of the uppermost and lowermost points, which noise does not increase."""
+    """Return the width between the means of the outermost points.
+
+    Noise does not increase a distance of means.
+    """
     y = np.sort(outline[:, 1])
     count = max(1, len(y) // 10)
     return float(y[-count:].mean() - y[:count].mean())
@@ -155,7 +160,10 @@ def _widest_place(outline: np.ndarray) -> float:
 
 
 def _broad_middle(outline: np.ndarray) -> float:
-    """Return the middle of the broad part, from a parabola through all of it: its single broadest point is chance."""
+    """Return the middle of the broad part of an outline.
+
+    It comes from a parabola through all of the part, because the single broadest point is chance.
+    """
     x, wide = widths_at(np.roll(outline, -int(outline[:, 0].argmin()), axis=0))
     broad = wide >= BROAD_WIDTH_SHARE * wide.max()
     bend, slope, _ = np.polyfit(x[broad], wide[broad], 2)
@@ -233,7 +241,10 @@ def _make_profile(law: _core.Profile, shapes: tuple[Shape, ...], half_interval_9
 
 
 def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | None:
-    """Return the covariance of the unchanged lag and the new laws, including a common shift of all edges."""
+    """Return the covariance of the unchanged lag and the new laws.
+
+    It includes a common shift of all edges.
+    """
     if any(not np.size(fit.covariance) for fit in fits.values()):
         return None
     at = places(brush)

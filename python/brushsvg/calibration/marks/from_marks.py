@@ -1,4 +1,7 @@
-"""Fit a brush with its covariance to painted marks, or predict how well a sheet will determine a brush."""
+"""Fit a brush with its covariance to painted marks.
+
+The same fit predicts how well a sheet will determine a brush.
+"""
 
 from __future__ import annotations
 
@@ -171,7 +174,7 @@ def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale |
 
 
 def _change_of_fit_with_tail(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
-    """Return the change of all fitted numbers if the marks are replaced, keeping the chosen tail."""
+    """Return the change of the fit for other marks, with the chosen tail."""
     default_widest = options.widest_per_half
     if fit.laws.round_tail:
         options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
@@ -181,7 +184,10 @@ def _change_of_fit_with_tail(fit, marks: list, options: _core.MarkOptions) -> np
 
 
 def change_of_fit(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
-    """Return the change of all fitted numbers if the marks are replaced, in the order of the covariance."""
+    """Return the change of all fitted numbers for other marks.
+
+    The order is the order of the covariance.
+    """
     fit_with_marks = _core.fit_marks(marks, fit.laws, options)
     return _all_numbers(fit_with_marks, fit, options.deepest_mm) - _all_numbers(fit, fit, options.deepest_mm)
 
@@ -204,7 +210,9 @@ def grow_outlines(marks: list, edge_mm: float) -> list:
 
 
 def change_by_wetter_marks(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
-    """Return the change of all fitted numbers if wider marks grow more, by edge_mm at the greatest depth.
+    """Return the change of all fitted numbers if wider marks grow more.
+
+    Marks of the greatest depth grow by edge_mm.
 
     More paint runs further. The fit would explain a common shift of all edges by higher paper, but wider marks that
     grow more change the half width.
@@ -217,7 +225,10 @@ def change_by_wetter_marks(fit, deepest_mm: float, edge_mm: float) -> np.ndarray
 
 
 def _all_numbers(fit, like, deepest_mm: float) -> np.ndarray:
-    """Return all fitted numbers in the order of the covariance of `like`, with as many coefficients per law."""
+    """Return all fitted numbers in the order of the covariance of `like`.
+
+    Each law gets as many coefficients as in `like`.
+    """
     laws, other = fit.laws, like.laws
     numbers = [
         _reduce_law(laws.lag, len(other.lag), 0, deepest_mm),
@@ -245,7 +256,10 @@ def _all_numbers(fit, like, deepest_mm: float) -> np.ndarray:
 
 
 def _reduce_law(coefficients, terms: int, first: int, deepest_mm: float) -> np.ndarray:
-    """Return the coefficients, from the power `first` on, of the nearest law with `terms` terms over the depths."""
+    """Reduce a law to fewer terms, nearest over the depths.
+
+    Return its coefficients from the power `first` on.
+    """
     if len(coefficients) <= terms:
         return np.pad(coefficients, (0, terms - len(coefficients)))[first:]
     share = np.linspace(0.0, 1.0, 41)[1:]
@@ -255,7 +269,10 @@ def _reduce_law(coefficients, terms: int, first: int, deepest_mm: float) -> np.n
 
 
 def height_at(fit) -> int:
-    """Return the index of the paper height in the covariance of a fit; shift x, shift y and turn follow."""
+    """Return the index of the paper height in the covariance of a fit.
+
+    Shift x, shift y and turn follow.
+    """
     laws = fit.laws
     ratios = len(widest_ratio(laws)) + len(front_ratio(laws))
     return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
@@ -269,7 +286,9 @@ def _grow_ring(ring: np.ndarray, by_mm: float) -> np.ndarray:
 
 
 def _fit_better_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple[object, float]:
-    """Fit both tails and return the better fit with the chi-square gain of the round tail.
+    """Fit both tails and return the better fit.
+
+    The chi-square gain of the round tail is returned as well.
 
     start: laws that are near the solution. Both fits use laws with the usual few coefficients, because additional
     coefficients would compensate for a wrong tail.
@@ -340,7 +359,7 @@ def expected_brush(
     options: _core.MarkOptions | None = None,
     painted: list[_core.PaintedMark] | None = None,
 ) -> tuple[_core.Brush, list[str]]:
-    """Predict how well the marks of a plan will determine a brush, before anyone paints.
+    """Predict how well the marks of a plan will determine a brush.
 
     noise_mm: standard deviation of a painted edge. noise_length_mm: correlation length of that noise along the
     outline. options: sigmas of sheet, displacement and height, as for calibrate_marks. painted: the result of
@@ -361,7 +380,10 @@ def expected_machine(
     parts: tuple[str, ...] = tuple(PARTS),
     painted: list[_core.PaintedMark] | None = None,
 ) -> list[Number]:
-    """Predict the numbers that the marks of a machine without errors give, with half their 95 % intervals."""
+    """Predict the numbers of the machine that marks will determine.
+
+    The machine has no errors. Each number has half its 95 % interval.
+    """
     options = _core.MarkOptions()
     ask_for(options, parts)
     painted = painted or expected_marks(plan, brush)
@@ -370,7 +392,10 @@ def expected_machine(
 
 
 def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMark]:
-    """Simulate the marks of a plan, with the brush as the fit sees it: outlines [mm] on the paper, without noise."""
+    """Simulate the marks of a plan, with the brush as the fit sees it.
+
+    The outlines [mm] are on the paper and have no noise.
+    """
     need_fits()
     _core.refuse_tilted(plan.passes, UPRIGHT)
     fitted_brush = brush_of(laws_of(brush), brush.name, brush.depth_range_mm)
@@ -400,7 +425,10 @@ def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, 
 
 
 def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HALF_TERMS) -> _core.MarkLaws:
-    """Return the nearest laws to a brush over its depths, with as many coefficients as marks determine."""
+    """Return the nearest laws to a brush over its depths.
+
+    They have as many coefficients as marks determine.
+    """
     depths = np.linspace(*brush.depth_range_mm, 41)[1:]
 
     def fit_nearest(law, powers):
@@ -456,7 +484,10 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
 
 
 def to_brush_covariance(laws, covariance: np.ndarray) -> np.ndarray:
-    """Convert a covariance from the unknowns of the fit to the coefficients of a brush; x_w = ratio * h."""
+    """Convert a covariance from the unknowns of the fit to a brush.
+
+    The result is over the coefficients of the brush; x_w = ratio * h.
+    """
     lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
     ratio, half_width = widest_ratio(laws), np.array(laws.half_width)
     rows = lag + gap + 1 + half + len(ratio) + half + 1
@@ -473,17 +504,26 @@ def to_brush_covariance(laws, covariance: np.ndarray) -> np.ndarray:
 
 
 def widest_ratio(laws) -> np.ndarray:
-    """Return the ratio of the widest section's position to the half width, in ascending powers of depth."""
+    """Return the ratio of the widest section's position to the half width.
+
+    Coefficients are in ascending powers of depth.
+    """
     return np.array(laws.widest_by_depth or [laws.widest_per_half])
 
 
 def front_ratio(laws) -> np.ndarray:
-    """Return the ratio of the length in front of the widest section to the half width, in ascending powers of depth."""
+    """Return the ratio of the footprint's front to the half width.
+
+    The front is the length in front of the widest section. Coefficients are in ascending powers of depth.
+    """
     return np.array(laws.front_by_depth or [laws.front_per_half])
 
 
 def _widest_floor(laws, deepest: float) -> dict[str, float]:
-    """Return the floor of the widest section if its ratio would fall below the least ratio of a footprint."""
+    """Return the floor of the widest section, if it needs one.
+
+    It needs one if its ratio would fall below the least ratio of a footprint.
+    """
     depths = np.linspace(0.0, deepest, 41)
     if polyval(depths, widest_ratio(laws)).min() >= MIN_RATIO_TO_HALF_WIDTH:
         return {}
@@ -501,7 +541,7 @@ def _footprint(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
 
 
 def _fit_scale(fit, painted: Painted) -> SheetScale | None:
-    """Return the scale of the sheet, from the displacements of marks that are not outliers."""
+    """Fit the scale of the sheet to marks that are not outliers."""
     usable = [
         (middle(np.array(mark.poses_mm)[:, :2]), residual.displacement_mm)
         for mark, residual in zip(painted.marks, fit.marks, strict=True)

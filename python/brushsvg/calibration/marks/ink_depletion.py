@@ -1,4 +1,4 @@
-"""Find where the paint of one load ran out, from the marks of its sheet that are whole."""
+"""Find where the paint of one load ran out, from the whole marks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ MIN_WHOLE_SHARE = 0.75
 
 @dataclass(frozen=True)
 class InkDepletion:
-    """The last whole stroke and the next stroke, which is not whole. No later stroke is whole either.
+    """The last whole stroke and the next stroke, which is not whole.
+
+    No later stroke is whole either.
 
     whole_mm, dry_mm: path length of the TCP on the paper from the dip to the end of each of the two strokes.
     """
@@ -27,7 +29,10 @@ class InkDepletion:
 
     @property
     def variance_mm2(self) -> float:
-        """Return the variance of whole_mm: the load may have run out anywhere between the two lengths."""
+        """Return the variance of whole_mm.
+
+        The load may have run out anywhere between the two lengths.
+        """
         return (self.dry_mm - self.whole_mm) ** 2 / 3
 
     def describe(self) -> str:
@@ -39,7 +44,9 @@ class InkDepletion:
 
 
 def find_ink_depletion(painted: Painted, predicted: list) -> InkDepletion | None:
-    """Find the strokes between which the load ran dry; None if the last stroke of the plan is whole.
+    """Find the strokes between which the load ran dry.
+
+    Return None if the last stroke of the plan is whole.
 
     painted: all marks of the sheet, as freshly dipped. predicted: for each mark, the rings that the fitted brush
     paints.

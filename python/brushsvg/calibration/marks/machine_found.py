@@ -1,4 +1,7 @@
-"""Find the errors of a machine from painted marks, and describe them in words and as a table of a cell."""
+"""Find the errors of a machine from painted marks.
+
+They are described in words and as a table of a cell.
+"""
 
 from __future__ import annotations
 
@@ -139,7 +142,9 @@ def has_field(found: list[Number]) -> bool:
 
 
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
-    """Return the lines of a cell's table [machine], without lines if a cell can compensate no requested number.
+    """Return the lines of a cell's table [machine].
+
+    There are no lines if a cell can compensate no requested number.
 
     Backlash and a field that could be 0 are left out. The kind of machine may be unknown, so remarks say which machines
     cannot use a line.

@@ -1,4 +1,7 @@
-"""Read painted marks, with the TCP path of each, from a measurement file; refuse nonsense."""
+"""Read painted marks and their TCP paths from a measurement file.
+
+Nonsense is refused.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,10 @@ class Painted:
     way_mm: float = 0.0
 
     def without(self, strokes: set[str]) -> Painted:
-        """Return the marks without some strokes; raise Error if the remaining marks are not informative."""
+        """Return the marks without some strokes.
+
+        Raises Error if the remaining marks are not informative.
+        """
         remaining = to_painted([mark for mark in self.marks if mark.stroke not in strokes])
         return replace(remaining, before_mm=self.before_mm, way_mm=self.way_mm)
 
@@ -101,14 +107,17 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
 
 
 def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], float]:
-    """Return the path length of the TCP on the paper before each stroke, and along all strokes."""
+    """Return the TCP path length on the paper before each stroke, and in total."""
     ways = [polylines.length(np.array(plan_pass.poses_mm)[:, :2]) for plan_pass in passes.values()]
     *before, way_mm = np.cumsum([0.0, *ways]).tolist()
     return dict(zip(passes, before, strict=True)), way_mm
 
 
 def to_painted(marks: list) -> Painted:
-    """Return the marks as Painted; raise Error if they are not informative about a brush."""
+    """Return the marks as Painted.
+
+    Raises Error if they are not informative about a brush.
+    """
     ways = [np.array(mark.poses_mm) for mark in marks]
     _refuse_uninformative(ways)
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
@@ -189,7 +198,10 @@ def _read_ring(points, where: str) -> np.ndarray:
 
 
 def _orient_rings(rings: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the shape that the rings fill, with outer rings counter-clockwise and holes clockwise."""
+    """Return the shape that the rings fill.
+
+    Outer rings are counter-clockwise, holes clockwise.
+    """
     return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
 
 
@@ -328,7 +340,10 @@ def _refuse_foreign_outlines(found: list) -> None:
 
 
 def depths_painted(ways: list[np.ndarray]) -> int:
-    """Count the depths at which MIN_PAINTED_MM or more was painted, in bins of a twentieth of the deepest."""
+    """Count the depths at which MIN_PAINTED_MM or more was painted.
+
+    Depths are in bins of a twentieth of the deepest.
+    """
     deepest = max(float(-poses[:, 2].min()) for poses in ways)
     if not deepest > 0:
         return 0

@@ -1,4 +1,4 @@
-"""Report a fit of painted marks: verdict, laws, confidence, residuals and displacements; and draw it as a picture."""
+"""Report a fit of painted marks, in words and as a picture."""
 
 from __future__ import annotations
 
@@ -100,7 +100,9 @@ def report(made, of_photo: bool = False) -> Report:
 
 
 def judge_overlap(moved: float) -> tuple[list[str], list[str]]:
-    """Return the reasons against a brush, and reservations, from the overlap of painted and predicted marks.
+    """Judge a brush by the overlap of painted and predicted marks.
+
+    Return reasons against the brush, and reservations.
 
     moved: the mean overlap without displacements.
     """
@@ -191,7 +193,10 @@ def _list_departing_laws(made) -> list[str]:
 
 
 def _unexpected(made, of_photo: bool = False) -> list[str]:
-    """Return a sentence for each value that is too large for the sigmas of the fit, and therefore biases the laws."""
+    """Return a sentence for each value that is too large for the fit.
+
+    A value that is too large for its sigma biases the laws.
+    """
     fit, expected = made.fit, made.expected
     astray = {stray.mark.stroke for stray in made.strays}
     displaced = [
@@ -257,7 +262,10 @@ def _describe_strays(made) -> list[str]:
 
 
 def list_strays(made) -> list[Notice]:
-    """Return a notice for each stray mark: its found and expected place, and the cost of leaving it out."""
+    """Return a notice for each stray mark.
+
+    It has the found and expected place, and the cost of leaving the mark out.
+    """
     notices = []
     for stray in made.strays:
         (rings,) = predict_outlines(made, [stray.mark])
@@ -297,7 +305,10 @@ def _describe_cost(made, mark) -> str:
 
 
 def _warn_of_poor_fit(fit, moved: float) -> list[str]:
-    """Return warnings about many masked points and a small overlap. moved: the overlap without displacements."""
+    """Return warnings about many masked points and a small overlap.
+
+    moved: the overlap without displacements.
+    """
     out = []
     if fit.left_aside > MAX_MASKED_SHARE:
         out.append(
@@ -324,7 +335,10 @@ def _round_up(size: float) -> float:
 
 
 def _describe_sheet_and_machine(made) -> list[str]:
-    """Describe the position of the sheet and the errors of the machine, which are fitted together with the laws."""
+    """Describe the position of the sheet and the errors of the machine.
+
+    Both are fitted together with the laws.
+    """
     fit = made.fit
     half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
     first = height_at(fit)
@@ -370,7 +384,9 @@ def _describe_residuals(made) -> list[str]:
 
 
 def overlaps(made) -> tuple[float, float]:
-    """Return the mean overlap of painted with predicted marks, in place and without their displacements.
+    """Return the mean overlap of painted with predicted marks.
+
+    The two values are in place and without the displacements of the marks.
 
     The overlap shows how well the brush predicts the position of paint. The confidence of its laws shows less.
     """
@@ -383,7 +399,10 @@ def overlaps(made) -> tuple[float, float]:
 
 
 def report_picture(made, suffix: str) -> bytes:
-    """Draw the laws with bands, and the painted and predicted outlines of the best, median and worst mark."""
+    """Draw the laws with bands, and the best, median and worst mark.
+
+    Marks have their painted and predicted outlines.
+    """
     figure = new_figure((11, 11))
     laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
     brush_picture_on(laws, made.brush)
@@ -405,14 +424,20 @@ def report_picture(made, suffix: str) -> bytes:
 
 
 def _to_plan_frame(made, rings, displacement) -> list[np.ndarray]:
-    """Transform rings of the sheet to the frame of the plan, with the fitted pose of the sheet."""
+    """Transform rings of the sheet to the frame of the plan.
+
+    The transformation is the fitted pose of the sheet, and the displacement of the mark.
+    """
     fit = made.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
 
 
 def to_sheet_frame(made, rings) -> list[np.ndarray]:
-    """Transform rings of the plan to the frame of the painted sheet, with its fitted pose."""
+    """Transform rings of the plan to the frame of the sheet.
+
+    The transformation is the fitted pose of the sheet.
+    """
     fit = made.fit
     centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
     return [(ring - centre) @ turned + centre + fit.shift_mm for ring in rings]
@@ -423,7 +448,10 @@ def deepest_mm(mark) -> float:
 
 
 def predict_outlines(made, marks: list) -> list:
-    """Return the rings that the fitted brush paints along the paths of these marks, in the frame of the plan."""
+    """Return the rings that the fitted brush paints along the paths of marks.
+
+    The rings are in the frame of the plan.
+    """
     brush, traces = simulate_fitted_brush(made, marks)
     painted = _core.Marks()
     painted.passes = traces

@@ -1,4 +1,7 @@
-"""Fit how marks narrow along the path since the last dip, together with the brush, from a sheet of one load."""
+"""Fit how marks narrow along the path since the last dip.
+
+The rate is fitted together with the brush, to a sheet that was painted with one load.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +39,7 @@ MIN_SPARE_MARKS = 3  # least number of marks in addition to the number of unknow
 
 
 def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibration:
-    """Fit a brush to marks that get narrower along their plan, because it was painted with one load.
+    """Fit a brush to marks that narrow because of a single load of paint.
 
     painted, name and the other arguments: as for calibrate_marks(). The laws of the brush are those of the freshly
     dipped brush, and its paint gives the rate at which marks narrow.
@@ -95,7 +98,9 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
 
 
 def _share_in_residuals(one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Return the share of a rate error that stays in the residuals of the edges; the rest changes the laws.
+    """Return the share of a rate error that stays in the residuals.
+
+    The rest of the error changes the laws.
 
     one, other: two pairs of a rate and the error of the rate that remained with it.
     """
@@ -103,7 +108,7 @@ def _share_in_residuals(one: tuple[float, float], other: tuple[float, float]) ->
 
 
 def restore_fresh_marks(painted: Painted, made: MarkCalibration, rate_per_m: float) -> list:
-    """Return the marks as a brush would have painted them that is freshly dipped everywhere.
+    """Return the marks of a brush that is freshly dipped everywhere.
 
     Edges are moved away from the path of the widest section by the width that is lost.
     """
@@ -193,7 +198,9 @@ class ExpectedPaint:
 
 
 def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painted: list) -> ExpectedPaint:
-    """Predict how well a plan that is painted with one load will determine the rate, before anyone paints it.
+    """Predict how well a plan will determine the rate, before it is painted.
+
+    The plan is painted with one load.
 
     painted: the result of expected_marks(plan, brush).
     """
@@ -234,7 +241,7 @@ class Flanks:
         return [self.of_mark == one for one in np.unique(self.of_mark)]
 
     def own(self) -> np.ndarray:
-        """Return the part of `moved` that no width law and no height of the paper explains."""
+        """Return the part of `moved` that neither width laws nor height explain."""
         return remove_powers(self.moved, self.powers)
 
     def explained_by_depth(self) -> float:
@@ -283,7 +290,9 @@ def _collect_flanks(made: MarkCalibration) -> Flanks:
 
 
 def _estimate_rate_error(made: MarkCalibration) -> tuple[float, float, float]:
-    """Estimate the error of the rate that the marks were restored with, from the residuals of the edges.
+    """Estimate the error of the rate from the residuals of the edges.
+
+    It is the rate with which the marks were restored.
 
     The error per metre is fitted by least squares as the effect of narrowing, together with powers of the depth. Its
     standard deviation is estimated by whole marks, because the points of a mark are correlated. The contribution of
@@ -313,7 +322,9 @@ def _estimate_rate_error(made: MarkCalibration) -> tuple[float, float, float]:
 
 
 def _measure_curvature(made: MarkCalibration) -> float:
-    """Return how strongly the residuals depend on the square of the path, in addition to the path.
+    """Return how strongly the residuals depend on the square of the path.
+
+    The dependence is in addition to the path itself.
 
     The unit is its standard deviation, from leaving out marks one by one.
     """

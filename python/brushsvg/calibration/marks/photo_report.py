@@ -1,4 +1,4 @@
-"""Draw the outlines that were read from a photograph of a chart, and the outlines that the fitted brush paints."""
+"""Draw the outlines read from a photograph and the predicted outlines."""
 
 from __future__ import annotations
 
@@ -40,7 +40,9 @@ def read_picture(read, made=None) -> bytes:
 
 
 def dabs_picture(read, made) -> bytes:
-    """Draw the dabs of a photograph in green and the outlines of their depths in red, as a PNG.
+    """Draw the dabs of a photograph and the outlines of their depths as a PNG.
+
+    Dabs are green, outlines are red.
 
     made: a from_dabs.DabCalibration. Each dab is labelled with its depth and, if there is space, its displacement. Dabs
     that were left out are orange.
@@ -87,7 +89,10 @@ def _enlarge(flat: Flat) -> Flat:
 
 
 def _draw_predictions(picture, flat, read, made) -> dict[str, list[str]]:
-    """Draw the predictions on their marks, and return the labels of each stroke, the longest first."""
+    """Draw the predictions on their marks, and return the labels.
+
+    The labels of each stroke are ordered by length, the longest first.
+    """
     if made is None:
         return {stroke: [stroke] for stroke in read.marks.outlines_mm}
     words = {}

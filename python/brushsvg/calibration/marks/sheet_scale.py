@@ -1,4 +1,7 @@
-"""Test whether a sheet of painted marks has the size of its plan. Outer marks are displaced more if it has not."""
+"""Test whether a sheet of painted marks has the size of its plan.
+
+If it has not, outer marks are displaced more.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +48,9 @@ class SheetScale:
 
 
 def fit_sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> SheetScale | None:
-    """Fit the scale of a sheet to planned positions and displacements, both (n, 2) [mm].
+    """Fit the scale of a sheet to the displacements of its marks.
+
+    middles_mm, displacements_mm: planned positions and displacements, both (n, 2).
 
     dx and dy are fitted by least squares to 1, x and y, so that a turn of the sheet has no effect. Return None if the
     scale cannot be determined.
@@ -69,7 +74,10 @@ def fit_sheet_scale(middles_mm: np.ndarray, displacements_mm: np.ndarray) -> She
 
 
 def refuse_scale(scale: SheetScale | None) -> None:
-    """Raise Error if the sheet has not the size of its plan: lag and width would be wrong by a similar share."""
+    """Raise Error if the sheet has not the size of its plan.
+
+    Lag and width would be wrong by a similar share.
+    """
     if scale is None:
         return
     difference = (scale.x[0] - scale.y[0], math.hypot(scale.x[1], scale.y[1]))

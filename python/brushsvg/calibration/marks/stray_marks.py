@@ -1,4 +1,7 @@
-"""Find painted marks that are unlike all others: something covers them, or they belong to something else."""
+"""Find painted marks that are unlike all others.
+
+Something covers them, or they belong to something else.
+"""
 
 from __future__ import annotations
 

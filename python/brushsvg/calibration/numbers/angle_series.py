@@ -1,4 +1,7 @@
-"""Read lag and tip gap from a series of angles, and estimate how noise of the angles scatters both."""
+"""Read lag and tip gap from a series of angles.
+
+The effect of noise of the angles on both lengths is estimated as well.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,9 @@ def read_series(row: Row, total: bool) -> dict:
 
 
 def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -> tuple[float, float]:
-    """Return the standard deviations of lag and tip gap [mm] if all angles of the series scatter by one radian.
+    """Return the standard deviations of lag and tip gap [mm] of a series.
+
+    All angles of the series scatter by one radian.
 
     The standard deviations are of first order. They are taken at the angles that a brush with this lag and tip gap
     shows after the distances of the series. At the readings themselves, a value that noise made too small would get

@@ -45,7 +45,9 @@ class Turn:
 
 
 def middle_of_turn(lag_mm: float, turning_mm: float, s_mm: np.ndarray) -> np.ndarray:
-    """Return the middle of the mark (n, 2) [mm] after the handle has gone s >= 0 along +x from its corner.
+    """Return the middle (n, 2) of the mark of an angular stroke [mm].
+
+    s_mm >= 0: how far the handle has gone along +x from its corner.
 
     The handle came to the corner along +y. The middle is m = q - (r - e) u, with u from (7) starting at 90 degrees.
     The middle also has a corner at s = 0, where u is perpendicular to the motion.
@@ -55,7 +57,10 @@ def middle_of_turn(lag_mm: float, turning_mm: float, s_mm: np.ndarray) -> np.nda
 
 
 def _find_nearest_segment(line: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nearest segment of a polyline (k, 2) for each point (n, 2), and the position as a share of it."""
+    """Return the nearest segment of a polyline (k, 2) for each point (n, 2).
+
+    The position of the nearest place is returned as a share of the segment.
+    """
     start, along = line[:-1], np.diff(line, axis=0)
     to_points = points[:, None] - start
     share = np.clip((to_points * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-30), 0.0, 1.0)
@@ -64,12 +69,15 @@ def _find_nearest_segment(line: np.ndarray, points: np.ndarray) -> tuple[np.ndar
 
 
 def _interpolate(values: np.ndarray, piece: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Interpolate values at the corners of a polyline (k, 2) to positions on its segments (n, 2)."""
+    """Interpolate values of a polyline's corners (k, 2) on its segments (n, 2)."""
     return values[piece] + share[:, None] * (values[piece + 1] - values[piece])
 
 
 def _place_below_second_line(points_mm) -> np.ndarray:
-    """Return at most MAX_LINE_POINTS points, mirrored if needed to be below the handle's second line."""
+    """Return at most MAX_LINE_POINTS points, below the handle's second line.
+
+    Points above the line are mirrored.
+    """
     points = np.array(points_mm, float)
     points = points[:: -(-len(points) // MAX_LINE_POINTS)]
     return points * [1.0, -1.0] if points[:, 1].sum() > 0 else points
@@ -78,7 +86,7 @@ def _place_below_second_line(points_mm) -> np.ndarray:
 def _vectors_to_points(
     points: np.ndarray, lag_mm: float, turning_mm: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the vectors from the nearest place on the middle of a turn to the points (n, 2).
+    """Return the vectors from the middle of a turn to the points (n, 2).
 
     The index of the nearest segment and the share of it are returned as well.
     """
@@ -112,7 +120,9 @@ def read_turn_near(points_mm, lag_mm: float, turning_mm: float) -> Turn:
 
 
 def _normal_equations(points: np.ndarray, lag_mm: float, turning_mm: float):
-    """Return the vectors to the points (n, 2), and J d and J J^T of the normal equations.
+    """Return the vectors to the points (n, 2) and the normal equations.
+
+    The equations are J d and J J^T.
 
     J holds the derivatives of the distances d with respect to the lag and r - e.
     """
@@ -193,7 +203,10 @@ def read_turn(points_mm, where: str = "") -> Turn:
 
 
 def _covariance_and_rmse(fit, freedom: int) -> tuple[np.ndarray, float]:
-    """Return the covariance of lag and r - e and the residual of the points, from a fit of lag and (r - e) / r."""
+    """Return the covariance of lag and r - e, and the residual of the points.
+
+    fit: a fit of lag and (r - e) / r.
+    """
     lag, share = fit.x
     variance = 2.0 * fit.cost / freedom
     to_lengths = np.array([[1.0, 0.0], [share, lag]])

@@ -1,4 +1,7 @@
-"""Fit a brush to measured numbers: each law to the values that determine it, with its covariance and remarks."""
+"""Fit a brush to measured numbers.
+
+Each law is fitted to the values that determine it, with its covariance and remarks.
+"""
 
 from __future__ import annotations
 
@@ -148,7 +151,9 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
 def _collect_points(
     measured: Measurements, total: bool, turns: dict[str, Turn]
 ) -> tuple[dict[str, list[Point]], list[str]]:
-    """Collect the values of single laws, including values from angle series and from the decay of turns.
+    """Collect the values of single laws.
+
+    They include values from angle series and from the decay of turns.
 
     Return the points of each law, and remarks about readings that were left out.
     """
@@ -174,7 +179,10 @@ def _collect_points(
 
 
 def _choose_degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
-    """Return the degree that values at these depths allow, and a remark if it is lower than usual."""
+    """Return the degree that values at these depths allow.
+
+    A remark is returned as well if the degree is lower than usual.
+    """
     different = plausibility.count_distinct_depths(depths_mm)
     # Each coefficient needs two values; with fewer, the law would follow their noise.
     coefficients = min(different, max(2, math.ceil(len(depths_mm) / 2)))
@@ -205,7 +213,9 @@ class _LawFitter:
             self._fit_law(law, points[law])
 
     def weigh_angles(self, points: dict[str, list[Point]], total: bool) -> None:
-        """Fit lag and tip gap again with each angle series weighted by the scatter that its angles imply.
+        """Fit lag and tip gap again with weighted angle series.
+
+        The weight of a series comes from the scatter that its angles imply.
 
         The noise of an angle displaces both lengths in proportion to the lag, so their scatter grows with depth.
         """
@@ -228,7 +238,9 @@ class _LawFitter:
                 self.fit(law, points)
 
     def fit_sums(self, points: dict[str, list[Point]]) -> None:
-        """Fit lag, tip gap and widest section again in one joint fit, if rows measure sums of them.
+        """Fit lag, tip gap and widest section again in one joint fit.
+
+        This needs rows that measure sums of these laws.
 
         Raises Error if the rows measure only sums, so that lag and tip gap cannot be separated.
         """
@@ -280,7 +292,10 @@ class _LawFitter:
         self._store_joint_fit(readings, shown="tip_gap" if points["lag"] else "lag")
 
     def _read_turns_near(self, lines: list[Row], fit) -> None:
-        """Read all centre lines again, starting from the joint laws, until the laws stop moving."""
+        """Read all centre lines again until the laws stop moving.
+
+        The first reading starts from the joint laws.
+        """
         for _ in range(MAX_GAUSS_NEWTON_STEPS):
             moved = 0.0
             for row in lines:
@@ -298,7 +313,9 @@ class _LawFitter:
                 break
 
     def _choose_turns(self, fit) -> dict[str, float]:
-        """Choose the sign of e for each centre line that allows both: the one that fits the other measurements.
+        """Choose the sign of e for each centre line that allows both.
+
+        The chosen sign fits the other measurements.
 
         A law that was fitted to a wrong reading agrees with that reading. Each line is therefore compared with laws
         that were fitted without it. Return the probability of the rejected sign for each line.
@@ -339,7 +356,10 @@ class _LawFitter:
         )
 
     def _misfit(self, row: Row, turn: Turn, others: JointFit) -> float:
-        """Return -2 ln of the likelihood of a centre line reading, given its points and the laws of the others."""
+        """Return -2 ln of the likelihood of a reading of a centre line.
+
+        The likelihood is given by its points and by the laws of the others.
+        """
         predicted, covariance = others.predict(row.depth_mm, TURN_SUMS)
         own_covariance = np.array(turn.covariance_mm2)
         for kind in others.kinds:  # lines scatter more than their points predict
@@ -352,7 +372,10 @@ class _LawFitter:
         return float(by_others) + turn.freedom * 2.0 * math.log(max(turn.rmse_mm, ROUNDING_MM))
 
     def _starting_law(self, law: str, readings: list[Reading]) -> _core.Profile:
-        """Return the law that was fitted alone, raised to the degree that all readings of it allow."""
+        """Return the law that was fitted alone, as the start of the joint fit.
+
+        Its degree is raised to the degree that all readings of it allow.
+        """
         single_fit = self.fitted[law]
         depths = [
             reading.depth_mm for reading in readings if any(law in law_signs for law_signs in reading.sums)
@@ -364,7 +387,7 @@ class _LawFitter:
         return _core.Profile([*profile.coefficients, *added], floor=profile.floor)
 
     def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: _core.LawFit) -> None:
-        """Raise Error if the mean of the values is below 0 by more than the interval of the law."""
+        """Raise Error if the mean of the values is below the interval around 0."""
         mean = float(np.mean([point.value_mm for point in points]))
         depths = np.array([point.depth_mm for point in points])
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]

@@ -1,4 +1,7 @@
-"""Make a brush from a few typed numbers. Laws that nobody measured are assumed, and the brush says so."""
+"""Make a brush from a few typed numbers.
+
+Laws that nobody measured are assumed, and the brush says so.
+"""
 
 from __future__ import annotations
 
@@ -102,7 +105,7 @@ def lag_of_turn(turn_mm: float, width_mm: float) -> float:
 
 
 def outlines_assumed(source: str) -> str:
-    """Return the JSON that marks the outlines of a brush file as assumed, with their source."""
+    """Return the JSON that marks the outlines of a brush as assumed."""
     return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})
 
 
@@ -167,7 +170,10 @@ def _constant_lag(lag_mm: float) -> _core.Profile:
 
 
 def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
-    """Fit the lag: the law with the lowest degree that comes close enough and is never negative."""
+    """Fit the simplest law of lag that comes close enough.
+
+    It has the lowest degree and is never negative.
+    """
     depths, values = [depth for depth, _ in lags], [lag for _, lag in lags]
     depth_count = len(set(depths))
     if lags[-1][0] > deepest:
@@ -219,7 +225,10 @@ def _constant_half_width(width: tuple[float, float]) -> _core.Profile:
 
 
 def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Profile:
-    """Fit the half width: the simplest law that is 0 at depth 0, never falls and comes close enough."""
+    """Fit the simplest law of half width that comes close enough.
+
+    It is 0 at depth 0 and never falls.
+    """
     depths, halves = [depth for depth, _ in widths], [width / 2 for _, width in widths]
     depth_count = len(set(depths))
     for degree in (2, 3, 8) if depth_count > 1 else (1,):

@@ -1,4 +1,6 @@
-"""Fit lag, tip gap and widest section jointly to single values, sums of laws and centre lines of turns.
+"""Fit lag, tip gap and widest section in one joint fit.
+
+The measurements are single values, sums of laws and centre lines of turns.
 
 The fit also estimates how much the values of each kind of measurement scatter about the laws, and weights them by it.
 """
@@ -41,7 +43,7 @@ class Reading:
     own_covariance_mm2: np.ndarray | None = None
 
     def spread_mm(self) -> np.ndarray:
-        """Return the matrix (k, k) that scales unit scatter to the scatter of these values.
+        """Return the matrix (k, k) from unit scatter to the scatter of the values.
 
         The values are this matrix times numbers that scatter equally for all measurements of the kind.
         """
@@ -86,7 +88,10 @@ class JointFit:
     held: bool
 
     def predict(self, depth_mm: float, sums: tuple[dict[str, int], ...]) -> tuple[np.ndarray, np.ndarray]:
-        """Return sums of laws at a depth [mm] and their covariance [mm^2]; each law has the sign +1 or -1."""
+        """Return sums of laws at a depth [mm] and their covariance [mm^2].
+
+        sums: for each sum, the laws with their signs +1 or -1.
+        """
         rows = np.zeros((len(sums), len(self.covariance)))
         for row, signs in zip(rows, sums, strict=True):
             for name, sign in signs.items():
@@ -202,7 +207,10 @@ def fit_together(
 
 
 class _Unknowns:
-    """The unknown coefficients, in powers of depth / deepest depth, and the readings as linear functions of them."""
+    """The unknown coefficients, and the readings as linear functions of them.
+
+    Coefficients are in powers of depth / deepest depth.
+    """
 
     def __init__(self, readings: list[Reading], start: dict[str, _core.Profile], range_mm):
         self.readings, self.range_mm = readings, range_mm
@@ -228,7 +236,10 @@ class _Unknowns:
         return np.vander(depth, size, increasing=True)[:, self.first[name] :]
 
     def rows(self, x: np.ndarray) -> np.ndarray:
-        """Return d value / d unknown, divided by the spread; 0 where a polynomial is below its floor."""
+        """Return d value / d unknown, divided by the spread.
+
+        The derivative is 0 where a polynomial is below its floor.
+        """
         all_rows = []
         for reading in self.readings:
             for signs in reading.sums:
@@ -255,7 +266,10 @@ class _Unknowns:
         )
 
     def solve_with_bounds(self, a: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Solve the least squares problem with lower bounds on the control points of lag and tip gap."""
+        """Solve the least squares problem with bounds.
+
+        The control points of lag and tip gap have lower bounds.
+        """
         from scipy.optimize import lsq_linear
 
         control_to_power = np.eye(a.shape[1])
@@ -269,7 +283,7 @@ class _Unknowns:
         return control_to_power @ solution.x
 
     def _control_to_power(self, name: str) -> np.ndarray:
-        """Return the matrix from Bernstein control points to power coefficients over the depth range.
+        """Return the matrix from Bernstein control points to power coefficients.
 
         The range starts at depth 0 for a law that passes through 0.
         """
@@ -383,7 +397,9 @@ def _estimate_scatters(
 
 
 def _insert_zeros(covariance: np.ndarray, unknowns: _Unknowns) -> tuple[np.ndarray, dict[str, slice]]:
-    """Extend the covariance to all coefficients, including those that are 0 because the law passes through 0.
+    """Extend the covariance to all coefficients of the laws.
+
+    The additional coefficients are 0 because a law passes through 0.
 
     Return it with the slice of each law.
     """

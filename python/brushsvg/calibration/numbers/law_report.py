@@ -1,4 +1,7 @@
-"""Report a calibration of measured numbers: a verdict, the laws, what to measure next; and a picture of it."""
+"""Report a calibration of measured numbers, in words and as a picture.
+
+The report has a verdict, the laws and the next measurement.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,10 @@ from ..law_text import coefficients, in_short, laws_table, name_and_depths
 
 
 def report(made) -> Report:
-    """Return the report that `brushsvg calibrate` prints. made: a from_measurements.Calibration."""
+    """Return the report that `brushsvg calibrate` prints.
+
+    made: a from_measurements.Calibration.
+    """
     brush = made.brush
     outlier_count = sum(len(fitted.list_outliers()) for fitted in made.laws)
     assumed = [fitted.name for fitted in made.laws if fitted.fit is None]
@@ -78,7 +84,10 @@ def _suggest_next(made) -> list[str]:
 
 
 def report_picture(made, suffix: str) -> bytes:
-    """Draw the laws with bands, the footprints and the data as .svg or .png. Needs the extra plot."""
+    """Draw the laws with bands, the footprints and the data.
+
+    suffix: .svg or .png. Needs the extra plot.
+    """
     data = {
         fitted.name: np.array([(p.depth_mm, p.value_mm) for p in fitted.points]).reshape(-1, 2)
         for fitted in made.laws

@@ -1,4 +1,6 @@
-"""Read measurements of a brush from JSON or a table (docs/reference/measurements.md).
+"""Read measurements of a brush from JSON or a table.
+
+The formats are described in docs/reference/measurements.md.
 
 Lengths are in mm, angles in degrees.
 """
@@ -58,7 +60,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Measurements:
-    """The contents of a measurement file: rows by kind; name, depth range and speed if the file gives them."""
+    """The contents of a measurement file.
+
+    rows: by kind. name, depth_range_mm, max_speed_mm_s: if the file gives them.
+    """
 
     rows: dict[str, list[Row]]
     name: str = ""
@@ -97,7 +102,9 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
 
 
 def read_widths(text: str) -> list[tuple[float, float]]:
-    """Read (depth, width) pairs [mm] from a table with the columns depth_mm and width_mm.
+    """Read (depth, width) pairs [mm] from a table.
+
+    Its columns are depth_mm and width_mm.
 
     Raises Error, which names the line.
     """
@@ -184,7 +191,10 @@ _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
 def _open_table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
-    """Return a reader of the table, with the separator that finds these columns in the first line."""
+    """Return a reader of the table.
+
+    It uses the separator that finds these columns in the first line.
+    """
     tables = [csv.DictReader(io.StringIO(text), delimiter=separator) for separator in _SEPARATORS]
     for table in tables:
         table.fieldnames = [name.strip() for name in table.fieldnames or ()]
@@ -239,7 +249,10 @@ def _refuse_row_in_other_unit(line: dict, where: str) -> None:
 
 
 def _refuse_surplus(line: dict, where: str, separator: str) -> None:
-    """Raise Error for a row with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
+    """Raise Error for a row with more cells than the first line names.
+
+    4,6 for 4.6 would be read as 4.
+    """
     if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
         advice = "numbers are written with a point, as in 4.6, or semicolons stand between columns"
         raise Error(
@@ -362,7 +375,10 @@ def _read_points(values, where: str) -> tuple[tuple[float, ...], ...]:
 
 
 def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
-    """Read the middle line of an angular stroke's mark: its points, or a picture of the mark."""
+    """Read the middle line of an angular stroke's mark.
+
+    It is given as points, or as a picture of the mark.
+    """
     json_fields.refuse_unknown(row, ("depth_mm", *_CENTRE_LINE_KEYS, "note"), where)
     missing = [name for name in ("depth_mm",) if name not in row]
     if "points_mm" not in row:
@@ -400,7 +416,9 @@ def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
 
 
 def _read_video(kind: str, row: dict, where: str) -> list[Row]:
-    """Convert the positions of ferrule and tip in video frames to side views (section 2.5).
+    """Convert positions in video frames to side views (section 2.5).
+
+    The positions are those of ferrule and tip.
 
     The depth is z_i = z_f0 - z_fi. The value is d_i = |x_fi - x_ti| minus d_i at first touch. Equation (18) prints
     z_i with x and the other sign.

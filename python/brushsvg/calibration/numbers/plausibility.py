@@ -1,4 +1,6 @@
-"""Refuse measurements that no brush can have: wrong units, wrong row order, values that determine nothing.
+"""Refuse measurements that no brush can have.
+
+They have wrong units or a wrong order of rows, or determine nothing.
 
 Each message says what to do. Outliers and odd values are found here, too.
 """
@@ -81,7 +83,9 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
 
 
 def refuse_displaced_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
-    """Raise Error for angles that fall as in a drag, but whose first angle is not the angle at 0 mm.
+    """Raise Error if the first angle is not the angle at 0 mm.
+
+    The other angles fall as in a drag.
 
     ln tan(alpha/2) falls by 1 per lag. A line with a free start is fitted to it, and each reading is weighted by its
     certainty.
@@ -149,7 +153,9 @@ def find_outliers(
 def find_outliers_of_kinds(
     residual_mm: np.ndarray, spare: np.ndarray, scatter_mm: np.ndarray, freedom: np.ndarray
 ) -> dict[int, Outlier]:
-    """Find outliers among several kinds of values in one fit, each compared with the scatter of its kind.
+    """Find outliers among several kinds of values in one fit.
+
+    Each value is compared with the scatter of its kind.
 
     All arrays are (n,). spare: 1 minus the leverage of the value. scatter_mm: scatter of its kind, with the value
     included. freedom: degrees of freedom of that scatter.
@@ -247,7 +253,7 @@ def refuse_halves_as_widths(rows: dict) -> None:
     columns = np.column_stack([depths, depths**2])
 
     def relative_misfit(times: float) -> float:
-        """Return the misfit relative to the values if the half widths are multiplied by `times`."""
+        """Return the relative misfit with the half widths multiplied by `times`."""
         values = [times * row.numbers["value_mm"] for row in halves]
         values = np.array([*values, *(row.numbers["value_mm"] / 2 for row in widths)])
         found, *_ = np.linalg.lstsq(columns, values, rcond=None)
@@ -263,7 +269,10 @@ def refuse_halves_as_widths(rows: dict) -> None:
 
 
 def refuse_falling(law: str, points) -> None:
-    """Raise Error if a law falls with depth: a brush that is pressed deeper paints wider and trails more."""
+    """Raise Error if a law falls with depth.
+
+    A brush that is pressed deeper paints wider and trails more.
+    """
     depths = np.array([point.depth_mm for point in points])
     values = np.array([point.value_mm for point in points])
     slope, middle = np.polyfit(depths - depths.mean(), values, 1)
@@ -315,7 +324,10 @@ def refuse_width(depth_mm: float, width_mm: float) -> None:
 
 
 def refuse_inconsistent_laws(brush) -> None:
-    """Raise Error for laws that contradict each other, mostly because units are mixed up."""
+    """Raise Error for laws that contradict each other.
+
+    Most of them come from mixed units.
+    """
     depth = brush.depth_range_mm[1]
     lag, gap, widest, half = (
         law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
@@ -371,7 +383,10 @@ def refuse_undetermined_law(brush, fitted) -> None:
 
 
 def find_odd_values(brush, laws) -> list[Notice]:
-    """Return notices about values that are possible but rare. laws: from_measurements.Fitted of each law."""
+    """Return notices about values that are possible but rare.
+
+    laws: from_measurements.Fitted of each law.
+    """
     depth = brush.depth_range_mm[1]
     lag, half = brush.lag(depth), brush.half_width(depth)
     notices = []

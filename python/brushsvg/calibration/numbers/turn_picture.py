@@ -1,4 +1,7 @@
-"""Find the middle line of an angular stroke's mark in a picture: paint, outline, skeleton and its longest path."""
+"""Find the middle line of an angular stroke's mark in a picture.
+
+The steps are paint, outline, skeleton and its longest path.
+"""
 
 from __future__ import annotations
 

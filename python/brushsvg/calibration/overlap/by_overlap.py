@@ -1,4 +1,6 @@
-"""Change a brush that was fitted to painted marks so that it predicts further marks best: to the largest overlap.
+"""Change a fitted brush so that it predicts further marks best.
+
+The best prediction has the largest overlap.
 
 Edges determine the usual mark. The overlap (intersection over union of painted and predicted area) determines the best
 prediction if marks vary and are displaced. overlap_search changes few numbers of the fit by edges. overlap_choice
@@ -40,7 +42,10 @@ class OverlapCalibration(ArrayValue):
 
     @property
     def brush(self) -> _core.Brush:
-        """The brush. It has no intervals unless it is the brush of the fit by edges, whose intervals are valid."""
+        """The brush.
+
+        It has no intervals unless it is the brush of the fit by edges, whose intervals are valid.
+        """
         return self.made.brush
 
     def __repr__(self) -> str:
@@ -74,7 +79,10 @@ def by_overlap(
 
 
 def _make_calibration(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
-    """Make the calibration; if edges are chosen, it has the brush of the edges with its intervals."""
+    """Make the calibration from the result of the search.
+
+    If edges are chosen, it has the brush of the edges with its intervals.
+    """
     if found.kind == "edges":
         return OverlapCalibration(made, made, found)
     fit, count = made.fit, sum(not residual.outlier for residual in made.fit.marks)
@@ -108,7 +116,10 @@ def _make_calibration(made: MarkCalibration, found: Predicting) -> OverlapCalibr
 
 
 def _to_plan_frame(mark, residual, made: MarkCalibration) -> _core.PaintedMark:
-    """Return a painted mark in the frame of the plan, with the path as the machine executed it."""
+    """Return a painted mark in the frame of the plan.
+
+    Its path is the path that the machine executed.
+    """
     fit = made.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     rings = [(np.array(ring) - fit.shift_mm - centre) @ back + centre for ring in mark.outline_mm]

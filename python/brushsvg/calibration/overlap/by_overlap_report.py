@@ -1,4 +1,7 @@
-"""Report a calibration to the largest overlap, compared with the fit by edges, in words and as a picture."""
+"""Report a calibration to the largest overlap, in words and as a picture.
+
+The report compares it with the fit by edges.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +60,10 @@ KIND_NAMES = {
 
 
 def chosen_in_words(found) -> str:
-    """Describe which numbers the search changed, and why. found: an overlap_choice.Predicting."""
+    """Describe which numbers the search changed, and why.
+
+    found: an overlap_choice.Predicting.
+    """
     if not found.left_out:
         return (
             f"changed: {KIND_NAMES[found.kind]}; the marks are too few to be parted, so whether that predicts further "
@@ -72,7 +78,7 @@ def chosen_in_words(found) -> str:
 
 
 def _describe_machine(edges, offsets) -> list[str]:
-    """Describe the errors of the machine from the fit by edges, and the additional errors from the search."""
+    """Describe the errors of the machine by edges, and with the additional ones."""
     lines, machine_by_edges = [], edges.fit.machine
     if offsets.lean_mm_per_mm.any():
         x, y = offsets.lean_mm_per_mm + machine_by_edges.lean_mm_per_mm

@@ -1,4 +1,6 @@
-"""Fit the lag to painted marks with measured outlines, instead of the drops or eggs that the usual fit assumes.
+"""Fit the lag to painted marks with measured outlines.
+
+They replace the drops or eggs that the usual fit assumes.
 
 The usual fit only has drops and eggs, so a different footprint gives a different lag. Here the outlines of the brush
 are fixed. The lag, the height of the paper and the displacement of each mark change until the edges of painted and
@@ -130,7 +132,10 @@ class PlacedMark:
 
 @dataclass(frozen=True)
 class Placed:
-    """The places of marks from the fit of drops or eggs: pose of the sheet, height of the paper, each mark."""
+    """The places of marks from the fit of drops or eggs.
+
+    They have the pose of the sheet, the height of the paper and each mark.
+    """
 
     turn_rad: float
     shift_mm: tuple[float, float]
@@ -140,7 +145,10 @@ class Placed:
 
 
 class _Edges:
-    """Compares the points of painted outlines, in the frame of the plan, with the marks that a brush would paint."""
+    """Compares painted outlines with the marks that a brush would paint.
+
+    The points are in the frame of the plan.
+    """
 
     def __init__(self, made: MarkCalibration, own: _core.Brush):
         self.made, self.own = made, own
@@ -150,7 +158,9 @@ class _Edges:
         self.mark_of_point = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
 
     def distances_and_slopes(self, lag, to_law, height, displaced) -> tuple[np.ndarray, np.ndarray]:
-        """Return the distances (n,) outward from the predicted edges, and their derivatives.
+        """Return the distances (n,) from the predicted edges, and derivatives.
+
+        Distances are positive outward.
 
         The derivatives are with respect to the lags, the height and the displacement of each mark.
         """
@@ -310,7 +320,9 @@ def _with_lag(own: _core.Brush, lag, name: str) -> _core.Brush:
 
 
 def _join_covariance(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
-    """Return the covariance of all coefficients of the brush: of the fitted lag and of the unchanged other laws.
+    """Return the covariance of all coefficients of the brush.
+
+    It joins the covariances of the fitted lag and of the unchanged other laws.
 
     The lag was found from the places of tips, so an error of the tip gap changes the lag by the opposite amount.
     """

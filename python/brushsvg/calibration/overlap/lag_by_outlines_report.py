@@ -8,7 +8,10 @@ from ..marks.mark_report import judge_overlap, overlaps
 
 
 def report(found) -> Report:
-    """Return the report that `brushsvg calibrate --brush` prints. found: a lag_by_outlines.LagByOutlines."""
+    """Return the report that `brushsvg calibrate --brush` prints.
+
+    found: a lag_by_outlines.LagByOutlines.
+    """
     brush, own, before = found.brush, found.own, found.before
     overlap_before, overlap_now = overlaps(before)[1], overlaps(found.made)[1]
     worse = "these outlines predict the marks worse than drops or eggs do: look at the dabs once more"

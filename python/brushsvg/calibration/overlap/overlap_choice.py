@@ -102,7 +102,7 @@ def largest_overlap(
     options: _core.MarkOptions,
     look: Callable[[], None] = lambda: None,
 ) -> Predicting:
-    """Find the largest overlap with the kind of search that may change the most numbers."""
+    """Find the largest overlap with the least restricted kind of search."""
     search = Search(begin, options, targets, mean_place(targets))
     return _finish_search(search, *_search_few(search, targets, look), targets, look)
 
@@ -110,7 +110,10 @@ def largest_overlap(
 def _search_few(
     search: Search, targets: list[Target], look, last: str | None = None
 ) -> tuple[str, np.ndarray]:
-    """Search with few marks, up to the kind `last` or the last possible kind, and return that kind and its vector."""
+    """Search with few marks, and return the last kind and its vector.
+
+    last: the last kind to try; None for all possible kinds.
+    """
     kind, x = "edges", search.begin
     for kind, x in search_each_kind(search, choose_few(targets), look):  # noqa: B007
         if kind == last:
@@ -126,7 +129,10 @@ def _finish_search(search: Search, kind: str, x, targets: list[Target], look) ->
 
 @dataclass(frozen=True, eq=False)
 class _PartResult:
-    """The result of a search without a part of the marks, and the overlaps (n, 2) of that part with it."""
+    """The result of a search without a part of the marks.
+
+    overlaps: the overlaps (n, 2) of that part with the result.
+    """
 
     x: np.ndarray
     overlaps: np.ndarray
@@ -135,7 +141,10 @@ class _PartResult:
 def _search_without_parts(
     marks, targets: list[Target], round_tail: bool, options, look
 ) -> dict[str, list[_PartResult]]:
-    """Run each kind of search without each part of the marks; return an empty dict if there are too few marks."""
+    """Run each kind of search without each part of the marks.
+
+    Return an empty dict if there are too few marks.
+    """
     parts = 2 if len(marks) >= MIN_MARKS_FOR_TWO_PARTS else 3
     if len(marks) < MIN_MARKS:
         return {}

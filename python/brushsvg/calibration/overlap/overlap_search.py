@@ -1,4 +1,6 @@
-"""Search for the brush whose marks overlap most with painted marks, by changing few numbers of the fit by edges.
+"""Search for the brush whose marks overlap most with painted marks.
+
+The search changes few numbers of the fit by edges.
 
 The search changes the lag (as values at depths), the tip gap, the half width, the two lengths of the footprint, the
 height of the paper and the displacement of the sheet. On request it also changes lean and a map of the paths. It uses
@@ -174,7 +176,7 @@ class Search:
         return free
 
     def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, MachineOffsets]:
-        """Return the laws, the height of the paper, the displacement and the machine of a vector."""
+        """Return the laws, paper height, displacement and machine of a vector."""
         change, deepest, old = x - self.begin, self.deepest_mm, self.laws
         half = np.cumsum(change[self.at["half_width"]])
         behind, front = change[self.at["shape"]]
@@ -205,7 +207,9 @@ class Search:
         return 1 - float(aim.mean()) + float(self._cost_terms(x) @ self._cost_terms(x)) / self.count
 
     def differences(self, x, targets: list[Target], blur_px: int) -> np.ndarray | None:
-        """Return the blurred differences of predicted and painted pixels, and the cost terms.
+        """Return the blurred differences of pixels, and the cost terms.
+
+        The differences are predicted minus painted.
 
         The squares of the differences are shares of the paint of each mark. Return None if the brush is impossible.
         """
@@ -222,7 +226,7 @@ class Search:
         return np.concatenate([*out, self._cost_terms(x)])
 
     def overlaps(self, x, targets: list[Target]) -> np.ndarray:
-        """Return the overlaps (n, 2) of the marks: at their places, and if each mark may move."""
+        """Return the overlaps (n, 2) of the marks: in place, and moved."""
         laws, height, shift, machine = self.read(x)
         return self._overlaps(targets, laws, height, shift, machine)
 
@@ -237,7 +241,9 @@ class Search:
         return np.array(map_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
 
     def _cost_terms(self, x) -> np.ndarray:
-        """Return the cost terms of a footprint that is not round and of a machine with errors.
+        """Return the cost terms of the footprint and the machine.
+
+        A footprint that is not round has a cost, and a machine with errors.
 
         The cost is the sum of their squares, for all marks together.
         """
@@ -272,7 +278,7 @@ class Search:
 def search_each_kind(
     search: Search, few: list[Target], look: Callable[[], None] = lambda: None
 ) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield each possible kind of search with the vector that overlaps most with few marks.
+    """Yield each possible kind of search with its best vector for few marks.
 
     Each kind starts where the earlier kinds ended. look: called before each evaluation.
     """
@@ -305,7 +311,10 @@ def search_each_kind(
 
 
 def _search_from_starts(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
-    """Search from several starts, continue only the best search, and return its vector."""
+    """Search from several starts, and continue only the best search.
+
+    Return its vector.
+    """
     searches = [_minimise(loss, start, steps, free, START_EVALUATIONS) for start in starts]
     best = min(searches, key=lambda search_result: search_result.fun)
     return _minimise(loss, best.all_x, steps, free, CONTINUED_EVALUATIONS, best.final_simplex[0]).all_x
@@ -363,7 +372,9 @@ def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: flo
 def _register_pictures(
     search: Search, x, free, targets: list[Target], look: Callable[[], None]
 ) -> np.ndarray:
-    """Register predicted and painted pictures by least squares, the more blurred ones first.
+    """Register predicted and painted pictures by least squares.
+
+    The more blurred pictures come first.
 
     Derivatives are forward differences. free: mask of the numbers that are changed.
     """
@@ -432,7 +443,10 @@ def _minimise(loss, x, steps, free, most: int, corners=None):
 
 
 def _interpolate_law(depths, values, first: int) -> list[float]:
-    """Return the coefficients, from the power `first` on, of the law with these values at as many depths."""
+    """Return the coefficients of the law with these values at as many depths.
+
+    They start at the power `first`.
+    """
     powers = np.arange(first, first + len(values))
     return np.linalg.solve(np.asarray(depths)[:, None] ** powers, values).tolist()
 
@@ -447,7 +461,9 @@ def _add_polynomials(law, change) -> list[float]:
 def predict_pictures(
     targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
 ) -> list[np.ndarray]:
-    """Return anti-aliased pictures of the marks of a brush, which change smoothly with its laws.
+    """Return anti-aliased pictures of the marks of a brush.
+
+    They change smoothly with its laws.
 
     The footprints have half as many vertices.
     """
@@ -457,7 +473,10 @@ def predict_pictures(
 def map_predicted(
     what: Callable, targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
 ) -> list:
-    """Return what(target, picture) for the predicted picture of each target, computed on all processors."""
+    """Call what(target, picture) with the predicted picture of each target.
+
+    Return the results. All processors are used.
+    """
     deepest = max(deepest_mm, *(-target.poses_mm[:, 2].min() for target in targets))
     brush = brush_of(laws, "fitted", (0.0, deepest + max(0.0, height_mm)))
     outlines = [
@@ -479,7 +498,10 @@ def _workers() -> ThreadPoolExecutor:
 
 
 def on_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
-    """Return the poses of the TCP relative to the fitted height and shift of the paper."""
+    """Return the poses of the TCP relative to the fitted paper.
+
+    The paper has the given height and shift.
+    """
     poses = np.array(poses_mm)
     poses[:, :2] += shift_mm
     poses[:, 2] = np.minimum(poses[:, 2] - height_mm, 0.0)
@@ -493,7 +515,10 @@ def soft_overlap(paint, picture) -> float:
 
 
 def best_shift(picture, paint, px_mm: float, farthest_mm: float) -> tuple[float, np.ndarray]:
-    """Return the largest overlap of a prediction that moves by whole pixels, and the move [mm], y up."""
+    """Return the largest overlap of a moved prediction, and the move [mm].
+
+    The prediction moves by whole pixels. The move has y up.
+    """
     reach = int(farthest_mm / px_mm)
     padded = cv2.copyMakeBorder(np.float32(paint), reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0)
     common = cv2.matchTemplate(padded, np.float32(picture), cv2.TM_CCORR)

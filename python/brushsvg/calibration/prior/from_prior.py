@@ -1,4 +1,7 @@
-"""Update a known brush by further painted marks: only the laws that they determine change."""
+"""Update a known brush by further painted marks.
+
+Only the laws that the marks determine change.
+"""
 
 from __future__ import annotations
 
@@ -74,7 +77,10 @@ class Updated:
 
 
 def marks_with_prior(marks: list) -> Painted:
-    """Return marks as Painted without checks, because the prior supplies what the marks do not determine."""
+    """Return marks as Painted without checks.
+
+    The prior supplies what the marks do not determine.
+    """
     ways = [np.array(mark.poses_mm) for mark in marks]
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
@@ -128,7 +134,9 @@ def update_brush(
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
-    """Fit marks with a prior that is wide enough, and return the fit and the factors of widening.
+    """Fit marks with a prior that is wide enough.
+
+    Return the fit and the factors of widening.
 
     A law that is further from its prior than the prior allows gets a wider prior. A prior that is too narrow for
     another brush of the same make would fix the law. Edges far from its prediction would be masked as outliers, so the
@@ -179,7 +187,9 @@ def _allow_for_polynomial_error(
 
 
 def find_widening(known: KnownLaws, loosened: np.ndarray, loose) -> dict[str, float]:
-    """Return for each law the factor by which its prior must be wider to make the brush likely.
+    """Return for each law the factor that makes the brush likely.
+
+    The prior of the law must be wider by this factor.
 
     loose: a fit with the covariance `loosened` as prior. With the information L of the marks and the covariance S of
     the fit, the fit moves from the prior by S L (d + noise of the marks). The deviation d has the covariance of the
@@ -207,7 +217,9 @@ def find_widening(known: KnownLaws, loosened: np.ndarray, loose) -> dict[str, fl
 
 
 def _movement_ratio(moved, expected, before, after) -> float:
-    """Return the rms ratio of actual to expected movement, in the directions that the marks determine.
+    """Return the rms ratio of actual to expected movement.
+
+    It is taken in the directions that the marks determine.
 
     The ratio is 1 if the movement is likely.
     """
@@ -233,7 +245,10 @@ def _numbers_of_laws(laws) -> np.ndarray:
 
 
 def bands_mm(covariance: np.ndarray, laws, depths: np.ndarray) -> dict[str, np.ndarray]:
-    """Return for each law half the 95 % interval at depths, from the covariance of a fit."""
+    """Return for each law half the 95 % interval at depths.
+
+    covariance: of the numbers of a fit.
+    """
     at, out = numbers_of(), {}
     for law in ("lag", "tip_gap", "half_width"):
         block = covariance[at[law], at[law]]
@@ -247,7 +262,9 @@ def bands_mm(covariance: np.ndarray, laws, depths: np.ndarray) -> dict[str, np.n
 
 
 def _interval_ratios(before: np.ndarray, after: np.ndarray, laws, brush) -> dict[str, tuple[float, float]]:
-    """Return for each law the least ratio of its intervals after and before, and the depth of that ratio.
+    """Return for each law the least ratio of its intervals, and its depth.
+
+    The ratio is the interval after the update over the interval before.
 
     For tip_to_widest, it is the interval of its ratio to the half width.
     """
@@ -262,7 +279,10 @@ def _interval_ratios(before: np.ndarray, after: np.ndarray, laws, brush) -> dict
 
 
 def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], name: str, painted: Painted):
-    """Return the brush with the laws that the marks determine; the others stay as they are."""
+    """Return the brush with the laws that the marks determine.
+
+    The other laws stay as they are.
+    """
     if learned & {"half_width", "tip_to_widest"}:
         learned = learned | {"tip_to_widest"}  # it is stored in half widths
     made = brush_of(laws, name, brush.depth_range_mm, covariance)
@@ -306,7 +326,10 @@ def _choose_law(before, now, is_learned: bool, painted: Painted, prior: str):
 def _join_covariance(
     brush, made, learned: set[str], whole: np.ndarray, fitted: dict[str, slice]
 ) -> np.ndarray:
-    """Return the covariance of all coefficients: new for updated laws, unchanged for the others."""
+    """Return the covariance of all coefficients.
+
+    It is new for updated laws and unchanged for the others.
+    """
     new_places, old_places = places(made), places(brush)
     out = np.zeros((new_places[LAWS[-1]].stop,) * 2)
     old_covariance = np.array(brush.covariance)
@@ -338,12 +361,18 @@ def _reshape_outlines(brush, made, longer: float) -> _core.FootprintTable:
 
 
 def has_learned(brush: _core.Brush, photos: list[str]) -> bool:
-    """Return whether the brush was already updated by one of the photographs. photos: sha256 of each."""
+    """Return whether the brush was already updated by one of the photographs.
+
+    photos: sha256 of each.
+    """
     return bool(set(photos) & set(_read_learned(brush)["photos"]))
 
 
 def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
-    """Raise Error if the brush was already updated by one of the photographs. photos: sha256 of each."""
+    """Raise Error if the brush was already updated by one of the photographs.
+
+    photos: sha256 of each.
+    """
     if used := set(photos) & set(_read_learned(brush)["photos"]):
         raise Error(
             f"brush {brush.name} was made from the same photograph (sha256 {sorted(used)[0][:12]}): used twice, it "
@@ -354,7 +383,10 @@ def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
 
 
 def other_brush(plan, brush: _core.Brush) -> list[Notice]:
-    """Return a notice if the plan was made neither for this brush nor for one of its predecessors."""
+    """Return a notice if the plan was made for an unrelated brush.
+
+    Related brushes are this brush and its predecessors.
+    """
     lineage = {brush.sha256, *_read_learned(brush)["brushes"]}
     if not plan.brush_sha256 or plan.brush_sha256 in lineage:
         return []
@@ -388,6 +420,9 @@ def _read_learned(brush) -> dict:
 
 
 def found_height(updated: Updated) -> tuple[float, float]:
-    """Return how much higher the paper is than the taught height [mm], and half the 95 % interval."""
+    """Return how much higher the paper is than taught [mm].
+
+    Half the 95 % interval is returned as well.
+    """
     at = height_at(updated.fit)
     return updated.fit.height_mm, float(_core.deviations_of_95() * np.sqrt(updated.covariance[at, at]))

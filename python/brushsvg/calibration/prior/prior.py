@@ -1,4 +1,7 @@
-"""Make the prior of a fit to further marks from the laws of a brush file and their uncertainty."""
+"""Make the prior of a fit to further marks from a brush file.
+
+The prior has the laws of the file and their uncertainty.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,10 @@ class KnownLaws:
         return _core.LawPrior(self.laws, rows.tolist())
 
     def loosened(self, share: float) -> dict[str, float]:
-        """Return for each law the factor that makes its relative standard deviation `share` (rms over depths)."""
+        """Return the factor of each law for a relative error of `share`.
+
+        The error is a standard deviation, rms over depths.
+        """
         own = self.laws
         values = {"lag": own.lag, "tip_gap": own.tip_gap[1:], "half_width": own.half_width[1:]}
         out, depths = {}, np.arange(1, 5) / 4 * self.deepest_mm
@@ -61,7 +67,10 @@ class KnownLaws:
         return out
 
     def unfollowed(self, share: float, deepest_mm: float) -> np.ndarray:
-        """Return the covariance of laws that are measured down to a depth with the relative error `share`."""
+        """Return the covariance of laws with a relative error of `share`.
+
+        The laws are measured down to deepest_mm.
+        """
         at, own, depths = numbers_of(), self.laws, np.linspace(0.0, deepest_mm, DEPTH_COUNT)[1:]
         out = np.diag(np.full(len(self.covariance), (share * own.widest_per_half) ** 2))
         for law in TERMS:
@@ -78,7 +87,10 @@ class KnownLaws:
 
 
 def numbers_of() -> dict[str, slice]:
-    """Return the slice of each law in the numbers of a fit; tip_to_widest is its ratio to the half width."""
+    """Return the slice of each law in the numbers of a fit.
+
+    tip_to_widest is its ratio to the half width.
+    """
     lag, gap, half = LAG_TERMS, LAG_TERMS + GAP_TERMS, LAG_TERMS + GAP_TERMS + HALF_TERMS
     return {
         "lag": slice(0, lag),
@@ -89,14 +101,20 @@ def numbers_of() -> dict[str, slice]:
 
 
 def root_of_inverse(covariance: np.ndarray) -> np.ndarray:
-    """Return the matrix (n, n) that converts numbers with this covariance to standard normal numbers."""
+    """Return the matrix (n, n) from numbers to standard normal numbers.
+
+    covariance (n, n): of the numbers.
+    """
     unit = np.sqrt(np.diag(covariance))
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     return (vectors / np.sqrt(np.maximum(values, 1e-12))).T / unit
 
 
 def known_laws(brush: _core.Brush) -> KnownLaws:
-    """Return the laws of a brush as a prior; raise Error for a brush that does not trail."""
+    """Return the laws of a brush as a prior.
+
+    Raises Error for a brush that does not trail.
+    """
     depths = _sample_depths(brush)
     if max(brush.lag(d) for d in depths) <= 0:
         raise Error(
@@ -142,7 +160,10 @@ def _sample_depths(brush) -> np.ndarray:
 
 
 def covariance_as_measured(law: str, depths: np.ndarray, sd_mm: np.ndarray) -> np.ndarray:
-    """Return the covariance of the coefficients of a law that is measured at as many depths, with errors sd_mm."""
+    """Return the covariance of the coefficients of a measured law.
+
+    The law is measured at as many depths as it has coefficients, with errors sd_mm.
+    """
     terms, first = TERMS[law], 0 if law == "lag" else 1
     at = np.linspace(0.0, depths[-1], terms + first)[first:]
     inverse = np.linalg.inv(np.vander(at, terms + first, increasing=True)[:, first:])
@@ -158,7 +179,9 @@ def _form_covariance(brush, law: str, depths: np.ndarray, ratio: float):
 
 
 def _size_of_law(law, depths: np.ndarray) -> np.ndarray:
-    """Return the size of a law at depths, but at least its value at a quarter of the greatest depth.
+    """Return the size of a law at depths.
+
+    The size is at least the value at a quarter of the greatest depth.
 
     Near first touch the law may be 0.
     """
@@ -166,7 +189,10 @@ def _size_of_law(law, depths: np.ndarray) -> np.ndarray:
 
 
 def _covariance_in_file(brush) -> np.ndarray:
-    """Return the covariance of the coefficients of a brush, or zeros if its file has none."""
+    """Return the covariance of the coefficients of a brush.
+
+    It is 0 if the file has none.
+    """
     size = places(brush)[LAWS[-1]].stop
     return np.array(brush.covariance) if len(brush.covariance) else np.zeros((size, size))
 
@@ -202,7 +228,10 @@ def _covariance_without_file(
 
 
 def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:
-    """Return the matrix from the coefficients of a brush to the numbers of a fit that are nearest over its depths."""
+    """Return the matrix from the coefficients of a brush to those of a fit.
+
+    The laws of the fit are nearest over the depths of the brush.
+    """
     at, to = places(brush), numbers_of()
     out = np.zeros((to["tip_to_widest"].stop, at[LAWS[-1]].stop))
     for law, terms in TERMS.items():
@@ -220,7 +249,10 @@ def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:
 
 
 def _has_round_tail(brush) -> bool:
-    """Return whether the tail is round, from its width half way between the tip and the widest section."""
+    """Return whether the tail of the footprint is round.
+
+    The width half way between the tip and the widest section decides.
+    """
     shares = []
     for shape in brush.footprints.dragged:
         x, y = np.array(shape.outline_mm).T

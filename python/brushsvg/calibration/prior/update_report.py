@@ -1,4 +1,7 @@
-"""Report the update of a known brush by a painted job: a verdict, the changes of each law, and tables."""
+"""Report the update of a known brush by a painted job.
+
+The report has a verdict, the changes of each law, and tables.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,10 @@ MIN_REPORTED_OFFSET_MM = 0.05  # the report mentions a different form of the pri
 
 
 def report(made) -> Report:
-    """Return the report that `brushsvg calibrate --prior` prints. made: a from_prior.Updated."""
+    """Return the report that `brushsvg calibrate --prior` prints.
+
+    made: a from_prior.Updated.
+    """
     brush, fit, count = made.brush, made.fit, len(made.painted.marks)
     laws = [law for law in LAWS if made.is_learned(law)]
     reservations = [
