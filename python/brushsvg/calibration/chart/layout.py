@@ -197,7 +197,7 @@ def chart(
             code="lag-not-calibrated",
         )
     side = _marker_side(sheet_mm)
-    margins = side + QUIET * side + 2 * EDGE_MM  # edges and the lower markers
+    margins = side + QUIET * side + 2 * EDGE_MM  # space of the edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - margins
     if min(room) <= 2 * (side + QUIET * side):
         raise Error(
@@ -440,7 +440,7 @@ def _pack_in_order(
     heights = np.full(int(width), BAR_MM)
     corner = side + QUIET * side
     columns = math.ceil(corner)
-    heights[:columns] = heights[-columns:] = corner  # the upper markers
+    heights[:columns] = heights[-columns:] = corner  # space of the upper markers
     if width + 2 * EDGE_MM >= BETWEEN * side:
         middle = len(heights) / 2
         heights[

@@ -111,7 +111,7 @@ def read_chart_photos(
             except Error as refusal:
                 if (
                     refusal.code not in DISPLACED_PAGE_CODES or reads
-                ):  # photographs of one sheet have one place
+                ):  # all photographs of one sheet have the same place
                     raise
                 page = _moved_page(chart, page, size, stroke_boxes, pixels, view, refusal)
                 view = _find_view(pixels, page.printed, mirrored)

@@ -436,7 +436,7 @@ def _smooth_outline(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) ->
         out = np.linalg.solve(np.eye(len(closed)) + strength * penalty + CONSTRAINT_STRENGTH * ends, closed)
         return out[:-1]
 
-    low, high = -4.0, 9.0  # powers of ten
+    low, high = -4.0, 9.0  # range of the strength, as powers of ten
     for _ in range(30):
         middle = (low + high) / 2
         moved = (bent(10**middle) - reach) * size_mm

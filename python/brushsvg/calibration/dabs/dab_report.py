@@ -25,30 +25,34 @@ MIN_FRONT_ADVANCE_MM = 0.05
 DAB_COLOUR, BEFORE_COLOUR = "#3f8fd9", "#c0392b"
 
 
-def report(made) -> Report:
+def report(calibration) -> Report:
     """Return the report that `brushsvg calibrate` prints.
 
-    made: a from_dabs.DabCalibration.
+    calibration: a from_dabs.DabCalibration.
     """
-    brush, outlines, shapes = made.brush, made.outlines, made.outlines.shapes
+    brush, outlines, shapes = calibration.brush, calibration.outlines, calibration.outlines.shapes
     count = sum(len(shape.seen) for shape in shapes)
     shift, turn = outlines.shift_mm, math.degrees(outlines.turn_rad)
     hidden = _find_hidden_fronts(brush)
     reservations = [f"the front is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
     lines = [
         f"{name_and_depths(brush)}: outlines of {count} dabs at {len(shapes)} depths, the lag of brush "
-        f"{made.before.name}",
+        f"{calibration.before.name}",
         f"the sheet is displaced by {shift[0]:+.2f}, {shift[1]:+.2f} mm and turned by {turn:+.2f} degrees; dabs of "
         f"different headings differ by {outlines.turned_mm:.2f} mm (rms)",
         *([_describe_hidden_fronts(hidden)] if hidden else []),
-        *(text.format(before=made.before.name) for text in LIMITS_OF_DABS),
+        *(text.format(before=calibration.before.name) for text in LIMITS_OF_DABS),
     ]
     depths = np.array([shape.depth_mm for shape in shapes])
     counts = [str(len(shape.seen)) for shape in shapes]
     repeats = [f"{shape.repeat_mm:.3f}" for shape in shapes]
     columns = [("dabs", counts), ("one dab from the mean, rms", repeats)]
     details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _MEASURED_LAWS)])
-    edges = f"; in it that all edges may be {made.edge_mm:.2f} mm off together" if made.edge_mm > 0 else ""
+    edges = (
+        f"; in it that all edges may be {calibration.edge_mm:.2f} mm off together"
+        if calibration.edge_mm > 0
+        else ""
+    )
     sides = "both sides alike" if outlines.is_even else "one side larger than the other, by more than chance"
     details += [f"{HALF_95}{edges}", f"outlines: {sides}; smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
     return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
@@ -76,19 +80,19 @@ def _describe_hidden_fronts(depths: list[float]) -> str:
     )
 
 
-def report_picture(made, suffix: str) -> bytes:
+def report_picture(calibration, suffix: str) -> bytes:
     """Draw laws and footprints with the data, and the dabs of each depth.
 
     Dabs are drawn with their mean and with the outline before.
     """
-    shapes = made.outlines.shapes
+    shapes = calibration.outlines.shapes
     figure = new_figure((11, 10))
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.7, 1))
-    brush_picture_on(upper, made.brush, made.values)
+    brush_picture_on(upper, calibration.brush, calibration.values)
     columns = math.ceil(len(shapes) / 2) if len(shapes) > 4 else len(shapes)
     axes = lower.subplots(math.ceil(len(shapes) / columns), columns, squeeze=False).ravel()
     for panel, shape in zip(axes, shapes, strict=False):
-        _draw_depth(panel, shape, made.before)
+        _draw_depth(panel, shape, calibration.before)
     for panel in axes[len(shapes) :]:
         panel.set_axis_off()
     lower.legend(

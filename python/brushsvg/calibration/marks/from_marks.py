@@ -317,23 +317,23 @@ def _fit_better_tail(marks: list, options: _core.MarkOptions, start=None) -> tup
     return fit, gain
 
 
-def simulate_fitted_brush(made: MarkCalibration, marks: list):
+def simulate_fitted_brush(calibration: MarkCalibration, marks: list):
     """Simulate the fitted brush along the paths of marks.
 
     Return the brush, with a depth range extended to the marks, and its traces in the frame of the plan.
     """
-    brush = made.brush
+    brush = calibration.brush
     executed = {
         mark.stroke: residual.way_mm
-        for mark, residual in zip(made.painted.marks, made.fit.marks, strict=True)
+        for mark, residual in zip(calibration.painted.marks, calibration.fit.marks, strict=True)
     }
     ways = [np.array(executed.get(mark.stroke, mark.poses_mm)) for mark in marks]
-    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + made.fit.height_mm)
+    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + calibration.fit.height_mm)
     brush = _core.read_brush(_core.write_brush(brush))
     brush.depth_range_mm = (brush.depth_range_mm[0], reach)
     passes = []
     for mark, poses in zip(marks, ways, strict=True):
-        poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
+        poses[:, 2] = np.minimum(poses[:, 2] - calibration.fit.height_mm, 0.0)
         passes.append(_core.Pass(mark.stroke, poses))
     return brush, _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush).passes
 

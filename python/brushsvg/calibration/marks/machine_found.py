@@ -144,7 +144,7 @@ def has_field(found: list[Number]) -> bool:
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
     """Return the lines of a cell's table [machine].
 
-    There are no lines if a cell can compensate no requested number.
+    There are no lines if a cell can compensate none of the requested numbers.
 
     Backlash and a field that could be 0 are left out. The kind of machine may be unknown, so remarks say which machines
     cannot use a line.

@@ -54,11 +54,11 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     """
     rate, fresh, rate_errors = 0.0, painted, []
     for _ in range(MAX_ROUNDS):
-        made = calibrate_marks(fresh, name, *args, **kwargs)
-        change, sigma, freedom = _estimate_rate_error(made)
+        calibration = calibrate_marks(fresh, name, *args, **kwargs)
+        change, sigma, freedom = _estimate_rate_error(calibration)
         rate_errors.append((rate, change))
         rate += change
-        fresh = restore_fresh_marks(painted, made, rate)
+        fresh = restore_fresh_marks(painted, calibration, rate)
         if abs(change) < SETTLED_SIGMAS * sigma:
             break
     else:
@@ -67,7 +67,7 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     if abs(rate_errors[-1][0] - rate_errors[0][0]) < RATE_STEP_SIGMAS * sigma:
         other_rate = rate_errors[-1][0] + RATE_STEP_SIGMAS * sigma
         fit_with_other = calibrate_marks(
-            restore_fresh_marks(painted, made, other_rate), name, *args, **kwargs
+            restore_fresh_marks(painted, calibration, other_rate), name, *args, **kwargs
         )
         rate_errors = [(other_rate, _estimate_rate_error(fit_with_other)[0]), rate_errors[-1]]
     sigma /= _share_in_residuals(rate_errors[0], rate_errors[-1])
@@ -82,19 +82,23 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         )
     if rate < 0:  # the marks do not narrow, so the interval must include 0
         sigma, rate, fresh = max(sigma, -rate / deviations), 0.0, painted
-    made = calibrate_marks(fresh, name, *args, **kwargs, off=restore_fresh_marks(painted, made, rate + sigma))
-    last_mm = max(painted.before_mm[mark.stroke] + _path_lengths(mark)[-1] for mark in made.painted.marks)
-    dry = find_ink_depletion(fresh, predict_outlines(made, fresh.marks))
-    made.brush.paint = _core.Paint(
+    calibration = calibrate_marks(
+        fresh, name, *args, **kwargs, off=restore_fresh_marks(painted, calibration, rate + sigma)
+    )
+    last_mm = max(
+        painted.before_mm[mark.stroke] + _path_lengths(mark)[-1] for mark in calibration.painted.marks
+    )
+    dry = find_ink_depletion(fresh, predict_outlines(calibration, fresh.marks))
+    calibration.brush.paint = _core.Paint(
         rate,
         lasts_mm=dry.whole_mm if dry else None,
         calibrated_mm=(0.0, last_mm),
-        source=f"Fitted to {len(made.painted.marks)} marks painted with one load.",
+        source=f"Fitted to {len(calibration.painted.marks)} marks painted with one load.",
         covariance=[[sigma**2, 0.0], [0.0, dry.variance_mm2]] if dry else [[sigma**2]],
         degrees_of_freedom=freedom,
     )
-    made = replace(made, painted=replace(made.painted, before_mm=painted.before_mm))
-    return replace(made, paint_bends=_measure_curvature(made), dry=dry)
+    calibration = replace(calibration, painted=replace(calibration.painted, before_mm=painted.before_mm))
+    return replace(calibration, paint_bends=_measure_curvature(calibration), dry=dry)
 
 
 def _share_in_residuals(one: tuple[float, float], other: tuple[float, float]) -> float:
@@ -107,15 +111,15 @@ def _share_in_residuals(one: tuple[float, float], other: tuple[float, float]) ->
     return float(np.clip((one[1] - other[1]) / (other[0] - one[0]), MIN_KEPT_SHARE, 1.0))
 
 
-def restore_fresh_marks(painted: Painted, made: MarkCalibration, rate_per_m: float) -> list:
+def restore_fresh_marks(painted: Painted, calibration: MarkCalibration, rate_per_m: float) -> list:
     """Return the marks of a brush that is freshly dipped everywhere.
 
     Edges are moved away from the path of the widest section by the width that is lost.
     """
-    brush, traces = simulate_fitted_brush(made, painted.marks)
-    fit, turned = made.fit, rotation(made.fit.turn_rad)
+    brush, traces = simulate_fitted_brush(calibration, painted.marks)
+    fit, turned = calibration.fit, rotation(calibration.fit.turn_rad)
     centre = np.array(fit.centre_mm)
-    residuals = dict(zip((original.stroke for original in made.painted.marks), fit.marks, strict=True))
+    residuals = dict(zip((original.stroke for original in calibration.painted.marks), fit.marks, strict=True))
     paint = _core.Paint(abs(rate_per_m))
     marks = []
     for mark, trace in zip(painted.marks, traces, strict=True):
@@ -208,8 +212,10 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
     before_mm, _ = ways_before_mm({plan_pass.stroke: plan_pass for plan_pass in plan.passes})
     complete = replace(to_painted(painted), before_mm=before_mm)
-    made = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)
-    flanks = _collect_flanks(made)
+    calibration = MarkCalibration(
+        brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options
+    )
+    flanks = _collect_flanks(calibration)
     own = flanks.own()
     correlation = np.exp(-options.spacing_mm / 1.0)  # neighbouring points are correlated, over 1 mm
     sigma = noise_mm * np.sqrt((1 + correlation) / (1 - correlation) / float(own @ own))
@@ -258,14 +264,14 @@ def remove_powers(values: np.ndarray, powers: np.ndarray) -> np.ndarray:
     return values - powers @ np.linalg.lstsq(powers, values, rcond=None)[0]
 
 
-def _collect_flanks(made: MarkCalibration) -> Flanks:
-    brush, traces = simulate_fitted_brush(made, made.painted.marks)
-    astray = {stray.mark.stroke for stray in made.strays}
+def _collect_flanks(calibration: MarkCalibration) -> Flanks:
+    brush, traces = simulate_fitted_brush(calibration, calibration.painted.marks)
+    astray = {stray.mark.stroke for stray in calibration.strays}
     blocks = []
-    for number, (residual, trace) in enumerate(zip(made.fit.marks, traces, strict=True)):
+    for number, (residual, trace) in enumerate(zip(calibration.fit.marks, traces, strict=True)):
         if trace.stroke in astray or residual.outlier:
             continue
-        at = SectionLocator(brush, trace, made.painted.before_mm[trace.stroke]).locate(
+        at = SectionLocator(brush, trace, calibration.painted.before_mm[trace.stroke]).locate(
             np.asarray(residual.point_mm)
         )
         half = np.array([brush.half_width(d) for d in at.depth_mm])
@@ -277,8 +283,8 @@ def _collect_flanks(made: MarkCalibration) -> Flanks:
             & (share < FLANK_RANGE_HALF_WIDTHS[1])
             & (at.ends_mm > end_zone_mm)
         )
-        is_flank &= np.abs(distance) < MAX_RESIDUAL_SIGMAS * made.fit.noise_mm
-        powers = at.depth_mm[:, None] ** np.arange(3 if made.painted.depths > 1 else 1)
+        is_flank &= np.abs(distance) < MAX_RESIDUAL_SIGMAS * calibration.fit.noise_mm
+        powers = at.depth_mm[:, None] ** np.arange(3 if calibration.painted.depths > 1 else 1)
         rows = np.column_stack([-1e-3 * half * at.way_mm, half, distance, np.full(len(half), number), powers])
         blocks.append(rows[is_flank])
     rows = np.vstack(blocks) if blocks else np.empty((0, 5))
@@ -289,10 +295,10 @@ def _collect_flanks(made: MarkCalibration) -> Flanks:
     return Flanks(rows[:, 0], rows[:, 1], rows[:, 4:], rows[:, 2], rows[:, 3])
 
 
-def _estimate_rate_error(made: MarkCalibration) -> tuple[float, float, float]:
+def _estimate_rate_error(calibration: MarkCalibration) -> tuple[float, float, float]:
     """Estimate the error of the rate from the residuals of the edges.
 
-    It is the rate with which the marks were restored.
+    The marks were restored with this rate.
 
     The error per metre is fitted by least squares as the effect of narrowing, together with powers of the depth. Its
     standard deviation is estimated by whole marks, because the points of a mark are correlated. The contribution of
@@ -301,7 +307,7 @@ def _estimate_rate_error(made: MarkCalibration) -> tuple[float, float, float]:
 
     Return the error of the rate, its standard deviation and the degrees of freedom.
     """
-    flanks = _collect_flanks(made)
+    flanks = _collect_flanks(calibration)
     explained = flanks.explained_by_depth()
     if 1 - explained < MIN_UNEXPLAINED_SHARE:
         raise Error(
@@ -321,14 +327,14 @@ def _estimate_rate_error(made: MarkCalibration) -> tuple[float, float, float]:
     return rate, float(np.sqrt(max(contributions @ (rate - rates_without), 0.0))), flanks.freedom
 
 
-def _measure_curvature(made: MarkCalibration) -> float:
+def _measure_curvature(calibration: MarkCalibration) -> float:
     """Return how strongly the residuals depend on the square of the path.
 
     The dependence is in addition to the path itself.
 
     The unit is its standard deviation, from leaving out marks one by one.
     """
-    flanks = _collect_flanks(made)
+    flanks = _collect_flanks(calibration)
     ways = -1e3 * flanks.moved / np.maximum(flanks.half_mm, 1e-9)
     columns = np.column_stack([flanks.moved * ways, flanks.moved, flanks.powers])
     bend, without = _fit_first_number(columns, flanks.off_mm), _refit_without_each(columns, flanks)

@@ -30,25 +30,25 @@ MIN_PX_PER_MM = 14.0
 PIXEL_FRACTIONS = 16  # fractions of a pixel in the coordinates of polylines
 
 
-def read_picture(read, made=None) -> bytes:
+def read_picture(read, calibration=None) -> bytes:
     """Draw the marks of a photograph and their predictions as a PNG.
 
-    read: a chart.photograph.Read, whose outlines are green. made: a from_marks.MarkCalibration, whose predictions are
-    red, with the overlap and displacement of each stroke. Marks that were left out are orange.
+    read: a chart.photograph.Read, whose outlines are green. calibration: a from_marks.MarkCalibration, whose
+    predictions are red, with the overlap and displacement of each stroke. Marks that were left out are orange.
     """
-    return _draw_picture(read, lambda picture, flat: _draw_predictions(picture, flat, read, made))
+    return _draw_picture(read, lambda picture, flat: _draw_predictions(picture, flat, read, calibration))
 
 
-def dabs_picture(read, made) -> bytes:
+def dabs_picture(read, calibration) -> bytes:
     """Draw the dabs of a photograph and the outlines of their depths as a PNG.
 
     Dabs are green, outlines are red.
 
-    made: a from_dabs.DabCalibration. Each dab is labelled with its depth and, if there is space, its displacement. Dabs
-    that were left out are orange.
+    calibration: a from_dabs.DabCalibration. Each dab is labelled with its depth and, if there is space, its
+    displacement. Dabs that were left out are orange.
     """
     return _draw_picture(
-        read, lambda picture, flat: _draw_dab_predictions(picture, flat, read, made.outlines)
+        read, lambda picture, flat: _draw_dab_predictions(picture, flat, read, calibration.outlines)
     )
 
 
@@ -88,23 +88,23 @@ def _enlarge(flat: Flat) -> Flat:
     return Flat(cv2.resize(flat.pixels, (columns, rows)), flat.px_per_mm * size, flat.sheet_mm)
 
 
-def _draw_predictions(picture, flat, read, made) -> dict[str, list[str]]:
+def _draw_predictions(picture, flat, read, calibration) -> dict[str, list[str]]:
     """Draw the predictions on their marks, and return the labels.
 
     The labels of each stroke are ordered by length, the longest first.
     """
-    if made is None:
+    if calibration is None:
         return {stroke: [stroke] for stroke in read.marks.outlines_mm}
     words = {}
-    for stray in made.strays:
-        (rings,) = predict_outlines(made, [stray.mark])
-        _draw_rings(picture, flat, to_sheet_frame(made, rings), PREDICTED_COLOUR, PREDICTED_MM)
+    for stray in calibration.strays:
+        (rings,) = predict_outlines(calibration, [stray.mark])
+        _draw_rings(picture, flat, to_sheet_frame(calibration, rings), PREDICTED_COLOUR, PREDICTED_MM)
         _draw_rings(picture, flat, stray.mark.outline_mm, STRAY_COLOUR, FOUND_MM)
         words[stray.mark.stroke] = [f"{stray.mark.stroke}: LEFT OUT", "LEFT OUT", "OUT"]
-    marks = made.painted.marks
-    predicted = predict_outlines(made, marks)
-    for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        drawn = to_sheet_frame(made, [ring + np.array(residual.displacement_mm) for ring in rings])
+    marks = calibration.painted.marks
+    predicted = predict_outlines(calibration, marks)
+    for mark, residual, rings in zip(marks, calibration.fit.marks, predicted, strict=True):
+        drawn = to_sheet_frame(calibration, [ring + np.array(residual.displacement_mm) for ring in rings])
         _draw_rings(picture, flat, drawn, PREDICTED_COLOUR, PREDICTED_MM)
         overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], drawn)
         displaced = np.hypot(*residual.displacement_mm)

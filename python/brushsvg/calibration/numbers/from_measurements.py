@@ -141,7 +141,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     brush = fitter.brush(name or measured.name or "measured")
     laws = tuple(fitter.fitted.get(law, Fitted(law, (), None)) for law in LAWS)
     plausibility.refuse_inconsistent_laws(brush)
-    for law in ("lag", "half_width"):  # the laws that matter for a plan
+    for law in ("lag", "half_width"):  # a plan only depends on these laws
         plausibility.refuse_undetermined_law(brush, fitter.fitted[law])
     return Calibration(
         brush, laws, (*remarks, *fitter.remarks), tuple(plausibility.find_odd_values(brush, laws))
@@ -196,7 +196,7 @@ def _choose_degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
 class _LawFitter:
     """Fits the laws one after the other and assembles the brush.
 
-    done: the laws fitted so far. joint: the joint fit of lag, tip gap and widest section, if there was one.
+    fitted: the laws fitted so far. joint: the joint fit of lag, tip gap and widest section, if there was one.
     """
 
     def __init__(self, measured: Measurements, absolute: bool, turns: dict[str, Turn]):
@@ -387,7 +387,10 @@ class _LawFitter:
         return _core.Profile([*profile.coefficients, *added], floor=profile.floor)
 
     def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: _core.LawFit) -> None:
-        """Raise Error if the mean of the values is below the interval around 0."""
+        """Raise Error if the mean of the values is clearly below 0.
+
+        It must be below 0 by more than half the interval of the law.
+        """
         mean = float(np.mean([point.value_mm for point in points]))
         depths = np.array([point.depth_mm for point in points])
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]

@@ -13,16 +13,18 @@ from ...reporting.report_text import Report, plural, verdict
 from ..law_text import coefficients, in_short, laws_table, name_and_depths
 
 
-def report(made) -> Report:
+def report(calibration) -> Report:
     """Return the report that `brushsvg calibrate` prints.
 
-    made: a from_measurements.Calibration.
+    calibration: a from_measurements.Calibration.
     """
-    brush = made.brush
-    outlier_count = sum(len(fitted.list_outliers()) for fitted in made.laws)
-    assumed = [fitted.name for fitted in made.laws if fitted.fit is None]
+    brush = calibration.brush
+    outlier_count = sum(len(fitted.list_outliers()) for fitted in calibration.laws)
+    assumed = [fitted.name for fitted in calibration.laws if fitted.fit is None]
     without_interval = [
-        fitted.name for fitted in made.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
+        fitted.name
+        for fitted in calibration.laws
+        if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
     ]
     reservations = [
         f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured"
@@ -32,21 +34,21 @@ def report(made) -> Report:
         f"{' and '.join(without_interval)} has too few values for a confidence interval"
         if without_interval
         else "",
-        *(notice.sentence for notice in made.doubts),
+        *(notice.sentence for notice in calibration.doubts),
     ]
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}",
-        *(_describe_fit(brush, fitted) for fitted in made.laws),
+        *(_describe_fit(brush, fitted) for fitted in calibration.laws),
     ]
-    for fitted in made.laws:
+    for fitted in calibration.laws:
         lines += [f"{fitted.name}: {remark}" for remark in (*fitted.list_outliers(), *fitted.remarks)]
     details = [
         *laws_table(brush),
-        *made.remarks,
+        *calibration.remarks,
         "",
         *coefficients(brush),
     ]
-    return Report(verdict([], reservations), (*lines, *_suggest_next(made)), tuple(details))
+    return Report(verdict([], reservations), (*lines, *_suggest_next(calibration)), tuple(details))
 
 
 def _describe_fit(brush, fitted) -> str:
@@ -60,17 +62,17 @@ def _describe_fit(brush, fitted) -> str:
     return f"{known}, R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
 
 
-def _suggest_next(made) -> list[str]:
+def _suggest_next(calibration) -> list[str]:
     """Suggest the most useful next measurement.
 
     It is the law with the largest interval for its size, at the depth where the interval is widest.
     """
-    brush = made.brush
-    if assumed := [fitted.name for fitted in made.laws if fitted.fit is None]:
+    brush = calibration.brush
+    if assumed := [fitted.name for fitted in calibration.laws if fitted.fit is None]:
         return [f"next: measure {' and '.join(assumed)}, so far assumed"]
     depths = np.linspace(*brush.depth_range_mm, 101)[1:]
     worst = (0.0, "", 0.0, 0.0)
-    for fitted in made.laws:
+    for fitted in calibration.laws:
         band = law_band(brush, fitted.name, depths)
         if not band:
             return [f"next: measure {fitted.name} at more depths, or again at the same ones"]
@@ -83,14 +85,14 @@ def _suggest_next(made) -> list[str]:
     return [f"next: measure {name} near depth {depth:.1f} mm, {widest}"]
 
 
-def report_picture(made, suffix: str) -> bytes:
+def report_picture(calibration, suffix: str) -> bytes:
     """Draw the laws with bands, the footprints and the data.
 
     suffix: .svg or .png. Needs the extra plot.
     """
     data = {
         fitted.name: np.array([(p.depth_mm, p.value_mm) for p in fitted.points]).reshape(-1, 2)
-        for fitted in made.laws
+        for fitted in calibration.laws
         if fitted.points
     }
-    return brush_picture(made.brush, suffix, data)
+    return brush_picture(calibration.brush, suffix, data)

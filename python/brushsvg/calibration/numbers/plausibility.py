@@ -163,7 +163,7 @@ def find_outliers_of_kinds(
     free_share = np.maximum(spare, 1e-9)
     internal_residuals = residual_mm / (
         scatter_mm * np.sqrt(free_share)
-    )  # its square is never more than freedom in least squares
+    )  # in least squares its square is at most the degrees of freedom
     found = {}
     for k, (t, degrees) in enumerate(zip(internal_residuals, freedom, strict=True)):
         if degrees < 3.0:

@@ -66,7 +66,7 @@ def centre_line(
     at = np.arange(*kept_range, POINT_SPACING_MM)
     points = np.column_stack([np.interp(at, length, line[:, k]) for k in (0, 1)])
     x, y = _DIRECTIONS[towards]
-    points = points @ np.array([[x, y], [-y, x]]).T  # along the second line, and across it
+    points = points @ np.array([[x, y], [-y, x]]).T  # coordinates along and across the second line
     if points[0, 0] > points[-1, 0]:
         points = points[::-1]
     return points if np.median(points[:, 1]) < 0 else points * [1.0, -1.0]

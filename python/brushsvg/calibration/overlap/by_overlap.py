@@ -42,7 +42,7 @@ class OverlapCalibration(ArrayValue):
 
     @property
     def brush(self) -> _core.Brush:
-        """The brush.
+        """Brush that predicts best.
 
         It has no intervals unless it is the brush of the fit by edges, whose intervals are valid.
         """
@@ -53,21 +53,21 @@ class OverlapCalibration(ArrayValue):
 
 
 def by_overlap(
-    made: MarkCalibration, progress: Callable[[str], object] = lambda text: None
+    calibration: MarkCalibration, progress: Callable[[str], object] = lambda text: None
 ) -> OverlapCalibration:
     """Change a fit by edges to the brush with the largest overlap.
 
-    made: the fit of the marks by edges. Marks that are outliers of that fit are left out. progress: receives the
+    calibration: the fit of the marks by edges. Marks that are outliers of that fit are left out. progress: receives the
     progress in words.
     """
-    fit, options = made.fit, copy(made.expected)
-    options.deepest_mm = made.brush.depth_range_mm[1]
+    fit, options = calibration.fit, copy(calibration.expected)
+    options.deepest_mm = calibration.brush.depth_range_mm[1]
     marks = [
-        _to_plan_frame(mark, residual, made)
-        for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
+        _to_plan_frame(mark, residual, calibration)
+        for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True)
         if not residual.outlier
     ]
-    targets = [_make_target(mark, made) for mark in marks]
+    targets = [_make_target(mark, calibration) for mark in marks]
     found = best_predicting(
         marks,
         targets,
@@ -75,24 +75,24 @@ def by_overlap(
         options,
         lambda looks: progress(f"looked at {looks} sets of overlaps"),
     )
-    return _make_calibration(made, found)
+    return _make_calibration(calibration, found)
 
 
-def _make_calibration(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
+def _make_calibration(calibration: MarkCalibration, found: Predicting) -> OverlapCalibration:
     """Make the calibration from the result of the search.
 
     If edges are chosen, it has the brush of the edges with its intervals.
     """
     if found.kind == "edges":
-        return OverlapCalibration(made, made, found)
-    fit, count = made.fit, sum(not residual.outlier for residual in made.fit.marks)
-    brush = brush_of(found.laws, made.brush.name, made.brush.depth_range_mm)
-    brush.max_speed_mm_s = made.brush.max_speed_mm_s
+        return OverlapCalibration(calibration, calibration, found)
+    fit, count = calibration.fit, sum(not residual.outlier for residual in calibration.fit.marks)
+    brush = brush_of(found.laws, calibration.brush.name, calibration.brush.depth_range_mm)
+    brush.max_speed_mm_s = calibration.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
         law_of_brush = getattr(brush, law)
         profile = _core.Profile(
             law_of_brush.coefficients,
-            calibrated_mm=(0.0, made.painted.deepest_mm),
+            calibrated_mm=(0.0, calibration.painted.deepest_mm),
             source=f"Fitted to {count} painted marks, to the largest overlap; without intervals.",
             floor=law_of_brush.floor,
             floor_slope=law_of_brush.floor_slope,
@@ -112,23 +112,25 @@ def _make_calibration(made: MarkCalibration, found: Predicting) -> OverlapCalibr
             for residual in fit.marks
         ),
     )
-    return OverlapCalibration(replace(made, brush=brush, fit=placed, covariance=None), made, found)
+    return OverlapCalibration(
+        replace(calibration, brush=brush, fit=placed, covariance=None), calibration, found
+    )
 
 
-def _to_plan_frame(mark, residual, made: MarkCalibration) -> _core.PaintedMark:
+def _to_plan_frame(mark, residual, calibration: MarkCalibration) -> _core.PaintedMark:
     """Return a painted mark in the frame of the plan.
 
     Its path is the path that the machine executed.
     """
-    fit = made.fit
+    fit = calibration.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     rings = [(np.array(ring) - fit.shift_mm - centre) @ back + centre for ring in mark.outline_mm]
     return _core.PaintedMark(mark.stroke, np.array(residual.way_mm), rings)
 
 
-def _make_target(mark: _core.PaintedMark, made: MarkCalibration) -> Target:
+def _make_target(mark: _core.PaintedMark, calibration: MarkCalibration) -> Target:
     poses = np.array(mark.poses_mm)
-    pixel = PIXEL_HALF_WIDTHS * polyval(made.brush.depth_range_mm[1], made.fit.laws.half_width)
+    pixel = PIXEL_HALF_WIDTHS * polyval(calibration.brush.depth_range_mm[1], calibration.fit.laws.half_width)
     points = np.vstack([poses[:, :2], *mark.outline_mm])
     low, high = points.min(axis=0) - MARGIN_MM, points.max(axis=0) + MARGIN_MM
     size = np.ceil((high - low) / pixel) * pixel

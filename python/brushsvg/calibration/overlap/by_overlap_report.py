@@ -18,16 +18,16 @@ from ..marks.mark_report import report as edge_report
 from ..marks.mark_report import report_picture as edge_report_picture
 
 
-def report(made, of_photo: bool = False) -> Report:
+def report(calibration, of_photo: bool = False) -> Report:
     """Return the report that `brushsvg calibrate --aim overlap` prints.
 
-    made: a by_overlap.OverlapCalibration. of_photo: see mark_report.report.
+    calibration: a by_overlap.OverlapCalibration. of_photo: see mark_report.report.
     """
-    brush, edges, found = made.brush, made.by_edges, made.found
+    brush, edges, found = calibration.brush, calibration.by_edges, calibration.found
     if found.kind == "edges":
         by_edges = edge_report(edges, of_photo)
         return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
-    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(made.made)
+    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(calibration.made)
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(edges.painted.marks)} painted marks, to the largest "
         "overlap",
@@ -99,8 +99,8 @@ def _describe_machine(edges, offsets) -> list[str]:
     return lines
 
 
-def report_picture(made, suffix: str) -> bytes:
+def report_picture(calibration, suffix: str) -> bytes:
     """Draw the laws, with bands only if the fit by edges was chosen."""
-    if made.found.kind == "edges":
-        return edge_report_picture(made.by_edges, suffix)
-    return brush_picture(made.brush, suffix)
+    if calibration.found.kind == "edges":
+        return edge_report_picture(calibration.by_edges, suffix)
+    return brush_picture(calibration.brush, suffix)

@@ -1,10 +1,9 @@
 """Fit the lag to painted marks with measured outlines.
 
-They replace the drops or eggs that the usual fit assumes.
-
-The usual fit only has drops and eggs, so a different footprint gives a different lag. Here the outlines of the brush
-are fixed. The lag, the height of the paper and the displacement of each mark change until the edges of painted and
-predicted marks agree. Distances are minimised by Gauss-Newton steps with Tukey's loss, starting at the usual fit.
+The usual fit only has drops and eggs as outlines, so a different footprint gives a different lag. Here the outlines of
+the brush are fixed. The lag, the height of the paper and the displacement of each mark change until the edges of
+painted and predicted marks agree. Distances are minimised by Gauss-Newton steps with Tukey's loss, starting at the
+usual fit.
 """
 
 from __future__ import annotations
@@ -52,27 +51,28 @@ class LagByOutlines:
         return self.made.brush
 
 
-def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagByOutlines:
+def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -> LagByOutlines:
     """Fit the lag of a brush with measured outlines to painted marks.
 
-    made: the usual fit to marks of strokes. own: the brush whose outlines were measured. name: the name of the result.
+    calibration: the usual fit to marks of strokes. own: the brush whose outlines were measured. name: the name of the
+    result.
 
     Raises Error if the outlines are assumed, if they do not reach the depth of the strokes, and if marks and outlines
     do not belong to one brush.
     """
     refuse_assumed(own)
-    _refuse_shallow(own, made.painted.deepest_mm)
-    edges = _Edges(made, own)
-    fitted_lag = np.array(made.fit.laws.lag)
-    depths = np.linspace(0.0, made.painted.deepest_mm, 21)[1:]
-    terms = min(LAG_TERMS, made.painted.depths)
+    _refuse_shallow(own, calibration.painted.deepest_mm)
+    edges = _Edges(calibration, own)
+    fitted_lag = np.array(calibration.fit.laws.lag)
+    depths = np.linspace(0.0, calibration.painted.deepest_mm, 21)[1:]
+    terms = min(LAG_TERMS, calibration.painted.depths)
     # Matrix from lags at `terms` depths to coefficients.
-    at = np.linspace(0.0, made.painted.deepest_mm, terms + 1)[1:]
+    at = np.linspace(0.0, calibration.painted.deepest_mm, terms + 1)[1:]
     to_law = np.linalg.inv(np.vander(at, terms, increasing=True))
     lag_changes = np.zeros(terms)
     height, displaced = (
-        made.fit.height_mm,
-        np.array([residual.displacement_mm for residual in made.fit.marks]),
+        calibration.fit.height_mm,
+        np.array([residual.displacement_mm for residual in calibration.fit.marks]),
     )
     for _ in range(MAX_ROUNDS):
         distances, slopes = edges.distances_and_slopes(
@@ -102,24 +102,26 @@ def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagBy
     )
     _refuse_changed_lag(lag, fitted_lag, depths, own)
     brush = _with_lag(own, lag, name)
-    lag_covariance = _lag_covariance(made, to_law @ covariance[:terms, :terms] @ to_law.T)
+    lag_covariance = _lag_covariance(calibration, to_law @ covariance[:terms, :terms] @ to_law.T)
     brush_covariance = _join_covariance(own, brush, lag_covariance)
     half = _core.deviations_of_95() * np.sqrt(np.diag(brush_covariance)[: len(lag)])
     brush.lag = _core.Profile(
         lag.tolist(),
-        calibrated_mm=(0.0, made.painted.deepest_mm),
-        source=f"Fitted to {len(made.painted.marks)} painted marks by the outlines of brush {own.name}.",
+        calibrated_mm=(0.0, calibration.painted.deepest_mm),
+        source=f"Fitted to {len(calibration.painted.marks)} painted marks by the outlines of brush {own.name}.",
         half_interval_95=half.tolist(),
     )
     brush.covariance = brush_covariance.tolist()
     _core.check(brush)
-    fit = made.fit
+    fit = calibration.fit
     marks = [
         PlacedMark(np.array(residual.way_mm), tuple(by.tolist()))
         for residual, by in zip(fit.marks, displaced, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
-    return LagByOutlines(replace(made, brush=brush, fit=placed), made, own, float(height), noise)
+    return LagByOutlines(
+        replace(calibration, brush=brush, fit=placed), calibration, own, float(height), noise
+    )
 
 
 @dataclass(frozen=True)
@@ -150,10 +152,11 @@ class _Edges:
     The points are in the frame of the plan.
     """
 
-    def __init__(self, made: MarkCalibration, own: _core.Brush):
-        self.made, self.own = made, own
+    def __init__(self, calibration: MarkCalibration, own: _core.Brush):
+        self.made, self.own = calibration, own
         self.points = [
-            np.array(residual.point_mm) + np.array(residual.displacement_mm) for residual in made.fit.marks
+            np.array(residual.point_mm) + np.array(residual.displacement_mm)
+            for residual in calibration.fit.marks
         ]
         self.mark_of_point = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
 
@@ -250,18 +253,20 @@ def _add_polynomials(law, by) -> np.ndarray:
     return out
 
 
-def _lag_covariance(made: MarkCalibration, of_step: np.ndarray) -> np.ndarray:
+def _lag_covariance(calibration: MarkCalibration, of_step: np.ndarray) -> np.ndarray:
     """Return the covariance of all coefficients of the lag.
 
     It is the covariance of the step. If the usual fit has more coefficients, the covariance of the part that the fewer
     coefficients cannot follow is added.
     """
-    fitted = np.array(made.covariance)[: len(made.fit.laws.lag), : len(made.fit.laws.lag)]
+    fitted = np.array(calibration.covariance)[
+        : len(calibration.fit.laws.lag), : len(calibration.fit.laws.lag)
+    ]
     few, many = len(of_step), max(len(of_step), len(fitted))
     out = np.zeros((many, many))
     out[:few, :few] = of_step
     if many > few:
-        share = np.linspace(0.0, made.expected.deepest_mm, 41)[1:]
+        share = np.linspace(0.0, calibration.expected.deepest_mm, 41)[1:]
         powers = np.vander(share, many, increasing=True)
         followed = np.zeros((many, many))
         followed[:few] = np.linalg.lstsq(powers[:, :few], powers, rcond=None)[0]

@@ -1,10 +1,8 @@
 """Search for the brush whose marks overlap most with painted marks.
 
-The search changes few numbers of the fit by edges.
-
-The search changes the lag (as values at depths), the tip gap, the half width, the two lengths of the footprint, the
-height of the paper and the displacement of the sheet. On request it also changes lean and a map of the paths. It uses
-the simplex method of Nelder and Mead, at first on a part of the marks.
+The search changes few numbers of the fit by edges. They are the lag (as values at depths), the tip gap, the half width,
+the two lengths of the footprint, the height of the paper and the displacement of the sheet. On request it also changes
+lean and a map of the paths. It uses the simplex method of Nelder and Mead, at first on a part of the marks.
 
 If marks are displaced by chance, a wider brush overlaps more than the true brush, because its mark reaches all places
 with paint. Half of the objective is therefore the overlap if each mark may move within the expected displacements.

@@ -128,9 +128,11 @@ def update_brush(
             covariance += np.outer(change, change)
     interval_ratios = _interval_ratios(known.widened(wider), covariance, known.laws, brush)
     changed = {law for law in LAWS if interval_ratios[law][0] < MAX_LEARNED_RATIO}
-    made = _merge_brush(brush, known, laws, covariance, changed, name, painted)
-    _core.check(made)
-    return Updated(made, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options)
+    updated_brush = _merge_brush(brush, known, laws, covariance, changed, name, painted)
+    _core.check(updated_brush)
+    return Updated(
+        updated_brush, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options
+    )
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
@@ -285,30 +287,40 @@ def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], n
     """
     if learned & {"half_width", "tip_to_widest"}:
         learned = learned | {"tip_to_widest"}  # it is stored in half widths
-    made = brush_of(laws, name, brush.depth_range_mm, covariance)
-    fitted = places(made)
+    updated_brush = brush_of(laws, name, brush.depth_range_mm, covariance)
+    fitted = places(updated_brush)
     brush_covariance = to_brush_covariance(laws, covariance)
     for law in LAWS:
         setattr(
-            made,
+            updated_brush,
             law,
-            _choose_law(getattr(brush, law), getattr(made, law), law in learned, painted, brush.name),
+            _choose_law(
+                getattr(brush, law), getattr(updated_brush, law), law in learned, painted, brush.name
+            ),
         )
-    made.kind, made.max_speed_mm_s, made.paint_depth_mm = (
+    updated_brush.kind, updated_brush.max_speed_mm_s, updated_brush.paint_depth_mm = (
         brush.kind,
         brush.max_speed_mm_s,
         brush.paint_depth_mm,
     )
-    made.covariance = _join_covariance(brush, made, learned, brush_covariance, fitted).tolist()
-    made.extra, made.footprints, made.paint = brush.extra, brush.footprints, brush.paint
+    updated_brush.covariance = _join_covariance(
+        brush, updated_brush, learned, brush_covariance, fitted
+    ).tolist()
+    updated_brush.extra, updated_brush.footprints, updated_brush.paint = (
+        brush.extra,
+        brush.footprints,
+        brush.paint,
+    )
     known_mm = {law: max(painted.deepest_mm, fitted_down_to_mm(brush, law)) for law in LAWS if law in learned}
     before_mm = learned_of(brush).get("deepest_mm")
     before_mm = before_mm if isinstance(before_mm, dict) else {}
     new_mm = {law: round(depth, 3) for law, depth in known_mm.items() if np.isfinite(depth)}
-    _write_learned(made, learned_of(brush) | {"deepest_mm": before_mm | new_mm})
+    _write_learned(updated_brush, learned_of(brush) | {"deepest_mm": before_mm | new_mm})
     if learned & {"half_width", "tip_to_widest"}:
-        made.footprints = _reshape_outlines(brush, made, laws.front_per_half / known.laws.front_per_half)
-    return made
+        updated_brush.footprints = _reshape_outlines(
+            brush, updated_brush, laws.front_per_half / known.laws.front_per_half
+        )
+    return updated_brush
 
 
 def _choose_law(before, now, is_learned: bool, painted: Painted, prior: str):
@@ -324,13 +336,13 @@ def _choose_law(before, now, is_learned: bool, painted: Painted, prior: str):
 
 
 def _join_covariance(
-    brush, made, learned: set[str], whole: np.ndarray, fitted: dict[str, slice]
+    brush, updated_brush, learned: set[str], whole: np.ndarray, fitted: dict[str, slice]
 ) -> np.ndarray:
     """Return the covariance of all coefficients.
 
     It is new for updated laws and unchanged for the others.
     """
-    new_places, old_places = places(made), places(brush)
+    new_places, old_places = places(updated_brush), places(brush)
     out = np.zeros((new_places[LAWS[-1]].stop,) * 2)
     old_covariance = np.array(brush.covariance)
     for law, other in itertools.product(LAWS, LAWS):
@@ -341,7 +353,7 @@ def _join_covariance(
     return out
 
 
-def _reshape_outlines(brush, made, longer: float) -> _core.FootprintTable:
+def _reshape_outlines(brush, updated_brush, longer: float) -> _core.FootprintTable:
     """Return the outlines scaled to the half width and widest section of the new laws.
 
     longer: factor of the part in front of the widest section.
@@ -350,8 +362,8 @@ def _reshape_outlines(brush, made, longer: float) -> _core.FootprintTable:
     def reshape(shape):
         d = shape.depth_mm
         x, y = np.array(shape.outline_mm).T
-        wide = made.half_width.extrapolated(d) / max(brush.half_width.extrapolated(d), 1e-9)
-        widest, now = brush.tip_to_widest.extrapolated(d), made.tip_to_widest.extrapolated(d)
+        wide = updated_brush.half_width.extrapolated(d) / max(brush.half_width.extrapolated(d), 1e-9)
+        widest, now = brush.tip_to_widest.extrapolated(d), updated_brush.tip_to_widest.extrapolated(d)
         behind = x * (now / widest if widest > 1e-9 else wide)
         x = np.where(x <= widest, behind, now + (x - widest) * wide * longer)
         return _core.Footprint(d, np.column_stack([x, y * wide]))
@@ -398,15 +410,15 @@ def other_brush(plan, brush: _core.Brush) -> list[Notice]:
     return [Notice("brush_sha256", sentence, code="plan-of-other-brush", advice=advice)]
 
 
-def with_lineage(made: _core.Brush, brush: _core.Brush, photos: list[str]) -> None:
+def with_lineage(updated_brush: _core.Brush, brush: _core.Brush, photos: list[str]) -> None:
     """Write into a brush the brush and the photographs from which it was made."""
     before = _read_learned(brush)
     lineage = {"brushes": [*before["brushes"], brush.sha256], "photos": [*before["photos"], *photos]}
-    _write_learned(made, learned_of(made) | lineage)
+    _write_learned(updated_brush, learned_of(updated_brush) | lineage)
 
 
-def _write_learned(made: _core.Brush, learned: dict) -> None:
-    made.extra = json.dumps(json.loads(made.extra or "{}") | {LEARNED: learned})
+def _write_learned(updated_brush: _core.Brush, learned: dict) -> None:
+    updated_brush.extra = json.dumps(json.loads(updated_brush.extra or "{}") | {LEARNED: learned})
 
 
 def _read_learned(brush) -> dict:
