@@ -60,7 +60,7 @@ def dab_poses(brush, depth: float, heading_deg: float) -> np.ndarray:
     The run follows the lag. On a straight line, the patch would be dragged if the lag is below the line.
     """
     depths = depth * np.arange(1, RUN_STEPS + 1) / RUN_STEPS
-    lag = RUN_PER_LAG * np.array([brush.lag(each) for each in depths])
+    lag = RUN_PER_LAG * np.array([brush.lag(one_depth) for one_depth in depths])
     run = np.minimum(lag, lag[-1] * depths / depth)
     if np.allclose(run, lag[-1] * depths / depth):
         depths, run = depths[-1:], run[-1:]

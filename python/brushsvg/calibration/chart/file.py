@@ -151,5 +151,5 @@ def _read_stroke(row: dict, where: str, most_mm: float) -> Stroke:
 
 
 def _read_lengths(values, where: str, count: int, most_mm: float) -> tuple[float, ...]:
-    found = json_fields.numbers(values, where, count)
-    return tuple(json_fields.number(each, where, 0, most_mm) for each in found)
+    numbers = json_fields.numbers(values, where, count)
+    return tuple(json_fields.number(number, where, 0, most_mm) for number in numbers)

@@ -192,27 +192,25 @@ def _moved_page(
     """
     flat = flatten(pixels, view, chart.plan.sheet_mm)
     known_scale = 1.0 if size != 1.0 else None
-    found = find_paint(
-        flat, printed_pixels(flat, page.rings), stroke_boxes, _stroke_paths(chart), known_scale
-    )
-    if found is None:
+    pose = find_paint(flat, printed_pixels(flat, page.rings), stroke_boxes, _stroke_paths(chart), known_scale)
+    if pose is None:
         raise refusal
     if known_scale is not None:
-        return _make_page(chart, size, -np.array(found.shift_mm))
-    if abs(found.scale - 1) < MIN_VISIBLE_SCALE_CHANGE:
+        return _make_page(chart, size, -np.array(pose.shift_mm))
+    if abs(pose.scale - 1) < MIN_VISIBLE_SCALE_CHANGE:
         raise refusal
-    share = f"{100 * abs(found.scale - 1):.0f} % {'larger' if found.scale > 1 else 'smaller'}"
-    sentence = f"the paint is {share} than the printed page: the page was printed at about {100 / found.scale:.0f} %. "
+    share = f"{100 * abs(pose.scale - 1):.0f} % {'larger' if pose.scale > 1 else 'smaller'}"
+    sentence = f"the paint is {share} than the printed page: the page was printed at about {100 / pose.scale:.0f} %. "
     if chart.bar is None:
         sentence += "Print it again at 100 %"
     else:
         full = chart.bar.length_mm
         sentence += (
-            f"Measure the bar on the page and give its length, as in --bar {full / found.scale:.0f}. "
-            f"If it is {full:g} mm long, the machine moves too {'far' if found.scale > 1 else 'little'}: correct its "
+            f"Measure the bar on the page and give its length, as in --bar {full / pose.scale:.0f}. "
+            f"If it is {full:g} mm long, the machine moves too {'far' if pose.scale > 1 else 'little'}: correct its "
             "steps per mm"
         )
-    raise Error(sentence, "bar", 1 / found.scale, code="page-scale") from None
+    raise Error(sentence, "bar", 1 / pose.scale, code="page-scale") from None
 
 
 def _find_view(pixels: np.ndarray, shown: Printed, mirrored: bool) -> View:
@@ -316,8 +314,8 @@ def write_marks(read: Read) -> str:
 
 def describe_reading(read: Read) -> str:
     """Describe in one line how well the photograph could be read."""
-    view, count, found = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
-    strokes = f"{found} strokes" if found == count else f"{found} of {count} strokes"
+    view, count, found_count = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
+    strokes = f"{found_count} strokes" if found_count == count else f"{found_count} of {count} strokes"
     strokes += f" read from {read.photos} photographs" if read.photos > 1 else " read"
     if not view.seen:
         across, down = view.homography[:2, 0]
@@ -353,9 +351,9 @@ def remarks(read: Read) -> list[Notice]:
             f"no paint is found of {each} {', '.join(missing)}, left out{_describe_remaining(read, missing)}"
         )
         notices.append(Notice("", sentence, code="mark-missing"))
-    for one, other in read.marks.joined:
+    for stroke, other in read.marks.joined:
         sentence = f"its mark touches that of {other}: they are cut apart half way between their places"
-        notices.append(Notice(one, sentence, code="marks-touch"))
+        notices.append(Notice(stroke, sentence, code="marks-touch"))
     unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
     if unseen and view.seen:
         sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen whole"

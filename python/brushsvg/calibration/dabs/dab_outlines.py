@@ -110,11 +110,11 @@ class Outlines:
         """
         out = {}
         for shape in self.shapes:
-            for seen in shape.seen:
-                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + seen.displacement_mm
-                planned = from_patch @ rotation(seen.dab.heading_rad) + seen.dab.place_mm
+            for patch_dab in shape.seen:
+                from_patch = shape.outline_mm - [shape.tip_gap_mm, 0.0] + patch_dab.displacement_mm
+                planned = from_patch @ rotation(patch_dab.dab.heading_rad) + patch_dab.dab.place_mm
                 turned = (planned - self.centre_mm) @ rotation(self.turn_rad)
-                out[seen.dab.name] = turned + self.centre_mm + self.shift_mm
+                out[patch_dab.dab.name] = turned + self.centre_mm + self.shift_mm
         return out
 
 
@@ -134,18 +134,18 @@ def average_dabs(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
     _refuse_too_few(depths, whole_dabs, remarks)
     sheet, whole_dabs = _fit_sheet(whole_dabs, remarks)
     _refuse_too_few(depths, whole_dabs, remarks)
-    seen = [_to_patch_frame(dab, sheet) for dab in whole_dabs]
-    shapes = _group_by_depth(seen, lambda depth: 0.0)
+    patch_dabs = [_to_patch_frame(dab, sheet) for dab in whole_dabs]
+    shapes = _group_by_depth(patch_dabs, lambda depth: 0.0)
     typical_mm = float(np.median(np.concatenate([shape.distances_mm() for shape in shapes])))
     for shape in shapes:
         remarks += shape.remove_strangers(max(MAX_DISTANCE_RATIO * typical_mm, MIN_DISTANCE_LIMIT_MM))
     kept_names = {patch_dab.dab.name for shape in shapes for patch_dab in shape.seen}
-    seen = [patch_dab for patch_dab in seen if patch_dab.dab.name in kept_names]
-    _refuse_too_few(depths, [patch_dab.dab for patch_dab in seen], remarks)
-    across, beyond_chance = _fit_axis_offset(seen)
+    patch_dabs = [patch_dab for patch_dab in patch_dabs if patch_dab.dab.name in kept_names]
+    _refuse_too_few(depths, [patch_dab.dab for patch_dab in patch_dabs], remarks)
+    across, beyond_chance = _fit_axis_offset(patch_dabs)
     sides = float(np.sqrt(np.mean([shape.asymmetry() ** 2 for shape in shapes])))
     is_even = max(beyond_chance, sides) < MIN_ASYMMETRY
-    shapes = _group_by_depth(seen, (lambda depth: 0.0) if is_even else across)
+    shapes = _group_by_depth(patch_dabs, (lambda depth: 0.0) if is_even else across)
     turned = _heading_difference_mm(shapes)
     if turned > MAX_HEADING_DIFFERENCE_MM:
         raise Error(
@@ -292,9 +292,11 @@ def _fit_axis_offset(seen: list[PatchDab]) -> tuple[Callable[[float], float], fl
 
 
 def _group_by_depth(seen: list[PatchDab], across) -> list[_DabsOfDepth]:
-    depths = sorted({each.dab.depth_mm for each in seen})
+    depths = sorted({patch_dab.dab.depth_mm for patch_dab in seen})
     return [
-        _DabsOfDepth(depth, [each for each in seen if each.dab.depth_mm == depth], across(depth))
+        _DabsOfDepth(
+            depth, [patch_dab for patch_dab in seen if patch_dab.dab.depth_mm == depth], across(depth)
+        )
         for depth in depths
     ]
 
@@ -307,21 +309,23 @@ class _DabsOfDepth:
 
     def __init__(self, depth: float, seen: list[PatchDab], across_mm: float):
         self.depth = depth
-        middles = np.array([_centroid(each.outline_mm) for each in seen])
+        middles = np.array([_centroid(patch_dab.outline_mm) for patch_dab in seen])
         self.middle = np.array([middles[:, 0].mean(), across_mm])
         self.seen = [
             replace(
-                each, outline_mm=each.outline_mm + self.middle - middle, displacement_mm=middle - self.middle
+                patch_dab,
+                outline_mm=patch_dab.outline_mm + self.middle - middle,
+                displacement_mm=middle - self.middle,
             )
-            for each, middle in zip(seen, middles, strict=True)
+            for patch_dab, middle in zip(seen, middles, strict=True)
         ]
-        spans = np.array([np.ptp(each.outline_mm, axis=0) for each in self.seen])
+        spans = np.array([np.ptp(patch_dab.outline_mm, axis=0) for patch_dab in self.seen])
         self.axes = np.median(spans, axis=0) / 2
         self.centre = np.array([self.middle[0], 0.0])  # the first ray runs back along the axis to the tip
         turn = np.pi + 2 * np.pi * np.arange(VERTEX_COUNT) / VERTEX_COUNT
         self.rays = self.axes * np.column_stack([np.cos(turn), np.sin(turn)])
         self.turn = turn
-        self.reach = np.array([self._reach_along_rays(each.outline_mm) for each in self.seen])
+        self.reach = np.array([self._reach_along_rays(patch_dab.outline_mm) for patch_dab in self.seen])
 
     def _reach_along_rays(self, ring: np.ndarray) -> np.ndarray:
         """Return the distance of an outline along each ray."""
@@ -369,7 +373,7 @@ class _DabsOfDepth:
 
     def by_heading_mm(self) -> dict[float, np.ndarray]:
         """Return the distance of the mean of each heading from the mean of all dabs."""
-        heading = np.round(np.degrees([each.dab.heading_rad for each in self.seen])) % 360
+        heading = np.round(np.degrees([patch_dab.dab.heading_rad for patch_dab in self.seen])) % 360
         all_ = self.reach.mean(axis=0)
         return {h: self._to_mm(self.reach[heading == h].mean(axis=0) - all_) for h in np.unique(heading)}
 
@@ -415,7 +419,9 @@ def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
     for shape in shapes:
         for heading, distance in shape.by_heading_mm().items():
             off.setdefault(heading, []).append(distance)
-    return max(float(np.sqrt(np.mean(np.square(np.mean(each, axis=0))))) for each in off.values())
+    return max(
+        float(np.sqrt(np.mean(np.square(np.mean(differences, axis=0))))) for differences in off.values()
+    )
 
 
 def _smooth_outline(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:

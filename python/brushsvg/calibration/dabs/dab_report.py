@@ -104,9 +104,9 @@ def report_picture(calibration, suffix: str) -> bytes:
 def _draw_depth(axes, shape: Shape, before: _core.Brush) -> None:
     tip = np.array([-shape.tip_gap_mm, 0.0])
     label = "dabs"
-    for seen in shape.seen:
+    for patch_dab in shape.seen:
         axes.plot(
-            *_close_ring(seen.outline_mm - tip), color=DAB_COLOUR, linewidth=0.6, alpha=0.7, label=label
+            *_close_ring(patch_dab.outline_mm - tip), color=DAB_COLOUR, linewidth=0.6, alpha=0.7, label=label
         )
         label = None
     assumed = _core.footprint_at(before.footprints, shape.depth_mm, 1.0)

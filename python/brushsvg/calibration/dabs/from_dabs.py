@@ -129,14 +129,16 @@ def _values_of_law(law: str, shape: Shape) -> np.ndarray:
     """Return depths and values of a law, one row for each dab."""
     depth = shape.depth_mm
     if law == "tip_to_widest":
-        tops = np.array([_broad_middle(seen.outline_mm) for seen in shape.seen])
+        tops = np.array([_broad_middle(patch_dab.outline_mm) for patch_dab in shape.seen])
         return np.column_stack(
             [np.full(len(tops), depth), _widest_place(shape.outline_mm) + tops - tops.mean()]
         )
     if law == "tip_gap":
         # A dab that is displaced forward has its tip nearer to the place where it was set down.
-        return np.array([[depth, shape.tip_gap_mm - seen.displacement_mm[0]] for seen in shape.seen])
-    spans = np.array([_breadth(seen.outline_mm) for seen in shape.seen])
+        return np.array(
+            [[depth, shape.tip_gap_mm - patch_dab.displacement_mm[0]] for patch_dab in shape.seen]
+        )
+    spans = np.array([_breadth(patch_dab.outline_mm) for patch_dab in shape.seen])
     return np.column_stack(
         [np.full(len(spans), depth), _greatest_half_width(shape) + (spans - spans.mean()) / 2]
     )

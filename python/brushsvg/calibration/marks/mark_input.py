@@ -161,10 +161,10 @@ def _read_passes(plan, read) -> dict[str, _core.Pass]:
 def _read_outlines(marks, read) -> list[tuple[str, list]]:
     if isinstance(marks, str):
         try:
-            found = _core.read_marks(read(marks).decode("utf-8", "replace"))
+            read_marks = _core.read_marks(read(marks).decode("utf-8", "replace"))
         except Error as refusal:
             raise Error(f"{marks[:200]}: {refusal}", "marks", refusal.value, code=refusal.code) from None
-        return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
+        return [(mark.stroke, [np.array(ring) for ring in mark.outline_mm]) for mark in read_marks.passes]
     out = []
     for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):
         json_fields.refuse_unknown(row, ("stroke", "outline_mm", "note"), f"marks[{i}]")
@@ -222,7 +222,7 @@ def _refuse_other_frames(found: list) -> None:
     They show in the positions of marks relative to their strokes. found: (stroke, poses, rings) of each mark.
     """
     planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
-    seen = np.array([middle(np.vstack(rings)) for _, _, rings in found])
+    marked = np.array([middle(np.vstack(rings)) for _, _, rings in found])
     spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
     sizes = lambda points: float(np.hypot(*np.ptp(points, axis=0)))  # noqa: E731
     lengths = [sizes(poses[:, :2]) for _, poses, _ in found]
@@ -236,13 +236,13 @@ def _refuse_other_frames(found: list) -> None:
                 "marks",
                 code="marks-scaled",
             )
-    own_distances = np.hypot(*(seen - planned).T)
+    own_distances = np.hypot(*(marked - planned).T)
     if len(found) > 2 and spread(planned) > 10.0:
-        flipped = seen * [1, -1]
+        flipped = marked * [1, -1]
         rigid = lambda points: np.median(  # noqa: E731
             np.hypot(*(points - planned - np.median(points - planned, axis=0)).T)
         )
-        if rigid(flipped) < 0.3 * rigid(seen) and rigid(seen) > 10.0:
+        if rigid(flipped) < 0.3 * rigid(marked) and rigid(marked) > 10.0:
             raise Error(
                 "the sheet of the marks stands upside down: y must go up, from the lower left corner",
                 "marks",
@@ -250,8 +250,8 @@ def _refuse_other_frames(found: list) -> None:
             )
     if own_distances.max() <= MAX_MARK_DISTANCE_MM and len(found) < 2:
         return
-    _refuse_moved_sheet(planned, seen)
-    distances = np.hypot(*np.moveaxis(seen[:, None] - planned[None], 2, 0))
+    _refuse_moved_sheet(planned, marked)
+    distances = np.hypot(*np.moveaxis(marked[:, None] - planned[None], 2, 0))
     nearest = distances.argmin(axis=1)
     wrong = [
         i

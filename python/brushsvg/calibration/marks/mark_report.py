@@ -29,10 +29,8 @@ from .stray_marks import MAX_RESIDUAL_SIGMAS
 MAX_MASKED_SHARE = 0.1  # share of all points: if more are masked, they are not only blots and gaps
 # Overlap of painted and predicted marks: least usable and least good one. Photographs of hairy strokes have 0.6 to 0.8.
 MIN_USABLE_OVERLAP, MIN_GOOD_OVERLAP = 0.5, 0.9
-MAX_SIZE_PER_SIGMA, MAX_RMS_PER_SIGMA = (
-    3.0,
-    1.5,
-)  # times the expected size, for one number and for the rms of the displacements
+# Largest multiples of the expected size: of one number, and of the rms of the displacements.
+MAX_SIZE_PER_SIGMA, MAX_RMS_PER_SIGMA = 3.0, 1.5
 WORST_MARKS = 3  # number of marks that the report lists
 PAINT, PREDICTED, PATH = "#c9ced8", "#c0392b", "#3f8fd9"
 
@@ -70,8 +68,8 @@ def report(calibration, of_photo: bool = False) -> Report:
         if len(brush.lag.coefficients) < LAG_TERMS
         else "",
     ]
-    found = machine_found.numbers(fit, calibration.covariance, calibration.expected)
-    cell = machine_found.cell_table(fit, calibration.expected, found)
+    machine_numbers = machine_found.numbers(fit, calibration.covariance, calibration.expected)
+    cell = machine_found.cell_table(fit, calibration.expected, machine_numbers)
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(calibration.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {moved:.3f}, by {in_place:.3f} with the displacements of marks (mean "
@@ -467,4 +465,4 @@ def predict_outlines(calibration, marks: list) -> list:
     painted = _core.Marks()
     painted.passes = traces
     _core.trace_outlines(painted, brush)
-    return [one.outline_mm for one in painted.passes]
+    return [painted_pass.outline_mm for painted_pass in painted.passes]

@@ -244,7 +244,7 @@ class Flanks:
 
     def marks(self) -> list[np.ndarray]:
         """Return one mask per mark that selects its points."""
-        return [self.of_mark == one for one in np.unique(self.of_mark)]
+        return [self.of_mark == number for number in np.unique(self.of_mark)]
 
     def own(self) -> np.ndarray:
         """Return the part of `moved` that neither width laws nor height explain."""

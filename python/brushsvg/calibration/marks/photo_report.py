@@ -120,7 +120,9 @@ def _draw_predictions(picture, flat, read, calibration) -> dict[str, list[str]]:
 def _draw_dab_predictions(picture, flat, read, outlines) -> dict[str, list[str]]:
     drawn, words = outlines.predicted_mm(), {}
     for shape in outlines.shapes:
-        for name, displaced in ((each.dab.name, np.hypot(*each.displacement_mm)) for each in shape.seen):
+        for name, displaced in (
+            (patch_dab.dab.name, np.hypot(*patch_dab.displacement_mm)) for patch_dab in shape.seen
+        ):
             _draw_rings(picture, flat, [drawn[name]], PREDICTED_COLOUR, PREDICTED_MM)
             label = f"{shape.depth_mm:g} mm deep, displaced {displaced:.2f} mm"
             words[name] = [f"{name}: {label}", label, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]

@@ -26,11 +26,11 @@ def read_series(row: Row, total: bool) -> dict:
     series = [row.numbers[name] for name in ("alpha0_deg", "s_mm", "alpha_deg")]
     plausibility.refuse_series(row.where, *series)
     try:
-        found = _core.from_angles(*_series_in_radians(row), lines=_line_fit(total))
+        lengths = _core.from_angles(*_series_in_radians(row), lines=_line_fit(total))
     except Error as refusal:
         raise Error(str(refusal), row.where, refusal.value, code=refusal.code) from None
     plausibility.refuse_displaced_start(row.where, *series)
-    return found
+    return lengths
 
 
 def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -> tuple[float, float]:
@@ -57,8 +57,8 @@ def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -
 
     def lengths(angles) -> np.ndarray:
         first, alphas, betas = angles[0], angles[1 : 1 + len(s)], angles[1 + len(s) :]
-        found = _core.from_angles(first, s, alphas, betas, _line_fit(total))
-        return np.array([found["lag_mm"], found["tip_gap_mm"]])
+        series = _core.from_angles(first, s, alphas, betas, _line_fit(total))
+        return np.array([series["lag_mm"], series["tip_gap_mm"]])
 
     squares = np.zeros(2)
     for k in range(len(predicted)):

@@ -187,7 +187,7 @@ def fit_together(
         ]
         freedom = float(np.clip(min(freedoms_of_variance), 1.0, 1e6))
         zeros = [0.0] * unknowns.first[name]
-        depths = [r.depth_mm for r in readings if any(name in each for each in r.sums)]
+        depths = [r.depth_mm for r in readings if any(name in signs for signs in r.sums)]
         half = _core.deviations_of_95(freedom) * np.sqrt(variance) * scale[at]
         laws[name] = _core.Profile(
             [*zeros, *(x * scale)[at]],

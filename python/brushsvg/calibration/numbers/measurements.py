@@ -82,10 +82,10 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
     data: the bytes of the file. suffix: .json or .csv. Raises Error, which names the row or key.
     """
     text = data.decode("utf-8-sig", "replace")
-    found = _read_table(text) if suffix == ".csv" else _read_json(text)
-    if found.marks is not None:
-        return found
-    depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
+    measurements = _read_table(text) if suffix == ".csv" else _read_json(text)
+    if measurements.marks is not None:
+        return measurements
+    depths = sorted({row.depth_mm for rows in measurements.rows.values() for row in rows})
     if not depths:
         sentence = (
             "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
@@ -97,8 +97,8 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
             "depth_mm",
             code="depth-out-of-range",
         )
-    found.depths_mm.extend(depths)
-    return found
+    measurements.depths_mm.extend(depths)
+    return measurements
 
 
 def read_widths(text: str) -> list[tuple[float, float]]:

@@ -164,15 +164,15 @@ def find_outliers_of_kinds(
     internal_residuals = residual_mm / (
         scatter_mm * np.sqrt(free_share)
     )  # in least squares its square is at most the degrees of freedom
-    found = {}
+    outliers = {}
     for k, (t, degrees) in enumerate(zip(internal_residuals, freedom, strict=True)):
         if degrees < 3.0:
             continue
         external_residual = abs(t) * math.sqrt((degrees - 1.0) / max(degrees - t**2, 1e-6))
         size = float(_core.as_normal(external_residual, degrees - 1.0))
         if size > MIN_OUTLIER_SIGMAS:
-            found[k] = Outlier(size, float(residual_mm[k] / free_share[k]))
-    return found
+            outliers[k] = Outlier(size, float(residual_mm[k] / free_share[k]))
+    return outliers
 
 
 def find_outliers_above_floor(
@@ -200,7 +200,7 @@ def compare_with_other_points(
     """
     depths, values = np.array(depths_mm, float), np.array(values_mm, float)
     shape = _core.LawShape(range_mm, degree, floor=0.0)
-    found = {}
+    comparisons = {}
     for k, (depth, value) in enumerate(zip(depths, values, strict=True)):
         if len(np.unique(np.delete(depths, k))) <= degree:
             continue
@@ -215,8 +215,8 @@ def compare_with_other_points(
         if polynomial + variance / (variance + noise) * (value - polynomial) >= 0.0:
             squared = min(squared, (value - polynomial) ** 2 / (noise + variance))
         size = float(_core.as_normal(math.sqrt(squared), others.degrees_of_freedom))
-        found[k] = (size, value - others.law(depth))
-    return found
+        comparisons[k] = (size, value - others.law(depth))
+    return comparisons
 
 
 def refuse_extrapolation(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:

@@ -68,14 +68,14 @@ def by_overlap(
         if not residual.outlier
     ]
     targets = [_make_target(mark, calibration) for mark in marks]
-    found = best_predicting(
+    best = best_predicting(
         marks,
         targets,
         Begin(fit.laws, fit.height_mm),
         options,
         lambda looks: progress(f"looked at {looks} sets of overlaps"),
     )
-    return _make_calibration(calibration, found)
+    return _make_calibration(calibration, best)
 
 
 def _make_calibration(calibration: MarkCalibration, found: Predicting) -> OverlapCalibration:

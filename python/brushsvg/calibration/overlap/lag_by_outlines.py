@@ -158,7 +158,7 @@ class _Edges:
             np.array(residual.point_mm) + np.array(residual.displacement_mm)
             for residual in calibration.fit.marks
         ]
-        self.mark_of_point = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
+        self.mark_of_point = np.repeat(np.arange(len(self.points)), [len(points) for points in self.points])
 
     def distances_and_slopes(self, lag, to_law, height, displaced) -> tuple[np.ndarray, np.ndarray]:
         """Return the distances (n,) from the predicted edges, and derivatives.
@@ -221,7 +221,7 @@ class _Edges:
             passes.append(_core.Pass(mark.stroke, np.column_stack([poses[:, :2], -depth])))
         painted = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
         _core.trace_outlines(painted, brush)
-        return [[np.array(ring) for ring in one.outline_mm] for one in painted.passes]
+        return [[np.array(ring) for ring in painted_pass.outline_mm] for painted_pass in painted.passes]
 
     def _distances(self, painted: list, displaced: np.ndarray) -> np.ndarray:
         return np.concatenate(

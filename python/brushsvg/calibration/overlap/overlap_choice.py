@@ -91,9 +91,9 @@ def best_predicting(
         x = best_from(search, kind, starts, choose_few(targets), look)
     else:  # the parts have fewer marks, which determine fewer numbers of a law
         kind, x = _search_few(search, targets, look, kind)
-    found = _finish_search(search, kind, x, targets, look)
+    best = _finish_search(search, kind, x, targets, look)
     means = {result: (float(in_place), float(moved)) for result, (in_place, moved) in left_out.items()}
-    return replace(found, parts=len(results["edges"]), left_out=means)
+    return replace(best, parts=len(results["edges"]), left_out=means)
 
 
 def largest_overlap(

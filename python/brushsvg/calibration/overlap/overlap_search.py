@@ -139,12 +139,13 @@ class Search:
         # With a single depth, lean is equivalent to a shift.
         parts["lean"] = np.zeros(2 if options.lean_mm_per_mm > 0 and self.has_height else 0)
         parts["map"] = np.zeros(4 if options.axes > 0 else 0)
-        self.begin = np.concatenate([np.asarray(each, float) for each in parts.values()])
-        ends = np.cumsum([len(each) for each in parts.values()])
+        self.begin = np.concatenate([np.asarray(numbers, float) for numbers in parts.values()])
+        ends = np.cumsum([len(numbers) for numbers in parts.values()])
         self.at = {
-            name: slice(end - len(each), end) for (name, each), end in zip(parts.items(), ends, strict=True)
+            name: slice(end - len(numbers), end)
+            for (name, numbers), end in zip(parts.items(), ends, strict=True)
         }
-        self.steps = np.concatenate([np.full(len(each), STEPS[name]) for name, each in parts.items()])
+        self.steps = np.concatenate([np.full(len(numbers), STEPS[name]) for name, numbers in parts.items()])
         self.has_machine = bool(len(parts["lean"]) + len(parts["map"]))
         self.lean_sigma = options.lean_mm_per_mm
         self.centre_mm = centre_mm
@@ -329,10 +330,10 @@ def refine_with_all(
         look()
         return search.loss(search.as_disc(x) if kind == "disc" else x, targets)
 
-    found = _minimise(
+    refined = _minimise(
         loss, x, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]), FINAL_EVALUATIONS
     ).all_x
-    return search.as_disc(found) if kind == "disc" else found
+    return search.as_disc(refined) if kind == "disc" else refined
 
 
 def mean_place(targets: list[Target]) -> np.ndarray:
@@ -396,8 +397,8 @@ def _register_pictures(
             return x
 
         def differences_or_ones(changed, begin=begin, differences=differences):
-            found = differences(changed)
-            return np.ones(len(begin)) if found is None else found
+            residuals = differences(changed)
+            return np.ones(len(begin)) if residuals is None else residuals
 
         def slopes(changed, differences=differences):
             now, out = differences(changed), []
@@ -435,9 +436,11 @@ def _minimise(loss, x, steps, free, most: int, corners=None):
     if corners is None:
         corners = np.vstack([x[free], *(x[free] + d for d in np.diag(steps[free]))])
     simplex = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
-    found = minimize(lambda changed: loss(fill_free(changed)), x[free], method="Nelder-Mead", options=simplex)
-    found.all_x = fill_free(found.x)
-    return found
+    result = minimize(
+        lambda changed: loss(fill_free(changed)), x[free], method="Nelder-Mead", options=simplex
+    )
+    result.all_x = fill_free(result.x)
+    return result
 
 
 def _interpolate_law(depths, values, first: int) -> list[float]:

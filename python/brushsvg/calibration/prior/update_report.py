@@ -44,15 +44,15 @@ def report(calibration) -> Report:
         *(f"{law}: {_describe_law(calibration, law)}" for law in LAWS),
         *_list_remarks(calibration),
     ]
-    found = numbers(fit, calibration.covariance, calibration.options)
-    table = cell_table(fit, calibration.options, found)
+    machine_numbers = numbers(fit, calibration.covariance, calibration.options)
+    table = cell_table(fit, calibration.options, machine_numbers)
     details = [*_compare_laws(calibration, laws), *_describe_residuals(calibration)]
     details += [
         f"{law}, the prior: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS
     ]
     details += [
-        *(["", "of the machine:"] if found else []),
-        *describe_numbers(found),
+        *(["", "of the machine:"] if machine_numbers else []),
+        *describe_numbers(machine_numbers),
         *(["", *table] if table else []),
     ]
     return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
