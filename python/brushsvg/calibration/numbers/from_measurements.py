@@ -266,7 +266,7 @@ class _LawFitter:
             if law not in self.fitted:  # start from the measured sums minus the other law
                 other_law = self.fitted["tip_gap" if law == "lag" else "lag"].fit.law
                 self._refuse_lag_from_touch(law)
-                differences = [self._lag_plus_tip_gap(row) - other_law(row.depth_mm) for row in rows]
+                differences = [self._sum(row) - other_law(row.depth_mm) for row in rows]
                 remaining_points = [
                     Point(r.where, r.depth_mm, v) for r, v in zip(rows, differences, strict=True)
                 ]
@@ -412,7 +412,7 @@ class _LawFitter:
                 code="measurement-missing",
             )
 
-    def _lag_plus_tip_gap(self, row: Row) -> float:
+    def _sum(self, row: Row) -> float:
         """Return r + b [mm] at the depth of a row.
 
         Rows of angular and centre_line read the middle of the mark. It is e = x_w - b nearer to the second line of

@@ -415,7 +415,7 @@ def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
     return [Row(kind, where, depth, picture_numbers)]
 
 
-def _read_video(kind: str, row: dict, where: str) -> list[Row]:
+def _video(kind: str, row: dict, where: str) -> list[Row]:
     """Convert positions in video frames to side views (section 2.5).
 
     The positions are those of ferrule and tip.
@@ -458,4 +458,4 @@ def _read_video(kind: str, row: dict, where: str) -> list[Row]:
     return rows
 
 
-_READERS = {"centre_line": _read_centre_line, "video": _read_video}
+_READERS = {"centre_line": _read_centre_line, "video": _video}
