@@ -50,7 +50,7 @@ from brushsvg.calibration.overlap.overlap_search import (
     Target,
     best_shift,
     on_paper,
-    predicted,
+    predict_pictures,
     soft_overlap,
 )
 from brushsvg.cli.arguments import values
@@ -431,7 +431,7 @@ def residual_words(strokes, fit, options) -> list[str]:
             laws.round_tail,
         )
         out = []
-        pictures = predicted(targets, tried, fit.height_mm, fit.shift_mm, options.deepest_mm)
+        pictures = predict_pictures(targets, tried, fit.height_mm, fit.shift_mm, options.deepest_mm)
         for target, picture in zip(targets, pictures, strict=True):
             fixed = soft_overlap(target.paint, picture)
             out.append(

@@ -115,7 +115,7 @@ def machine_added(made, fit=None):
     machine_found.ask_for(options, ("lean", "axes"))
     edges = SimpleNamespace(brush=made.brush, fit=fit or made.fit)
     targets = [
-        by_overlap._target(by_overlap._seen(*each, edges), edges)
+        by_overlap._make_target(by_overlap._to_plan_frame(*each, edges), edges)
         for each in zip(made.painted.marks, made.fit.marks, strict=True)
     ]
     return overlap_choice.largest_overlap(targets, Begin(made.fit.laws, made.fit.height_mm), options)
@@ -126,7 +126,7 @@ def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(DISPLACED_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", machine=("lean", "axes")).fit
-    text = report(by_overlap._calibrated(made, machine_added(made))).text(True)
+    text = report(by_overlap._make_calibration(made, machine_added(made))).text(True)
     said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
     assert np.array(said["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)

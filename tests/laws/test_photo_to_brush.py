@@ -24,7 +24,7 @@ from brushsvg.calibration.chart.file import write_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.marks.from_marks import refuse_many  # noqa: E402
 from brushsvg.calibration.marks.sheet_scale import SheetScale  # noqa: E402
-from brushsvg.calibration.marks.stray_marks import strays  # noqa: E402
+from brushsvg.calibration.marks.stray_marks import find_strays  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
 from brushsvg.model.confidence import law_band  # noqa: E402
 from brushsvg.reporting.report_text import GOOD  # noqa: E402
@@ -235,14 +235,14 @@ def fitted(count, astray):
 
 def test_a_mark_is_held_against_the_others_alone():
     fit = fitted(24, {3: np.array([1.9, 0.0]), 9: np.array([0.0, -9.0])})
-    found = strays(list("abcdefghijklmnopqrstuvwx"), fit)
+    found = find_strays(list("abcdefghijklmnopqrstuvwx"), fit)
     assert [stray.mark for stray in found] == ["d", "j"] and all(stray.is_displaced for stray in found)
     assert found[0].spread_mm == pytest.approx(0.2, abs=0.06)
-    assert not strays(list("abcdefghijklmnopqrstuvwx"), fitted(24, {}))
+    assert not find_strays(list("abcdefghijklmnopqrstuvwx"), fitted(24, {}))
     fit = fitted(24, {})
     fit.marks[5].rms_mm, fit.marks[5].distance_mm = 0.3, np.append(np.zeros(90), np.full(10, 0.9))
-    assert [stray.mark for stray in strays(list("abcdefghijklmnopqrstuvwx"), fit)] == ["f"]
-    assert not strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four do not single out one"
+    assert [stray.mark for stray in find_strays(list("abcdefghijklmnopqrstuvwx"), fit)] == ["f"]
+    assert not find_strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four do not single out one"
 
 
 def test_many_marks_astray_are_refused():

@@ -352,8 +352,8 @@ def test_finely_stepped_depths_are_many(tmp_path):
     fine = np.arange(10, 101) / 10
     code, out = table(tmp_path, [("lag", d, 3 + 0.8 * d) for d in fine] + [("width", d, d) for d in fine])
     assert code == 0 and find_brush(out).lag(5) == pytest.approx(7, abs=1e-6)
-    assert plausibility.different([*np.linspace(2, 6, 41), 10.0]) > 15
-    assert plausibility.different([5.0, 5.1, 5.2, 10.0]) == 2
+    assert plausibility.count_distinct_depths([*np.linspace(2, 6, 41), 10.0]) > 15
+    assert plausibility.count_distinct_depths([5.0, 5.1, 5.2, 10.0]) == 2
 
 
 @pytest.mark.parametrize(
@@ -451,7 +451,8 @@ def test_normal_noise_is_seldom_called_an_outlier():
     columns = np.vander(depths, 5, increasing=True)
     off = np.eye(12) - columns @ np.linalg.pinv(columns)
     named = sum(
-        bool(plausibility.outliers(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000)
+        bool(plausibility.find_outliers(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0))
+        for _ in range(2000)
     )
     assert named <= 6  # one in ten thousand values
 
@@ -499,9 +500,9 @@ def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
     law = np.maximum(0, WIDEST(depths - (floored - 1) * 0.8))
     sizes, named = [], 0
     for _ in range(300):
-        found = plausibility.off_the_others(depths, law + rng.normal(0, 0.2, 10), (0.0, 10.0), 3)
+        found = plausibility.compare_with_other_points(depths, law + rng.normal(0, 0.2, 10), (0.0, 10.0), 3)
         sizes += [size for size, _ in found.values()]
-        named += any(size > plausibility.OUTLYING for size, _ in found.values())
+        named += any(size > plausibility.MIN_OUTLIER_SIGMAS for size, _ in found.values())
     assert len(sizes) == 3000
     assert 0.03 <= np.mean(np.array(sizes) > 1.96) <= 0.07  # 0.05 of normal values
     assert named <= 1  # six in a hundred thousand values
@@ -512,7 +513,7 @@ def test_a_slip_above_a_floor_is_named():
     for k in range(10):
         values = np.maximum(0, WIDEST(depths)) + rng.normal(0, 0.05, 10)
         values[k] += 3.0
-        assert list(plausibility.outliers_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
+        assert list(plausibility.find_outliers_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
 
 
 def test_a_fit_stays_as_it_was_when_the_brush_is_made():

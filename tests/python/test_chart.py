@@ -19,7 +19,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.page import TEXT_MM, chart_page, chart_pdf
+from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_page, chart_pdf
 from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
@@ -76,7 +76,7 @@ def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
     ]
     for label in made.labels:
         x, y = label.at_mm
-        size = min(TEXT_MM, label.width_mm / (0.6 * len(label.text)))
+        size = min(MAX_TEXT_MM, label.width_mm / (0.6 * len(label.text)))
         text = shapely.box(x, y - 0.25 * size, x + 0.6 * size * len(label.text), y + size)
         assert size > 1.2 and paper.contains(text)
         assert min(text.distance(mark) for mark in (*marks, *markers)) > 0, label.text

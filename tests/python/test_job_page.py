@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 
 from brushsvg import Pass, Plan
-from brushsvg.calibration.chart.page import TEXT_MM
+from brushsvg.calibration.chart.page import MAX_TEXT_MM
 from brushsvg.comparison.job_page import job_page
 
-LETTER_MM = 0.6 * TEXT_MM
+LETTER_MM = 0.6 * MAX_TEXT_MM
 
 
 def boxes_of(page):
     """(left, bottom, right, top) of each label, and of each tick."""
     labels = [
-        (x, y, x + min(LETTER_MM * len(label.text), label.width_mm), y + TEXT_MM)
+        (x, y, x + min(LETTER_MM * len(label.text), label.width_mm), y + MAX_TEXT_MM)
         for label in page.printed.labels
         for x, y in [label.at_mm]
     ]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from brushsvg.calibration.marks.ink_depletion import ran_dry
+from brushsvg.calibration.marks.ink_depletion import find_ink_depletion
 from brushsvg.calibration.marks.mark_input import read_painted
 
 LENGTHS = (40.0, 30.0, 50.0, 20.0, 60.0)
@@ -40,7 +40,7 @@ def box(x, y, long, wide):
 )
 def test_the_last_whole_mark_and_the_one_behind_it_bound_the_load(shares, whole, between):
     painted, full = sheet(shares)
-    found = ran_dry(painted, full)
+    found = find_ink_depletion(painted, full)
     assert (found.whole, found.dry) == (whole, f"stroke{int(whole[-1]) + 1}")
     assert (found.whole_mm, found.dry_mm) == pytest.approx(between)
     assert found.variance_mm2 == pytest.approx((between[1] - between[0]) ** 2 / 3)
@@ -49,5 +49,5 @@ def test_the_last_whole_mark_and_the_one_behind_it_bound_the_load(shares, whole,
 @pytest.mark.parametrize("shares", [(1, 1, 1, 1, 1), (1, 0, 0.4, 1, 1), (0.7, 0.7, 0.7, 0.7, 0.7)])
 def test_where_the_last_mark_is_whole_none_ran_dry(shares):
     painted, full = sheet(shares)
-    assert ran_dry(painted, full) is None
+    assert find_ink_depletion(painted, full) is None
     assert painted.way_mm == pytest.approx(60 + sum(LENGTHS))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnostics import refused
 
-from brushsvg.calibration.marks.sheet_scale import refuse_scale, sheet_scale
+from brushsvg.calibration.marks.sheet_scale import fit_sheet_scale, refuse_scale
 from brushsvg.errors import Error
 
 A5 = np.array([[x, y] for y in (25.0, 75.0, 125.0, 175.0) for x in (20.0, 50.0, 80.0, 110.0)])
@@ -22,7 +22,7 @@ def off(middles, seed, sigma_mm=0.5, by=(1.0, 1.0), turn=0.0):
 
 def is_refused(middles, displacements):
     try:
-        refuse_scale(sheet_scale(middles, displacements))
+        refuse_scale(fit_sheet_scale(middles, displacements))
     except Error:
         return True
     return False
@@ -38,7 +38,7 @@ def is_refused(middles, displacements):
     ],
 )
 def test_another_scale_is_refused(by, said):
-    found = sheet_scale(A5, off(A5, 1, 0.3, by))
+    found = fit_sheet_scale(A5, off(A5, 1, 0.3, by))
     with refused(f"marks-scaled {said} --bar", "marks"):
         refuse_scale(found)
     for (share, error), true in zip((found.x, found.y), by, strict=True):
@@ -48,7 +48,7 @@ def test_another_scale_is_refused(by, said):
 def test_the_number_is_reported():
     scatter = np.random.default_rng(0).normal(0, 0.05, A5.shape)
     with refused("marks-scaled smaller") as caught:
-        refuse_scale(sheet_scale(A5, -0.03 * A5 + scatter))
+        refuse_scale(fit_sheet_scale(A5, -0.03 * A5 + scatter))
     assert re.search(r" 3\.0\d \+- 0\.0\d % smaller", caught.value.sentence)
 
 
@@ -64,9 +64,9 @@ def test_displacements_alone_are_no_scale(count):
 
 def test_an_undetermined_scale_says_nothing():
     shift = off(A5, 3, 0.5, (0.9, 0.9))
-    assert sheet_scale(A5[:7], shift[:7]) is None, "too few to know the scatter"
+    assert fit_sheet_scale(A5[:7], shift[:7]) is None, "too few to know the scatter"
     row = np.column_stack([np.linspace(0, 200, 12), np.full(12, 40.0)])
-    assert sheet_scale(row, np.zeros((12, 2))) is None, "all in one row"
+    assert fit_sheet_scale(row, np.zeros((12, 2))) is None, "all in one row"
     refuse_scale(None)
 
 

@@ -1,1 +1,1 @@
-"""Measurements and painted marks to a brush."""
+"""Fit brushes to measurements and painted marks."""

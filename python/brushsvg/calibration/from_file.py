@@ -1,4 +1,4 @@
-"""A file of measurements, or of painted marks, to a brush."""
+"""Fit a brush to a file of measurements or of painted marks."""
 
 from __future__ import annotations
 
@@ -36,10 +36,12 @@ def fit_measurements(
     aim: Literal["edges", "overlap"] = "edges",
     progress: Callable[[str], object] | None = None,
 ) -> Calibration | MarkCalibration | OverlapCalibration:
-    """Return the fit of a brush to numbers or painted marks; see jobs.calibrating.CalibrationOptions.
+    """Fit a brush to measured numbers or painted marks.
 
-    measured: a path, or the content of such a .json. Raises Error for a file that cannot be read, and for measurements
-    that leave a law undetermined or that no brush can have.
+    The options are described in jobs.calibrating.CalibrationOptions.
+
+    measured: a path, or the contents of a measurement .json. Raises Error for a file that cannot be read, for
+    measurements that leave a law undetermined, and for measurements that no brush can have.
     """
     need(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
     need(name, str, "the name of a brush")
@@ -47,17 +49,17 @@ def fit_measurements(
     refuse_unknown_parts(machine)
     if isinstance(measured, dict):
         folder, stem = "", "measured"
-        found = read_measurements(_json(measured), ".json")
+        contents = read_measurements(_to_json(measured), ".json")
     else:
         path = os.fspath(measured)
         folder, (stem, suffix) = os.path.dirname(path), os.path.splitext(os.path.basename(path))
-        found = read_measurements(read_bytes(path), suffix.lower())
+        contents = read_measurements(read_bytes(path), suffix.lower())
 
     def read(file: str) -> bytes:
         return read_bytes(os.path.join(folder, file))
 
-    name = found.name or name or stem
-    if found.marks is None:
+    name = contents.name or name or stem
+    if contents.marks is None:
         if machine:
             raise Error(
                 "--machine needs painted marks: measured numbers say nothing of the machine",
@@ -73,10 +75,10 @@ def fit_measurements(
                 "--aim overlap needs painted marks: measured numbers have no outlines that could overlap",
                 code="options-contradict",
             )
-        _read_pictures(found, read)
-        return calibrate_measured(found, name, bool(absolute), bool(total))
-    painted = read_painted(found.plan, found.marks, read)
-    options = options_for(found.expected)
+        _read_pictures(contents, read)
+        return calibrate_measured(contents, name, bool(absolute), bool(total))
+    painted = read_painted(contents.plan, contents.marks, read)
+    options = options_for(contents.expected)
     ask_for(options, machine)
     if paint and aim == "overlap":
         raise Error(
@@ -84,13 +86,13 @@ def fit_measurements(
             code="options-contradict",
         )
     fit = calibrate_paint if paint else calibrate_marks
-    made = fit(painted, name, found.depth_range_mm, found.max_speed_mm_s, options)
-    return by_overlap(made, progress or (lambda text: None)) if aim == "overlap" else made
+    calibration = fit(painted, name, contents.depth_range_mm, contents.max_speed_mm_s, options)
+    return by_overlap(calibration, progress or (lambda text: None)) if aim == "overlap" else calibration
 
 
-def _json(measured: dict) -> bytes:
+def _to_json(measured: dict) -> bytes:
     try:
-        return json.dumps({"format": FORMAT, "version": 1} | measured, default=_plain).encode()
+        return json.dumps({"format": FORMAT, "version": 1} | measured, default=_to_plain_value).encode()
     except (TypeError, ValueError, RecursionError):
         raise Error(
             "measurements are numbers, texts, lists and dicts, as docs/reference/measurements.md has them",
@@ -98,22 +100,22 @@ def _json(measured: dict) -> bytes:
         ) from None
 
 
-def _plain(value):
+def _to_plain_value(value):
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, _core.Plan):
         return json.loads(_core.write_plan(value))
     if isinstance(value, _core.Marks):
-        return [{"stroke": each.stroke, "outline_mm": list(each.outline_mm)} for each in value.passes]
+        return [{"stroke": mark.stroke, "outline_mm": list(mark.outline_mm)} for mark in value.passes]
     raise TypeError
 
 
 def _read_pictures(found: Measurements, read) -> None:
-    """Pictures of angular strokes to the points of their centre lines."""
+    """Replace pictures of angular strokes by the points of their centre lines."""
     lines = found.rows.get("centre_line", [])
     for i, row in enumerate(lines):
         if "picture" in row.numbers:
-            seen = dict(row.numbers)
-            data = read(seen.pop("picture"))
-            points = centre_line(data, **seen, where=row.where)
+            picture_numbers = dict(row.numbers)
+            data = read(picture_numbers.pop("picture"))
+            points = centre_line(data, **picture_numbers, where=row.where)
             lines[i] = Row(row.kind, row.where, row.depth_mm, {"points_mm": points})

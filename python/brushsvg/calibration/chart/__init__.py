@@ -1,1 +1,1 @@
-"""Strokes to calibrate a brush from: layout, file, page to print."""
+"""Charts for the calibration of a brush: layout, file and page to print."""

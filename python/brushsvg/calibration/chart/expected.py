@@ -1,4 +1,4 @@
-"""Say in words how well a chart will calibrate a brush, before anyone paints it."""
+"""Describe how well a chart will calibrate a brush, before anyone paints it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from ...model.confidence import law_band
 from ...model.describe import LAWS
 from ..marks.from_marks import expected_brush, expected_machine, expected_marks
 from ..marks.machine_found import PARTS
-from ..marks.paint_found import Expected, expected_paint
+from ..marks.paint_found import ExpectedPaint, expected_paint
 
-ROWS = 4
+TABLE_ROWS = 4  # depths in the table of laws
 
 
 def chart_report(chart, brush, noise_mm: float) -> str:
-    """Strokes, depths, and the 95 % intervals to expect of marks whose edges are seen to noise_mm."""
+    """Describe the strokes of a chart and the expected 95 % intervals.
+
+    noise_mm: standard deviation of the edges of the marks.
+    """
     depths = sorted({stroke.depth_mm for stroke in chart.strokes if stroke.kind == "angular"})
     width, height = chart.plan.sheet_mm
     lines = [
@@ -27,7 +30,7 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         return "\n".join([*lines, "no confidence intervals: this brushsvg was built without fits", ""])
     painted = expected_marks(chart.plan, brush)
     expected, remarks = expected_brush(chart.plan, brush, noise_mm, painted=painted)
-    at = np.linspace(depths[0], depths[-1], ROWS)
+    at = np.linspace(depths[0], depths[-1], TABLE_ROWS)
     bands = {name: law_band(expected, name, at)[0] for name, _ in LAWS}
     lines += [
         "",
@@ -39,12 +42,12 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         lines.append(f"{depth:7.2f}" + "".join(cell.rjust(18) for cell in cells))
     lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
     machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
-    listed = [f"{one.name} +- {one.half:.2g}" for one in machine]
+    listed = [f"{number.name} +- {number.half:.2g}" for number in machine]
     lines += ["Of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(listed)]
-    return "\n".join([*lines, *_of_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
+    return "\n".join([*lines, *_describe_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
 
 
-def _of_paint(paint: Expected) -> list[str]:
+def _describe_paint(paint: ExpectedPaint) -> list[str]:
     alike = f"depth explains {100 * paint.explained_by_depth:.0f} % of how far each stroke is from the dip"
     if paint.is_refused:
         return [

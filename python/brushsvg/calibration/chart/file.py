@@ -1,4 +1,7 @@
-"""chart.json: what a painted chart is read by. Markers, strokes and the plan itself, in mm on the sheet."""
+"""Read and write chart.json, with which a painted chart is read.
+
+It has the markers, the strokes and the plan, in mm on the sheet.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,16 @@ from ...errors import Error
 from .layout import DICTIONARY, Bar, Chart, Label, Marker, Stroke, chart_id
 
 FORMAT, VERSION = "brushsvg/chart", 1
-# of ArUco, as OpenCV names them, and how many markers each has; the first: of charts without an id
+# ArUco dictionaries, with their names in OpenCV, and their numbers of markers. The first is for charts without an id.
 DICTIONARIES = {"DICT_4X4_50": 50, DICTIONARY: 1000}
-LARGEST_MM, DEEPEST_MM = 1e6, 1000.0
+MAX_SHEET_SIDE_MM, MAX_DEPTH_MM = 1e6, 1000.0
 
 
 def write_chart(chart: Chart) -> str:
-    """Lengths to 1e-4 mm, as in a program. The same chart gives the same bytes."""
+    """Return a chart as JSON, with lengths to 1e-4 mm as in a program.
+
+    Equal charts give equal bytes.
+    """
 
     def mm(values):
         return [round(float(value), 4) for value in values]
@@ -55,7 +61,10 @@ def is_chart(data: bytes) -> bool:
 
 
 def read_chart(data: bytes) -> Chart:
-    """Error names the key. Charts of before have no id, no bar and no labels."""
+    """Read a chart.json. Older charts have no id, no bar and no labels.
+
+    Raises Error, which names the key.
+    """
     try:
         content = json_fields.document(data, FORMAT, VERSION)
     except Error as refusal:
@@ -73,17 +82,17 @@ def read_chart(data: bytes) -> Chart:
     except Error as refusal:
         raise Error(str(refusal), f"plan.{refusal.where}", refusal.value, code=refusal.code) from None
     _core.refuse_tilted(plan.passes, "charts are painted with the brush upright")
-    sheet_mm = _places(content.get("sheet_mm"), "sheet_mm", 2, LARGEST_MM)
+    sheet_mm = _read_lengths(content.get("sheet_mm"), "sheet_mm", 2, MAX_SHEET_SIDE_MM)
     if not np.allclose(sheet_mm, plan.sheet_mm, atol=1e-3):
         sentence = f"{sheet_mm[0]:g} x {sheet_mm[1]:g} mm are not the sheet of the plan"
         raise Error(sentence, "sheet_mm", code="chart-strokes")
     rows, most_mm = json_fields.objects, max(sheet_mm)
     markers = [
-        _marker(row, f"markers[{i}]", most_mm, DICTIONARIES[dictionary])
+        _read_marker(row, f"markers[{i}]", most_mm, DICTIONARIES[dictionary])
         for i, row in enumerate(rows(content.get("markers"), "markers"))
     ]
     strokes = [
-        _stroke(row, f"strokes[{i}]", most_mm)
+        _read_stroke(row, f"strokes[{i}]", most_mm)
         for i, row in enumerate(rows(content.get("strokes"), "strokes"))
     ]
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
@@ -91,52 +100,56 @@ def read_chart(data: bytes) -> Chart:
     if len({each.id for each in markers}) < len(markers):
         raise Error("two markers have the same id", "markers", code="chart-markers")
     labels = [
-        _label(row, f"labels[{i}]", most_mm)
+        _read_label(row, f"labels[{i}]", most_mm)
         for i, row in enumerate(rows(content.get("labels", []), "labels"))
     ]
     mark = content.get("id", "")
     if mark and mark != chart_id(plan):
         sentence = f"the plan is not that of chart {str(mark)[:20]}: it was changed since"
         raise Error(sentence, "plan", code="chart-strokes")
-    bar = _bar(content["bar"], most_mm) if content.get("bar") else None
+    bar = _read_bar(content["bar"], most_mm) if content.get("bar") else None
     return Chart(plan, tuple(strokes), tuple(markers), tuple(labels), mark, bar, dictionary)
 
 
-def _marker(row: dict, where: str, most_mm: float, known: int) -> Marker:
+def _read_marker(row: dict, where: str, most_mm: float, marker_count: int) -> Marker:
     number, corners = row.get("id"), row.get("corners_mm")
     if type(number) is not int or not isinstance(corners, list) or len(corners) != 4:
         raise Error("a marker needs an id and four corners_mm", where, code="wrong-type")
-    if not 0 <= number < known:
-        sentence = f"{number!r:.24} is outside the range [0, {known - 1}]"
+    if not 0 <= number < marker_count:
+        sentence = f"{number!r:.24} is outside the range [0, {marker_count - 1}]"
         raise Error(sentence, f"{where}.id", code="out-of-range")
     at = f"{where}.corners_mm"
-    return Marker(number, tuple(_places(each, f"{at}[{i}]", 2, most_mm) for i, each in enumerate(corners)))
+    return Marker(
+        number, tuple(_read_lengths(each, f"{at}[{i}]", 2, most_mm) for i, each in enumerate(corners))
+    )
 
 
-def _bar(row, most_mm: float) -> Bar:
+def _read_bar(row, most_mm: float) -> Bar:
     if not isinstance(row, dict):
         raise Error("this must be an object", "bar", code="wrong-type")
     length_mm = json_fields.number(row.get("length_mm"), "bar.length_mm", greatest=most_mm)
     if not length_mm > 0:
         sentence = f"the bar is {length_mm:g} mm long, it must be longer than 0"
         raise Error(sentence, "bar.length_mm", length_mm, code="out-of-range")
-    return Bar(_places(row.get("at_mm"), "bar.at_mm", 2, most_mm), length_mm)
+    return Bar(_read_lengths(row.get("at_mm"), "bar.at_mm", 2, most_mm), length_mm)
 
 
-def _label(row: dict, where: str, most_mm: float) -> Label:
+def _read_label(row: dict, where: str, most_mm: float) -> Label:
     if not isinstance(row.get("text"), str):
         raise Error("a label needs a text", where, code="wrong-type")
-    at_mm = _places(row.get("at_mm"), f"{where}.at_mm", 2, most_mm)
+    at_mm = _read_lengths(row.get("at_mm"), f"{where}.at_mm", 2, most_mm)
     return Label(row["text"], at_mm, json_fields.number(row.get("width_mm"), f"{where}.width_mm", 0, most_mm))
 
 
-def _stroke(row: dict, where: str, most_mm: float) -> Stroke:
+def _read_stroke(row: dict, where: str, most_mm: float) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
         raise Error("a stroke needs an id and a kind, in words", where, code="wrong-type")
-    depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm", 0, DEEPEST_MM)
-    return Stroke(row["id"], row["kind"], depth_mm, _places(row.get("box_mm"), f"{where}.box_mm", 4, most_mm))
+    depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm", 0, MAX_DEPTH_MM)
+    return Stroke(
+        row["id"], row["kind"], depth_mm, _read_lengths(row.get("box_mm"), f"{where}.box_mm", 4, most_mm)
+    )
 
 
-def _places(values, where: str, count: int, most_mm: float) -> tuple[float, ...]:
-    found = json_fields.numbers(values, where, count)
-    return tuple(json_fields.number(each, where, 0, most_mm) for each in found)
+def _read_lengths(values, where: str, count: int, most_mm: float) -> tuple[float, ...]:
+    numbers = json_fields.numbers(values, where, count)
+    return tuple(json_fields.number(number, where, 0, most_mm) for number in numbers)

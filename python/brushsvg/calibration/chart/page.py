@@ -1,5 +1,9 @@
-"""The page that a chart is painted on, as vectors in mm: ArUco markers, a bar to measure, labels; white where strokes
-will be."""
+"""Draw the page on which a chart is painted, as vectors in mm.
+
+The page has ArUco markers, a bar to measure and labels.
+
+The page is white where strokes will be painted.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +18,18 @@ from ...errors import lacking
 from ...model.plot import new_figure
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
-TEXT_MM = 2.3
-WIDE = 0.6  # of a letter against its size, on average: sans serif
-INK, QUIET = "#000000", "#b4b4b4"  # letters are too light to be taken for paint
-LINE_MM = 0.3  # of the bar
+MAX_TEXT_MM = 2.3  # greatest size of letters
+LETTER_WIDTH_PER_SIZE = 0.6  # mean width of a sans serif letter relative to its size
+INK_COLOUR, LABEL_COLOUR = "#000000", "#b4b4b4"  # letters are too light to look like paint
+LINE_MM = 0.3  # width of the line of the bar
 INCH_MM = 25.4
 
 
 def chart_page(chart: Chart, more=()) -> str:
-    """An SVG to be printed at 100 %. more: further black rings."""
+    """Return the page of a chart as an SVG to print at 100 %.
+
+    more: additional black rings.
+    """
     width, height = chart.plan.sheet_mm
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
@@ -32,17 +39,22 @@ def chart_page(chart: Chart, more=()) -> str:
     ]
     for marker in chart.markers:
         rings = marker_rings(marker, chart.dictionary)
-        lines.append(f'<path data-marker="{marker.id}" fill="{INK}" d="{_path(rings, height)}"/>')
+        lines.append(f'<path data-marker="{marker.id}" fill="{INK_COLOUR}" d="{_path_data(rings, height)}"/>')
     if chart.bar:
         rings = bar_rings(chart.bar)
-        lines.append(f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK}" d="{_path(rings, height)}"/>')
-    lines += [f'<path fill="{INK}" d="{_path([ring], height)}"/>' for ring in more]
-    lines += [_label(label, height) for label in chart.labels]
+        lines.append(
+            f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK_COLOUR}" d="{_path_data(rings, height)}"/>'
+        )
+    lines += [f'<path fill="{INK_COLOUR}" d="{_path_data([ring], height)}"/>' for ring in more]
+    lines += [_label_svg(label, height) for label in chart.labels]
     return "\n".join([*lines, "</svg>", ""])
 
 
 def chart_pdf(chart: Chart, more=()) -> bytes:
-    """The same page as a PDF of its size. Error where matplotlib is missing."""
+    """Return the page of a chart as a PDF of its size.
+
+    more: additional black rings. Raises Error if matplotlib is missing.
+    """
     try:
         import matplotlib
         from matplotlib.patches import PathPatch
@@ -59,26 +71,29 @@ def chart_pdf(chart: Chart, more=()) -> bytes:
     shapes += [[ring] for ring in more]
     for rings in shapes:
         closed = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
-        axes.add_patch(PathPatch(Path.make_compound_path(*closed), facecolor=INK, linewidth=0))
+        axes.add_patch(PathPatch(Path.make_compound_path(*closed), facecolor=INK_COLOUR, linewidth=0))
     for label in chart.labels:
-        points = _size(label) * 72 / INCH_MM
-        axes.text(*label.at_mm, label.text, fontsize=points, color=QUIET, parse_math=False)
-    out = io.BytesIO()
+        points = _text_size(label) * 72 / INCH_MM
+        axes.text(*label.at_mm, label.text, fontsize=points, color=LABEL_COLOUR, parse_math=False)
+    buffer = io.BytesIO()
     title = chart.labels[-1].text if chart.labels else ""
     with matplotlib.rc_context({"pdf.fonttype": 42}):
-        figure.savefig(out, format="pdf", metadata={"CreationDate": None, "Title": title})
-    return out.getvalue()
+        figure.savefig(buffer, format="pdf", metadata={"CreationDate": None, "Title": title})
+    return buffer.getvalue()
 
 
-def modules(marker_id: int, dictionary: str) -> np.ndarray:
-    """True where a marker is black, row 0 on top."""
+def marker_modules(marker_id: int, dictionary: str) -> np.ndarray:
+    """Return the modules of a marker, True where it is black, row 0 at the top."""
     known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
     return cv2.aruco.generateImageMarker(known, marker_id, known.markerSize + 2) == 0
 
 
 def marker_rings(marker: Marker, dictionary: str) -> list[np.ndarray]:
-    """Black modules as one shape, in mm on the sheet: single ones show seams."""
-    black = modules(marker.id, dictionary)
+    """Return the black modules of a marker as one shape [mm].
+
+    Single modules would show seams.
+    """
+    black = marker_modules(marker.id, dictionary)
     (left, top), (right, _), *_ = marker.corners_mm
     step = (right - left) / len(black)
     corners = np.array([(0, 0), (0, -1), (1, -1), (1, 0)])
@@ -90,7 +105,10 @@ def marker_rings(marker: Marker, dictionary: str) -> list[np.ndarray]:
 
 
 def bar_rings(bar: Bar, beyond_mm: float = 0.0) -> list[np.ndarray]:
-    """A line between two ticks, whose outer edges are as far apart as the bar is long; and so much around all of it."""
+    """Return the shape of a bar, grown by beyond_mm: a line between two ticks.
+
+    The outer edges of the ticks are as far apart as the bar is long.
+    """
     (x, y), end = bar.at_mm, bar.at_mm[0] + bar.length_mm
     boxes = [
         (x, y - LINE_MM / 2, end, y + LINE_MM / 2),
@@ -103,20 +121,23 @@ def bar_rings(bar: Bar, beyond_mm: float = 0.0) -> list[np.ndarray]:
 
 
 def label_box(label: Label) -> tuple[float, float, float, float]:
-    """Left, bottom, right, top of its letters, on average."""
-    (x, y), size = label.at_mm, _size(label)
-    return x, y - 0.25 * size, x + WIDE * size * len(label.text), y + size
+    """Return left, bottom, right and top of the letters of a label.
+
+    The letters are assumed to have their mean width.
+    """
+    (x, y), size = label.at_mm, _text_size(label)
+    return x, y - 0.25 * size, x + LETTER_WIDTH_PER_SIZE * size * len(label.text), y + size
 
 
-def _path(rings: list[np.ndarray], height: float) -> str:
+def _path_data(rings: list[np.ndarray], height: float) -> str:
     return " ".join("M" + " L".join(f"{x:.4f},{height - y:.4f}" for x, y in ring) + " Z" for ring in rings)
 
 
-def _size(label: Label) -> float:
-    return min(TEXT_MM, label.width_mm / (WIDE * len(label.text)))
+def _text_size(label: Label) -> float:
+    return min(MAX_TEXT_MM, label.width_mm / (LETTER_WIDTH_PER_SIZE * len(label.text)))
 
 
-def _label(label: Label, height: float) -> str:
+def _label_svg(label: Label, height: float) -> str:
     x, y = label.at_mm
-    at = f'x="{x:.3f}" y="{height - y:.3f}" font-family="sans-serif" font-size="{_size(label):.3f}"'
-    return f'<text {at} fill="{QUIET}">{escape(label.text)}</text>'
+    at = f'x="{x:.3f}" y="{height - y:.3f}" font-family="sans-serif" font-size="{_text_size(label):.3f}"'
+    return f'<text {at} fill="{LABEL_COLOUR}">{escape(label.text)}</text>'

@@ -1,1 +1,1 @@
-"""A brush from the outlines of dabs."""
+"""Fit a brush to the outlines of dabs."""

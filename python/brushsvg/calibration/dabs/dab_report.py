@@ -1,4 +1,7 @@
-"""Report what dabs show of a brush: outlines, laws, omissions and limits, in words and as a picture."""
+"""Report a calibration from dabs, in words and as a picture.
+
+The report has outlines, laws, omissions and limits.
+"""
 
 from __future__ import annotations
 
@@ -10,54 +13,66 @@ from ... import _core
 from ...model.plot import INK, brush_picture_on, encoded, new_figure
 from ...reporting.report_text import Report, plural, verdict
 from ..law_text import HALF_95, coefficients, law_table, name_and_depths, values
-from .dab_outlines import SMOOTHED_MM, Shape
+from .dab_outlines import MAX_SMOOTHING_MM, Shape
 
-NOT_SAID = (
+LIMITS_OF_DABS = (
     "Dabs do not say how far the brush lags: that is the lag of brush {before}.",
     "A dab shows all that was touched at its depth and above, by a brush that stands: bristles that are dragged along "
     "are a little closer together.",
 )
-HIDDEN_MM = 0.05  # a front no further ahead than a shallower dab's may be that one's
-FOUND, ASSUMED = "#3f8fd9", "#c0392b"
+# A front that is not this much further ahead than the front of a shallower dab may have been painted at that depth.
+MIN_FRONT_ADVANCE_MM = 0.05
+DAB_COLOUR, BEFORE_COLOUR = "#3f8fd9", "#c0392b"
 
 
-def report(made) -> Report:
-    """What `brushsvg calibrate` prints. made: from_dabs.DabCalibration."""
-    brush, outlines, shapes = made.brush, made.outlines, made.outlines.shapes
+def report(calibration) -> Report:
+    """Return the report that `brushsvg calibrate` prints.
+
+    calibration: a from_dabs.DabCalibration.
+    """
+    brush, outlines, shapes = calibration.brush, calibration.outlines, calibration.outlines.shapes
     count = sum(len(shape.seen) for shape in shapes)
     shift, turn = outlines.shift_mm, math.degrees(outlines.turn_rad)
-    hidden = _hidden_fronts(brush)
-    but = [f"the front is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
+    hidden = _find_hidden_fronts(brush)
+    reservations = [f"the front is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
     lines = [
         f"{name_and_depths(brush)}: outlines of {count} dabs at {len(shapes)} depths, the lag of brush "
-        f"{made.before.name}",
+        f"{calibration.before.name}",
         f"the sheet is displaced by {shift[0]:+.2f}, {shift[1]:+.2f} mm and turned by {turn:+.2f} degrees; dabs of "
         f"different headings differ by {outlines.turned_mm:.2f} mm (rms)",
-        *([_hidden(hidden)] if hidden else []),
-        *(text.format(before=made.before.name) for text in NOT_SAID),
+        *([_describe_hidden_fronts(hidden)] if hidden else []),
+        *(text.format(before=calibration.before.name) for text in LIMITS_OF_DABS),
     ]
     depths = np.array([shape.depth_mm for shape in shapes])
     counts = [str(len(shape.seen)) for shape in shapes]
     repeats = [f"{shape.repeat_mm:.3f}" for shape in shapes]
     columns = [("dabs", counts), ("one dab from the mean, rms", repeats)]
-    details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _LAWS)])
-    edges = f"; in it that all edges may be {made.edge_mm:.2f} mm off together" if made.edge_mm > 0 else ""
+    details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _MEASURED_LAWS)])
+    edges = (
+        f"; in it that all edges may be {calibration.edge_mm:.2f} mm off together"
+        if calibration.edge_mm > 0
+        else ""
+    )
     sides = "both sides alike" if outlines.is_even else "one side larger than the other, by more than chance"
-    details += [f"{HALF_95}{edges}", f"outlines: {sides}; smoothed by {SMOOTHED_MM:g} mm at most"]
-    return Report(verdict([], but), tuple(lines), (*details, "", *coefficients(brush)))
+    details += [f"{HALF_95}{edges}", f"outlines: {sides}; smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
+    return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
 
 
-_LAWS = ("tip_gap", "tip_to_widest", "half_width")
+_MEASURED_LAWS = ("tip_gap", "tip_to_widest", "half_width")
 
 
-def _hidden_fronts(brush: _core.Brush) -> list[float]:
-    """Return the depths at which the front may have been touched before the brush was so deep."""
+def _find_hidden_fronts(brush: _core.Brush) -> list[float]:
+    """Return the depths at which a lesser depth may have painted the front."""
     shapes = brush.footprints.dragged
     fronts = [float(shape.outline_mm[:, 0].max()) - brush.tip_gap(shape.depth_mm) for shape in shapes]
-    return [shape.depth_mm for k, shape in enumerate(shapes) if k and fronts[k] < max(fronts[:k]) + HIDDEN_MM]
+    return [
+        shape.depth_mm
+        for k, shape in enumerate(shapes)
+        if k and fronts[k] < max(fronts[:k]) + MIN_FRONT_ADVANCE_MM
+    ]
 
 
-def _hidden(depths: list[float]) -> str:
+def _describe_hidden_fronts(depths: list[float]) -> str:
     listed = ", ".join(f"{depth:g}" for depth in depths)
     return (
         f"At depth {listed} mm the front is no further ahead than at a lesser depth, on the way to which it was "
@@ -65,40 +80,51 @@ def _hidden(depths: list[float]) -> str:
     )
 
 
-def report_picture(made, suffix: str) -> bytes:
-    """Laws and footprints with what was seen; below, each depth's dabs, their mean, and what was assumed before."""
-    shapes = made.outlines.shapes
+def report_picture(calibration, suffix: str) -> bytes:
+    """Draw laws and footprints with the data, and the dabs of each depth.
+
+    Dabs are drawn with their mean and with the outline before.
+    """
+    shapes = calibration.outlines.shapes
     figure = new_figure((11, 10))
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.7, 1))
-    brush_picture_on(upper, made.brush, made.values)
+    brush_picture_on(upper, calibration.brush, calibration.values)
     columns = math.ceil(len(shapes) / 2) if len(shapes) > 4 else len(shapes)
     axes = lower.subplots(math.ceil(len(shapes) / columns), columns, squeeze=False).ravel()
-    for one, shape in zip(axes, shapes, strict=False):
-        _depth(one, shape, made.before)
-    for one in axes[len(shapes) :]:
-        one.set_axis_off()
+    for panel, shape in zip(axes, shapes, strict=False):
+        _draw_depth(panel, shape, calibration.before)
+    for panel in axes[len(shapes) :]:
+        panel.set_axis_off()
     lower.legend(
         *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, frameon=False
     )
     return encoded(figure, suffix)
 
 
-def _depth(axes, shape: Shape, before: _core.Brush) -> None:
+def _draw_depth(axes, shape: Shape, before: _core.Brush) -> None:
     tip = np.array([-shape.tip_gap_mm, 0.0])
     label = "dabs"
-    for seen in shape.seen:
-        axes.plot(*_closed(seen.outline_mm - tip), color=FOUND, linewidth=0.6, alpha=0.7, label=label)
+    for patch_dab in shape.seen:
+        axes.plot(
+            *_close_ring(patch_dab.outline_mm - tip), color=DAB_COLOUR, linewidth=0.6, alpha=0.7, label=label
+        )
         label = None
     assumed = _core.footprint_at(before.footprints, shape.depth_mm, 1.0)
     axes.plot(
-        *_closed(assumed), color=ASSUMED, linewidth=0.9, linestyle="--", label=f"before: brush {before.name}"
+        *_close_ring(assumed),
+        color=BEFORE_COLOUR,
+        linewidth=0.9,
+        linestyle="--",
+        label=f"before: brush {before.name}",
     )
-    axes.plot(*_closed(shape.outline_mm), color=INK, linewidth=1.3, label="mean, smoothed: the new outline")
+    axes.plot(
+        *_close_ring(shape.outline_mm), color=INK, linewidth=1.3, label="mean, smoothed: the new outline"
+    )
     axes.set_aspect("equal")
     axes.set_title(f"{shape.depth_mm:g} mm", fontsize=8)
     axes.tick_params(labelsize=6)
 
 
-def _closed(ring) -> np.ndarray:
+def _close_ring(ring) -> np.ndarray:
     ring = np.asarray(ring)
     return np.vstack([ring, ring[:1]]).T

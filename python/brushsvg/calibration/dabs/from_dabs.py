@@ -1,5 +1,9 @@
-"""Dabs to a brush: its outlines as they were seen, and the laws of width, widest section and tip gap that agree with
-them. The lag is that of the brush for which the dabs were landed: dabs do not show it."""
+"""Make a brush from dabs.
+
+It has the outlines of the dabs, and laws of width, widest section and tip gap that agree with them.
+
+Dabs do not show the lag. It is the lag of the brush for which the dabs were landed.
+"""
 
 from __future__ import annotations
 
@@ -12,21 +16,24 @@ from ... import _core
 from ...errors import Error, Notice
 from ...model.confidence import places
 from ...model.laws.fitted import need_fits
-from .dab_outlines import SMOOTHED_MM, Dab, Outlines, Shape, outlines_of, widths_at
+from .dab_outlines import MAX_SMOOTHING_MM, Dab, Outlines, Shape, average_dabs, widths_at
 
-# a law bends enough if it is so near to the mean of each depth, or so many errors of that mean
-CLOSE_MM, CHANCE = 0.03, 2.0
-AGREE_MM = 0.4  # further from an outline, and the brush would be refused
-MOST_TERMS = 5
-BROAD = 0.85  # of the greatest width: the part by which dabs are compared
-FALLS_MM = 0.1  # by which deeper dabs may be narrower: more, and paint ran out
-OTHER_LAG = 0.2  # share by which the lag may differ from how far the tool ran
+# A law has enough terms if it is this close to the mean of each depth, in mm or in standard errors of the mean.
+GOOD_MISFIT_MM, GOOD_MISFIT_ERRORS = 0.03, 2.0
+MAX_MISFIT_MM = 0.4  # largest distance of a law from an outline; with more, the brush would be refused
+MAX_TERMS = 5
+BROAD_WIDTH_SHARE = 0.85  # dabs are compared by the part that is wider than this share of the greatest width
+MAX_HALF_WIDTH_FALL_MM = 0.1  # deeper dabs may be narrower by this much; with more, paint ran out
+MAX_LAG_DIFFERENCE = 0.2  # largest relative difference between the lag and the run of the tool
 LAWS = ("half_width", "tip_to_widest", "tip_gap")
 
 
 @dataclass(frozen=True)
 class DabCalibration:
-    """before: the brush whose lag was taken. values: of each law, (n, 2) depths and what was seen there [mm]."""
+    """A brush made from dabs.
+
+    before: the brush whose lag was used. values: for each law, (n, 2) depths and measured values [mm].
+    """
 
     brush: _core.Brush
     before: _core.Brush
@@ -39,29 +46,34 @@ class DabCalibration:
 def calibrate_dabs(
     dabs: list[Dab], before: _core.Brush, name: str, edge_mm: float = 0.0, joined: tuple[str, ...] = ()
 ) -> DabCalibration:
-    """edge_mm: standard deviation of a common outward shift of all edges. joined: names of dabs that touch others.
-    Error where the dabs leave an outline open, or give a brush that cannot be used."""
+    """Fit a brush to dabs.
+
+    before: the brush with the lag for which the dabs were landed. edge_mm: standard deviation of a common outward shift
+    of all edges. joined: names of dabs that touch others.
+
+    Raises Error if the dabs do not determine an outline, and if the brush cannot be used.
+    """
     need_fits()
     _refuse_other_lag(dabs, before)
 
     def slid_mm(dab: Dab) -> float:
         return dab.run_mm - before.lag.extrapolated(dab.depth_mm)
 
-    outlines = outlines_of(dabs, set(joined), slid_mm)
+    outlines = average_dabs(dabs, set(joined), slid_mm)
     shapes = outlines.shapes
     _refuse_falling(shapes)
-    values = {law: np.vstack([_seen(law, shape) for shape in shapes]) for law in LAWS}
+    values = {law: np.vstack([_values_of_law(law, shape) for shape in shapes]) for law in LAWS}
     brush = _with_outlines(before, name, outlines)
-    fits = {law: _fitted(law, values[law], brush.depth_range_mm) for law in LAWS}
+    fits = {law: _fit_law(law, values[law], brush.depth_range_mm) for law in LAWS}
     for law in LAWS:
-        setattr(brush, law, _profile_of(fits[law].law, shapes, fits[law].law.half_interval_95))
+        setattr(brush, law, _make_profile(fits[law].law, shapes, fits[law].law.half_interval_95))
     covariance = _covariance(before, brush, fits, values, edge_mm)
     if covariance is not None:
         brush.covariance = covariance.tolist()
         for law in LAWS:
             variance = np.diag(covariance)[places(brush)[law]]
             half = _core.deviations_of_95(fits[law].law.degrees_of_freedom) * np.sqrt(variance)
-            setattr(brush, law, _profile_of(fits[law].law, shapes, half.tolist()))
+            setattr(brush, law, _make_profile(fits[law].law, shapes, half.tolist()))
     _core.check(brush)
     return DabCalibration(brush, before, outlines, values, edge_mm, outlines.remarks)
 
@@ -77,18 +89,18 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
                 dab.depth_mm,
                 code="depth-out-of-range",
             )
-    off = {
+    lag_differences = {
         dab.name: dab.run_mm / before.lag.extrapolated(dab.depth_mm) - 1
         for dab in dabs
         if before.lag.extrapolated(dab.depth_mm) > 0
     }
-    worst = max(off, key=lambda name: abs(off[name]), default=None)
-    if worst is None or abs(off[worst]) > OTHER_LAG:
+    worst = max(lag_differences, key=lambda name: abs(lag_differences[name]), default=None)
+    if worst is None or abs(lag_differences[worst]) > MAX_LAG_DIFFERENCE:
         dab = next(dab for dab in dabs if worst in (None, dab.name))
         raise Error(
             f"the tool ran {dab.run_mm:.1f} mm while it was pressed, brush {before.name} lags "
-            f"{before.lag.extrapolated(dab.depth_mm):.1f} mm there, more than {100 * OTHER_LAG:g} % off: make the page "
-            "of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it",
+            f"{before.lag.extrapolated(dab.depth_mm):.1f} mm there, more than {100 * MAX_LAG_DIFFERENCE:g} % off: "
+            "make the page of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it",
             dab.name,
             dab.run_mm,
             code="dabs-of-another-brush",
@@ -96,9 +108,9 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
 
 
 def _refuse_falling(shapes: tuple[Shape, ...]) -> None:
-    half = [_half(shape) for shape in shapes]
+    half = [_greatest_half_width(shape) for shape in shapes]
     for k in range(1, len(half)):
-        if half[k] < half[k - 1] - FALLS_MM:
+        if half[k] < half[k - 1] - MAX_HALF_WIDTH_FALL_MM:
             raise Error(
                 f"dabs at depth {shapes[k].depth_mm:g} mm are {2 * half[k]:.2f} mm wide, those at "
                 f"{shapes[k - 1].depth_mm:g} mm {2 * half[k - 1]:.2f} mm: a brush that is pressed deeper does not get "
@@ -109,54 +121,69 @@ def _refuse_falling(shapes: tuple[Shape, ...]) -> None:
             )
 
 
-def _half(shape: Shape) -> float:
+def _greatest_half_width(shape: Shape) -> float:
     return float(widths_at(shape.outline_mm)[1].max() / 2)
 
 
-def _seen(law: str, shape: Shape) -> np.ndarray:
-    """Depths and values, one for each dab where it has one of its own."""
+def _values_of_law(law: str, shape: Shape) -> np.ndarray:
+    """Return depths and values of a law, one row for each dab."""
     depth = shape.depth_mm
     if law == "tip_to_widest":
-        tops = np.array([_top(seen.outline_mm) for seen in shape.seen])
-        return np.column_stack([np.full(len(tops), depth), _widest(shape.outline_mm) + tops - tops.mean()])
+        tops = np.array([_broad_middle(patch_dab.outline_mm) for patch_dab in shape.seen])
+        return np.column_stack(
+            [np.full(len(tops), depth), _widest_place(shape.outline_mm) + tops - tops.mean()]
+        )
     if law == "tip_gap":
-        # a dab that is further ahead has its tip nearer to where it was set down
-        return np.array([[depth, shape.tip_gap_mm - seen.displacement_mm[0]] for seen in shape.seen])
-    spans = np.array([_broadest(seen.outline_mm) for seen in shape.seen])
-    return np.column_stack([np.full(len(spans), depth), _half(shape) + (spans - spans.mean()) / 2])
+        # A dab that is displaced forward has its tip nearer to the place where it was set down.
+        return np.array(
+            [[depth, shape.tip_gap_mm - patch_dab.displacement_mm[0]] for patch_dab in shape.seen]
+        )
+    spans = np.array([_breadth(patch_dab.outline_mm) for patch_dab in shape.seen])
+    return np.column_stack(
+        [np.full(len(spans), depth), _greatest_half_width(shape) + (spans - spans.mean()) / 2]
+    )
 
 
-def _broadest(outline: np.ndarray) -> float:
-    """Between the means of the uppermost and lowermost points, which noise makes no wider."""
+def _breadth(outline: np.ndarray) -> float:
+    """Return the width between the means of the outermost points.
+
+    Noise does not increase a distance of means.
+    """
     y = np.sort(outline[:, 1])
-    some = max(1, len(y) // 10)
-    return float(y[-some:].mean() - y[:some].mean())
+    count = max(1, len(y) // 10)
+    return float(y[-count:].mean() - y[:count].mean())
 
 
-def _widest(outline: np.ndarray) -> float:
-    """In the middle of the rows that are the widest, within the error."""
+def _widest_place(outline: np.ndarray) -> float:
+    """Return the middle of the sections that are the widest, within the error."""
     x, wide = widths_at(outline)
     top = x[wide >= wide.max() - 0.004]
     return float((top[0] + top[-1]) / 2)
 
 
-def _top(outline: np.ndarray) -> float:
-    """Return the middle of the broad part, from all of it: its broadest point is chance."""
+def _broad_middle(outline: np.ndarray) -> float:
+    """Return the middle of the broad part of an outline.
+
+    It comes from a parabola through all of the part, because the single broadest point is chance.
+    """
     x, wide = widths_at(np.roll(outline, -int(outline[:, 0].argmin()), axis=0))
-    broad = wide >= BROAD * wide.max()
+    broad = wide >= BROAD_WIDTH_SHARE * wide.max()
     bend, slope, _ = np.polyfit(x[broad], wide[broad], 2)
     return float(np.clip(-slope / (2 * bend), x[0], x[-1])) if bend < 0 else float(x[broad].mean())
 
 
-def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
-    """The law with the fewest terms that runs near the mean of each depth; terms: as many."""
+def _fit_law(law: str, values: np.ndarray, range_mm, terms: int = 0):
+    """Fit the law with the fewest terms that is close to the mean of each depth.
+
+    terms: a fixed number of terms, or 0.
+    """
     depths, counts = np.unique(values[:, 0], return_counts=True)
     means = np.array([values[values[:, 0] == depth, 1].mean() for depth in depths])
     spread = values[:, 1] - means[np.searchsorted(depths, values[:, 0])]
     error = np.sqrt(np.sum(spread**2) / max(1, len(values) - len(depths)) / counts)
-    enough = np.maximum(CLOSE_MM, CHANCE * error)
-    most = min(MOST_TERMS, len(depths))
-    for count in [terms] if terms else range(1, most + 1):
+    tolerance = np.maximum(GOOD_MISFIT_MM, GOOD_MISFIT_ERRORS * error)
+    max_terms = min(MAX_TERMS, len(depths))
+    for count in [terms] if terms else range(1, max_terms + 1):
         shape = _core.LawShape(
             tuple(range_mm),
             count,
@@ -165,16 +192,16 @@ def _fitted(law: str, values: np.ndarray, range_mm, terms: int = 0):
             rising=law == "half_width",
         )
         fit = _core.fit_law(values[:, 0].tolist(), values[:, 1].tolist(), shape)
-        off = [float(np.mean(np.array(fit.residual_mm)[values[:, 0] == depth])) for depth in depths]
-        worst = int(np.argmax(np.abs(off)))
-        if (np.abs(off) <= enough).all():
+        misfits = [float(np.mean(np.array(fit.residual_mm)[values[:, 0] == depth])) for depth in depths]
+        worst = int(np.argmax(np.abs(misfits)))
+        if (np.abs(misfits) <= tolerance).all():
             break
-    if abs(off[worst]) > AGREE_MM:
+    if abs(misfits[worst]) > MAX_MISFIT_MM:
         raise Error(
-            f"no law of {law.replace('_', ' ')} over depth runs within {AGREE_MM:g} mm of what the dabs show: at depth "
-            f"{depths[worst]:g} mm it is {off[worst]:.2f} mm off; look at the outlines (--marks-picture)",
+            f"no law of {law.replace('_', ' ')} over depth runs within {MAX_MISFIT_MM:g} mm of what the dabs show: at "
+            f"depth {depths[worst]:g} mm it is {misfits[worst]:.2f} mm off; look at the outlines (--marks-picture)",
             law,
-            off[worst],
+            misfits[worst],
             code="law-undetermined",
         )
     return fit
@@ -192,8 +219,9 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
     )
     count = sum(len(shape.seen) for shape in shapes)
     source = (
-        f"Measured: {count} dabs at {len(shapes)} depths, those of a depth averaged and smoothed by {SMOOTHED_MM:g} mm "
-        "at most. How a brush that stands differs from one that is dragged along is not in them."
+        f"Measured: {count} dabs at {len(shapes)} depths, those of a depth averaged and smoothed by "
+        f"{MAX_SMOOTHING_MM:g} mm at most. How a brush that stands differs from one that is dragged along is "
+        "not in them."
     )
     unsure = max(shape.unsure_mm for shape in shapes)
     extra = json.loads(before.extra or "{}") | {
@@ -203,19 +231,22 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
     return brush
 
 
-def _profile_of(found: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
+def _make_profile(law: _core.Profile, shapes: tuple[Shape, ...], half_interval_95) -> _core.Profile:
     return _core.Profile(
-        found.coefficients,
+        law.coefficients,
         calibrated_mm=(shapes[0].depth_mm, shapes[-1].depth_mm),
         source=f"Of the outlines of {sum(len(shape.seen) for shape in shapes)} dabs.",
         half_interval_95=half_interval_95,
-        rmse_mm=found.rmse_mm,
-        degrees_of_freedom=found.degrees_of_freedom,
+        rmse_mm=law.rmse_mm,
+        degrees_of_freedom=law.degrees_of_freedom,
     )
 
 
 def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | None:
-    """Return the covariance of the lag as it was, of the new laws, and of a common shift of all edges."""
+    """Return the covariance of the unchanged lag and the new laws.
+
+    It includes a common shift of all edges.
+    """
     if any(not np.size(fit.covariance) for fit in fits.values()):
         return None
     at = places(brush)
@@ -223,10 +254,10 @@ def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | Non
     if len(before.covariance):
         lag = places(before)["lag"]
         out[at["lag"], at["lag"]] = np.array(before.covariance)[lag, lag]
-    moved = np.zeros(len(out))
+    change = np.zeros(len(out))
     for law, fit in fits.items():
         out[at[law], at[law]] = fit.covariance
         wider = values[law] + [0.0, edge_mm]
-        other = _fitted(law, wider, brush.depth_range_mm, len(fit.law.coefficients) - 1)
-        moved[at[law]] = np.array(other.law.coefficients) - fit.law.coefficients
-    return out + np.outer(moved, moved)
+        shifted_fit = _fit_law(law, wider, brush.depth_range_mm, len(fit.law.coefficients) - 1)
+        change[at[law]] = np.array(shifted_fit.law.coefficients) - fit.law.coefficients
+    return out + np.outer(change, change)

@@ -1,1 +1,1 @@
-"""A brush from the outlines of painted strokes."""
+"""Fit a brush to the outlines of painted strokes."""

@@ -1,4 +1,7 @@
-"""Painted marks to a brush with its covariance; and what a sheet yet to be painted will say of a brush."""
+"""Fit a brush with its covariance to painted marks.
+
+The same fit predicts how well a sheet will determine a brush.
+"""
 
 from __future__ import annotations
 
@@ -15,32 +18,38 @@ from ...model import footprint_shapes
 from ...model.confidence import half_interval_mm, places
 from ...model.laws.fitted import need_fits
 from ..numbers.from_widths import outlines_assumed
-from ..numbers.plausibility import BEYOND
-from .ink_depletion import RanDry
+from ..numbers.plausibility import MAX_DEPTH_PER_MEASURED
+from .ink_depletion import InkDepletion
 from .machine_found import PARTS, Number, ask_for, numbers
 from .mark_input import UPRIGHT, Painted, depths_painted, middle
-from .sheet_scale import SheetScale, refuse_scale, sheet_scale
-from .stray_marks import MOST, OUTLYING, Stray, strays
+from .sheet_scale import SheetScale, fit_sheet_scale, refuse_scale
+from .stray_marks import MAX_RESIDUAL_SIGMAS, MAX_STRAY_SHARE, Stray, find_strays
 
-LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # numbers per law, where the depths allow as many
-OUTLINES = 10
-LEAST_RATIO = 0.1  # of widest section and front to the half width, as the fit has it
-ROUND_TAIL = (1.0, 0.4)  # of a footprint with a round tail: tip to widest section in half widths, sigma
-FOREIGN = 0.2  # share of a mark's points beyond that where it says nothing of the tail
+LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # coefficients per law if the depths allow as many
+OUTLINE_COUNT = 10  # number of footprint outlines, evenly spaced in depth
+MIN_RATIO_TO_HALF_WIDTH = 0.1  # least ratio of widest section and front to the half width, as in the fit
+ROUND_TAIL = (
+    1.0,
+    0.4,
+)  # distance from tip to widest section with a round tail, in half widths: mean and sigma
+MAX_OUTLYING_SHARE = (
+    0.2  # a mark with a larger share of outlying points does not count for the choice of the tail
+)
 MIN_CHI_SQUARE = 4.0  # chi-square by which one tail must fit better than the other to be chosen
-# A law with a 95 % interval of more than this share of it, and this long, over this part of the depths: no measurement
-UNDETERMINED, UNDETERMINED_MM, UNDETERMINED_PART = 0.5, 0.5, 0.25
+# A law is undetermined if its 95 % interval exceeds this share of its value and this length [mm], at this share of
+# the depths.
+MAX_RELATIVE_INTERVAL, MAX_INTERVAL_MM, MAX_UNDETERMINED_SHARE = 0.5, 0.5, 0.25
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MarkCalibration(ArrayValue):
-    """A brush that can be used, the fit it comes from, the marks, and what was expected of them.
+    """A brush that is ready to use, with its fit, the marks and the expected errors.
 
     round_tail_gain: chi-square by which footprints with a round tail fit the marks better than pointed ones.
-    edge_mm: the common shift of all edges (sigma), and covariance, of all that is fitted, with that in it.
-    paint_bends: by how many standard deviations marks narrow by another law than the one of brush.paint; dry: between
-    which strokes its load ran dry.
-    strays: marks that are not like the others, which the fit had no part of where they were left out.
+    edge_mm: standard deviation of the common shift of all edges. covariance: of all fitted numbers, including that
+    shift. paint_bends: standard deviations by which the narrowing of the marks departs from the law of brush.paint.
+    dry: the strokes between which the load ran dry. strays: marks that are unlike the others; the fit ignores them if
+    strays_left_out is true.
     """
 
     brush: _core.Brush
@@ -54,7 +63,7 @@ class MarkCalibration(ArrayValue):
     strays: tuple[Stray, ...] = ()
     strays_left_out: bool = False
     paint_bends: float = 0.0
-    dry: RanDry | None = None
+    dry: InkDepletion | None = None
 
     def __repr__(self) -> str:
         return f"<MarkCalibration of {self.brush!r} from {len(self.painted.marks)} marks>"
@@ -70,15 +79,21 @@ def calibrate_marks(
     leave_out_strays: bool = False,
     off: Painted | None = None,
 ) -> MarkCalibration:
-    """Fit a brush to painted marks. Error where they leave a law open, or give a brush that cannot be used.
+    """Fit a brush to painted marks.
 
-    edge_mm: standard deviation of a common outward shift of all edges: how a picture was blurred, where paint was
-    separated from paper. No mark distinguishes it from a wider brush, so the intervals hold it.
+    options: sigmas of sheet, displacement and height. Depths, coefficients per law and the tail are set here.
 
-    Footprints have a pointed tail, or a round one where that fits the marks better. options: sigmas of sheet,
-    displacement and height; depths, numbers per law and the tail are set here. leave_out_strays: fit once more without
-    marks that are not where or what the others say; Error where they are many. off: the marks as they would be if what
-    was made of them were off by a standard deviation: the intervals hold it.
+    edge_mm: standard deviation of a common outward shift of all edges. It depends on the blur of a picture and on the
+    threshold between paint and paper. No mark distinguishes it from a wider brush, so the intervals include it.
+
+    leave_out_strays: fit once more without marks that are not where or what the others predict.
+
+    off: the marks as they would be if their processing was wrong by one standard deviation. The intervals include
+    this error.
+
+    Footprints have a pointed tail, or a round tail if it fits the marks better.
+
+    Raises Error if the marks do not determine a law, if the brush cannot be used, or if there are many strays.
     """
     need_fits()
     least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
@@ -88,7 +103,7 @@ def calibrate_marks(
             "depth_range_mm",
             code="depth-out-of-range",
         )
-    if deepest > BEYOND * painted.deepest_mm:
+    if deepest > MAX_DEPTH_PER_MEASURED * painted.deepest_mm:
         raise Error(
             f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
             f'mm: paint deeper ones, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',
@@ -99,40 +114,40 @@ def calibrate_marks(
     options.deepest_mm = deepest
     options.lag_terms = min(LAG_TERMS, painted.depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, painted.depths)
-    fit, gain = _likelier_tail(painted.marks, options)
-    astray = tuple(strays(painted.marks, fit))
+    fit, gain = _fit_better_tail(painted.marks, options)
+    astray = tuple(find_strays(painted.marks, fit))
     if leave_out_strays and astray:
-        refuse_many(astray, painted, _scale(fit, painted))
-        gone = {each.mark.stroke for each in astray}
-        painted = painted.without(gone)
-        fit, gain = _likelier_tail(painted.marks, options, fit.laws)
-    scale = _scale(fit, painted)
+        refuse_many(astray, painted, _fit_scale(fit, painted))
+        left_out = {stray.mark.stroke for stray in astray}
+        painted = painted.without(left_out)
+        fit, gain = _fit_better_tail(painted.marks, options, fit.laws)
+    scale = _fit_scale(fit, painted)
     refuse_scale(scale)
-    refuse_unlike(fit, painted)
+    refuse_many_outliers(fit, painted)
     covariance = np.array(fit.covariance)
     if edge_mm > 0:
-        moved = _moved(fit, grow_outlines(painted.marks, edge_mm), options)
-        covariance += np.outer(moved, moved)
-        wetter = wetter_where_wider(fit, deepest, edge_mm)
-        covariance += np.outer(wetter, wetter)
+        change = _change_of_fit_with_tail(fit, grow_outlines(painted.marks, edge_mm), options)
+        covariance += np.outer(change, change)
+        change_by_paint = change_by_wetter_marks(fit, deepest, edge_mm)
+        covariance += np.outer(change_by_paint, change_by_paint)
     if off:
         kept = {mark.stroke for mark in painted.marks}
-        moved = _moved(fit, [mark for mark in off.marks if mark.stroke in kept], options)
-        covariance += np.outer(moved, moved)
+        change = _change_of_fit_with_tail(fit, [mark for mark in off.marks if mark.stroke in kept], options)
+        covariance += np.outer(change, change)
     brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
     count = f"{len(painted.marks)} painted marks"
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
-        found = getattr(brush, law)
-        known = _core.Profile(
-            found.coefficients,
+        law_of_brush = getattr(brush, law)
+        profile = _core.Profile(
+            law_of_brush.coefficients,
             calibrated_mm=(0.0, painted.deepest_mm),
             source=f"Fitted to {count}.",
-            half_interval_95=found.half_interval_95,
-            floor=found.floor,
-            floor_slope=found.floor_slope,
+            half_interval_95=law_of_brush.half_interval_95,
+            floor=law_of_brush.floor,
+            floor_slope=law_of_brush.floor_slope,
         )
-        setattr(brush, law, known)
+        setattr(brush, law, profile)
     _refuse_undetermined(brush, fit)
     _core.check(brush)
     return MarkCalibration(
@@ -141,13 +156,16 @@ def calibrate_marks(
 
 
 def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale | None = None) -> None:
-    """scale: of the sheet, where another one may be what displaces marks."""
-    most = math.floor(MOST * len(painted.marks))
-    if len(astray) > most:
+    """Raise Error if too many marks are strays.
+
+    scale: the scale of the sheet. A wrong scale is reported first, because it displaces marks.
+    """
+    allowed = math.floor(MAX_STRAY_SHARE * len(painted.marks))
+    if len(astray) > allowed:
         refuse_scale(scale)
         raise Error(
             f"{len(astray)} of {len(painted.marks)} marks are not where or what the others say, the range is "
-            f"[0, {most}]: {', '.join(each.mark.stroke for each in astray)}; is anything on the page, is the "
+            f"[0, {allowed}]: {', '.join(stray.mark.stroke for stray in astray)}; is anything on the page, is the "
             "paint smeared, is it the page on which this chart was painted, and is its bar as long as it says?",
             "marks",
             len(astray),
@@ -155,25 +173,28 @@ def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale |
         )
 
 
-def _moved(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
-    """By how much all that is fitted changes with other marks, with the tail that was found."""
-    usual = options.widest_per_half
+def _change_of_fit_with_tail(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
+    """Return the change of the fit for other marks, with the chosen tail."""
+    default_widest = options.widest_per_half
     if fit.laws.round_tail:
         options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
-    moved = moved_by(fit, marks, options)
-    options.round_tail, options.widest_per_half = False, usual
-    return moved
+    change = change_of_fit(fit, marks, options)
+    options.round_tail, options.widest_per_half = False, default_widest
+    return change
 
 
-def moved_by(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
-    """By how much all that is fitted changes with other marks, in the covariance's order."""
-    moved = _core.fit_marks(marks, fit.laws, options)
-    return _all_fitted(moved, fit, options.deepest_mm) - _all_fitted(fit, fit, options.deepest_mm)
+def change_of_fit(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
+    """Return the change of all fitted numbers for other marks.
+
+    The order is the order of the covariance.
+    """
+    fit_with_marks = _core.fit_marks(marks, fit.laws, options)
+    return _all_numbers(fit_with_marks, fit, options.deepest_mm) - _all_numbers(fit, fit, options.deepest_mm)
 
 
-def moved_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
-    """Return the marks grown by edge_mm at every edge."""
-    return moved_by(fit, grow_outlines(marks, edge_mm), options)
+def change_by_edges(fit, marks: list, options: _core.MarkOptions, edge_mm: float) -> np.ndarray:
+    """Return the change of all fitted numbers if every edge moves outwards by edge_mm."""
+    return change_of_fit(fit, grow_outlines(marks, edge_mm), options)
 
 
 def grow_outlines(marks: list, edge_mm: float) -> list:
@@ -181,123 +202,144 @@ def grow_outlines(marks: list, edge_mm: float) -> list:
         _core.PaintedMark(
             mark.stroke,
             np.array(mark.poses_mm),
-            [_grow(ring, edge_mm) for ring in mark.outline_mm],
+            [_grow_ring(ring, edge_mm) for ring in mark.outline_mm],
             mark.arcs,
         )
         for mark in marks
     ]
 
 
-def wetter_where_wider(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
-    """Return the marks grown the more the wider a mark is, by edge_mm at the greatest depth: more paint
-    runs further. The fit would take a common shift of all edges for higher paper; these are wider marks."""
+def change_by_wetter_marks(fit, deepest_mm: float, edge_mm: float) -> np.ndarray:
+    """Return the change of all fitted numbers if wider marks grow more.
+
+    Marks of the greatest depth grow by edge_mm.
+
+    More paint runs further. The fit would explain a common shift of all edges by higher paper, but wider marks that
+    grow more change the half width.
+    """
     half = np.array(fit.laws.half_width)
     shape = len(widest_ratio(fit.laws)) + len(front_ratio(fit.laws))
-    moved, end = np.zeros(len(fit.covariance)), height_at(fit) - shape
-    moved[end - len(half) + 1 : end] = half[1:] * edge_mm / polyval(deepest_mm, half)
-    return moved
+    change, end = np.zeros(len(fit.covariance)), height_at(fit) - shape
+    change[end - len(half) + 1 : end] = half[1:] * edge_mm / polyval(deepest_mm, half)
+    return change
 
 
-def _all_fitted(fit, like, deepest_mm: float) -> np.ndarray:
-    """In the order of the covariance of `like`, with as many numbers a law."""
+def _all_numbers(fit, like, deepest_mm: float) -> np.ndarray:
+    """Return all fitted numbers in the order of the covariance of `like`.
+
+    Each law gets as many coefficients as in `like`.
+    """
     laws, other = fit.laws, like.laws
     numbers = [
-        _nearest(laws.lag, len(other.lag), 0, deepest_mm),
-        _nearest(laws.tip_gap, len(other.tip_gap), 1, deepest_mm),
-        _nearest(laws.half_width, len(other.half_width), 1, deepest_mm),
-        _nearest(widest_ratio(laws), len(widest_ratio(other)), 0, deepest_mm),
-        _nearest(front_ratio(laws), len(front_ratio(other)), 0, deepest_mm),
+        _reduce_law(laws.lag, len(other.lag), 0, deepest_mm),
+        _reduce_law(laws.tip_gap, len(other.tip_gap), 1, deepest_mm),
+        _reduce_law(laws.half_width, len(other.half_width), 1, deepest_mm),
+        _reduce_law(widest_ratio(laws), len(widest_ratio(other)), 0, deepest_mm),
+        _reduce_law(front_ratio(laws), len(front_ratio(other)), 0, deepest_mm),
         [fit.height_mm, *fit.shift_mm, fit.turn_rad],
     ]
-    all_fitted = np.concatenate(numbers)
-    if len(like.covariance) == len(all_fitted):
-        return all_fitted
-    one = fit.machine
+    values = np.concatenate(numbers)
+    if len(like.covariance) == len(values):
+        return values
+    machine = fit.machine
     return np.concatenate(
         [
-            all_fitted,
-            one.lean_mm_per_mm,
-            one.scale,
-            [one.skew],
-            one.tilt_mm_per_mm,
-            one.backlash_mm,
-            *one.field_mm,
+            values,
+            machine.lean_mm_per_mm,
+            machine.scale,
+            [machine.skew],
+            machine.tilt_mm_per_mm,
+            machine.backlash_mm,
+            *machine.field_mm,
         ]
     )
 
 
-def _nearest(coefficients, terms: int, first: int, deepest_mm: float) -> np.ndarray:
-    """Coefficients from the power `first` on of the law with so many terms that is nearest over the depths."""
+def _reduce_law(coefficients, terms: int, first: int, deepest_mm: float) -> np.ndarray:
+    """Reduce a law to fewer terms, nearest over the depths.
+
+    Return its coefficients from the power `first` on.
+    """
     if len(coefficients) <= terms:
         return np.pad(coefficients, (0, terms - len(coefficients)))[first:]
     share = np.linspace(0.0, 1.0, 41)[1:]
     powers = np.vander(share, terms, increasing=True)[:, first:]
-    found = np.linalg.lstsq(powers, polyval(share * deepest_mm, coefficients), rcond=None)[0]
-    return found / deepest_mm ** np.arange(first, terms)
+    solution = np.linalg.lstsq(powers, polyval(share * deepest_mm, coefficients), rcond=None)[0]
+    return solution / deepest_mm ** np.arange(first, terms)
 
 
 def height_at(fit) -> int:
-    """Where in a fit's covariance the height of the paper stands; shift x and y and turn follow."""
+    """Return the index of the paper height in the covariance of a fit.
+
+    Shift x, shift y and turn follow.
+    """
     laws = fit.laws
     ratios = len(widest_ratio(laws)) + len(front_ratio(laws))
     return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios
 
 
-def _grow(ring: np.ndarray, by_mm: float) -> np.ndarray:
-    """Return the ring with the paint on its left."""
+def _grow_ring(ring: np.ndarray, by_mm: float) -> np.ndarray:
+    """Move a ring with the paint on its left outwards by by_mm."""
     along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
     along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     return ring + by_mm * np.column_stack([along[:, 1], -along[:, 0]])
 
 
-def _likelier_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple[object, float]:
-    """The fit with the tail that fits better, and by how much the round one does. start: laws that are near.
+def _fit_better_tail(marks: list, options: _core.MarkOptions, start=None) -> tuple[object, float]:
+    """Fit both tails and return the better fit.
 
-    Both get laws that do not depart from their few numbers, which would make up for a wrong tail."""
-    usual, departing = options.widest_per_half, options.departing
+    The chi-square gain of the round tail is returned as well.
+
+    start: laws that are near the solution. Both fits use laws with the usual few coefficients, because additional
+    coefficients would compensate for a wrong tail.
+    """
+    default_widest, departing = options.widest_per_half, options.departing
     options.round_tail = options.departing = False
     pointed = _core.fit_marks(marks, start, options)
     options.round_tail, options.widest_per_half = True, _core.Prior(*ROUND_TAIL)
     rounded = _core.fit_marks(marks, pointed.laws, options)
     noise = min(pointed.noise_mm, rounded.noise_mm)
-    # points that count as one
-    alike = max(fit.samples / max(fit.effective_samples, 1.0) for fit in (pointed, rounded))
+    # number of correlated points that count as one
+    points_per_sample = max(fit.samples / max(fit.effective_samples, 1.0) for fit in (pointed, rounded))
     gain = 0.0
-    for one, other in zip(pointed.marks, rounded.marks, strict=True):
-        off = np.abs([one.distance_mm, other.distance_mm]) / noise
-        if np.mean(off > OUTLYING) < FOREIGN:
-            squares = np.minimum(off, OUTLYING) ** 2
-            gain += float(squares[0].sum() - squares[1].sum()) / alike
+    for pointed_mark, rounded_mark in zip(pointed.marks, rounded.marks, strict=True):
+        deviations = np.abs([pointed_mark.distance_mm, rounded_mark.distance_mm]) / noise
+        if np.mean(deviations > MAX_RESIDUAL_SIGMAS) < MAX_OUTLYING_SHARE:
+            squares = np.minimum(deviations, MAX_RESIDUAL_SIGMAS) ** 2
+            gain += float(squares[0].sum() - squares[1].sum()) / points_per_sample
     fit = rounded if gain > MIN_CHI_SQUARE else pointed
     if fit is pointed:
-        options.round_tail, options.widest_per_half = False, usual
+        options.round_tail, options.widest_per_half = False, default_widest
     options.departing = departing
     if departing:
         fit = _core.fit_marks(marks, fit.laws, options)
-    options.round_tail, options.widest_per_half = False, usual
+    options.round_tail, options.widest_per_half = False, default_widest
     return fit, gain
 
 
-def simulated(made: MarkCalibration, marks: list):
-    """The brush that was found, as deep as marks ask for, and its traces along their ways, in the frame of the plan."""
-    brush = made.brush
-    run = {
+def simulate_fitted_brush(calibration: MarkCalibration, marks: list):
+    """Simulate the fitted brush along the paths of marks.
+
+    Return the brush, with a depth range extended to the marks, and its traces in the frame of the plan.
+    """
+    brush = calibration.brush
+    executed = {
         mark.stroke: residual.way_mm
-        for mark, residual in zip(made.painted.marks, made.fit.marks, strict=True)
+        for mark, residual in zip(calibration.painted.marks, calibration.fit.marks, strict=True)
     }
-    ways = [np.array(run.get(mark.stroke, mark.poses_mm)) for mark in marks]
-    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + made.fit.height_mm)
+    ways = [np.array(executed.get(mark.stroke, mark.poses_mm)) for mark in marks]
+    reach = max(brush.depth_range_mm[1], max(-way[:, 2].min() for way in ways) + calibration.fit.height_mm)
     brush = _core.read_brush(_core.write_brush(brush))
     brush.depth_range_mm = (brush.depth_range_mm[0], reach)
     passes = []
     for mark, poses in zip(marks, ways, strict=True):
-        poses[:, 2] = np.minimum(poses[:, 2] - made.fit.height_mm, 0.0)
+        poses[:, 2] = np.minimum(poses[:, 2] - calibration.fit.height_mm, 0.0)
         passes.append(_core.Pass(mark.stroke, poses))
     return brush, _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush).passes
 
 
 def options_for(expected: dict) -> _core.MarkOptions:
-    """What a measurement file says of how far sheet and marks may be off, for the fit."""
+    """Return the options of the fit for the expected errors of a measurement file."""
     need_fits()
     options = _core.MarkOptions()
     if "height_mm" in expected:
@@ -317,12 +359,14 @@ def expected_brush(
     options: _core.MarkOptions | None = None,
     painted: list[_core.PaintedMark] | None = None,
 ) -> tuple[_core.Brush, list[str]]:
-    """What marks of this plan will say of such a brush, before anyone paints: the brush as the fit sees it, with
-    the covariance and intervals to expect, and in words what the strokes cannot separate.
+    """Predict how well the marks of a plan will determine a brush.
 
-    noise_mm: standard deviation of a painted edge, which forgets itself over noise_length_mm along the outline.
-    options: sigmas of sheet, displacement and height, as for calibrate_marks.
-    painted: expected_marks(plan, brush), where it is at hand.
+    noise_mm: standard deviation of a painted edge. noise_length_mm: correlation length of that noise along the
+    outline. options: sigmas of sheet, displacement and height, as for calibrate_marks. painted: the result of
+    expected_marks(plan, brush), if it is already known.
+
+    Return the brush as the fit sees it, with the expected covariance and intervals, and remarks on what the strokes
+    cannot separate.
     """
     painted = painted or expected_marks(plan, brush)
     fit = expected_fit(painted, plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
@@ -336,7 +380,10 @@ def expected_machine(
     parts: tuple[str, ...] = tuple(PARTS),
     painted: list[_core.PaintedMark] | None = None,
 ) -> list[Number]:
-    """Return the numbers of a machine without errors that such marks will give, each with half its 95 % interval."""
+    """Predict the numbers of the machine that marks will determine.
+
+    The machine has no errors. Each number has half its 95 % interval.
+    """
     options = _core.MarkOptions()
     ask_for(options, parts)
     painted = painted or expected_marks(plan, brush)
@@ -345,15 +392,18 @@ def expected_machine(
 
 
 def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMark]:
-    """The marks of a plan by such a brush, as the fit sees it: outlines in mm of the paper, without noise."""
+    """Simulate the marks of a plan, with the brush as the fit sees it.
+
+    The outlines [mm] are on the paper and have no noise.
+    """
     need_fits()
     _core.refuse_tilted(plan.passes, UPRIGHT)
-    seen = brush_of(laws_of(brush), brush.name, brush.depth_range_mm)
-    marks = _core.simulate(plan, seen)
-    _core.trace_outlines(marks, seen)
+    fitted_brush = brush_of(laws_of(brush), brush.name, brush.depth_range_mm)
+    marks = _core.simulate(plan, fitted_brush)
+    _core.trace_outlines(marks, fitted_brush)
     painted = [
-        _core.PaintedMark(one.stroke, one.poses_mm, mark.outline_mm, one.arcs)
-        for one, mark in zip(plan.passes, marks.passes, strict=True)
+        _core.PaintedMark(stroke_pass.stroke, stroke_pass.poses_mm, mark.outline_mm, stroke_pass.arcs)
+        for stroke_pass, mark in zip(plan.passes, marks.passes, strict=True)
         if mark.outline_mm
     ]
     if not painted:
@@ -362,9 +412,12 @@ def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMa
 
 
 def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, options) -> _core.MarkFit:
-    """The fit of such marks with edges so uncertain. options: depths and numbers per law are set here."""
+    """Fit simulated marks with the given noise of their edges.
+
+    options: depths and coefficients per law are set here.
+    """
     options.deepest_mm = brush.depth_range_mm[1]
-    depths = max(1, depths_painted([np.array(one.poses_mm) for one in plan.passes]))
+    depths = max(1, depths_painted([np.array(stroke_pass.poses_mm) for stroke_pass in plan.passes]))
     options.lag_terms = min(LAG_TERMS, depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)
     options.noise_mm, options.noise_length_mm = noise_mm, noise_length_mm
@@ -372,10 +425,13 @@ def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, 
 
 
 def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HALF_TERMS) -> _core.MarkLaws:
-    """The laws of a brush with as many numbers as marks give, nearest over its depths."""
+    """Return the nearest laws to a brush over its depths.
+
+    They have as many coefficients as marks determine.
+    """
     depths = np.linspace(*brush.depth_range_mm, 41)[1:]
 
-    def nearest(law, powers):
+    def fit_nearest(law, powers):
         values = np.array([law(d) for d in depths])
         columns = np.vander(depths, powers[-1] + 1, increasing=True)[:, powers]
         out = np.zeros(powers[-1] + 1)
@@ -387,97 +443,115 @@ def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HA
     ends = [(s.outline_mm[:, 0].max(), s.depth_mm) for s in brush.footprints.dragged]
     front = [(end - brush.tip_to_widest(d)) / max(brush.half_width(d), 1e-6) for end, d in ends]
     return _core.MarkLaws(
-        nearest(brush.lag, list(range(lag_terms))),
-        nearest(brush.tip_gap, list(range(1, GAP_TERMS + 1))),
-        nearest(brush.half_width, list(range(1, half_terms + 1))),
+        fit_nearest(brush.lag, list(range(lag_terms))),
+        fit_nearest(brush.tip_gap, list(range(1, GAP_TERMS + 1))),
+        fit_nearest(brush.half_width, list(range(1, half_terms + 1))),
         float(widest @ half / (half @ half)),
         float(np.clip(np.median(front), 0.2, 3.0)),
     )
 
 
 def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = None) -> _core.Brush:
-    """A brush with these laws, drops for footprints, and intervals where the covariance of a fit is given."""
+    """Make a brush with these laws and drops or eggs as footprints.
+
+    covariance: of a fit; if it is given, the laws get intervals.
+    """
     brush = _core.Brush()
     brush.name, brush.kind, brush.depth_range_mm = name, "round", tuple(depth_range_mm)
     least, deepest = depth_range_mm
     brush.lag, brush.tip_gap = _core.Profile(laws.lag), _core.Profile(laws.tip_gap)
     brush.half_width = _core.Profile(laws.half_width)
-    # no polymul: it drops powers whose coefficient is 0, and rows of the covariance would be those of other laws
+    # polymul would drop powers whose coefficient is 0. Rows of the covariance would then belong to other laws.
     widest = np.convolve(widest_ratio(laws), laws.half_width)
-    brush.tip_to_widest = _core.Profile(widest.tolist(), **_floor(laws, deepest))
+    brush.tip_to_widest = _core.Profile(widest.tolist(), **_widest_floor(laws, deepest))
     brush.paint_depth_mm = (least + deepest) / 2
-    depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
-    brush.footprints = _core.FootprintTable([_outline(brush, depth, laws) for depth in depths])
+    depths = [least + (deepest - least) * k / OUTLINE_COUNT for k in range(1, OUTLINE_COUNT + 1)]
+    brush.footprints = _core.FootprintTable([_footprint(brush, depth, laws) for depth in depths])
     shape = "eggs" if laws.round_tail else "drops"
     brush.extra = outlines_assumed(
         f"{shape} whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long "
         "in front of it."
     )
     if covariance is not None:
-        whole = over_brush(laws, covariance)
-        brush.covariance = whole.tolist()
-        half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(whole), 0.0))
+        brush_covariance = to_brush_covariance(laws, covariance)
+        brush.covariance = brush_covariance.tolist()
+        half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(brush_covariance), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
-            floor = _floor(laws, deepest) if law == "tip_to_widest" else {}
+            floor = _widest_floor(laws, deepest) if law == "tip_to_widest" else {}
             setattr(brush, law, _core.Profile(coefficients, half_interval_95=half_intervals[place], **floor))
     return brush
 
 
-def over_brush(laws, covariance: np.ndarray) -> np.ndarray:
-    """From the fit's unknowns to a brush's coefficients; x_w = ratio h."""
+def to_brush_covariance(laws, covariance: np.ndarray) -> np.ndarray:
+    """Convert a covariance from the unknowns of the fit to a brush.
+
+    The result is over the coefficients of the brush; x_w = ratio * h.
+    """
     lag, gap, half = len(laws.lag), len(laws.tip_gap) - 1, len(laws.half_width) - 1
-    ratio, own = widest_ratio(laws), np.array(laws.half_width)
+    ratio, half_width = widest_ratio(laws), np.array(laws.half_width)
     rows = lag + gap + 1 + half + len(ratio) + half + 1
-    to = np.zeros((rows, len(covariance)))
-    to[:lag, :lag] = np.eye(lag)
-    to[lag + 1 : lag + 1 + gap, lag : lag + gap] = np.eye(gap)
+    jacobian = np.zeros((rows, len(covariance)))
+    jacobian[:lag, :lag] = np.eye(lag)
+    jacobian[lag + 1 : lag + 1 + gap, lag : lag + gap] = np.eye(gap)
     widest, width = lag + gap + 1, lag + gap + 1 + half + len(ratio) + 1
     for power in range(half):
-        to[widest + 1 + power : widest + 1 + power + len(ratio), lag + gap + power] = ratio
+        jacobian[widest + 1 + power : widest + 1 + power + len(ratio), lag + gap + power] = ratio
     for power in range(len(ratio)):
-        to[widest + power : widest + power + half + 1, lag + gap + half + power] = own
-    to[width : width + half, lag + gap : lag + gap + half] = np.eye(half)
-    return to @ covariance @ to.T
+        jacobian[widest + power : widest + power + half + 1, lag + gap + half + power] = half_width
+    jacobian[width : width + half, lag + gap : lag + gap + half] = np.eye(half)
+    return jacobian @ covariance @ jacobian.T
 
 
 def widest_ratio(laws) -> np.ndarray:
-    """Of the widest section's place to the half width, ascending powers of depth."""
+    """Return the ratio of the widest section's position to the half width.
+
+    Coefficients are in ascending powers of depth.
+    """
     return np.array(laws.widest_by_depth or [laws.widest_per_half])
 
 
 def front_ratio(laws) -> np.ndarray:
-    """Of the footprint's length in front of that to the half width, ascending powers of depth."""
+    """Return the ratio of the footprint's front to the half width.
+
+    The front is the length in front of the widest section. Coefficients are in ascending powers of depth.
+    """
     return np.array(laws.front_by_depth or [laws.front_per_half])
 
 
-def _floor(laws, deepest: float) -> dict[str, float]:
-    """Of the widest section, where its ratio would fall below the least that a footprint has."""
+def _widest_floor(laws, deepest: float) -> dict[str, float]:
+    """Return the floor of the widest section, if it needs one.
+
+    It needs one if its ratio would fall below the least ratio of a footprint.
+    """
     depths = np.linspace(0.0, deepest, 41)
-    if polyval(depths, widest_ratio(laws)).min() >= LEAST_RATIO:
+    if polyval(depths, widest_ratio(laws)).min() >= MIN_RATIO_TO_HALF_WIDTH:
         return {}
-    return {"floor": 0.0, "floor_slope": LEAST_RATIO * float(polyval(deepest, laws.half_width)) / deepest}
+    return {
+        "floor": 0.0,
+        "floor_slope": MIN_RATIO_TO_HALF_WIDTH * float(polyval(deepest, laws.half_width)) / deepest,
+    }
 
 
-def _outline(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
+def _footprint(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
     half = brush.half_width(depth)
     shape = footprint_shapes.egg if laws.round_tail else footprint_shapes.drop
-    front = max(LEAST_RATIO, polyval(depth, front_ratio(laws)))
+    front = max(MIN_RATIO_TO_HALF_WIDTH, polyval(depth, front_ratio(laws)))
     return _core.Footprint(depth, shape(half, brush.tip_to_widest(depth), front * half))
 
 
-def _scale(fit, painted: Painted) -> SheetScale | None:
-    """Of the sheet, by the displacements of the marks that are any of this brush."""
-    like = [
+def _fit_scale(fit, painted: Painted) -> SheetScale | None:
+    """Fit the scale of the sheet to marks that are not outliers."""
+    usable = [
         (middle(np.array(mark.poses_mm)[:, :2]), residual.displacement_mm)
         for mark, residual in zip(painted.marks, fit.marks, strict=True)
         if not residual.outlier
     ]
-    return sheet_scale(*map(np.array, zip(*like, strict=True))) if like else None
+    return fit_sheet_scale(*map(np.array, zip(*usable, strict=True))) if usable else None
 
 
-def refuse_unlike(fit, painted: Painted) -> None:
-    outliers, marks = sum(found.outlier for found in fit.marks), len(painted.marks)
+def refuse_many_outliers(fit, painted: Painted) -> None:
+    outliers, marks = sum(residual.outlier for residual in fit.marks), len(painted.marks)
     if 2 * outliers > marks:
         raise Error(
             f"{outliers} of {marks} marks are outliers, outside the range [0, {marks // 2}]: are the marks in mm, y "
@@ -490,18 +564,18 @@ def refuse_unlike(fit, painted: Painted) -> None:
 def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
-    for law in ("lag", "half_width"):  # the others do not matter for a plan
+    for law in ("lag", "half_width"):  # the other laws do not matter for a plan
         half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
-        undetermined = (half > UNDETERMINED * values) & (half > UNDETERMINED_MM)
-        if undetermined.mean() > UNDETERMINED_PART:
+        undetermined = (half > MAX_RELATIVE_INTERVAL * values) & (half > MAX_INTERVAL_MM)
+        if undetermined.mean() > MAX_UNDETERMINED_SHARE:
             worst = int(np.argmax(np.where(undetermined, half / np.maximum(values, 1e-9), 0.0)))
-            todo = (
+            advice = (
                 fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
             )
             raise Error(
                 f"these marks do not determine the {law.replace('_', ' ')}: {values[worst]:.1f} +- {half[worst]:.1f} "
-                f"mm (95 %) at depth {depths[worst]:g} mm: {todo}",
+                f"mm (95 %) at depth {depths[worst]:g} mm: {advice}",
                 law,
                 code="law-undetermined",
             )

@@ -1,4 +1,7 @@
-"""Find the errors of a machine from painted marks; in words and as a cell's table."""
+"""Find the errors of a machine from painted marks.
+
+They are described in words and as a table of a cell.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,9 @@ import numpy as np
 from ... import _core
 from ...errors import Error, Notice, need
 
-# Standard deviation of each number beforehand. A tool on a long thin arm gives way by half as much as it is pressed;
-# a printed or scanned page is as long as it should be to 1 %; 1 mm over a sheet is what a table is off level; worn
-# screws and loose belts leave some tenths of a mm where they turn; a frame that is warped or sags displaces the tool by
-# half a mm at the sheet's edges.
+# Prior standard deviation of each number. A tool on a long thin arm bends by half of its depth. The length of a printed
+# or scanned page is right to 1 %. A table is 1 mm off level over a sheet. Worn screws and loose belts lose some tenths
+# of a mm where they reverse. A warped or sagging frame displaces the tool by half a mm at the edges of the sheet.
 PARTS = {
     "lean": ("lean_mm_per_mm", 0.5),
     "axes": ("axes", 0.01),
@@ -21,25 +23,28 @@ PARTS = {
     "backlash": ("backlash_mm", 0.2),
     "field": ("field_mm", 0.5),
 }
-TERMS = ("u u", "u v", "v v")
-# Remarks in the table on numbers that not every machine can undo, see cell.not_undone.
-NO_SERVO = "# leave this line out for a brush on a servo or a pen lift"
-NO_PEN = "# leave this line out for a pen lift"
-NO_ARM = "# only for a machine whose motors drive x and y each: leave this line out for an arm or an EBB"
-LEAST_MM = 0.01  # of backlash that a cell undoes
-CERTAIN = (
-    1.6  # half 95 % intervals: none of a field's six numbers is further from 0 by chance in 99 of 100 fits
-)
-HARDLY = 0.8  # of what a number was known to beforehand: what is known no better, marks say nothing of
-# Where the ways on the paper go one way by more than this (0: all ways alike, 1: one), lean along it is what a longer
-# lag at greater depth would be
-ONE_WAY = 0.8
+FIELD_TERMS = ("u u", "u v", "v v")
+# Remarks in the table on numbers that some machines cannot compensate, see cell.not_undone.
+SERVO_REMARK = "# leave this line out for a brush on a servo or a pen lift"
+PEN_REMARK = "# leave this line out for a pen lift"
+ARM_REMARK = "# only for a machine whose motors drive x and y each: leave this line out for an arm or an EBB"
+MIN_BACKLASH_MM = 0.01  # least backlash that is compensated by a cell
+# Size of a field's number, in half 95 % intervals. In 99 of 100 fits chance moves none of its six numbers this far
+# from 0.
+MIN_FIELD_HALF_INTERVALS = 1.6
+# Largest interval relative to the prior interval. Above it, the marks do not determine the number.
+MAX_INTERVAL_PER_PRIOR = 0.8
+# Largest share of the path length in one direction (0: all directions equal, 1: one direction). Above it, lean along
+# that direction looks like a longer lag at greater depth.
+MAX_DIRECTION_SHARE = 0.8
 
 
 @dataclass(frozen=True)
 class Number:
-    """One number of a machine with half its 95 % interval. part: the option that requests it; unit: what it counts
-    in."""
+    """One number of a machine with half its 95 % interval.
+
+    part: the option that requests it. unit: the unit of value and half.
+    """
 
     part: str
     name: str
@@ -49,7 +54,7 @@ class Number:
 
 
 def refuse_unknown_parts(machine) -> None:
-    """Error for what is no list of names of machine parts."""
+    """Raise Error for anything other than a list of names of machine parts."""
     known = ", ".join(PARTS)
     if isinstance(machine, str):
         example = f"({machine!r},)" if machine in PARTS else repr(tuple(PARTS)[:2])
@@ -69,19 +74,19 @@ def refuse_unknown_parts(machine) -> None:
 
 
 def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:
-    """The fit shall find these, too."""
+    """Request that the fit finds these parts of the machine as well."""
     for part in parts:
         key, sigma = PARTS[part]
         setattr(options, key, sigma)
 
 
-def list_parts(options: _core.MarkOptions) -> tuple[str, ...]:
+def list_requested_parts(options: _core.MarkOptions) -> tuple[str, ...]:
     return tuple(part for part, (key, _) in PARTS.items() if getattr(options, key) > 0)
 
 
 def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Number]:
     """Return all requested numbers, in the order of the fit."""
-    parts = list_parts(options)
+    parts = list_requested_parts(options)
     if not parts:
         return []
     machine = fit.machine
@@ -98,7 +103,7 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
         *(
             ("field", f"field in {axis}, {term}", value, "mm at the edge")
             for axis, values in zip("xy", machine.field_mm, strict=True)
-            for term, value in zip(TERMS, values, strict=True)
+            for term, value in zip(FIELD_TERMS, values, strict=True)
         ),
     )
     first = len(covariance) - len(rows)
@@ -111,10 +116,16 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
 
 
 def describe_numbers(found: list[Number]) -> list[str]:
-    """A line for each number, and of the field what becomes of it."""
-    lines = [f"{one.name}: {one.value:.4f} +- {one.half:.4f} {one.unit}".rstrip() for one in found]
-    field = [one for one in found if one.part == "field"]
-    if field and min(one.half for one in field) > HARDLY * _core.deviations_of_95() * PARTS["field"][1]:
+    """Return a line for each number, and a line about a field that is not used."""
+    lines = [
+        f"{number.name}: {number.value:.4f} +- {number.half:.4f} {number.unit}".rstrip() for number in found
+    ]
+    field = [number for number in found if number.part == "field"]
+    if (
+        field
+        and min(number.half for number in field)
+        > MAX_INTERVAL_PER_PRIOR * _core.deviations_of_95() * PARTS["field"][1]
+    ):
         lines.append("field: the marks do not show it; strokes all over the sheet would")
     elif field and not has_field(found):
         lines.append("field: none that is certain, and none for the cell")
@@ -122,51 +133,63 @@ def describe_numbers(found: list[Number]) -> list[str]:
 
 
 def has_field(found: list[Number]) -> bool:
-    """Return whether there is a field at all: the test that six numbers are 0 is one for all of them."""
-    return any(abs(one.value) > CERTAIN * one.half for one in found if one.part == "field")
+    """Return whether there is a field at all: one test for all of its six numbers."""
+    return any(
+        abs(number.value) > MIN_FIELD_HALF_INTERVALS * number.half
+        for number in found
+        if number.part == "field"
+    )
 
 
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
-    """The lines of a cell's table [machine]; none where no requested number can be undone by a cell. Backlash and a
-    field that may as well be none are left out. Which machine it is may not be known: a remark says where a line has no
-    use.
+    """Return the lines of a cell's table [machine].
+
+    There are no lines if a cell can compensate none of the requested numbers.
+
+    Backlash and a field that could be 0 are left out. The kind of machine may be unknown, so remarks say which machines
+    cannot use a line.
     """
-    parts, machine = list_parts(options), fit.machine
+    parts, machine = list_requested_parts(options), fit.machine
     backlash = [
-        one.value if one.value > max(one.half, LEAST_MM) else 0.0 for one in found if one.part == "backlash"
+        number.value if number.value > max(number.half, MIN_BACKLASH_MM) else 0.0
+        for number in found
+        if number.part == "backlash"
     ]
     is_bent = has_field(found)
     lines = ["[machine]"] if set(parts) - {"backlash", "field"} or any(backlash) or is_bent else []
     if "lean" in parts:
-        lines.append(f"lean_mm_per_mm = {_pair(machine.lean_mm_per_mm)}  {NO_SERVO}")
+        lines.append(f"lean_mm_per_mm = {_format_pair(machine.lean_mm_per_mm)}  {SERVO_REMARK}")
     if "axes" in parts:
-        lines += [f"scale = {_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
+        lines += [f"scale = {_format_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
     if "tilt" in parts:
         height = fit.height_mm - float(np.dot(machine.tilt_mm_per_mm, fit.centre_mm))
         lines += [
-            f"height_mm = {height:.3f}  {NO_PEN}",
-            f"tilt_mm_per_mm = {_pair(machine.tilt_mm_per_mm)}  {NO_SERVO}",
+            f"height_mm = {height:.3f}  {PEN_REMARK}",
+            f"tilt_mm_per_mm = {_format_pair(machine.tilt_mm_per_mm)}  {SERVO_REMARK}",
         ]
     if any(backlash):
-        lines.append("backlash_mm = [{:.3f}, {:.3f}]  ".format(*backlash) + NO_ARM)
+        lines.append("backlash_mm = [{:.3f}, {:.3f}]  ".format(*backlash) + ARM_REMARK)
     return [*lines, *(field_lines(machine) if is_bent else [])]
 
 
 def field_lines(machine) -> list[str]:
-    """Of a cell's table [machine]. machine: one that was fitted or that of a cell."""
+    """Return the lines of the field in a cell's table [machine].
+
+    machine: a fitted machine or the machine of a cell.
+    """
     rows = ", ".join("[" + ", ".join(f"{mm:.4f}" for mm in row) + "]" for row in machine.field_mm)
     places = (machine.field_middle_mm, machine.field_reach_mm)
     middle, reach = ("[{:.2f}, {:.2f}]".format(*pair) for pair in places)
     return [f"field_mm = [{rows}]", f"field_middle_mm = {middle}", f"field_reach_mm = {reach}"]
 
 
-def _pair(values) -> str:
+def _format_pair(values) -> str:
     return "[{:.5f}, {:.5f}]".format(*values)
 
 
 def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
     """Return a notice where lean cannot be separated from lag."""
-    if "lean" not in list_parts(options):
+    if "lean" not in list_requested_parts(options):
         return []
     way, total = np.zeros(2), 0.0
     for mark in painted.marks:
@@ -175,11 +198,11 @@ def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
         way += steps.sum(axis=0)
         total += float(np.hypot(*steps.T).sum())
     share = float(np.hypot(*way)) / max(total, 1e-9)
-    if share <= ONE_WAY:
+    if share <= MAX_DIRECTION_SHARE:
         return []
     sentence = (
         f"the strokes go one way, by {share:.2f} of their length at {math.degrees(math.atan2(way[1], way[0])):.0f} "
-        f"degrees, outside the range [0, {ONE_WAY:g}]: lean that way and a lag that grows with depth look alike, and "
-        "neither is as sure as its interval says; add strokes the other way"
+        f"degrees, outside the range [0, {MAX_DIRECTION_SHARE:g}]: lean that way and a lag that grows with depth look "
+        "alike, and neither is as sure as its interval says; add strokes the other way"
     )
     return [Notice("lean", sentence, code="lean-like-lag", about="lean")]

@@ -1,4 +1,7 @@
-"""Painted marks with the TCP's way that painted each, as a measurement file names them; nonsense is refused."""
+"""Read painted marks and their TCP paths from a measurement file.
+
+Nonsense is refused.
+"""
 
 from __future__ import annotations
 
@@ -13,20 +16,19 @@ from ... import _core, json_fields
 from ...errors import Error
 from ...geometry import polylines
 
-FARTHEST_MM = (
-    60.0  # greatest distance of a mark from its stroke: lag, sheet and displacement together are shorter
-)
-WIDEST_MM = 60.0  # no brush paints so much beyond its stroke, from one side to the other
-LEAST_MM2 = 0.1
-LARGEST_MM = 1e6
-STRAIGHT_RAD = 0.35  # strokes that turn less in all say nothing of the lag that a displacement would not
+# Greatest distance of a mark from its stroke. Lag, shift of the sheet and displacement together are shorter.
+MAX_MARK_DISTANCE_MM = 60.0
+MAX_EXTRA_WIDTH_MM = 60.0  # no brush paints a mark that is this much wider than its stroke
+MIN_AREA_MM2 = 0.1  # least area of a mark
+MAX_COORDINATE_MM = 1e6  # greatest coordinate
+MIN_TURNING_RAD = 0.35  # if all strokes turn less than this in total, lag looks like a displacement
 UPRIGHT = "brushes are found from marks of a brush held upright"
-PAINTED_MM = 5.0  # a depth counts where this much was painted at it
-DEPTH_BINS = 20
-DAB = "dab"  # the kind of stroke, in a plan's settings, that is set down and taken up without a way
-UNITS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
-# Possible exchanges of a sheet's sides: plan to sheet, and what to say
-LAID = (
+MIN_PAINTED_MM = 5.0  # a depth counts if at least this length was painted at it
+DEPTH_BINS = 20  # bins from 0 to the greatest depth
+DAB = "dab"  # kind of stroke in the settings of a plan: set down and lifted without moving along the paper
+UNIT_FACTORS = ((1 / 1000, "metres"), (1 / 25.4, "inches"), (0.1, "centimetres"), (25.4, "points or pixels"))
+# Possible confusions of the sides of a sheet: matrix from plan to sheet, and its description
+SHEET_ORIENTATIONS = (
     (((-1, 0), (0, -1)), "turned by 180 degrees"),
     (((0, -1), (1, 0)), "turned by 90 degrees, counter-clockwise"),
     (((0, 1), (-1, 0)), "turned by 90 degrees, clockwise"),
@@ -39,8 +41,11 @@ LAID = (
 
 @dataclass(frozen=True)
 class Painted:
-    """Marks of one sheet; how many different depths were painted at; before_mm: by stroke the way of the TCP on the
-    paper along all strokes of the plan before it, where that is known, and way_mm along all of them."""
+    """The marks of one sheet.
+
+    depths: number of different painted depths. before_mm: for each stroke, the path length of the TCP on the paper
+    along all earlier strokes of the plan, if known. way_mm: path length along all strokes.
+    """
 
     marks: list
     deepest_mm: float
@@ -49,47 +54,52 @@ class Painted:
     way_mm: float = 0.0
 
     def without(self, strokes: set[str]) -> Painted:
-        """Raise Error where the remaining marks are not informative."""
-        left = painted_of([mark for mark in self.marks if mark.stroke not in strokes])
-        return replace(left, before_mm=self.before_mm, way_mm=self.way_mm)
+        """Return the marks without some strokes.
+
+        Raises Error if the remaining marks are not informative.
+        """
+        remaining = to_painted([mark for mark in self.marks if mark.stroke not in strokes])
+        return replace(remaining, before_mm=self.before_mm, way_mm=self.way_mm)
 
 
 def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], bytes]) -> Painted:
-    """plan: a path or what stands in a plan.json; marks: a path of a marks.json, or [{"stroke", "outline_mm"}].
+    """Read the painted marks of a plan.
 
-    read: gives what the file of a path holds. Error names the mark or the key.
+    plan: a path, or the contents of a plan.json. marks: the path of a marks.json, or a list of
+    {"stroke", "outline_mm"}. read: returns the bytes of the file at a path. Raises Error, which names the mark or the
+    key.
     """
-    passes = _passes(plan, read)
-    rows = _listed(marks, read)
-    found, seen = [], set()
+    passes = _read_passes(plan, read)
+    rows = _read_outlines(marks, read)
+    found, used_strokes = [], set()
     for i, (stroke, outline) in enumerate(rows):
         where = f"marks[{i}]"
         if stroke not in passes:
             raise Error(
-                f"there is no stroke {stroke[:60]!r} in the plan; it has {_some(list(passes))}",
+                f"there is no stroke {stroke[:60]!r} in the plan; it has {_list_some(list(passes))}",
                 where,
                 code="stroke-unknown",
             )
-        if stroke in seen:
+        if stroke in used_strokes:
             raise Error(
                 f"stroke {stroke[:60]!r} has two marks: join their outlines to one",
                 where,
                 code="stroke-twice",
             )
-        seen.add(stroke)
-        rings = [_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
+        used_strokes.add(stroke)
+        rings = [_read_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
         if not rings:
             raise Error("the mark has no outline: leave out what was not painted", where, code="mark-empty")
         found.append((stroke, np.array(passes[stroke].poses_mm), rings))
     if not found:
         raise Error("there is no mark in it", "marks", code="measurement-missing")
     _refuse_other_frames(found)
-    _refuse_what_is_no_paint(found)
+    _refuse_foreign_outlines(found)
     painted_as = {stroke: number for number, stroke in enumerate(passes)}
-    whole = painted_of(
+    whole = to_painted(
         [
-            _core.PaintedMark(stroke, poses, _oriented(rings), passes[stroke].arcs)
-            for stroke, poses, rings in sorted(found, key=lambda one: painted_as[one[0]])
+            _core.PaintedMark(stroke, poses, _orient_rings(rings), passes[stroke].arcs)
+            for stroke, poses, rings in sorted(found, key=lambda mark: painted_as[mark[0]])
         ]
     )
     before_mm, way_mm = ways_before_mm(passes)
@@ -97,20 +107,23 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
 
 
 def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], float]:
-    """By stroke the way of the TCP on the paper along all passes before it, and that along all passes."""
-    ways = [polylines.length(np.array(one.poses_mm)[:, :2]) for one in passes.values()]
+    """Return the TCP path length on the paper before each stroke, and in total."""
+    ways = [polylines.length(np.array(plan_pass.poses_mm)[:, :2]) for plan_pass in passes.values()]
     *before, way_mm = np.cumsum([0.0, *ways]).tolist()
     return dict(zip(passes, before, strict=True)), way_mm
 
 
-def painted_of(marks: list) -> Painted:
-    """Raise Error where the marks are not informative about a brush."""
+def to_painted(marks: list) -> Painted:
+    """Return the marks as Painted.
+
+    Raises Error if they are not informative about a brush.
+    """
     ways = [np.array(mark.poses_mm) for mark in marks]
     _refuse_uninformative(ways)
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
 
-def _passes(plan, read) -> dict[str, _core.Pass]:
+def _read_passes(plan, read) -> dict[str, _core.Pass]:
     if isinstance(plan, str):
         try:
             parsed = _core.read_plan(read(plan).decode("utf-8", "replace"))
@@ -127,31 +140,31 @@ def _passes(plan, read) -> dict[str, _core.Pass]:
             'marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing"
         )
     _core.refuse_tilted(parsed.passes, UPRIGHT)
-    out: dict[str, _core.Pass] = {}
-    for number, one in enumerate(parsed.passes, 1):
-        name = one.stroke or f"stroke{number}"
-        if name in out:
+    passes: dict[str, _core.Pass] = {}
+    for number, plan_pass in enumerate(parsed.passes, 1):
+        name = plan_pass.stroke or f"stroke{number}"
+        if name in passes:
             raise Error(
                 f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice"
             )
-        if one.settings.kind == DAB:
+        if plan_pass.settings.kind == DAB:
             raise Error(
                 f"{name!r} is a dab: dabs show the outline of the brush, but no lag",
                 "plan",
                 code="dabs-tell-no-lag",
                 advice="brushsvg calibrate PHOTO --chart CHART.json --brush BRUSH",
             )
-        out[name] = one
-    return out
+        passes[name] = plan_pass
+    return passes
 
 
-def _listed(marks, read) -> list[tuple[str, list]]:
+def _read_outlines(marks, read) -> list[tuple[str, list]]:
     if isinstance(marks, str):
         try:
-            found = _core.read_marks(read(marks).decode("utf-8", "replace"))
+            read_marks = _core.read_marks(read(marks).decode("utf-8", "replace"))
         except Error as refusal:
             raise Error(f"{marks[:200]}: {refusal}", "marks", refusal.value, code=refusal.code) from None
-        return [(one.stroke, [np.array(ring) for ring in one.outline_mm]) for one in found.passes]
+        return [(mark.stroke, [np.array(ring) for ring in mark.outline_mm]) for mark in read_marks.passes]
     out = []
     for i, row in enumerate(json_fields.objects(marks, "marks", ", or the path of a marks.json")):
         json_fields.refuse_unknown(row, ("stroke", "outline_mm", "note"), f"marks[{i}]")
@@ -162,7 +175,7 @@ def _listed(marks, read) -> list[tuple[str, list]]:
     return out
 
 
-def _ring(points, where: str) -> np.ndarray:
+def _read_ring(points, where: str) -> np.ndarray:
     try:
         ring = np.array(points)
         has_truths = isinstance(points, list) and any(isinstance(v, bool) for point in points for v in point)
@@ -173,9 +186,10 @@ def _ring(points, where: str) -> np.ndarray:
         raise Error("a ring is a list of three or more points [x, y]", where, code="wrong-type")
     if not np.isfinite(ring).all():
         raise Error("a coordinate is not a finite number", where, code="not-finite")
-    if (farthest := float(np.abs(ring).max())) > LARGEST_MM:
+    if (farthest := float(np.abs(ring).max())) > MAX_COORDINATE_MM:
         raise Error(
-            f"a coordinate of {farthest:.4g} mm is outside the range [-{LARGEST_MM:g}, {LARGEST_MM:g}] mm",
+            f"a coordinate of {farthest:.4g} mm is outside the range "
+            f"[-{MAX_COORDINATE_MM:g}, {MAX_COORDINATE_MM:g}] mm",
             where,
             farthest,
             code="out-of-range",
@@ -183,32 +197,38 @@ def _ring(points, where: str) -> np.ndarray:
     return ring
 
 
-def _oriented(rings: list[np.ndarray]) -> list[np.ndarray]:
-    """The shape they fill, outer rings counter-clockwise, holes clockwise."""
+def _orient_rings(rings: list[np.ndarray]) -> list[np.ndarray]:
+    """Return the shape that the rings fill.
+
+    Outer rings are counter-clockwise, holes clockwise.
+    """
     return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
 
 
-def _some(names: list[str]) -> str:
+def _list_some(names: list[str]) -> str:
     return ", ".join(name[:60] for name in names[:5]) + (
         f" and {len(names) - 5} more" if len(names) > 5 else ""
     )
 
 
 def middle(points: np.ndarray) -> np.ndarray:
-    """Of the box round points (n, 2)."""
+    """Return the middle of the bounding box of points (n, 2)."""
     return 0.5 * (points.min(axis=0) + points.max(axis=0))
 
 
 def _refuse_other_frames(found: list) -> None:
-    """Find wrong units, direction of y, exchanged marks: from the places of marks relative to their strokes."""
+    """Raise Error for wrong units, a wrong direction of y, and exchanged marks.
+
+    They show in the positions of marks relative to their strokes. found: (stroke, poses, rings) of each mark.
+    """
     planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
-    seen = np.array([middle(np.vstack(rings)) for _, _, rings in found])
+    marked = np.array([middle(np.vstack(rings)) for _, _, rings in found])
     spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
     sizes = lambda points: float(np.hypot(*np.ptp(points, axis=0)))  # noqa: E731
     lengths = [sizes(poses[:, :2]) for _, poses, _ in found]
     spans = [sizes(np.vstack(rings)) for _, _, rings in found]
     scale = float(np.median(np.array(spans) / np.maximum(lengths, 1.0)))
-    for factor, name in UNITS:
+    for factor, name in UNIT_FACTORS:
         if abs(math.log(max(scale, 1e-12) / factor)) < 0.5 and max(lengths) > 5.0:
             raise Error(
                 f"the marks are {scale:.3g} times as long as their strokes: are the outlines in {name}? They count in "
@@ -216,53 +236,63 @@ def _refuse_other_frames(found: list) -> None:
                 "marks",
                 code="marks-scaled",
             )
-    off = np.hypot(*(seen - planned).T)
+    own_distances = np.hypot(*(marked - planned).T)
     if len(found) > 2 and spread(planned) > 10.0:
-        flipped = seen * [1, -1]
+        flipped = marked * [1, -1]
         rigid = lambda points: np.median(  # noqa: E731
             np.hypot(*(points - planned - np.median(points - planned, axis=0)).T)
         )
-        if rigid(flipped) < 0.3 * rigid(seen) and rigid(seen) > 10.0:
+        if rigid(flipped) < 0.3 * rigid(marked) and rigid(marked) > 10.0:
             raise Error(
                 "the sheet of the marks stands upside down: y must go up, from the lower left corner",
                 "marks",
                 code="marks-displaced",
             )
-    if off.max() <= FARTHEST_MM and len(found) < 2:
+    if own_distances.max() <= MAX_MARK_DISTANCE_MM and len(found) < 2:
         return
-    _refuse_laid_otherwise(planned, seen)
-    reach = np.hypot(*np.moveaxis(seen[:, None] - planned[None], 2, 0))
-    other = reach.argmin(axis=1)
-    wrong = [i for i, j in enumerate(other) if j != i and reach[i, j] < 0.5 * off[i] and off[i] > 15.0]
+    _refuse_moved_sheet(planned, marked)
+    distances = np.hypot(*np.moveaxis(marked[:, None] - planned[None], 2, 0))
+    nearest = distances.argmin(axis=1)
+    wrong = [
+        i
+        for i, j in enumerate(nearest)
+        if j != i and distances[i, j] < 0.5 * own_distances[i] and own_distances[i] > 15.0
+    ]
     for i in wrong:
-        if other[i] in wrong or off[i] > FARTHEST_MM:
+        if nearest[i] in wrong or own_distances[i] > MAX_MARK_DISTANCE_MM:
             raise Error(
-                f"the mark of stroke {found[i][0]!r} is {off[i]:.0f} mm from it, where stroke "
-                f"{found[other[i]][0]!r} was painted: do the marks have the ids of their strokes?",
+                f"the mark of stroke {found[i][0]!r} is {own_distances[i]:.0f} mm from it, where stroke "
+                f"{found[nearest[i]][0]!r} was painted: do the marks have the ids of their strokes?",
                 f"marks[{i}]",
                 code="mark-off-stroke",
             )
-    if (worst := int(off.argmax())) is not None and off[worst] > FARTHEST_MM:
+    if (worst := int(own_distances.argmax())) is not None and own_distances[worst] > MAX_MARK_DISTANCE_MM:
         raise Error(
-            f"the mark of stroke {found[worst][0]!r} is {off[worst]:.0f} mm from it, more than {FARTHEST_MM:g} mm: "
-            "are plan and marks those of one sheet, both in mm from its lower left corner?",
+            f"the mark of stroke {found[worst][0]!r} is {own_distances[worst]:.0f} mm from it, more than "
+            f"{MAX_MARK_DISTANCE_MM:g} mm: are plan and marks those of one sheet, both in mm from its "
+            "lower left corner?",
             f"marks[{worst}]",
             code="mark-off-stroke",
         )
 
 
-def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
-    """A sheet that is turned, mirrored or of another size as a whole: middles (n, 2) of strokes and marks."""
-    out = planned - planned.mean(axis=0)
-    if len(out) < 5 or np.linalg.matrix_rank(out, tol=10.0) < 2:
+def _refuse_moved_sheet(planned: np.ndarray, seen: np.ndarray) -> None:
+    """Raise Error for a sheet that is turned, mirrored, scaled or shifted as a whole.
+
+    planned, seen: middles (n, 2) of strokes and marks.
+    """
+    centred_plan = planned - planned.mean(axis=0)
+    if len(centred_plan) < 5 or np.linalg.matrix_rank(centred_plan, tol=10.0) < 2:
         return
-    there = seen - seen.mean(axis=0)
-    slopes = np.linalg.lstsq(out, there, rcond=None)[0].T
+    centred_marks = seen - seen.mean(axis=0)
+    slopes = np.linalg.lstsq(centred_plan, centred_marks, rcond=None)[0].T
     size = math.sqrt(abs(np.linalg.det(slopes)))
-    if not size > 0 or np.linalg.norm(there - out @ slopes.T) > 0.2 * np.linalg.norm(there):
-        return  # no one movement of the sheet
-    for laid, words in LAID:
-        if np.linalg.norm(slopes / size - laid) < 0.5:
+    if not size > 0 or np.linalg.norm(centred_marks - centred_plan @ slopes.T) > 0.2 * np.linalg.norm(
+        centred_marks
+    ):
+        return  # not a single movement of the sheet
+    for matrix, words in SHEET_ORIENTATIONS:
+        if np.linalg.norm(slopes / size - matrix) < 0.5:
             raise Error(
                 f"the sheet of the marks is {words}; outlines count from the lower left corner of the plan's sheet",
                 "marks",
@@ -275,39 +305,45 @@ def _refuse_laid_otherwise(planned: np.ndarray, seen: np.ndarray) -> None:
             "marks",
             code="marks-scaled",
         )
-    if (away := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * FARTHEST_MM:
+    if (shift := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * MAX_MARK_DISTANCE_MM:
         raise Error(
-            f"all marks are {away:.0f} mm from their strokes, all the same way: outlines count from the lower left "
+            f"all marks are {shift:.0f} mm from their strokes, all the same way: outlines count from the lower left "
             "corner of the plan's sheet",
             "marks",
             code="marks-displaced",
         )
 
 
-def _refuse_what_is_no_paint(found: list) -> None:
-    """A page's border would pass for paint that has no say, and the fit would take minutes to find that out."""
+def _refuse_foreign_outlines(found: list) -> None:
+    """Raise Error for outlines that are not paint, such as the border of the page.
+
+    The fit would need minutes to reject them.
+    """
     for i, (stroke, poses, rings) in enumerate(found):
-        if (area := _core.area(_oriented(rings))) < LEAST_MM2:
+        if (area := _core.area(_orient_rings(rings))) < MIN_AREA_MM2:
             raise Error(
-                f"the mark of stroke {stroke!r} has an area of {area:.2g} mm^2, less than {LEAST_MM2:g}: leave out "
+                f"the mark of stroke {stroke!r} has an area of {area:.2g} mm^2, less than {MIN_AREA_MM2:g}: leave out "
                 "what was not painted",
                 f"marks[{i}]",
                 code="mark-empty",
             )
         way = np.ptp(poses[:, :2], axis=0)
         for k, ring in enumerate(rings):
-            larger = float(np.max(np.ptp(ring, axis=0) - way))
-            if larger > WIDEST_MM:
+            excess = float(np.max(np.ptp(ring, axis=0) - way))
+            if excess > MAX_EXTRA_WIDTH_MM:
                 raise Error(
-                    f"a ring of the mark of stroke {stroke!r} is {larger:.0f} mm wider than its stroke, more than "
-                    f"{WIDEST_MM:g} mm: leave out what is not its paint, such as the border of the page",
+                    f"a ring of the mark of stroke {stroke!r} is {excess:.0f} mm wider than its stroke, more than "
+                    f"{MAX_EXTRA_WIDTH_MM:g} mm: leave out what is not its paint, such as the border of the page",
                     f"marks[{i}].outline_mm[{k}]",
                     code="mark-too-large",
                 )
 
 
 def depths_painted(ways: list[np.ndarray]) -> int:
-    """Return at how many depths PAINTED_MM or more were painted; depths differ by a twentieth of the deepest."""
+    """Count the depths at which MIN_PAINTED_MM or more was painted.
+
+    Depths are in bins of a twentieth of the deepest.
+    """
     deepest = max(float(-poses[:, 2].min()) for poses in ways)
     if not deepest > 0:
         return 0
@@ -315,11 +351,11 @@ def depths_painted(ways: list[np.ndarray]) -> int:
     for poses in ways:
         length = polylines.steps(poses[:, :2])
         for (a, b), along in zip(np.column_stack([poses[:-1, 2], poses[1:, 2]]), length, strict=True):
-            # a ramp paints a little at each of its depths
+            # A ramp paints a little at each of its depths.
             at = np.linspace(-a, -b, 10) / deepest * DEPTH_BINS
             np.add.at(painted, np.clip(np.ceil(at).astype(int) - 1, 0, DEPTH_BINS - 1), along / 10)
-    runs = painted >= PAINTED_MM
-    # depths side by side are one: rounding may have put them on either side of a limit
+    runs = painted >= MIN_PAINTED_MM
+    # Neighbouring bins count as one depth, because rounding may have split one depth between two bins.
     return int(np.sum(runs & ~np.concatenate([[False], runs[:-1]]))) if runs.sum() < 4 else int(runs.sum())
 
 
@@ -327,7 +363,7 @@ def _refuse_uninformative(ways: list[np.ndarray]) -> None:
     count = depths_painted(ways)
     if count == 0:
         raise Error(
-            f"no stroke is painted for more than {PAINTED_MM:g} mm at any depth: paint longer ones",
+            f"no stroke is painted for more than {MIN_PAINTED_MM:g} mm at any depth: paint longer ones",
             "plan",
             code="depths-too-few",
         )
@@ -338,7 +374,7 @@ def _refuse_uninformative(ways: list[np.ndarray]) -> None:
             "plan",
             code="depths-too-few",
         )
-    if all(_turning(poses) < STRAIGHT_RAD for poses in ways):
+    if all(_total_turning(poses) < MIN_TURNING_RAD for poses in ways):
         raise Error(
             "all strokes are straight: lag and displacement of the marks cannot be separated; add corners, arcs and "
             "reversals, at each depth",
@@ -347,8 +383,8 @@ def _refuse_uninformative(ways: list[np.ndarray]) -> None:
         )
 
 
-def _turning(poses: np.ndarray) -> float:
-    """By how much the TCP turns in all [rad], trembling left out."""
+def _total_turning(poses: np.ndarray) -> float:
+    """Return the total turning of the TCP [rad], ignoring tremor."""
     at = polylines.lengths(poses[:, :2])
     if at[-1] < 1.0:
         return 0.0

@@ -1,4 +1,4 @@
-"""What painted marks show of a brush: a verdict, laws, confidence, residuals, what moved; and as a picture."""
+"""Report a fit of painted marks, in words and as a picture."""
 
 from __future__ import annotations
 
@@ -21,99 +21,116 @@ from .from_marks import (
     MIN_CHI_SQUARE,
     front_ratio,
     height_at,
-    simulated,
+    simulate_fitted_brush,
     widest_ratio,
 )
-from .stray_marks import OUTLYING
+from .stray_marks import MAX_RESIDUAL_SIGMAS
 
-FOREIGN = 0.1  # of all points, masked: more than blots and gaps
-ALIKE, GOOD_FIT = (
-    0.5,
-    0.9,
-)  # overlap of painted and predicted marks; photographs of hairy strokes have 0.6 to 0.8
-UNLIKELY, UNLIKELY_RMS = 3.0, 1.5  # times what was expected, of one number and of the displacements' rms
-WORST_MARKS = 3
-PAINT, PREDICTED, WAY = "#c9ced8", "#c0392b", "#3f8fd9"
+MAX_MASKED_SHARE = 0.1  # share of all points: if more are masked, they are not only blots and gaps
+# Overlap of painted and predicted marks: least usable and least good one. Photographs of hairy strokes have 0.6 to 0.8.
+MIN_USABLE_OVERLAP, MIN_GOOD_OVERLAP = 0.5, 0.9
+# Largest multiples of the expected size: of one number, and of the rms of the displacements.
+MAX_SIZE_PER_SIGMA, MAX_RMS_PER_SIGMA = 3.0, 1.5
+WORST_MARKS = 3  # number of marks that the report lists
+PAINT, PREDICTED, PATH = "#c9ced8", "#c0392b", "#3f8fd9"
 
 
-def report(made, of_photo: bool = False) -> Report:
-    """What `brushsvg calibrate` prints. made: a mark_calibrate.MarkCalibration; of_photo: of a photograph, which has
-    flags and no measurement file.
+def report(calibration, of_photo: bool = False) -> Report:
+    """Return the report that `brushsvg calibrate` prints.
 
-    Do not use: marks overlap with their predictions by 0.5 or less without displacements.
-    Usable, but: by less than 0.9; the fit stopped before it converged; marks were left out or are astray; the sheet
-    differs from what was expected; a tenth of the edges is masked; too few depths were painted for the usual lag.
+    calibration: a from_marks.MarkCalibration. of_photo: the marks come from a photograph, for which remedies are flags
+    instead of keys of a measurement file.
+
+    "Do not use" means that marks overlap with their predictions by 0.5 or less without displacements. "Usable, but"
+    means one of the following: the overlap is less than 0.9; the fit stopped before it converged; marks were left out
+    or are astray; the sheet differs from the expected one; a tenth of the edges is masked; too few depths were painted
+    for the usual lag.
     """
-    brush, fit = made.brush, made.fit
-    in_place, moved = overlaps(made)
-    unexpected = _unexpected(made, of_photo)
-    against, low = coinciding(moved)
-    strays = plural(len(made.strays), "mark")
-    but = [
-        *low,
+    brush, fit = calibration.brush, calibration.fit
+    in_place, moved = overlaps(calibration)
+    unexpected = _unexpected(calibration, of_photo)
+    reasons_against, low_overlap = judge_overlap(moved)
+    strays = plural(len(calibration.strays), "mark")
+    reservations = [
+        *low_overlap,
         "" if fit.converged else NOT_CONVERGED,
-        (f"{strays} had to be left out" if made.strays_left_out else f"the fit is unlike {strays}")
-        if made.strays
+        (f"{strays} had to be left out" if calibration.strays_left_out else f"the fit is unlike {strays}")
+        if calibration.strays
         else "",
         f"{plural(len(unexpected), 'value')} of the sheet {'differs' if len(unexpected) == 1 else 'differ'} from what "
         "was expected"
         if unexpected
         else "",
-        f"{100 * fit.left_aside:.0f} % of the edges had to be masked" if fit.left_aside > FOREIGN else "",
-        f"only {made.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
+        f"{100 * fit.left_aside:.0f} % of the edges had to be masked"
+        if fit.left_aside > MAX_MASKED_SHARE
+        else "",
+        f"only {calibration.painted.depths} depths were painted"
+        if len(brush.lag.coefficients) < LAG_TERMS
+        else "",
     ]
-    found = machine_found.numbers(fit, made.covariance, made.expected)
-    cell = machine_found.cell_table(fit, made.expected, found)
+    machine_numbers = machine_found.numbers(fit, calibration.covariance, calibration.expected)
+    cell = machine_found.cell_table(fit, calibration.expected, machine_numbers)
     lines = [
-        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(made.painted.marks)} painted marks",
+        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(calibration.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {moved:.3f}, by {in_place:.3f} with the displacements of marks (mean "
         "of intersection over union)",
-        *(_paint(made) if brush.paint else []),
-        _displaced(made),
-        _worst(made),
+        *(_describe_paint(calibration) if brush.paint else []),
+        _describe_displacements(calibration),
+        _list_worst_marks(calibration),
         *(
             ["the machine has faults that its cell can undo: the details have a table for the cell file"]
             if cell
             else []
         ),
-        *_astray(made),
+        *_describe_strays(calibration),
         *unexpected,
-        *_unlike(fit, moved),
-        *_few_depths(made),
+        *_warn_of_poor_fit(fit, moved),
+        *_warn_of_few_depths(calibration),
         *fit.remarks,
     ]
-    details = [*laws_table(brush), "", _tail(made), *_departing(made)]
-    details += ["", *_moved(made), "", *_stays(made), *(["", "for the cell:", *cell] if cell else [])]
-    return Report(verdict(against, but), tuple(lines), (*details, "", *coefficients(brush)))
+    details = [*laws_table(brush), "", _describe_tail(calibration), *_list_departing_laws(calibration)]
+    details += [
+        "",
+        *_describe_sheet_and_machine(calibration),
+        "",
+        *_describe_residuals(calibration),
+        *(["", "for the cell:", *cell] if cell else []),
+    ]
+    return Report(verdict(reasons_against, reservations), tuple(lines), (*details, "", *coefficients(brush)))
 
 
-def coinciding(moved: float) -> tuple[list[str], list[str]]:
-    """What the overlap of painted and predicted marks, without displacements, says of a brush."""
-    return overlap_reasons(moved, "painted and predicted marks", GOOD_FIT, ALIKE + 1e-9)
+def judge_overlap(moved: float) -> tuple[list[str], list[str]]:
+    """Judge a brush by the overlap of painted and predicted marks.
+
+    Return reasons against the brush, and reservations.
+
+    moved: the mean overlap without displacements.
+    """
+    return overlap_reasons(moved, "painted and predicted marks", MIN_GOOD_OVERLAP, MIN_USABLE_OVERLAP + 1e-9)
 
 
-def _displaced(made) -> str:
-    sizes = [math.hypot(*residual.displacement_mm) for residual in made.fit.marks]
-    far = int(np.argmax(sizes))
+def _describe_displacements(calibration) -> str:
+    sizes = [math.hypot(*residual.displacement_mm) for residual in calibration.fit.marks]
+    farthest = int(np.argmax(sizes))
     half = _core.deviations_of_95() * float(
-        np.sqrt(made.covariance[height_at(made.fit), height_at(made.fit)])
+        np.sqrt(calibration.covariance[height_at(calibration.fit), height_at(calibration.fit)])
     )
     return (
-        f"{paper_height(made.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), "
-        f"{made.painted.marks[far].stroke} most, by {sizes[far]:.2f} mm"
+        f"{paper_height(calibration.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), "
+        f"{calibration.painted.marks[farthest].stroke} most, by {sizes[farthest]:.2f} mm"
     )
 
 
-def _worst(made) -> str:
-    """The marks that fit worst."""
-    rms_mm = np.array([residual.rms_mm for residual in made.fit.marks])
+def _list_worst_marks(calibration) -> str:
+    """List the marks that fit worst."""
+    rms_mm = np.array([residual.rms_mm for residual in calibration.fit.marks])
     worst = np.argsort(-rms_mm, kind="stable")[:WORST_MARKS]
-    listed = ", ".join(f"{made.painted.marks[k].stroke} {rms_mm[k]:.2f} mm" for k in worst)
+    listed = ", ".join(f"{calibration.painted.marks[k].stroke} {rms_mm[k]:.2f} mm" for k in worst)
     return f"worst marks, by the residual of their edges (rms): {listed}"
 
 
-def _paint(made) -> list[str]:
-    paint, bends = made.brush.paint, made.paint_bends
+def _describe_paint(calibration) -> list[str]:
+    paint, bends = calibration.brush.paint, calibration.paint_bends
     half = paint_interval_per_m(paint)
     known = "" if paint.narrows_per_m > half else ": these marks do not show that they do"
     lines = [
@@ -126,15 +143,15 @@ def _paint(made) -> list[str]:
             "and the freshly dipped width is off by more than its interval"
         )
     lines.append(
-        made.dry.describe()
-        if made.dry
-        else f"no mark ran dry: a load lasts {made.painted.way_mm:.0f} mm at least"
+        calibration.dry.describe()
+        if calibration.dry
+        else f"no mark ran dry: a load lasts {calibration.painted.way_mm:.0f} mm at least"
     )
     return lines
 
 
-def _tail(made) -> str:
-    gain = made.round_tail_gain
+def _describe_tail(calibration) -> str:
+    gain = calibration.round_tail_gain
     if abs(gain) < MIN_CHI_SQUARE:
         return "these marks do not show whether the footprint's tail is pointed or round; it is taken to be pointed"
     kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
@@ -143,19 +160,19 @@ def _tail(made) -> str:
     )
 
 
-def _few_depths(made) -> list[str]:
-    terms = len(made.brush.lag.coefficients)
+def _warn_of_few_depths(calibration) -> list[str]:
+    terms = len(calibration.brush.lag.coefficients)
     if terms >= LAG_TERMS:
         return []
     return [
-        f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {made.painted.depths} depths were "
+        f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {calibration.painted.depths} depths were "
         "painted. Between them its error may exceed its confidence interval"
     ]
 
 
-def _departing(made) -> list[str]:
-    """Which laws have more than the usual numbers of coefficients."""
-    laws = made.fit.laws
+def _list_departing_laws(calibration) -> list[str]:
+    """List the laws that have more than the usual number of coefficients."""
+    laws = calibration.fit.laws
     departing = [
         name
         for name, terms, usual in (
@@ -175,38 +192,47 @@ def _departing(made) -> list[str]:
     ]
 
 
-def _unexpected(made, of_photo: bool = False) -> list[str]:
-    """Return the values that are too large for the sigmas of the fit, which then pull at the laws."""
-    fit, expected = made.fit, made.expected
-    astray = {stray.mark.stroke for stray in made.strays}
+def _unexpected(calibration, of_photo: bool = False) -> list[str]:
+    """Return a sentence for each value that is too large for the fit.
+
+    A value that is too large for its sigma biases the laws.
+    """
+    fit, expected = calibration.fit, calibration.expected
+    astray = {stray.mark.stroke for stray in calibration.strays}
     displaced = [
         residual.displacement_mm
-        for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
+        for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True)
         if mark.stroke not in astray
     ]
     turn_deg, turn_sigma_deg = math.degrees(abs(fit.turn_rad)), math.degrees(expected.turn_rad)
-    found = (
+    checks = (
         (
             "displacement_mm",
             "marks are displaced (rms) by",
             _rms(displaced),
             expected.displacement_mm,
-            UNLIKELY_RMS,
+            MAX_RMS_PER_SIGMA,
         ),
         (
             "placement_mm",
             "the sheet is shifted by",
             max(map(abs, fit.shift_mm)),
             expected.placement_mm,
-            UNLIKELY,
+            MAX_SIZE_PER_SIGMA,
         ),
-        ("height_mm", "the paper's height is off by", abs(fit.height_mm), expected.height_mm.sigma, UNLIKELY),
-        ("turn_deg", "the sheet is turned by", turn_deg, turn_sigma_deg, UNLIKELY),
+        (
+            "height_mm",
+            "the paper's height is off by",
+            abs(fit.height_mm),
+            expected.height_mm.sigma,
+            MAX_SIZE_PER_SIGMA,
+        ),
+        ("turn_deg", "the sheet is turned by", turn_deg, turn_sigma_deg, MAX_SIZE_PER_SIGMA),
     )
     return [
         f"{what} {size:.2g} {_unit(key)}, but the fit expects {sigma:.2g} {_unit(key)} (standard deviation). This "
-        f"biases the laws{_remedy(key, _rounded_up(size), of_photo)}"
-        for key, what, size, sigma, times in found
+        f"biases the laws{_remedy(key, _round_up(size), of_photo)}"
+        for key, what, size, sigma, times in checks
         if size > times * sigma > 0
     ]
 
@@ -228,21 +254,24 @@ def _remedy(key: str, sigma: float, of_photo: bool) -> str:
     return of_flags.get(key, ": compare the picture (--marks-picture) with the page that you painted")
 
 
-def _astray(made) -> list[str]:
-    if made.strays_left_out and made.strays:
-        names = ", ".join(stray.mark.stroke for stray in made.strays)
+def _describe_strays(calibration) -> list[str]:
+    if calibration.strays_left_out and calibration.strays:
+        names = ", ".join(stray.mark.stroke for stray in calibration.strays)
         return [f"left out, not being where or what the other marks say: {names}"]
-    return [f"{notice.where}: {notice.text}" for notice in list_strays(made)]
+    return [f"{notice.where}: {notice.text}" for notice in list_strays(calibration)]
 
 
-def list_strays(made) -> list[Notice]:
-    """Of each mark that is not where or what the others say: where it was found and where expected, what it costs."""
-    out = []
-    for stray in made.strays:
-        (rings,) = predicted_marks(made, [stray.mark])
+def list_strays(calibration) -> list[Notice]:
+    """Return a notice for each stray mark.
+
+    It has the found and expected place, and the cost of leaving the mark out.
+    """
+    notices = []
+    for stray in calibration.strays:
+        (rings,) = predict_outlines(calibration, [stray.mark])
         found, expected = (
-            _extent(np.vstack(each))
-            for each in (stray.mark.outline_mm, on_sheet(made, rings) or [np.zeros((1, 2))])
+            _describe_extent(np.vstack(shape))
+            for shape in (stray.mark.outline_mm, to_sheet_frame(calibration, rings) or [np.zeros((1, 2))])
         )
         if stray.is_displaced:
             dx, dy = stray.displacement_mm
@@ -255,39 +284,44 @@ def list_strays(made) -> list[Notice]:
                 f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
                 "is on the mark, or it is smeared or torn"
             )
-        sentence = f"{what}; found in {found}, expected in {expected}; {_cost(made, stray.mark)}"
-        out.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
-    return out
+        sentence = (
+            f"{what}; found in {found}, expected in {expected}; {_describe_cost(calibration, stray.mark)}"
+        )
+        notices.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
+    return notices
 
 
-def _extent(points: np.ndarray) -> str:
+def _describe_extent(points: np.ndarray) -> str:
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return f"x [{x0:.1f}, {x1:.1f}], y [{y0:.1f}, {y1:.1f}] mm"
 
 
-def _cost(made, mark) -> str:
-    if not made.strays_left_out:
+def _describe_cost(calibration, mark) -> str:
+    if not calibration.strays_left_out:
         return "look at the picture, and leave it out if it is not the mark of this stroke"
     depth = deepest_mm(mark)
-    alike = sum(abs(deepest_mm(other) - depth) < 0.01 for other in made.painted.marks)
-    at = min(depth, made.brush.depth_range_mm[1])
-    half = float(law_band(made.brush, "lag", np.array([at]))[0][0])
+    alike = sum(abs(deepest_mm(other) - depth) < 0.01 for other in calibration.painted.marks)
+    at = min(depth, calibration.brush.depth_range_mm[1])
+    half = float(law_band(calibration.brush, "lag", np.array([at]))[0][0])
     return f"it is left out: {alike} other marks are {depth:.4g} mm deep, the lag is known there to +- {half:.2f} mm"
 
 
-def _unlike(fit, moved: float) -> list[str]:
-    """moved: overlap without the displacements."""
+def _warn_of_poor_fit(fit, moved: float) -> list[str]:
+    """Return warnings about many masked points and a small overlap.
+
+    moved: the overlap without displacements.
+    """
     out = []
-    if fit.left_aside > FOREIGN:
+    if fit.left_aside > MAX_MASKED_SHARE:
         out.append(
             f"{100 * fit.left_aside:.0f} % of the edge points are masked outliers, outside the range [0, "
-            f"{100 * FOREIGN:.0f}] %: the tail and the confidence intervals may be wrong; clean the outlines of blots, "
-            "borders and slits"
+            f"{100 * MAX_MASKED_SHARE:.0f}] %: the tail and the confidence intervals may be wrong; clean the "
+            "outlines of blots, borders and slits"
         )
-    if moved <= ALIKE:
+    if moved <= MIN_USABLE_OVERLAP:
         out.append(
-            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{ALIKE:g}, 1]: look at the "
-            "picture before use"
+            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{MIN_USABLE_OVERLAP:g}, 1]: look "
+            "at the picture before use"
         )
     return out
 
@@ -296,50 +330,58 @@ def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def _rounded_up(size: float) -> float:
-    """To one digit."""
+def _round_up(size: float) -> float:
+    """Round up to one significant digit."""
     unit = 10.0 ** math.floor(math.log10(size))
     return unit * math.ceil(size / unit)
 
 
-def _moved(made) -> list[str]:
-    """Place of the sheet and errors of the machine: found along with the laws."""
-    fit = made.fit
-    half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(made.covariance))
+def _describe_sheet_and_machine(calibration) -> list[str]:
+    """Describe the position of the sheet and the errors of the machine.
+
+    Both are fitted together with the laws.
+    """
+    fit = calibration.fit
+    half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(calibration.covariance))
     first = height_at(fit)
     shift, turn = half_intervals[first + 1 : first + 3], half_intervals[first + 3]
     lines = [
         f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
         f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
     ]
-    lines += machine_found.describe_numbers(machine_found.numbers(fit, made.covariance, made.expected))
-    if made.scale:
+    lines += machine_found.describe_numbers(
+        machine_found.numbers(fit, calibration.covariance, calibration.expected)
+    )
+    if calibration.scale:
         lines.append(
-            f"by the places of its marks the sheet is {made.scale.describe(made.scale.both)} than the plan"
+            f"by the places of its marks the sheet is "
+            f"{calibration.scale.describe(calibration.scale.both)} than the plan"
         )
     return lines
 
 
-def _stays(made) -> list[str]:
-    fit = made.fit
+def _describe_residuals(calibration) -> list[str]:
+    fit = calibration.fit
     lines = [
         f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
         f"{fit.effective_samples:.0f} independent ones",
     ]
-    if made.edge_mm > 0:
+    if calibration.edge_mm > 0:
         lines.append(
-            f"all edges may be {made.edge_mm:.2f} mm off together (standard deviation), as a picture has them: the "
-            "intervals hold that"
+            f"all edges may be {calibration.edge_mm:.2f} mm off together (standard deviation), as a picture has them: "
+            "the intervals hold that"
         )
     if fit.left_aside > 0.01:
-        bound = f"residual above {OUTLYING:g} standard deviations"
+        bound = f"residual above {MAX_RESIDUAL_SIGMAS:g} standard deviations"
         lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
     if fit.slim > 0.01:
         lines.append(
             f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals"
         )
     outliers = [
-        mark.stroke for mark, found in zip(made.painted.marks, fit.marks, strict=True) if found.outlier
+        mark.stroke
+        for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True)
+        if residual.outlier
     ]
     if outliers:
         lines.append(
@@ -348,33 +390,40 @@ def _stays(made) -> list[str]:
     return lines
 
 
-def overlaps(made) -> tuple[float, float]:
-    """Return the mean overlap of painted with predicted marks, in place and without their displacements.
+def overlaps(calibration) -> tuple[float, float]:
+    """Return the mean overlap of painted with predicted marks.
 
-    It shows how well the brush predicts where paint will be, which is more than the confidence of its laws.
+    The two values are in place and without the displacements of the marks.
+
+    The overlap shows how well the brush predicts the position of paint. The confidence of its laws shows less.
     """
-    marks, in_place, moved = made.painted.marks, [], []
-    predicted = predicted_marks(made, marks)
-    for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        in_place.append(_core.overlap(_home(made, mark.outline_mm, (0.0, 0.0)), rings))
-        moved.append(_core.overlap(_home(made, mark.outline_mm, residual.displacement_mm), rings))
+    marks, in_place, moved = calibration.painted.marks, [], []
+    predicted = predict_outlines(calibration, marks)
+    for mark, residual, rings in zip(marks, calibration.fit.marks, predicted, strict=True):
+        in_place.append(_core.overlap(_to_plan_frame(calibration, mark.outline_mm, (0.0, 0.0)), rings))
+        moved.append(
+            _core.overlap(_to_plan_frame(calibration, mark.outline_mm, residual.displacement_mm), rings)
+        )
     return float(np.mean(in_place)), float(np.mean(moved))
 
 
-def report_picture(made, suffix: str) -> bytes:
-    """The laws with bands, and painted outlines against predicted ones: best, median and worst mark."""
+def report_picture(calibration, suffix: str) -> bytes:
+    """Draw the laws with bands, and the best, median and worst mark.
+
+    Marks have their painted and predicted outlines.
+    """
     figure = new_figure((11, 11))
     laws, marks = figure.subfigures(2, 1, height_ratios=(1.6, 1))
-    brush_picture_on(laws, made.brush)
-    order = np.argsort([residual.rms_mm for residual in made.fit.marks])
+    brush_picture_on(laws, calibration.brush)
+    order = np.argsort([residual.rms_mm for residual in calibration.fit.marks])
     chosen = [("best", order[0]), ("median", order[len(order) // 2]), ("worst", order[-1])]
-    predicted = predicted_marks(made, [made.painted.marks[int(k)] for _, k in chosen])
+    predicted = predict_outlines(calibration, [calibration.painted.marks[int(k)] for _, k in chosen])
     for axes, (what, k), rings in zip(marks.subplots(1, 3), chosen, predicted, strict=True):
-        mark, residual = made.painted.marks[int(k)], made.fit.marks[int(k)]
-        fill_rings(axes, _home(made, mark.outline_mm, residual.displacement_mm), PAINT)
+        mark, residual = calibration.painted.marks[int(k)], calibration.fit.marks[int(k)]
+        fill_rings(axes, _to_plan_frame(calibration, mark.outline_mm, residual.displacement_mm), PAINT)
         for ring in rings:
             axes.plot(*np.vstack([ring, ring[:1]]).T, color=PREDICTED, linewidth=1)
-        axes.plot(*mark.poses_mm[:, :2].T, color=WAY, linewidth=0.8)
+        axes.plot(*mark.poses_mm[:, :2].T, color=PATH, linewidth=0.8)
         axes.set_aspect("equal")
         title = f"{what}: {shortened(mark.stroke, 16)}, {residual.rms_mm:.2f} mm (rms)"
         axes.set_title(title, fontsize=9, color=INK)
@@ -383,16 +432,22 @@ def report_picture(made, suffix: str) -> bytes:
     return encoded(figure, suffix)
 
 
-def _home(made, rings, displacement) -> list[np.ndarray]:
-    """Transform rings of the sheet to the frame of the plan, with the fitted pose of the sheet."""
-    fit = made.fit
+def _to_plan_frame(calibration, rings, displacement) -> list[np.ndarray]:
+    """Transform rings of the sheet to the frame of the plan.
+
+    The transformation is the fitted pose of the sheet, and the displacement of the mark.
+    """
+    fit = calibration.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]
 
 
-def on_sheet(made, rings) -> list[np.ndarray]:
-    """Transform rings of the plan to the frame of the painted sheet, with its fitted pose."""
-    fit = made.fit
+def to_sheet_frame(calibration, rings) -> list[np.ndarray]:
+    """Transform rings of the plan to the frame of the sheet.
+
+    The transformation is the fitted pose of the sheet.
+    """
+    fit = calibration.fit
     centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
     return [(ring - centre) @ turned + centre + fit.shift_mm for ring in rings]
 
@@ -401,10 +456,13 @@ def deepest_mm(mark) -> float:
     return float(-np.array(mark.poses_mm)[:, 2].min())
 
 
-def predicted_marks(made, marks: list) -> list:
-    """Rings of what the brush that was found paints along the ways of these marks, in the frame of the plan."""
-    brush, traces = simulated(made, marks)
+def predict_outlines(calibration, marks: list) -> list:
+    """Return the rings that the fitted brush paints along the paths of marks.
+
+    The rings are in the frame of the plan.
+    """
+    brush, traces = simulate_fitted_brush(calibration, marks)
     painted = _core.Marks()
     painted.passes = traces
     _core.trace_outlines(painted, brush)
-    return [one.outline_mm for one in painted.passes]
+    return [painted_pass.outline_mm for painted_pass in painted.passes]

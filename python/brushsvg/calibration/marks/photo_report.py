@@ -1,4 +1,4 @@
-"""A photograph of a chart with what was read from it, and what the brush that was found paints there, as a picture."""
+"""Draw the outlines read from a photograph and the predicted outlines."""
 
 from __future__ import annotations
 
@@ -8,54 +8,72 @@ import numpy as np
 from ... import _core
 from ...photo.flatten import Flat
 from ...reporting.label_space import LabelSpace
-from .mark_report import on_sheet, predicted_marks
+from .mark_report import predict_outlines, to_sheet_frame
 
-# blue first
-FOUND, PREDICTED, ASTRAY, TEXT = (60, 160, 40), (40, 40, 220), (0, 140, 255), (90, 60, 20)
-LETTER_MM, FOUND_MM, PREDICTED_MM, HALO_MM = (
-    2.0,
-    0.2,
-    0.08,
-    0.3,
-)  # letters, lines, and the white round letters
-FONT, FONT_PX = cv2.FONT_HERSHEY_SIMPLEX, 22  # height of its letters at size 1
-CELLS_PER_MM = 4.0  # by which labels keep clear of marks
-DARK, AROUND_MM = 0.95, 25.0  # of the usual brightness around a place: darker is paint or print
-LEAST_PX_PER_MM = 14.0  # of the picture that is drawn: coarser, letters cannot be read and two lines are one
-SHARP = 16  # of polylines: fractions of a pixel
-
-
-def read_picture(read, made=None) -> bytes:
-    """PNG. read: chart.photograph.Read, its outlines in green; made: from_marks.MarkCalibration, the marks it predicts
-    in red, with each stroke's overlap and displacement; what was left out in orange."""
-    return _drawn(read, lambda picture, flat: _compared(picture, flat, read, made))
-
-
-def dabs_picture(read, made) -> bytes:
-    """PNG. made: from_dabs.DabCalibration: over each dab in green the outline of its depth in red, with its depth and,
-    where there is room, its displacement; what was left out in orange."""
-    return _drawn(read, lambda picture, flat: _dabs_compared(picture, flat, read, made.outlines))
+# Colours as blue, green, red.
+FOUND_COLOUR, PREDICTED_COLOUR, STRAY_COLOUR, TEXT_COLOUR = (
+    (60, 160, 40),
+    (40, 40, 220),
+    (0, 140, 255),
+    (90, 60, 20),
+)
+# Height of letters, widths of found and predicted lines, and width of the white border around letters.
+LETTER_MM, FOUND_MM, PREDICTED_MM, HALO_MM = 2.0, 0.2, 0.08, 0.3
+FONT, FONT_PX = cv2.FONT_HERSHEY_SIMPLEX, 22  # the font, and the height of its letters at size 1
+CELLS_PER_MM = 4.0  # resolution of the grid that keeps labels clear of marks
+MAX_BRIGHTNESS_SHARE, BRIGHTNESS_WINDOW_MM = (
+    0.95,
+    25.0,
+)  # a place darker than this share of the median brightness around it is paint or print
+# Least resolution of the drawn picture. In a coarser one, letters are illegible and two lines merge.
+MIN_PX_PER_MM = 14.0
+PIXEL_FRACTIONS = 16  # fractions of a pixel in the coordinates of polylines
 
 
-def _drawn(read, compared) -> bytes:
-    """compared: draws on (picture, flat), and gives what is to be said of each stroke, the longest first."""
-    flat = _enlarged(read.flat)
+def read_picture(read, calibration=None) -> bytes:
+    """Draw the marks of a photograph and their predictions as a PNG.
+
+    read: a chart.photograph.Read, whose outlines are green. calibration: a from_marks.MarkCalibration, whose
+    predictions are red, with the overlap and displacement of each stroke. Marks that were left out are orange.
+    """
+    return _draw_picture(read, lambda picture, flat: _draw_predictions(picture, flat, read, calibration))
+
+
+def dabs_picture(read, calibration) -> bytes:
+    """Draw the dabs of a photograph and the outlines of their depths as a PNG.
+
+    Dabs are green, outlines are red.
+
+    calibration: a from_dabs.DabCalibration. Each dab is labelled with its depth and, if there is space, its
+    displacement. Dabs that were left out are orange.
+    """
+    return _draw_picture(
+        read, lambda picture, flat: _draw_dab_predictions(picture, flat, read, calibration.outlines)
+    )
+
+
+def _draw_picture(read, compared) -> bytes:
+    """Draw the found outlines, the comparison and the labels.
+
+    compared: draws on (picture, flat) and returns the labels of each stroke, the longest first.
+    """
+    flat = _enlarge(read.flat)
     picture, outlines = flat.pixels, read.marks.outlines_mm
     space = _label_space(flat, outlines)
     for rings in outlines.values():
-        _draw(picture, flat, rings, FOUND, FOUND_MM)
+        _draw_rings(picture, flat, rings, FOUND_COLOUR, FOUND_MM)
     for stroke, words in compared(picture, flat).items():
         points = np.vstack(outlines[stroke])
-        _write(picture, flat, space, points[points[:, 1].argmax()], words)
+        _write_label(picture, flat, space, points[points[:, 1].argmax()], words)
     return cv2.imencode(".png", picture)[1].tobytes()
 
 
 def _label_space(flat: Flat, outlines: dict) -> LabelSpace:
-    """Return the free space around everything that was painted or printed."""
+    """Return the free space for labels around everything that was painted or printed."""
     size = tuple(round(side * CELLS_PER_MM) for side in flat.sheet_mm)
     grey = cv2.resize(cv2.cvtColor(flat.pixels, cv2.COLOR_BGR2GRAY), size, interpolation=cv2.INTER_AREA)
-    around = cv2.medianBlur(grey, round(AROUND_MM * CELLS_PER_MM) | 1)
-    marks = (grey < DARK * around).astype(np.uint8)
+    around = cv2.medianBlur(grey, round(BRIGHTNESS_WINDOW_MM * CELLS_PER_MM) | 1)
+    marks = (grey < MAX_BRIGHTNESS_SHARE * around).astype(np.uint8)
     step = CELLS_PER_MM / flat.px_per_mm
     for rings in outlines.values():
         cv2.fillPoly(marks, [np.round(flat.to_px(ring) * step).astype(np.int32) for ring in rings], 1)
@@ -63,28 +81,31 @@ def _label_space(flat: Flat, outlines: dict) -> LabelSpace:
     return LabelSpace(marks > 0, 1 / step, (0, 0, columns, rows))
 
 
-def _enlarged(flat: Flat) -> Flat:
-    """A copy in which lines and letters have room."""
-    size = max(1.0, LEAST_PX_PER_MM / flat.px_per_mm)
+def _enlarge(flat: Flat) -> Flat:
+    """Return a copy that is large enough for lines and letters."""
+    size = max(1.0, MIN_PX_PER_MM / flat.px_per_mm)
     columns, rows = (round(side * flat.px_per_mm * size) for side in flat.sheet_mm)
     return Flat(cv2.resize(flat.pixels, (columns, rows)), flat.px_per_mm * size, flat.sheet_mm)
 
 
-def _compared(picture, flat, read, made) -> dict[str, list[str]]:
-    """Draw the predictions on their marks, and return labels for each stroke, the longest first."""
-    if made is None:
+def _draw_predictions(picture, flat, read, calibration) -> dict[str, list[str]]:
+    """Draw the predictions on their marks, and return the labels.
+
+    The labels of each stroke are ordered by length, the longest first.
+    """
+    if calibration is None:
         return {stroke: [stroke] for stroke in read.marks.outlines_mm}
     words = {}
-    for stray in made.strays:
-        (rings,) = predicted_marks(made, [stray.mark])
-        _draw(picture, flat, on_sheet(made, rings), PREDICTED, PREDICTED_MM)
-        _draw(picture, flat, stray.mark.outline_mm, ASTRAY, FOUND_MM)
+    for stray in calibration.strays:
+        (rings,) = predict_outlines(calibration, [stray.mark])
+        _draw_rings(picture, flat, to_sheet_frame(calibration, rings), PREDICTED_COLOUR, PREDICTED_MM)
+        _draw_rings(picture, flat, stray.mark.outline_mm, STRAY_COLOUR, FOUND_MM)
         words[stray.mark.stroke] = [f"{stray.mark.stroke}: LEFT OUT", "LEFT OUT", "OUT"]
-    marks = made.painted.marks
-    predicted = predicted_marks(made, marks)
-    for mark, residual, rings in zip(marks, made.fit.marks, predicted, strict=True):
-        drawn = on_sheet(made, [ring + np.array(residual.displacement_mm) for ring in rings])
-        _draw(picture, flat, drawn, PREDICTED, PREDICTED_MM)
+    marks = calibration.painted.marks
+    predicted = predict_outlines(calibration, marks)
+    for mark, residual, rings in zip(marks, calibration.fit.marks, predicted, strict=True):
+        drawn = to_sheet_frame(calibration, [ring + np.array(residual.displacement_mm) for ring in rings])
+        _draw_rings(picture, flat, drawn, PREDICTED_COLOUR, PREDICTED_MM)
         overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], drawn)
         displaced = np.hypot(*residual.displacement_mm)
         words[mark.stroke] = [
@@ -96,22 +117,24 @@ def _compared(picture, flat, read, made) -> dict[str, list[str]]:
     return words
 
 
-def _dabs_compared(picture, flat, read, outlines) -> dict[str, list[str]]:
+def _draw_dab_predictions(picture, flat, read, outlines) -> dict[str, list[str]]:
     drawn, words = outlines.predicted_mm(), {}
     for shape in outlines.shapes:
-        for name, displaced in ((each.dab.name, np.hypot(*each.displacement_mm)) for each in shape.seen):
-            _draw(picture, flat, [drawn[name]], PREDICTED, PREDICTED_MM)
+        for name, displaced in (
+            (patch_dab.dab.name, np.hypot(*patch_dab.displacement_mm)) for patch_dab in shape.seen
+        ):
+            _draw_rings(picture, flat, [drawn[name]], PREDICTED_COLOUR, PREDICTED_MM)
             label = f"{shape.depth_mm:g} mm deep, displaced {displaced:.2f} mm"
             words[name] = [f"{name}: {label}", label, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]
     for name, rings in read.marks.outlines_mm.items():
         if name not in drawn:
-            _draw(picture, flat, rings, ASTRAY, FOUND_MM)
+            _draw_rings(picture, flat, rings, STRAY_COLOUR, FOUND_MM)
             words[name] = [f"{name}: LEFT OUT", "LEFT OUT", "OUT"]
     return words
 
 
-def _write(picture, flat, space: LabelSpace, at_mm, words: list[str]) -> None:
-    """Write the first of the words that has room near a place."""
+def _write_label(picture, flat, space: LabelSpace, at_mm, words: list[str]) -> None:
+    """Write the first of the labels that fits near a place."""
     size, edge = LETTER_MM * flat.px_per_mm / FONT_PX, HALO_MM * flat.px_per_mm
     thick = max(1, round(0.15 * flat.px_per_mm))
     texts = [cv2.getTextSize(text, FONT, size, thick) for text in words]
@@ -120,15 +143,15 @@ def _write(picture, flat, space: LabelSpace, at_mm, words: list[str]) -> None:
     label = space.place(flat.to_px([at_mm])[0], boxes, towards=(0, -1))
     if label.leader:
         ends = [tuple(map(round, end)) for end in label.leader]
-        cv2.line(picture, *ends, TEXT, thick, cv2.LINE_AA)
+        cv2.line(picture, *ends, TEXT_COLOUR, thick, cv2.LINE_AA)
     left, top, right, bottom = map(round, label.box)
     behind = picture[max(top, 0) : bottom, max(left, 0) : right]
     behind[:] = 0.25 * behind + 0.75 * 255
     baseline = (round(label.left + edge), round(label.top + label.height - edge - below))
-    cv2.putText(picture, words[label.choice], baseline, FONT, size, TEXT, thick, cv2.LINE_AA)
+    cv2.putText(picture, words[label.choice], baseline, FONT, size, TEXT_COLOUR, thick, cv2.LINE_AA)
 
 
-def _draw(picture, flat, rings, colour, wide_mm: float) -> None:
-    points = [np.round(flat.to_px(ring) * SHARP).astype(np.int32)[:, None] for ring in rings]
+def _draw_rings(picture, flat, rings, colour, wide_mm: float) -> None:
+    points = [np.round(flat.to_px(ring) * PIXEL_FRACTIONS).astype(np.int32)[:, None] for ring in rings]
     thick = max(1, round(wide_mm * flat.px_per_mm))
     cv2.polylines(picture, points, True, colour, thick, cv2.LINE_AA, shift=4)

@@ -1,1 +1,1 @@
-"""A brush from measured numbers."""
+"""Fit a brush to measured numbers."""

@@ -1,5 +1,7 @@
-"""The middle line of an angular stroke's mark, point by point, to two lengths: r - e where it begins to turn, and r
-from how it decays."""
+"""Read two lengths from the middle line of an angular stroke's mark.
+
+The place where the line begins to turn gives r - e, and its decay gives r.
+"""
 
 from __future__ import annotations
 
@@ -10,23 +12,29 @@ import numpy as np
 
 from ...errors import Error
 
-# Where points of the line are placed between the chords that points are held against, in lags from the corner: chords
-# are off it by 1e-4 lags. Before the corner and 12 lags beyond it is straight.
-PLACES = np.concatenate([np.arange(0.0, 4.0, 0.03), np.arange(4.0, 12.1, 0.25)])
-MOST_POINTS = 500  # of one line that count: one in so many, evenly
-UNSURE = 0.5  # share of the lag: less is known of it by a line that ends too early
-CLEARLY = 16.0  # times the variance by which one sign of e must fit better, or the other is possible as well
-# Noise of standard deviation 1 in x and y, averaged exactly up to the third power (the rule of 2 n points), turned.
-SHAKES = math.sqrt(2.0) * np.array([(math.cos(a), math.sin(a)) for a in np.arange(8) * math.pi / 4.0])
-OFF = 0.15  # of the lag: lines with a larger mean distance are no turns
+# Corners of the polyline that stands for the middle line, in lags from the corner of the handle. The chords are within
+# 1e-4 lags of the line. Before the corner, and from 12 lags beyond it, the line is straight.
+LINE_PLACES_LAGS = np.concatenate([np.arange(0.0, 4.0, 0.03), np.arange(4.0, 12.1, 0.25)])
+MAX_LINE_POINTS = 500  # points used of one line, evenly chosen
+MAX_LAG_UNCERTAINTY = (
+    0.5  # largest standard deviation of the lag, relative to the lag; a line that ends too early exceeds it
+)
+MIN_SIGN_EVIDENCE = 16.0  # times the variance by which one sign of e must fit better to exclude the other
+# Cubature points for noise of standard deviation 1 in x and y: the rule of 2 n points, plus the same points turned by
+# 45 degrees. Averages are exact up to the third power.
+NOISE_POINTS = math.sqrt(2.0) * np.array([(math.cos(a), math.sin(a)) for a in np.arange(8) * math.pi / 4.0])
+MAX_MISFIT_PER_LAG = 0.15  # times the lag: lines with a larger mean distance are not turns
 
 
 @dataclass(frozen=True)
 class Turn:
-    """Lag r and r - e [mm], e the lever from centre of friction to widest section, their covariance (2, 2) [mm^2] by
-    the points of this line alone, how far these are off, root mean square [mm], and the number of values to spare.
+    """The two lengths read from a turn.
 
-    other: the reading with the other sign of e, where the points allow both; this one then is that of e > 0."""
+    lag_mm, turning_mm: lag r and r - e [mm], where e is the lever from the centre of friction to the widest section.
+    covariance_mm2: their covariance (2, 2) from the points of this line alone. rmse_mm: root mean square distance of
+    the points. freedom: degrees of freedom. other: the reading with the other sign of e if the points allow both; then
+    this reading is the one with e > 0.
+    """
 
     lag_mm: float
     turning_mm: float
@@ -37,84 +45,110 @@ class Turn:
 
 
 def middle_of_turn(lag_mm: float, turning_mm: float, s_mm: np.ndarray) -> np.ndarray:
-    """Middle of the mark (n, 2) when the handle has gone s >= 0 along +x from the corner, to which it came along +y:
-    m = q - (r - e) u, u by (7) from 90 degrees. At s = 0 it has a corner as well: there u is across the motion."""
+    """Return the middle (n, 2) of the mark of an angular stroke [mm].
+
+    s_mm >= 0: how far the handle has gone along +x from its corner.
+
+    The handle came to the corner along +y. The middle is m = q - (r - e) u, with u from (7) starting at 90 degrees.
+    The middle also has a corner at s = 0, where u is perpendicular to the motion.
+    """
     after = s_mm / lag_mm
     return np.column_stack([s_mm - turning_mm * np.tanh(after), -turning_mm / np.cosh(after)])
 
 
-def _nearest(line: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The piece of a polyline (k, 2) that is nearest to each point (n, 2), and at which share of it."""
+def _find_nearest_segment(line: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nearest segment of a polyline (k, 2) for each point (n, 2).
+
+    The position of the nearest place is returned as a share of the segment.
+    """
     start, along = line[:-1], np.diff(line, axis=0)
-    apart = points[:, None] - start
-    share = np.clip((apart * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-30), 0.0, 1.0)
-    best = np.argmin(((apart - share[..., None] * along) ** 2).sum(axis=2), axis=1)
+    to_points = points[:, None] - start
+    share = np.clip((to_points * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-30), 0.0, 1.0)
+    best = np.argmin(((to_points - share[..., None] * along) ** 2).sum(axis=2), axis=1)
     return best, share[np.arange(len(points)), best]
 
 
-def _at(values: np.ndarray, piece: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Values of the corners of a polyline (k, 2), interpolated (n, 2)."""
+def _interpolate(values: np.ndarray, piece: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Interpolate values of a polyline's corners (k, 2) on its segments (n, 2)."""
     return values[piece] + share[:, None] * (values[piece + 1] - values[piece])
 
 
-def _below_second_line(points_mm) -> np.ndarray:
-    """At most MOST_POINTS of them, below the handle's second line."""
+def _place_below_second_line(points_mm) -> np.ndarray:
+    """Return at most MAX_LINE_POINTS points, below the handle's second line.
+
+    Points above the line are mirrored.
+    """
     points = np.array(points_mm, float)
-    points = points[:: -(-len(points) // MOST_POINTS)]
+    points = points[:: -(-len(points) // MAX_LINE_POINTS)]
     return points * [1.0, -1.0] if points[:, 1].sum() > 0 else points
 
 
-def _off(points: np.ndarray, lag_mm: float, turning_mm: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points less their nearest place of the middle of a turn (n, 2); the piece of it, and the share of that piece."""
-    line = middle_of_turn(lag_mm, turning_mm, lag_mm * PLACES)
-    before = [0.0, min(float(points[:, 1].min()), -turning_mm) - 1.0]
-    beyond = [max(float(points[:, 0].max()), line[-1, 0]) + 1.0, 0.0]
-    line = np.vstack([before, line, beyond])
-    piece, share = _nearest(line, points)
-    return points - _at(line, piece, share), piece, share
+def _vectors_to_points(
+    points: np.ndarray, lag_mm: float, turning_mm: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the vectors from the middle of a turn to the points (n, 2).
+
+    The index of the nearest segment and the share of it are returned as well.
+    """
+    line = middle_of_turn(lag_mm, turning_mm, lag_mm * LINE_PLACES_LAGS)
+    start = [0.0, min(float(points[:, 1].min()), -turning_mm) - 1.0]
+    end = [max(float(points[:, 0].max()), line[-1, 0]) + 1.0, 0.0]
+    line = np.vstack([start, line, end])
+    piece, share = _find_nearest_segment(line, points)
+    return points - _interpolate(line, piece, share), piece, share
 
 
 def read_turn_near(points_mm, lag_mm: float, turning_mm: float) -> Turn:
-    """The same points as read_turn's, read by one Gauss-Newton step from lengths that are about right.
+    """Read a turn by one Gauss-Newton step from lengths that are approximately right.
 
-    Near e = 0 the lengths of smallest distance scatter more than the points say, and r - e is too small: the
-    distance hardly depends on e there. A step from the laws of all measurements does neither, and repeated it ends at
-    the least squares of all points of all lines. Points scattered about a bent line are nearest to its inside on
-    average; what that adds to the step is taken off, as noise of the size that is found adds it to points on the line.
+    points_mm: as in read_turn. Near e = 0 the distance hardly depends on e. Lengths that minimise it there scatter
+    more than the points predict, and r - e is too small. A step that starts from the laws of all measurements avoids
+    both. Repeated steps end at the least squares of all points of all lines.
+
+    Points that scatter about a bent line are nearest to its inside on average, which biases the step. The bias is
+    computed by adding noise of the estimated size to points on the line, and is subtracted.
     """
-    points = _below_second_line(points_mm)
+    points = _place_below_second_line(points_mm)
     off, gradient, normal = _normal_equations(points, lag_mm, turning_mm)
     freedom = len(points) - 2
     variance = float((off**2).sum()) / freedom
-    shaken = (points - off)[:, None] + math.sqrt(variance) * SHAKES
-    by_noise = _normal_equations(shaken.reshape(-1, 2), lag_mm, turning_mm)[1] / len(SHAKES)
+    noisy = (points - off)[:, None] + math.sqrt(variance) * NOISE_POINTS
+    bias = _normal_equations(noisy.reshape(-1, 2), lag_mm, turning_mm)[1] / len(NOISE_POINTS)
     inverse = np.linalg.pinv(normal)
-    lag, turning = np.array([lag_mm, turning_mm]) - inverse @ (gradient - by_noise)
+    lag, turning = np.array([lag_mm, turning_mm]) - inverse @ (gradient - bias)
     return Turn(float(lag), float(turning), variance * inverse, math.sqrt(variance), freedom)
 
 
 def _normal_equations(points: np.ndarray, lag_mm: float, turning_mm: float):
-    """Points less their nearest place (n, 2); J d and J J^T, J the derivatives of their distance d by lag and r - e."""
-    off, piece, share = _off(points, lag_mm, turning_mm)
-    zero, decay = np.zeros_like(PLACES), 1.0 / np.cosh(PLACES)
-    far = np.zeros((1, 2))  # the straight lines before and beyond: nothing moves across them
-    by_lag = np.vstack([far, np.column_stack([PLACES, zero]), far])
-    by_turning = np.vstack([far, -np.column_stack([np.tanh(PLACES), decay]), far])
+    """Return the vectors to the points (n, 2) and the normal equations.
+
+    The equations are J d and J J^T.
+
+    J holds the derivatives of the distances d with respect to the lag and r - e.
+    """
+    off, piece, share = _vectors_to_points(points, lag_mm, turning_mm)
+    zero, decay = np.zeros_like(LINE_PLACES_LAGS), 1.0 / np.cosh(LINE_PLACES_LAGS)
+    fixed = np.zeros((1, 2))  # the straight parts before and beyond the turn do not move sideways
+    by_lag = np.vstack([fixed, np.column_stack([LINE_PLACES_LAGS, zero]), fixed])
+    by_turning = np.vstack([fixed, -np.column_stack([np.tanh(LINE_PLACES_LAGS), decay]), fixed])
     distance = np.sqrt((off**2).sum(axis=1))
     across = off / np.maximum(distance, 1e-12)[:, None]
-    slopes = -np.stack([(across * _at(by, piece, share)).sum(axis=1) for by in (by_lag, by_turning)])
+    slopes = -np.stack([(across * _interpolate(by, piece, share)).sum(axis=1) for by in (by_lag, by_turning)])
     return off, slopes @ distance, slopes @ slopes.T
 
 
 def read_turn(points_mm, where: str = "") -> Turn:
-    """points_mm (n, 2): of the middle of the mark, the handle's corner at the origin, its second line along +x; the
-    mark is on one side of that line.
+    """Read lag and r - e from the middle line of an angular stroke's mark.
 
-    Least squares of the distances from the line of `middle_of_turn`. Raises Error for points that are no such turn.
+    points_mm (n, 2): points of the middle line. The handle's corner is the origin and its second line runs along +x.
+    The mark is on one side of that line. where: the place in the file, for messages.
+
+    The fit minimises the squared distances from the line of `middle_of_turn`. Raises Error for points that are not
+    such a turn.
     """
     from scipy.optimize import least_squares
 
-    points = _below_second_line(points_mm)
+    points = _place_below_second_line(points_mm)
     reach = float(-points[:, 1].min())
     if not reach > 0.0 or points[:, 0].max() <= 0.0:
         raise Error(
@@ -124,27 +158,28 @@ def read_turn(points_mm, where: str = "") -> Turn:
             code="not-a-turn",
         )
 
-    def off(lengths):
-        return _off(points, lengths[0], lengths[0] * lengths[1])[0].ravel()
+    def residuals(lengths):
+        return _vectors_to_points(points, lengths[0], lengths[0] * lengths[1])[0].ravel()
 
-    def fitted(shares, least, most):
-        """Of lag and (r - e) / r, the latter within these."""
-        tried = [(y / share, share) for y in np.linspace(0.2, 1.0, 9) * reach for share in shares]
-        start = min(tried, key=lambda lengths: float(np.square(off(lengths)).sum()))
+    def fit_within(shares, least, most):
+        """Fit lag and (r - e) / r, with the latter between least and most."""
+        candidates = [(y / share, share) for y in np.linspace(0.2, 1.0, 9) * reach for share in shares]
+        start = min(candidates, key=lambda lengths: float(np.square(residuals(lengths)).sum()))
         bounds = ((0.02 * reach, least), (20.0 * reach, most))
-        return least_squares(off, start, bounds=bounds, x_scale="jac", diff_step=1e-5)
+        return least_squares(residuals, start, bounds=bounds, x_scale="jac", diff_step=1e-5)
 
-    # Far from the corner r - e shows as (r - e) exp(-(r - e)/r) alone, which one length below r has and one above: the
-    # points by the corner decide. In noise of 0.1 mm they often do not; e > 0 but for the shallowest strokes.
+    # Far from the corner only (r - e) exp(-(r - e)/r) is visible. One r - e below r and one above r give the same
+    # value, so the points near the corner must decide. With noise of 0.1 mm they often cannot. e > 0 except for the
+    # shallowest strokes.
     freedom = len(points) - 2
-    below, above = fitted((0.55, 0.75, 0.95), 0.1, 1.0), fitted((1.05, 1.3, 1.6), 1.0, 2.0)
-    least = min(below.cost, above.cost)
-    both = abs(below.cost - above.cost) <= CLEARLY * least / freedom
-    best = below if both or below.cost == least else above
+    smaller, larger = fit_within((0.55, 0.75, 0.95), 0.1, 1.0), fit_within((1.05, 1.3, 1.6), 1.0, 2.0)
+    least = min(smaller.cost, larger.cost)
+    ambiguous = abs(smaller.cost - larger.cost) <= MIN_SIGN_EVIDENCE * least / freedom
+    best = smaller if ambiguous or smaller.cost == least else larger
     lag, share = map(float, best.x)
     turning = share * lag
-    covariance, rmse = _spread(best, freedom)
-    if rmse > OFF * lag:
+    covariance, rmse = _covariance_and_rmse(best, freedom)
+    if rmse > MAX_MISFIT_PER_LAG * lag:
         raise Error(
             f"the points are {rmse:.2g} mm off any brush's turn, which would have a lag of {lag:.3g} mm: the corner of "
             "the handle is (0, 0), its second line goes along x",
@@ -152,7 +187,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
             rmse,
             code="not-a-turn",
         )
-    if np.sqrt(covariance[0, 0]) > UNSURE * lag or lag > 15.0 * reach:
+    if np.sqrt(covariance[0, 0]) > MAX_LAG_UNCERTAINTY * lag or lag > 15.0 * reach:
         raise Error(
             f"the points leave the lag open, {lag:.2g} +- {np.sqrt(covariance[0, 0]):.2g} mm: follow the line farther "
             "beyond the corner, over twice the lag",
@@ -160,13 +195,18 @@ def read_turn(points_mm, where: str = "") -> Turn:
             code="law-undetermined",
         )
     other = (
-        Turn(float(above.x[0]), float(above.x.prod()), *_spread(above, freedom), freedom) if both else None
+        Turn(float(larger.x[0]), float(larger.x.prod()), *_covariance_and_rmse(larger, freedom), freedom)
+        if ambiguous
+        else None
     )
     return Turn(lag, turning, covariance, rmse, freedom, other)
 
 
-def _spread(fit, freedom: int) -> tuple[np.ndarray, float]:
-    """Return the covariance of lag and r - e, and the residual of the points; of a fit of lag and (r - e) / r."""
+def _covariance_and_rmse(fit, freedom: int) -> tuple[np.ndarray, float]:
+    """Return the covariance of lag and r - e, and the residual of the points.
+
+    fit: a fit of lag and (r - e) / r.
+    """
     lag, share = fit.x
     variance = 2.0 * fit.cost / freedom
     to_lengths = np.array([[1.0, 0.0], [share, lag]])

@@ -1,4 +1,7 @@
-"""Measurements to a brush: each law fitted to what speaks of it, with its covariance, and a report in words."""
+"""Fit a brush to measured numbers.
+
+Each law is fitted to the values that determine it, with its covariance and remarks.
+"""
 
 from __future__ import annotations
 
@@ -17,35 +20,43 @@ from . import plausibility
 from .angle_series import read_series, scatter_of_series
 from .centre_lines import Turn, read_turn, read_turn_near
 from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, outlines_assumed
-from .joint_fit import EXACT_MM, LEAST_MM, Reading, Together, fit_together
+from .joint_fit import MIN_LAG_MM, ROUNDING_MM, JointFit, Reading, fit_together
 from .measurements import Measurements, Row
 
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
-# The article's laws: r quartic, b linear through 0, x_w cubic with floor 0; the width, of which it prints none, rises
-# from 0 as a parabola.
-DEGREES = {"lag": 4, "tip_gap": 1, "tip_to_widest": 3, "half_width": 2}
-FROM_ZERO = ("tip_gap", "half_width")
-# What is assumed of a round brush where nothing was measured, in half widths from the tip.
-ASSUMED = {
+# Degrees of the article's laws: r is quartic, b is linear through 0, x_w is cubic with floor 0. The article prints no
+# law of the width; it is a parabola that rises from 0.
+LAW_DEGREES = {"lag": 4, "tip_gap": 1, "tip_to_widest": 3, "half_width": 2}
+LAWS_THROUGH_ZERO = ("tip_gap", "half_width")
+# Positions assumed for a round brush where nothing was measured, in half widths from the tip.
+ASSUMED_SHARES = {
     "tip_gap": (GAP_PER_HALF, "The centre of friction"),
     "tip_to_widest": (WIDEST_PER_HALF, "The widest section"),
 }
-FLOOR_PER_HALF = 0.3  # nearer to the tip the widest section is not drawn: the flanks would fold into a line
-SUMS = ("angular", "straight", "side_view", "video")  # these say how long r + b is, and nothing of either
-FROM_TOUCH = ("side_view", "video")  # counted from first touch
-OUTLINES = 10
-TURN = ({"lag": 1}, {"lag": 1, "tip_gap": 1, "tip_to_widest": -1})  # the lengths of Turn: r, and r - e
-MOST_CHANGES = 5  # of the signs that centre lines are read with
-MOST_STEPS = 20  # of Gauss and Newton
-READ_TO_MM = 0.01  # nobody reads points finer: lines that fit better than this are equally certain
-OPEN_SHARE = 0.025  # a reading less likely than this is left out of 95 % intervals
+# Least distance of the widest section from the tip, in half widths. Nearer to the tip the flanks of the footprint
+# would fold into a line.
+MIN_WIDEST_PER_HALF_WIDTH = 0.3
+SUM_KINDS = ("angular", "straight", "side_view", "video")  # these measure r + b and neither length alone
+KINDS_FROM_TOUCH = ("side_view", "video")  # these count from first touch
+OUTLINE_COUNT = 10  # number of footprint outlines, evenly spaced in depth
+TURN_SUMS = (
+    {"lag": 1},
+    {"lag": 1, "tip_gap": 1, "tip_to_widest": -1},
+)  # the two lengths of a Turn: r and r - e
+MAX_SIGN_ROUNDS = 5  # rounds in which the signs of e may change for centre lines
+MAX_GAUSS_NEWTON_STEPS = 20  # Gauss-Newton steps
+READING_ERROR_MM = (
+    0.01  # nobody reads points more exactly, so lines that fit better than this are equally certain
+)
+MIN_OTHER_PROBABILITY = 0.025  # 95 % intervals ignore a reading that is less likely than this
 
 
 @dataclass(frozen=True)
 class Point:
-    """A law's value at a depth [mm], and the measurement it comes from.
+    """A value of a law at a depth [mm], and the measurement that it comes from.
 
-    scatter: its standard deviation by that of others of its kind."""
+    scatter: standard deviation of the value, relative to other values of its kind.
+    """
 
     where: str
     depth_mm: float
@@ -55,7 +66,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Fitted:
-    """One law: its points and fit, None where it is assumed; remarks in sentences; outliers by index of their point."""
+    """One fitted law.
+
+    points: the values that it was fitted to. fit: None if the law is assumed. remarks: sentences for the report.
+    outliers: by the index of their point.
+    """
 
     name: str
     points: tuple[Point, ...]
@@ -64,17 +79,20 @@ class Fitted:
     outliers: dict[int, plausibility.Outlier] = field(default_factory=dict)
 
     def list_outliers(self) -> list[str]:
-        """A sentence for each outlier, the farthest first."""
+        """Return one sentence per outlier, the largest deviation first."""
         return [
-            f"{self.points[k].where} is an outlier: {found.off_mm:+.2f} mm off the law of the others, studentized "
-            f"residual {found.size:.1f}, bound {plausibility.OUTLYING:g}: measure it again"
-            for k, found in sorted(self.outliers.items(), key=lambda item: -abs(item[1].off_mm))
+            f"{self.points[k].where} is an outlier: {outlier.off_mm:+.2f} mm off the law of the others, studentized "
+            f"residual {outlier.size:.1f}, bound {plausibility.MIN_OUTLIER_SIGMAS:g}: measure it again"
+            for k, outlier in sorted(self.outliers.items(), key=lambda item: -abs(item[1].off_mm))
         ]
 
 
 @dataclass(frozen=True, repr=False)
 class Calibration:
-    """A brush that can be used, and how each law came about. doubts: notices of what may be, but seldom is."""
+    """A brush that is ready to use, and the fit of each law.
+
+    remarks: sentences for the report. doubts: notices about values that are possible but rare.
+    """
 
     brush: _core.Brush
     laws: tuple[Fitted, ...]
@@ -86,9 +104,12 @@ class Calibration:
 
 
 def calibrate(measured: Measurements, name: str, absolute: bool = False, total: bool = False) -> Calibration:
-    """Fit a brush. absolute: least absolute residuals; total: total least squares for angle series.
+    """Fit a brush to measured numbers.
 
-    Raises Error where the measurements leave a law open, or give a brush that cannot be used.
+    measured: the rows of a measurement file. name: the name of the brush; by default the name in the file. absolute:
+    minimise absolute residuals instead of squares. total: use total least squares for angle series.
+
+    Raises Error if the measurements do not determine a law, or if the brush cannot be used.
     """
     need_fits()
     plausibility.refuse_halves_as_widths(measured.rows)
@@ -96,39 +117,46 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
         row.where: read_turn(row.numbers["points_mm"], row.where)
         for row in measured.rows.get("centre_line", [])
     }
-    maker = _Maker(measured, absolute, turns)
-    points, remarks = _direct(measured, total, turns)
-    maker.fit("half_width", points)
-    if "half_width" not in maker.done:
+    fitter = _LawFitter(measured, absolute, turns)
+    points, remarks = _collect_points(measured, total, turns)
+    fitter.fit("half_width", points)
+    if "half_width" not in fitter.fitted:
         raise Error(
             "no width was measured: add half_width or width, one row per depth",
             "half_width",
             code="measurement-missing",
         )
-    maker.fit("tip_to_widest", points)
-    maker.fit("tip_gap", points)
-    maker.fit("lag", points)
+    fitter.fit("tip_to_widest", points)
+    fitter.fit("tip_gap", points)
+    fitter.fit("lag", points)
     if measured.rows.get("angles"):
-        maker.weigh_angles(points, total)
-    maker.fit_sums(points)
-    if "lag" not in maker.done:
+        fitter.weigh_angles(points, total)
+    fitter.fit_sums(points)
+    if "lag" not in fitter.fitted:
         raise Error(
             "no lag was measured: add lag, centre_line, angles or angular, one row per depth",
             "lag",
             code="measurement-missing",
         )
-    brush = maker.brush(name or measured.name or "measured")
-    laws = tuple(maker.done.get(law, Fitted(law, (), None)) for law in LAWS)
-    plausibility.refuse_brush(brush)
-    for law in ("lag", "half_width"):  # the laws that matter for a plan
-        plausibility.refuse_open(brush, maker.done[law])
-    return Calibration(brush, laws, (*remarks, *maker.remarks), tuple(plausibility.odd(brush, laws)))
+    brush = fitter.brush(name or measured.name or "measured")
+    laws = tuple(fitter.fitted.get(law, Fitted(law, (), None)) for law in LAWS)
+    plausibility.refuse_inconsistent_laws(brush)
+    for law in ("lag", "half_width"):  # a plan only depends on these laws
+        plausibility.refuse_undetermined_law(brush, fitter.fitted[law])
+    return Calibration(
+        brush, laws, (*remarks, *fitter.remarks), tuple(plausibility.find_odd_values(brush, laws))
+    )
 
 
-def _direct(
+def _collect_points(
     measured: Measurements, total: bool, turns: dict[str, Turn]
 ) -> tuple[dict[str, list[Point]], list[str]]:
-    """Values of single laws, those of angle series and of the decay of turns included."""
+    """Collect the values of single laws.
+
+    They include values from angle series and from the decay of turns.
+
+    Return the points of each law, and remarks about readings that were left out.
+    """
     points: dict[str, list[Point]] = {law: [] for law in LAWS}
     remarks = []
     for law in LAWS:
@@ -138,117 +166,141 @@ def _direct(
     for row in measured.rows.get("centre_line", []):
         points["lag"].append(Point(row.where, row.depth_mm, turns[row.where].lag_mm))
     for row in measured.rows.get("angles", []):
-        found = read_series(row, total)
-        points["lag"].append(Point(row.where, row.depth_mm, found["lag_mm"]))
-        if math.isfinite(found["tip_gap_mm"]):
-            points["tip_gap"].append(Point(row.where, row.depth_mm, found["tip_gap_mm"]))
-        if found["left_out"]:
+        series = read_series(row, total)
+        points["lag"].append(Point(row.where, row.depth_mm, series["lag_mm"]))
+        if math.isfinite(series["tip_gap_mm"]):
+            points["tip_gap"].append(Point(row.where, row.depth_mm, series["tip_gap_mm"]))
+        if series["left_out"]:
             sentence = (
-                f"{found['left_out']} readings left out: their angle is not between 0 and the first one"
+                f"{series['left_out']} readings left out: their angle is not between 0 and the first one"
             )
             remarks.append(f"{row.where}: {sentence}")
     return points, remarks
 
 
-def _degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
-    """Of a law that so many values speak of, and a remark where it is less than usual."""
-    different = plausibility.different(depths_mm)
-    # two values for each coefficient, or the law would follow their noise
+def _choose_degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
+    """Return the degree that values at these depths allow.
+
+    A remark is returned as well if the degree is lower than usual.
+    """
+    different = plausibility.count_distinct_depths(depths_mm)
+    # Each coefficient needs two values; with fewer, the law would follow their noise.
     coefficients = min(different, max(2, math.ceil(len(depths_mm) / 2)))
-    degree = min(DEGREES[law], coefficients if law in FROM_ZERO else coefficients - 1)
-    if degree == DEGREES[law]:
+    degree = min(LAW_DEGREES[law], coefficients if law in LAWS_THROUGH_ZERO else coefficients - 1)
+    if degree == LAW_DEGREES[law]:
         return degree, []
     few = f"{different} depths" if coefficients == different else f"{len(depths_mm)} values"
-    return degree, [f"of degree {degree} instead of {DEGREES[law]}, for there are {few}"]
+    return degree, [f"of degree {degree} instead of {LAW_DEGREES[law]}, for there are {few}"]
 
 
-class _Maker:
+class _LawFitter:
+    """Fits the laws one after the other and assembles the brush.
+
+    fitted: the laws fitted so far. joint: the joint fit of lag, tip gap and widest section, if there was one.
+    """
+
     def __init__(self, measured: Measurements, absolute: bool, turns: dict[str, Turn]):
         self.measured = measured
         self.range_mm = measured.depth_range_mm or (0.0, measured.depths_mm[-1])
         self.norm = _core.Norm.absolute if absolute else _core.Norm.squares
-        self.done: dict[str, Fitted] = {}
+        self.fitted: dict[str, Fitted] = {}
         self.remarks: list[str] = []
         self.turns = turns
-        self.joint: Together | None = None
+        self.joint: JointFit | None = None
 
     def fit(self, law: str, points: dict[str, list[Point]]) -> None:
         if points[law]:
-            self._fit(law, points[law])
+            self._fit_law(law, points[law])
 
     def weigh_angles(self, points: dict[str, list[Point]], total: bool) -> None:
-        """Fit lag and tip gap of angle series anew, each series weighted by what its angles say of it.
+        """Fit lag and tip gap again with weighted angle series.
 
-        The noise of an angle displaces both in proportion to the lag, so it grows with depth.
+        The weight of a series comes from the scatter that its angles imply.
+
+        The noise of an angle displaces both lengths in proportion to the lag, so their scatter grows with depth.
         """
-        laws = {law: self.done[law].fit.law for law in ("lag", "tip_gap") if law in self.done}
+        laws = {law: self.fitted[law].fit.law for law in ("lag", "tip_gap") if law in self.fitted}
         scatters: dict[str, dict[str, float]] = {law: {} for law in laws}
         for row in self.measured.rows["angles"]:
-            lengths = [max(law(row.depth_mm), LEAST_MM) for law in laws.values()]
-            found = scatter_of_series(row, lengths[0], lengths[1] if len(lengths) > 1 else 0.0, total)
-            for law, scatter in zip(laws, found, strict=False):
+            lengths = [max(law(row.depth_mm), MIN_LAG_MM) for law in laws.values()]
+            series_scatters = scatter_of_series(
+                row, lengths[0], lengths[1] if len(lengths) > 1 else 0.0, total
+            )
+            for law, scatter in zip(laws, series_scatters, strict=False):
                 if math.isfinite(scatter):
                     scatters[law][row.where] = scatter
-        for law, of in scatters.items():
-            if of:
-                usual = math.sqrt(np.mean(np.square(list(of.values()))))
-                points[law] = [replace(p, scatter=of.get(p.where, usual) / usual) for p in points[law]]
+        for law, by_row in scatters.items():
+            if by_row:
+                typical = math.sqrt(np.mean(np.square(list(by_row.values()))))
+                points[law] = [
+                    replace(p, scatter=by_row.get(p.where, typical) / typical) for p in points[law]
+                ]
                 self.fit(law, points)
 
     def fit_sums(self, points: dict[str, list[Point]]) -> None:
-        """Lag, tip gap and widest section anew, in one fit to all that speaks of them, where sums do."""
-        rows = [row for kind in SUMS for row in self.measured.rows.get(kind, [])]
+        """Fit lag, tip gap and widest section again in one joint fit.
+
+        This needs rows that measure sums of these laws.
+
+        Raises Error if the rows measure only sums, so that lag and tip gap cannot be separated.
+        """
+        rows = [row for kind in SUM_KINDS for row in self.measured.rows.get(kind, [])]
         lines = self.measured.rows.get("centre_line", [])
-        if "tip_to_widest" in self.done:
+        if "tip_to_widest" in self.fitted:
             rows += lines
-        elif unsure := [row.where for row in lines if self.turns[row.where].other]:
+        elif unclear := [row.where for row in lines if self.turns[row.where].other]:
             self.remarks.append(
-                f"{', '.join(unsure)} can be read in two ways; read as if the widest section of the footprint were in "
+                f"{', '.join(unclear)} can be read in two ways; read as if the widest section of the footprint were in "
                 "front of the centre of friction. Add rows of tip_to_widest, which decide"
             )
         if not rows:
             return
-        if "tip_gap" not in self.done and "lag" not in self.done:
+        if "tip_gap" not in self.fitted and "lag" not in self.fitted:
             raise Error(
                 "angular, straight, side_view and video all measure the sum of lag and tip gap, so the two cannot be "
                 "separated: add centre_line, angles, or rows of lag or tip_gap",
-                next(kind for kind in SUMS if kind in self.measured.rows),
+                next(kind for kind in SUM_KINDS if kind in self.measured.rows),
                 code="law-undetermined",
             )
         for law in ("lag", "tip_gap"):
-            if law not in self.done:  # to start from: the sums less the other
-                other = self.done["tip_gap" if law == "lag" else "lag"].fit.law
-                self._refuse_no_touch(law)
-                less = [self._sum(row) - other(row.depth_mm) for row in rows]
-                left = [Point(r.where, r.depth_mm, v) for r, v in zip(rows, less, strict=True)]
-                self._fit(law, left, to_start_from=True)
-        widest = any(row.kind not in FROM_TOUCH for row in rows)
+            if law not in self.fitted:  # start from the measured sums minus the other law
+                other_law = self.fitted["tip_gap" if law == "lag" else "lag"].fit.law
+                self._refuse_lag_from_touch(law)
+                differences = [self._sum(row) - other_law(row.depth_mm) for row in rows]
+                remaining_points = [
+                    Point(r.where, r.depth_mm, v) for r, v in zip(rows, differences, strict=True)
+                ]
+                self._fit_law(law, remaining_points, to_start_from=True)
+        widest = any(row.kind not in KINDS_FROM_TOUCH for row in rows)
         laws = ("lag", "tip_gap", "tip_to_widest") if widest else ("lag", "tip_gap")
         absolute = self.norm == _core.Norm.absolute
-        readings = self._readings(laws, points, rows)
-        start = {law: self._to_start_from(law, readings) for law in laws}
+        readings = self._build_readings(laws, points, rows)
+        start = {law: self._starting_law(law, readings) for law in laws}
 
-        def fit(without: Row | None = None) -> Together:
-            kept = self._readings(laws, points, [row for row in rows if row is not without])
+        def fit(without: Row | None = None) -> JointFit:
+            kept = self._build_readings(laws, points, [row for row in rows if row is not without])
             return fit_together(kept, start, self.range_mm, absolute)
 
-        likely = self._choose_turns(fit) if widest else {}
+        other_probabilities = self._choose_turns(fit) if widest else {}
         self.joint = fit()
         if widest and lines:
             self._read_turns_near(lines, fit)
-        for where, share in likely.items():
-            if share > OPEN_SHARE:
+        for where, share in other_probabilities.items():
+            if share > MIN_OTHER_PROBABILITY:
                 self._allow_other_sign(where, share, fit)
-        readings = self._readings(laws, points, rows)
-        self._take(readings, shown="tip_gap" if points["lag"] else "lag")
+        readings = self._build_readings(laws, points, rows)
+        self._store_joint_fit(readings, shown="tip_gap" if points["lag"] else "lag")
 
     def _read_turns_near(self, lines: list[Row], fit) -> None:
-        """Read all centre lines from where the laws of all measurements are, until these stay."""
-        for _ in range(MOST_STEPS):
+        """Read all centre lines again until the laws stop moving.
+
+        The first reading starts from the joint laws.
+        """
+        for _ in range(MAX_GAUSS_NEWTON_STEPS):
             moved = 0.0
             for row in lines:
-                (lag, turning), _ = self.joint.predict(row.depth_mm, TURN)
-                if min(lag, turning) < LEAST_MM:
+                (lag, turning), _ = self.joint.predict(row.depth_mm, TURN_SUMS)
+                if min(lag, turning) < MIN_LAG_MM:
                     continue
                 before = self.turns[row.where]
                 after = read_turn_near(row.numbers["points_mm"], lag, turning)
@@ -257,34 +309,41 @@ class _Maker:
                     moved, abs(after.lag_mm - before.lag_mm), abs(after.turning_mm - before.turning_mm)
                 )
             self.joint = fit()
-            if moved < READ_TO_MM / 10:
+            if moved < READING_ERROR_MM / 10:
                 break
 
     def _choose_turns(self, fit) -> dict[str, float]:
-        """Read each centre line that allows both signs of e with the one that all other measurements agree with.
+        """Choose the sign of e for each centre line that allows both.
 
-        A law that was fitted to a wrong reading agrees with it, so each line is compared with the laws of the others.
-        Returns how likely the other sign is, for each line.
+        The chosen sign fits the other measurements.
+
+        A law that was fitted to a wrong reading agrees with that reading. Each line is therefore compared with laws
+        that were fitted without it. Return the probability of the rejected sign for each line.
         """
         lines = [row for row in self.measured.rows.get("centre_line", []) if self.turns[row.where].other]
-        likely: dict[str, float] = {}
-        for _ in range(MOST_CHANGES):
+        other_probabilities: dict[str, float] = {}
+        for _ in range(MAX_SIGN_ROUNDS):
             changed = False
             for row in lines:
                 turn = self.turns[row.where]
                 others = fit(without=row)
-                worse = [self._misfit(row, each, others) for each in (turn, turn.other)]
-                likely[row.where] = 1.0 / (1.0 + math.exp(min(0.5 * (worse[1] - worse[0]), 700.0)))
-                if worse[1] < worse[0]:
+                misfits = [self._misfit(row, reading, others) for reading in (turn, turn.other)]
+                other_probabilities[row.where] = 1.0 / (
+                    1.0 + math.exp(min(0.5 * (misfits[1] - misfits[0]), 700.0))
+                )
+                if misfits[1] < misfits[0]:
                     self.turns[row.where] = replace(turn.other, other=replace(turn, other=None))
-                    likely[row.where] = 1.0 - likely[row.where]
+                    other_probabilities[row.where] = 1.0 - other_probabilities[row.where]
                     changed = True
             if not changed:
                 break
-        return likely
+        return other_probabilities
 
     def _allow_other_sign(self, where: str, share: float, fit) -> None:
-        """Widen the intervals of all laws by what the other reading of a centre line, so likely, would change."""
+        """Widen the intervals of all laws to allow for the other reading of a centre line.
+
+        share: the probability of the other reading.
+        """
         turn = self.turns[where]
         self.turns[where] = turn.other
         self.joint = self.joint.widened(fit(), share)
@@ -296,31 +355,42 @@ class _Maker:
             f"depth {depth:g} mm"
         )
 
-    def _misfit(self, row: Row, turn: Turn, others: Together) -> float:
-        """-2 ln of the likelihood of a reading of a centre line, by its own points and by the laws of all others."""
-        predicted, covariance = others.predict(row.depth_mm, TURN)
-        own = np.array(turn.covariance_mm2)
-        for kind in others.kinds:  # lines scatter by more than their points do
-            if kind.name == row.kind:
-                more = np.maximum(kind.weight_scatter, 1.0)
-                own = own * np.outer(more, more)
-        covariance = covariance + own + EXACT_MM**2 * np.eye(2)
-        off = np.array([turn.lag_mm, turn.turning_mm]) - predicted
-        by_others = off @ np.linalg.solve(covariance, off) + np.linalg.slogdet(covariance)[1]
-        return float(by_others) + turn.freedom * 2.0 * math.log(max(turn.rmse_mm, EXACT_MM))
+    def _misfit(self, row: Row, turn: Turn, others: JointFit) -> float:
+        """Return -2 ln of the likelihood of a reading of a centre line.
 
-    def _to_start_from(self, law: str, readings: list[Reading]) -> _core.Profile:
-        """The law that was found alone, of the degree that all that speaks of it allows."""
-        alone = self.done[law]
-        depths = [reading.depth_mm for reading in readings if any(law in of for of in reading.sums)]
-        degree, remarks = _degree(law, depths)
-        self.done[law] = Fitted(law, alone.points, alone.fit, tuple(remarks))
-        found = alone.fit.law
-        more = [0.0] * (degree + 1 - len(found.coefficients))
-        return _core.Profile([*found.coefficients, *more], floor=found.floor)
+        The likelihood is given by its points and by the laws of the others.
+        """
+        predicted, covariance = others.predict(row.depth_mm, TURN_SUMS)
+        own_covariance = np.array(turn.covariance_mm2)
+        for kind in others.kinds:  # lines scatter more than their points predict
+            if kind.name == row.kind:
+                factor = np.maximum(kind.weight_scatter, 1.0)
+                own_covariance = own_covariance * np.outer(factor, factor)
+        covariance = covariance + own_covariance + ROUNDING_MM**2 * np.eye(2)
+        deviation = np.array([turn.lag_mm, turn.turning_mm]) - predicted
+        by_others = deviation @ np.linalg.solve(covariance, deviation) + np.linalg.slogdet(covariance)[1]
+        return float(by_others) + turn.freedom * 2.0 * math.log(max(turn.rmse_mm, ROUNDING_MM))
+
+    def _starting_law(self, law: str, readings: list[Reading]) -> _core.Profile:
+        """Return the law that was fitted alone, as the start of the joint fit.
+
+        Its degree is raised to the degree that all readings of it allow.
+        """
+        single_fit = self.fitted[law]
+        depths = [
+            reading.depth_mm for reading in readings if any(law in law_signs for law_signs in reading.sums)
+        ]
+        degree, remarks = _choose_degree(law, depths)
+        self.fitted[law] = Fitted(law, single_fit.points, single_fit.fit, tuple(remarks))
+        profile = single_fit.fit.law
+        added = [0.0] * (degree + 1 - len(profile.coefficients))
+        return _core.Profile([*profile.coefficients, *added], floor=profile.floor)
 
     def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: _core.LawFit) -> None:
-        """Raise Error for values below 0 on the whole, by more than the law's interval."""
+        """Raise Error if the mean of the values is clearly below 0.
+
+        It must be below 0 by more than half the interval of the law.
+        """
         mean = float(np.mean([point.value_mm for point in points]))
         depths = np.array([point.depth_mm for point in points])
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
@@ -333,8 +403,8 @@ class _Maker:
                 code="law-negative",
             )
 
-    def _refuse_no_touch(self, law: str) -> None:
-        kind = next((kind for kind in FROM_TOUCH if self.measured.rows.get(kind)), None)
+    def _refuse_lag_from_touch(self, law: str) -> None:
+        kind = next((kind for kind in KINDS_FROM_TOUCH if self.measured.rows.get(kind)), None)
         if law == "lag" and kind:
             raise Error(
                 f"{kind} needs the lag at depth 0: add rows of lag, angles or centre_line",
@@ -343,34 +413,36 @@ class _Maker:
             )
 
     def _sum(self, row: Row) -> float:
-        """r + b at a depth. The middle of the mark, which angular and centre_line read, is e = x_w - b nearer to the
-        TCP's second line than the centre of friction; straight: (17) with the lag it lacks; side_view, video: (18),
-        counted from first touch.
+        """Return r + b [mm] at the depth of a row.
+
+        Rows of angular and centre_line read the middle of the mark. It is e = x_w - b nearer to the second line of
+        the TCP than the centre of friction. Rows of straight use (17) with the lag that it lacks. Rows of side_view
+        and video use (18) and count from first touch.
         """
-        if row.kind in FROM_TOUCH:
-            return row.numbers["value_mm"] + self.done["lag"].fit.law(0.0)
-        if "tip_to_widest" not in self.done:
+        if row.kind in KINDS_FROM_TOUCH:
+            return row.numbers["value_mm"] + self.fitted["lag"].fit.law(0.0)
+        if "tip_to_widest" not in self.fitted:
             sentence = "this needs the widest section of the footprint: add rows of tip_to_widest"
             raise Error(sentence, row.where, code="law-undetermined")
-        widest = self.done["tip_to_widest"].fit.law(row.depth_mm)  # as it was measured, not as it is drawn
-        return self._reading(row) + widest
+        widest = self.fitted["tip_to_widest"].fit.law(row.depth_mm)  # as measured, not as drawn
+        return self._length_of_row(row) + widest
 
-    def _reading(self, row: Row) -> float:
-        """The same less the widest section, as it was read."""
+    def _length_of_row(self, row: Row) -> float:
+        """Return r + b - x_w [mm], as the row measured it."""
         if row.kind == "centre_line":
             return self.turns[row.where].turning_mm
         if row.kind == "straight":
             return row.numbers["path_mm"] - row.numbers["distance_mm"]
         return row.numbers["value_mm"]
 
-    def _readings(self, laws, points: dict[str, list[Point]], rows: list[Row]) -> list[Reading]:
-        alone = {
+    def _build_readings(self, laws, points: dict[str, list[Point]], rows: list[Row]) -> list[Reading]:
+        line_rows = {
             row.where for row in rows if row.kind == "centre_line"
-        }  # these come with what they say of the sum
+        }  # their lag is added below, together with their sum
         out = []
         for law in laws:
             for point in points[law]:
-                if point.where not in alone:
+                if point.where not in line_rows:
                     of = point.where.split("[")[0]
                     kind = f"{law} of {of}" if of in ("angles", "centre_line") else law
                     out.append(
@@ -385,20 +457,32 @@ class _Maker:
                     )
         both = {"lag": 1, "tip_gap": 1}
         for row in rows:
-            touch = row.kind in FROM_TOUCH
-            values, sums = (self._reading(row),), (both if touch else both | {"tip_to_widest": -1},)
-            own = None
+            touch = row.kind in KINDS_FROM_TOUCH
+            values, sums = (self._length_of_row(row),), (both if touch else both | {"tip_to_widest": -1},)
+            own_covariance_mm2 = None
             if row.kind == "centre_line":
                 turn = self.turns[row.where]
                 values, sums = (turn.lag_mm, *values), ({"lag": 1}, *sums)
-                own = turn.covariance_mm2 + READ_TO_MM**2 * np.eye(2)
+                own_covariance_mm2 = turn.covariance_mm2 + READING_ERROR_MM**2 * np.eye(2)
             out.append(
-                Reading(row.kind, row.where, row.depth_mm, values, sums, touch, own_covariance_mm2=own)
+                Reading(
+                    row.kind,
+                    row.where,
+                    row.depth_mm,
+                    values,
+                    sums,
+                    touch,
+                    own_covariance_mm2=own_covariance_mm2,
+                )
             )
         return out
 
-    def _take(self, readings: list[Reading], shown: str) -> None:
-        """What was found together: each value is shown at the law that it is of, sums at this one, less the others."""
+    def _store_joint_fit(self, readings: list[Reading], shown: str) -> None:
+        """Store the joint fit as one Fitted per law.
+
+        A value of a single law becomes a point of that law. A sum becomes a point of the law `shown`, minus the
+        other laws.
+        """
         found, at = self.joint, 0
         shown_at: dict[str, list] = {law: [] for law in found.laws}
         freedom = {kind.name: kind.freedom for kind in found.kinds}
@@ -432,9 +516,9 @@ class _Maker:
                 degrees_of_freedom=profile.degrees_of_freedom,
                 held=found.held,
             )
-            outliers = plausibility.outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
+            outliers = plausibility.find_outliers_of_kinds(left, spare, np.array(scatter), np.array(freedoms))
             self._refuse_negative(law, points, fit)
-            self.done[law] = Fitted(law, points, fit, self.done[law].remarks, outliers)
+            self.fitted[law] = Fitted(law, points, fit, self.fitted[law].remarks, outliers)
         listed = ", ".join(
             f"{kind.name} ({kind.count}, scatter {' and '.join(f'{mm:.2f}' for mm in kind.scatter_mm)} mm)"
             for kind in found.kinds
@@ -446,10 +530,10 @@ class _Maker:
                 "range"
             )
 
-    def _fit(self, law: str, points: list[Point], to_start_from: bool = False) -> None:
+    def _fit_law(self, law: str, points: list[Point], to_start_from: bool = False) -> None:
         depths, values = [p.depth_mm for p in points], [p.value_mm for p in points]
         worst = min(points, key=lambda point: point.value_mm)
-        # a short tip gap may come out below 0 once by its noise, not on the whole
+        # Noise may make a single short tip gap negative, but not the mean of all values.
         if (
             worst.value_mm < 0
             and not to_start_from
@@ -460,24 +544,24 @@ class _Maker:
                 "write the length without a sign, or leave the row out"
             )
             raise Error(sentence, worst.where, worst.value_mm, code="law-negative")
-        different = plausibility.different(depths)
+        different = plausibility.count_distinct_depths(depths)
         if different < 2:
             raise Error(
                 f"{law} was measured at depth {depths[0]:g} mm alone: measure it at two depths or more, better five",
                 points[0].where,
                 code="depths-too-few",
             )
-        plausibility.refuse_range(law, max(depths), self.range_mm, points[0].where)
+        plausibility.refuse_extrapolation(law, max(depths), self.range_mm, points[0].where)
         if law == "lag":
             plausibility.refuse_no_lag(points)
         if law in ("lag", "half_width"):
             plausibility.refuse_falling(law, points)
-        degree, remarks = _degree(law, depths)
+        degree, remarks = _choose_degree(law, depths)
         widest = law == "tip_to_widest"
         shape = _core.LawShape(
             self.range_mm,
             degree,
-            through_zero=law in FROM_ZERO,
+            through_zero=law in LAWS_THROUGH_ZERO,
             positive=law in ("lag", "tip_gap"),
             rising=law == "half_width",
             norm=self.norm,
@@ -492,21 +576,24 @@ class _Maker:
             remarks.append(
                 f"fitted with a constraint: without it the law {what} somewhere in the depth range"
             )
-        first = int(law in FROM_ZERO)
+        first = int(law in LAWS_THROUGH_ZERO)
         if widest:
-            outliers = plausibility.outliers_above_floor(depths, values, self.range_mm, degree)
+            outliers = plausibility.find_outliers_above_floor(depths, values, self.range_mm, degree)
         else:
             free = len(fit.law.coefficients) - first
-            outliers = plausibility.outliers(depths, fit.residual_mm, free, first, scatter)
-        self.done[law] = Fitted(law, tuple(points), fit, tuple(remarks), outliers)
+            outliers = plausibility.find_outliers(depths, fit.residual_mm, free, first, scatter)
+        self.fitted[law] = Fitted(law, tuple(points), fit, tuple(remarks), outliers)
 
     def covariance(self) -> np.ndarray | None:
-        """Over all coefficients in the order of the laws; None where a fitted law has no value to spare."""
-        sizes = [len(self._law(law).coefficients) for law in LAWS]
+        """Return the covariance of all coefficients in the order of LAWS.
+
+        Return None if a fitted law has no degree of freedom left.
+        """
+        sizes = [len(self._build_profile(law).coefficients) for law in LAWS]
         ends = np.cumsum([0, *sizes]).tolist()
         place = {law: slice(a, b) for law, a, b in zip(LAWS, ends[:-1], ends[1:], strict=True)}
         out = np.zeros((ends[-1], ends[-1]))
-        for law, fitted in self.done.items():
+        for law, fitted in self.fitted.items():
             block = np.array(fitted.fit.covariance)
             if not block.size:
                 return None
@@ -516,20 +603,22 @@ class _Maker:
                 out[place[a], place[b]] = self.joint.covariance[self.joint.places[a], self.joint.places[b]]
         return out
 
-    def _law(self, law: str) -> _core.Profile:
-        half = self.done["half_width"].fit.law
-        if law not in self.done:
-            share, what = ASSUMED[law]
+    def _build_profile(self, law: str) -> _core.Profile:
+        half = self.fitted["half_width"].fit.law
+        if law not in self.fitted:
+            share, what = ASSUMED_SHARES[law]
             source = f"{what} is assumed to be {share:g} half widths from the tip."
             return _core.Profile([share * c for c in half.coefficients], source=source, assumed=True)
-        points, fitted = self.done[law].points, self.done[law].fit.law
+        points, fitted = self.fitted[law].points, self.fitted[law].fit.law
         kinds = sorted({point.where.split("[")[0] for point in points})
         read = "a table" if kinds[0].startswith("line") else " and ".join(kinds)
         deepest = self.range_mm[1]
         return _core.Profile(
             fitted.coefficients,
             floor=fitted.floor,
-            floor_slope=FLOOR_PER_HALF * half(deepest) / deepest if law == "tip_to_widest" else 0.0,
+            floor_slope=MIN_WIDEST_PER_HALF_WIDTH * half(deepest) / deepest
+            if law == "tip_to_widest"
+            else 0.0,
             calibrated_mm=fitted.calibrated_mm,
             source=f"Fitted to {len(points)} values from {read}.",
             half_interval_95=fitted.half_interval_95,
@@ -545,17 +634,17 @@ class _Maker:
         least, deepest = self.range_mm
         brush.paint_depth_mm = (least + deepest) / 2
         for law in LAWS:
-            setattr(brush, law, self._law(law))
+            setattr(brush, law, self._build_profile(law))
         covariance = self.covariance()
         if covariance is not None:
             brush.covariance = covariance.tolist()
-        depths = [least + (deepest - least) * k / OUTLINES for k in range(1, OUTLINES + 1)]
-        brush.footprints = _core.FootprintTable([_outline(brush, depth) for depth in depths])
+        depths = [least + (deepest - least) * k / OUTLINE_COUNT for k in range(1, OUTLINE_COUNT + 1)]
+        brush.footprints = _core.FootprintTable([_drop_footprint(brush, depth) for depth in depths])
         brush.extra = outlines_assumed("drops whose widest section and width are those of the laws.")
         _core.check(brush)
         return brush
 
 
-def _outline(brush: _core.Brush, depth: float) -> _core.Footprint:
+def _drop_footprint(brush: _core.Brush, depth: float) -> _core.Footprint:
     half = brush.half_width(depth)
     return _core.Footprint(depth, footprint_shapes.drop(half, brush.tip_to_widest(depth), half))

@@ -1,4 +1,7 @@
-"""What a calibration of measured numbers found: a verdict, its laws, what to measure next; and as a picture."""
+"""Report a calibration of measured numbers, in words and as a picture.
+
+The report has a verdict, the laws and the next measurement.
+"""
 
 from __future__ import annotations
 
@@ -10,38 +13,45 @@ from ...reporting.report_text import Report, plural, verdict
 from ..law_text import coefficients, in_short, laws_table, name_and_depths
 
 
-def report(made) -> Report:
-    """What `brushsvg calibrate` prints. made: a from_measurements.Calibration."""
-    brush = made.brush
-    odd = sum(len(fitted.list_outliers()) for fitted in made.laws)
-    assumed = [fitted.name for fitted in made.laws if fitted.fit is None]
-    unsure = [
-        fitted.name for fitted in made.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
+def report(calibration) -> Report:
+    """Return the report that `brushsvg calibrate` prints.
+
+    calibration: a from_measurements.Calibration.
+    """
+    brush = calibration.brush
+    outlier_count = sum(len(fitted.list_outliers()) for fitted in calibration.laws)
+    assumed = [fitted.name for fitted in calibration.laws if fitted.fit is None]
+    without_interval = [
+        fitted.name
+        for fitted in calibration.laws
+        if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
     ]
-    but = [
+    reservations = [
         f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured"
         if assumed
         else "",
-        f"{plural(odd, 'value')} should be measured again" if odd else "",
-        f"{' and '.join(unsure)} has too few values for a confidence interval" if unsure else "",
-        *(notice.sentence for notice in made.doubts),
+        f"{plural(outlier_count, 'value')} should be measured again" if outlier_count else "",
+        f"{' and '.join(without_interval)} has too few values for a confidence interval"
+        if without_interval
+        else "",
+        *(notice.sentence for notice in calibration.doubts),
     ]
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}",
-        *(_how_known(brush, fitted) for fitted in made.laws),
+        *(_describe_fit(brush, fitted) for fitted in calibration.laws),
     ]
-    for fitted in made.laws:
+    for fitted in calibration.laws:
         lines += [f"{fitted.name}: {remark}" for remark in (*fitted.list_outliers(), *fitted.remarks)]
     details = [
         *laws_table(brush),
-        *made.remarks,
+        *calibration.remarks,
         "",
         *coefficients(brush),
     ]
-    return Report(verdict([], but), (*lines, *_next(made)), tuple(details))
+    return Report(verdict([], reservations), (*lines, *_suggest_next(calibration)), tuple(details))
 
 
-def _how_known(brush, fitted) -> str:
+def _describe_fit(brush, fitted) -> str:
     law = getattr(brush, fitted.name)
     if fitted.fit is None:
         return f"{fitted.name}: assumed: {law.source}"
@@ -52,14 +62,17 @@ def _how_known(brush, fitted) -> str:
     return f"{known}, R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
 
 
-def _next(made) -> list[str]:
-    """Where one more measurement says most: the law that is least known for its size, at its widest place."""
-    brush = made.brush
-    if assumed := [fitted.name for fitted in made.laws if fitted.fit is None]:
+def _suggest_next(calibration) -> list[str]:
+    """Suggest the most useful next measurement.
+
+    It is the law with the largest interval for its size, at the depth where the interval is widest.
+    """
+    brush = calibration.brush
+    if assumed := [fitted.name for fitted in calibration.laws if fitted.fit is None]:
         return [f"next: measure {' and '.join(assumed)}, so far assumed"]
     depths = np.linspace(*brush.depth_range_mm, 101)[1:]
     worst = (0.0, "", 0.0, 0.0)
-    for fitted in made.laws:
+    for fitted in calibration.laws:
         band = law_band(brush, fitted.name, depths)
         if not band:
             return [f"next: measure {fitted.name} at more depths, or again at the same ones"]
@@ -72,11 +85,14 @@ def _next(made) -> list[str]:
     return [f"next: measure {name} near depth {depth:.1f} mm, {widest}"]
 
 
-def report_picture(made, suffix: str) -> bytes:
-    """The laws with bands, footprints and the data; .svg or .png, needs the extra plot."""
+def report_picture(calibration, suffix: str) -> bytes:
+    """Draw the laws with bands, the footprints and the data.
+
+    suffix: .svg or .png. Needs the extra plot.
+    """
     data = {
         fitted.name: np.array([(p.depth_mm, p.value_mm) for p in fitted.points]).reshape(-1, 2)
-        for fitted in made.laws
+        for fitted in calibration.laws
         if fitted.points
     }
-    return brush_picture(made.brush, suffix, data)
+    return brush_picture(calibration.brush, suffix, data)

@@ -1,4 +1,9 @@
-"""Measurements of a brush, from JSON or a table: docs/reference/measurements.md. Lengths in mm, angles in degrees."""
+"""Read measurements of a brush from JSON or a table.
+
+The formats are described in docs/reference/measurements.md.
+
+Lengths are in mm, angles in degrees.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +16,11 @@ from ... import json_fields
 from ...errors import Error
 
 FORMAT = "brushsvg/measurements"
-LONGEST_MM = 1000.0
-SPEEDS_MM_S = (0.01, 10000.0)
-WHOLE_TURN_DEG = 360.0
-SHALLOWEST_MM = 0.2  # if no depth is greater these are hardly millimetres
-# Kind -> the numbers of one row, next to depth_mm. Those in _READINGS can stand in a table as value_mm.
+MAX_LENGTH_MM = 1000.0  # larger lengths and depths are refused: they are hardly millimetres
+SPEED_RANGE_MM_S = (0.01, 10000.0)
+MAX_ANGLE_DEG = 360.0
+MIN_GREATEST_DEPTH_MM = 0.2  # if no depth is greater, the depths are hardly millimetres
+# Kind -> the numbers of one row in addition to depth_mm. Kinds with value_mm alone can also be given in a table.
 KINDS = {
     "lag": ("value_mm",),
     "tip_gap": ("value_mm",),
@@ -29,20 +34,23 @@ KINDS = {
     "centre_line": (),
     "video": (),
 }
-_SERIES = ("s_mm", "alpha_deg", "beta_deg")
-_OF_LINE = ("points_mm", "picture", "mm_per_px", "corner_px", "towards")
+_ANGLE_SERIES_KEYS = ("s_mm", "alpha_deg", "beta_deg")
+_CENTRE_LINE_KEYS = ("points_mm", "picture", "mm_per_px", "corner_px", "towards")
 TOWARDS = ("right", "left", "up", "down")
-LEAST_POINTS = 6  # of a centre line, from which two lengths are read
-_TABLE = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
-_ABOUT = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
-_PAINTED = ("plan", "marks", "expected")  # whole marks: see painted
-# How far off a sheet and its marks may be, as standard deviations a person can say.
-EXPECTED = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
+MIN_LINE_POINTS = 6  # points of a centre line, which determine two lengths
+_TABLE_KINDS = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
+_GENERAL_KEYS = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
+_MARK_KEYS = ("plan", "marks", "expected")  # keys of whole painted marks: see mark_input.read_painted
+# Expected errors of a sheet and its marks, as standard deviations that a person can estimate.
+EXPECTED_KEYS = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
 
 
 @dataclass(frozen=True)
 class Row:
-    """One measurement at a depth: its numbers in a dictionary of names, series as tuples; its place in the file."""
+    """One measurement at a depth.
+
+    where: its place in the file, for messages. numbers: the numbers by key; a series is a tuple.
+    """
 
     kind: str
     where: str
@@ -52,7 +60,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Measurements:
-    """What was measured, by kind; name, depth range and speed where the file says them."""
+    """The contents of a measurement file.
+
+    rows: by kind. name, depth_range_mm, max_speed_mm_s: if the file gives them.
+    """
 
     rows: dict[str, list[Row]]
     name: str = ""
@@ -60,41 +71,49 @@ class Measurements:
     depth_range_mm: tuple[float, float] | None = None
     max_speed_mm_s: float = 25.0
     depths_mm: list[float] = field(default_factory=list)
-    plan: str | dict | None = None  # of the marks: a path, or what stands in a plan.json
+    plan: str | dict | None = None  # plan of the marks: a path, or the contents of a plan.json
     marks: str | list | None = None
     expected: dict = field(default_factory=dict)
 
 
 def read_measurements(data: bytes, suffix: str) -> Measurements:
-    """Error names the row or key. suffix: .json or .csv."""
+    """Read a measurement file.
+
+    data: the bytes of the file. suffix: .json or .csv. Raises Error, which names the row or key.
+    """
     text = data.decode("utf-8-sig", "replace")
-    found = _read_table(text) if suffix == ".csv" else _read_json(text)
-    if found.marks is not None:
-        return found
-    depths = sorted({row.depth_mm for rows in found.rows.values() for row in rows})
+    measurements = _read_table(text) if suffix == ".csv" else _read_json(text)
+    if measurements.marks is not None:
+        return measurements
+    depths = sorted({row.depth_mm for rows in measurements.rows.values() for row in rows})
     if not depths:
         sentence = (
             "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
         )
         raise Error(sentence, code="measurement-missing")
-    if depths[-1] <= SHALLOWEST_MM:
+    if depths[-1] <= MIN_GREATEST_DEPTH_MM:
         raise Error(
             f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres",
             "depth_mm",
             code="depth-out-of-range",
         )
-    found.depths_mm.extend(depths)
-    return found
+    measurements.depths_mm.extend(depths)
+    return measurements
 
 
 def read_widths(text: str) -> list[tuple[float, float]]:
-    """(depth, width) pairs in mm of a table with the columns depth_mm and width_mm. Error names the line."""
+    """Read (depth, width) pairs [mm] from a table.
+
+    Its columns are depth_mm and width_mm.
+
+    Raises Error, which names the line.
+    """
     pairs = []
-    for where, row in _table_rows(text, ("depth_mm", "width_mm"), numbers=("depth_mm", "width_mm")):
+    for where, row in _read_table_rows(text, ("depth_mm", "width_mm"), numbers=("depth_mm", "width_mm")):
         for name, value in row.items():
-            if not 0 < value <= LONGEST_MM:
+            if not 0 < value <= MAX_LENGTH_MM:
                 raise Error(
-                    f"{value:g} mm is outside the range (0, {LONGEST_MM:g}] mm",
+                    f"{value:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm",
                     f"{where}, {name}",
                     value,
                     code="out-of-range",
@@ -105,37 +124,41 @@ def read_widths(text: str) -> list[tuple[float, float]]:
 
 def _read_table(text: str) -> Measurements:
     rows: dict[str, list[Row]] = {}
-    for where, row in _table_rows(text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")):
+    for where, row in _read_table_rows(
+        text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")
+    ):
         kind = row.pop("kind")
-        if kind not in _TABLE:
+        if kind not in _TABLE_KINDS:
             other = (
                 "; it has several numbers a row, so write a JSON file"
                 if kind in KINDS or kind in _READERS
                 else ""
             )
             raise Error(
-                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE)}{other}",
+                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE_KINDS)}{other}",
                 where,
                 code="measurement-kind",
             )
-        rows.setdefault(kind, []).extend(_row(kind, row, where))
+        rows.setdefault(kind, []).extend(_read_row(kind, row, where))
     return Measurements(rows)
 
 
-def _table_rows(
+def _read_table_rows(
     text: str, columns: tuple[str, ...], numbers: tuple[str, ...]
 ) -> list[tuple[str, dict[str, str | float]]]:
-    """(line, cells of these columns) of a table, some of them numbers, whose first line names its columns. Between
-    cells stand commas, semicolons or tabs, in numbers points or commas. Error for anything that could be read in two
-    ways.
+    """Read the given columns of a table as (line, cells by column).
+
+    numbers: the columns that are converted to numbers. The first line of the table names its columns. Cells are
+    separated by commas, semicolons or tabs; numbers have decimal points or commas. Raises Error for anything
+    ambiguous.
     """
     try:
-        table = _table(text.removeprefix("\ufeff"), columns)
+        table = _open_table(text.removeprefix("\ufeff"), columns)
         rows = []
         for line in table:
             where = f"line {table.line_num}"
             _refuse_surplus(line, where, table.reader.dialect.delimiter)
-            _refuse_other_unit(line, where)
+            _refuse_row_in_other_unit(line, where)
             if any((line[name] or "").strip() for name in table.fieldnames):
                 rows.append((where, {name: (line[name] or "").strip() for name in columns}))
     except csv.Error:
@@ -149,7 +172,7 @@ def _table_rows(
                 "write a number of mm, without its unit" if _NUMBER.match(cell) else "write a number of mm"
             )
             raise Error(f"{cell!r} is not a number: {advice}", where, code="not-a-number")
-    points, commas = ([each for each in cells if mark in each[1]] for mark in ".,")
+    points, commas = ([cell for cell in cells if mark in cell[1]] for mark in ".,")
     if points and commas:
         raise Error(
             f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
@@ -162,47 +185,50 @@ def _table_rows(
     ]
 
 
-# No thousands: the range of lengths ends there, so 1,234 and 1.234 can only mean little more than 1.
+# Thousands have no separator. Lengths are at most 1000 mm, so 1,234 and 1.234 can only mean little more than 1.
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]+)?|(?i:nan|[+-]?inf)")
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
-def _table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
-    """The table, read with the separator that finds these columns in the first line."""
+def _open_table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
+    """Return a reader of the table.
+
+    It uses the separator that finds these columns in the first line.
+    """
     tables = [csv.DictReader(io.StringIO(text), delimiter=separator) for separator in _SEPARATORS]
     for table in tables:
         table.fieldnames = [name.strip() for name in table.fieldnames or ()]
-        _refuse_other_units(table.fieldnames)
+        _refuse_columns_in_other_units(table.fieldnames)
     missing = [[name for name in columns if name not in table.fieldnames] for table in tables]
-    least = min(missing, key=len)
-    if least:
+    fewest_missing = min(missing, key=len)
+    if fewest_missing:
         raise Error(
             f"the table needs a first line with {','.join(columns)}, or with semicolons or tabs for the commas; "
-            f"it lacks {' and '.join(least)}",
+            f"it lacks {' and '.join(fewest_missing)}",
             code="table-columns",
         )
-    found = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
-    if len(found) > 1:
-        both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in found)
+    complete = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
+    if len(complete) > 1:
+        both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in complete)
         raise Error(
             f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators"
         )
-    names = found[0].fieldnames
+    names = complete[0].fieldnames
     if twice := [name for name in names if name and names.count(name) > 1]:
         raise Error(f"the column {twice[0]} stands twice", "line 1", code="key-twice")
-    return found[0]
+    return complete[0]
 
 
-_OF_LENGTH = re.compile(
+_LENGTH_WITH_OTHER_UNIT = re.compile(
     r"(?P<what>\w*?(?:depth|value|width|lag))(?:[ _]*[(\[]|[ _]+)(?P<unit>in|inch|inches|cm|m|um|\")[)\]]?",
     re.I,
 )
 
 
-def _refuse_other_units(names: list[str]) -> None:
-    """Error for a column that says it counts in something else than mm."""
+def _refuse_columns_in_other_units(names: list[str]) -> None:
+    """Raise Error for a column whose name gives a unit other than mm."""
     for name in names:
-        if found := _OF_LENGTH.fullmatch(name):
+        if found := _LENGTH_WITH_OTHER_UNIT.fullmatch(name):
             raise Error(
                 f"the column {name[:40]!r} does not count in millimetres: write {found['what'].lower()}_mm, and "
                 "an inch as 25.4",
@@ -211,8 +237,8 @@ def _refuse_other_units(names: list[str]) -> None:
             )
 
 
-def _refuse_other_unit(line: dict, where: str) -> None:
-    """The same for a row whose cell in a column of units is not mm."""
+def _refuse_row_in_other_unit(line: dict, where: str) -> None:
+    """Raise Error for a row whose cell in a column of units is not mm."""
     for name, cell in line.items():
         if name and name.lower() in ("unit", "units") and (cell or "").strip() not in ("", "mm"):
             raise Error(
@@ -223,7 +249,10 @@ def _refuse_other_unit(line: dict, where: str) -> None:
 
 
 def _refuse_surplus(line: dict, where: str, separator: str) -> None:
-    """Error for a row with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
+    """Raise Error for a row with more cells than the first line names.
+
+    4,6 for 4.6 would be read as 4.
+    """
     if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
         advice = "numbers are written with a point, as in 4.6, or semicolons stand between columns"
         raise Error(
@@ -236,27 +265,29 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
 
 def _read_json(text: str) -> Measurements:
     content = json_fields.document(text, FORMAT)
-    json_fields.refuse_unknown(content, (*_ABOUT, *_PAINTED), listed=(*KINDS, "marks"))
+    json_fields.refuse_unknown(content, (*_GENERAL_KEYS, *_MARK_KEYS), listed=(*KINDS, "marks"))
     rows = {}
     for kind in KINDS:
         if listed := json_fields.objects(content.get(kind, []), kind):
-            read = _READERS.get(kind, _row)
-            rows[kind] = [one for i, row in enumerate(listed) for one in read(kind, row, f"{kind}[{i}]")]
+            read = _READERS.get(kind, _read_row)
+            rows[kind] = [
+                read_row for i, row in enumerate(listed) for read_row in read(kind, row, f"{kind}[{i}]")
+            ]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
         raise Error("name and about must be text", "name", code="wrong-type")
-    span = content.get("depth_range_mm")
-    if span is not None:
-        span = json_fields.numbers(span, "depth_range_mm", 2)
-        if not 0 <= span[0] < span[1] <= LONGEST_MM:
+    depth_range = content.get("depth_range_mm")
+    if depth_range is not None:
+        depth_range = json_fields.numbers(depth_range, "depth_range_mm", 2)
+        if not 0 <= depth_range[0] < depth_range[1] <= MAX_LENGTH_MM:
             raise Error(
-                f"[{span[0]:g}, {span[1]:g}] mm must rise within [0, {LONGEST_MM:g}] mm",
+                f"[{depth_range[0]:g}, {depth_range[1]:g}] mm must rise within [0, {MAX_LENGTH_MM:g}] mm",
                 "depth_range_mm",
                 code="depth-out-of-range",
             )
     speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
-    if not SPEEDS_MM_S[0] <= speed <= SPEEDS_MM_S[1]:
-        slowest, fastest = SPEEDS_MM_S
+    if not SPEED_RANGE_MM_S[0] <= speed <= SPEED_RANGE_MM_S[1]:
+        slowest, fastest = SPEED_RANGE_MM_S
         raise Error(
             f"{speed:g} mm/s is outside the range [{slowest:g}, {fastest:g}] mm/s",
             "max_speed_mm_s",
@@ -264,11 +295,11 @@ def _read_json(text: str) -> Measurements:
             code="out-of-range",
         )
     if "marks" not in content:
-        if lost := [key for key in _PAINTED if key in content]:
+        if misplaced := [key for key in _MARK_KEYS if key in content]:
             raise Error(
-                "this says something of marks, and there are none", lost[0], code="measurements-mixed"
+                "this says something of marks, and there are none", misplaced[0], code="measurements-mixed"
             )
-        return Measurements(rows, name, about, span, speed)
+        return Measurements(rows, name, about, depth_range, speed)
     if rows:
         raise Error(
             "marks contain what the other kinds measure, and are fitted alone: leave these out, or make two files",
@@ -277,20 +308,20 @@ def _read_json(text: str) -> Measurements:
         )
     plan, marks = content.get("plan"), content["marks"]
     return Measurements(
-        rows, name, about, span, speed, [], plan, marks, _expected(content.get("expected", {}))
+        rows, name, about, depth_range, speed, [], plan, marks, _read_expected(content.get("expected", {}))
     )
 
 
-def _expected(given) -> dict:
+def _read_expected(given) -> dict:
     if not isinstance(given, dict):
         raise Error("this must be an object", "expected", code="wrong-type")
-    json_fields.refuse_unknown(given, EXPECTED, "expected")
+    json_fields.refuse_unknown(given, EXPECTED_KEYS, "expected")
     return {key: json_fields.number(value, f"expected.{key}", 0, 30) for key, value in given.items()}
 
 
-def _row(kind: str, row: dict, where: str) -> list[Row]:
+def _read_row(kind: str, row: dict, where: str) -> list[Row]:
     names = ("depth_mm", *KINDS[kind])
-    series = _SERIES if kind == "angles" else ()
+    series = _ANGLE_SERIES_KEYS if kind == "angles" else ()
     json_fields.refuse_unknown(row, (*names, *series, "note"), where)
     numbers = {}
     for name in names:
@@ -303,27 +334,25 @@ def _row(kind: str, row: dict, where: str) -> list[Row]:
     depth = numbers.pop("depth_mm")
     _refuse_depth(depth, where)
     for name, value in numbers.items():
-        most, unit = (LONGEST_MM, "mm") if name.endswith("_mm") else (WHOLE_TURN_DEG, "degrees")
-        for i, each in enumerate(value if isinstance(value, tuple) else (value,)):
+        limit, unit = (MAX_LENGTH_MM, "mm") if name.endswith("_mm") else (MAX_ANGLE_DEG, "degrees")
+        for i, number in enumerate(value if isinstance(value, tuple) else (value,)):
             at = f"{where}.{name}[{i}]" if isinstance(value, tuple) else f"{where}.{name}"
-            if abs(each) > most:
+            if abs(number) > limit:
                 sentence = (
-                    f"{each:g} {unit} is more than the {most:g} {unit} that are taken for true: lengths count in "
+                    f"{number:g} {unit} is more than the {limit:g} {unit} that are taken for true: lengths count in "
                     "millimetres, angles in degrees"
                 )
-                raise Error(sentence, at, each, code="out-of-range")
-            if name == "s_mm" and each < 0:
-                sentence = (
-                    f"{each:g} mm is outside the range [0, {most:g}] mm: s counts from the first reading on"
-                )
-                raise Error(sentence, at, each, code="out-of-range")
+                raise Error(sentence, at, number, code="out-of-range")
+            if name == "s_mm" and number < 0:
+                sentence = f"{number:g} mm is outside the range [0, {limit:g}] mm: s counts from the first reading on"
+                raise Error(sentence, at, number, code="out-of-range")
     return [Row(kind, where, depth, numbers)]
 
 
 def _refuse_depth(depth_mm: float, where: str) -> None:
-    if not 0 < depth_mm <= LONGEST_MM:
+    if not 0 < depth_mm <= MAX_LENGTH_MM:
         raise Error(
-            f"the depth {depth_mm:g} mm is outside the range (0, {LONGEST_MM:g}] mm: depths count down from first "
+            f"the depth {depth_mm:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm: depths count down from first "
             "contact, in millimetres",
             where,
             depth_mm,
@@ -331,21 +360,26 @@ def _refuse_depth(depth_mm: float, where: str) -> None:
         )
 
 
-def _places(values, where: str) -> tuple[tuple[float, ...], ...]:
-    """[[x, y], ...] in mm."""
+def _read_points(values, where: str) -> tuple[tuple[float, ...], ...]:
+    """Read a list of points [[x, y], ...] in mm."""
     if not isinstance(values, list):
         raise Error("this must be a list of [x, y] in mm", where, code="wrong-type")
-    found = tuple(json_fields.numbers(place, f"{where}[{i}]", 2) for i, place in enumerate(values))
-    for i, place in enumerate(found):
-        if max(map(abs, place)) > LONGEST_MM:
-            sentence = f"({place[0]:g}, {place[1]:g}) mm is further than the {LONGEST_MM:g} mm that are taken for true"
+    points = tuple(json_fields.numbers(xy, f"{where}[{i}]", 2) for i, xy in enumerate(values))
+    for i, xy in enumerate(points):
+        if max(map(abs, xy)) > MAX_LENGTH_MM:
+            sentence = (
+                f"({xy[0]:g}, {xy[1]:g}) mm is further than the {MAX_LENGTH_MM:g} mm that are taken for true"
+            )
             raise Error(sentence, f"{where}[{i}]", code="out-of-range")
-    return found
+    return points
 
 
-def _centre_line(kind: str, row: dict, where: str) -> list[Row]:
-    """The middle of an angular stroke's mark: points, or a picture of it."""
-    json_fields.refuse_unknown(row, ("depth_mm", *_OF_LINE, "note"), where)
+def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
+    """Read the middle line of an angular stroke's mark.
+
+    It is given as points, or as a picture of the mark.
+    """
+    json_fields.refuse_unknown(row, ("depth_mm", *_CENTRE_LINE_KEYS, "note"), where)
     missing = [name for name in ("depth_mm",) if name not in row]
     if "points_mm" not in row:
         missing += [name for name in ("picture", "mm_per_px", "corner_px") if name not in row]
@@ -358,10 +392,10 @@ def _centre_line(kind: str, row: dict, where: str) -> list[Row]:
     if "points_mm" in row:
         if "picture" in row:
             raise Error("points_mm and picture exclude each other", where, code="options-contradict")
-        points = _places(row["points_mm"], f"{where}.points_mm")
-        if len(points) < LEAST_POINTS:
+        points = _read_points(row["points_mm"], f"{where}.points_mm")
+        if len(points) < MIN_LINE_POINTS:
             raise Error(
-                f"a centre line of {len(points)} points shows no turn: give {LEAST_POINTS} or more",
+                f"a centre line of {len(points)} points shows no turn: give {MIN_LINE_POINTS} or more",
                 f"{where}.points_mm",
                 len(points),
                 code="measurement-missing",
@@ -372,23 +406,28 @@ def _centre_line(kind: str, row: dict, where: str) -> list[Row]:
     towards = row.get("towards", TOWARDS[0])
     if towards not in TOWARDS:
         raise Error(f"this must be one of {', '.join(TOWARDS)}", f"{where}.towards", code="choice-unknown")
-    seen = {
+    picture_numbers = {
         "picture": row["picture"],
         "mm_per_px": json_fields.number(row["mm_per_px"], f"{where}.mm_per_px", 1e-3, 10.0),
         "corner_px": json_fields.numbers(row["corner_px"], f"{where}.corner_px", 2),
         "towards": towards,
     }
-    return [Row(kind, where, depth, seen)]
+    return [Row(kind, where, depth, picture_numbers)]
 
 
 def _video(kind: str, row: dict, where: str) -> list[Row]:
-    """Section 2.5: places of ferrule and tip, frame by frame, to side views. Depth z_i = z_f0 - z_fi, value d_i =
-    |x_fi - x_ti| less the same at first touch; (18) prints z_i with x and another sign."""
+    """Convert positions in video frames to side views (section 2.5).
+
+    The positions are those of ferrule and tip.
+
+    The depth is z_i = z_f0 - z_fi. The value is d_i = |x_fi - x_ti| minus d_i at first touch. Equation (18) prints
+    z_i with x and the other sign.
+    """
     json_fields.refuse_unknown(row, ("ferrule_mm", "tip_mm", "touch", "note"), where)
     for name in ("ferrule_mm", "tip_mm"):
         if name not in row:
             raise Error(f"the key {name} is missing", where, code="key-missing")
-    ferrule, tip = (_places(row[name], f"{where}.{name}") for name in ("ferrule_mm", "tip_mm"))
+    ferrule, tip = (_read_points(row[name], f"{where}.{name}") for name in ("ferrule_mm", "tip_mm"))
     if len(ferrule) != len(tip) or len(ferrule) < 2:
         raise Error(
             f"there are {len(ferrule)} places of the ferrule and {len(tip)} of the tip; each frame needs both, and two "
@@ -402,19 +441,21 @@ def _video(kind: str, row: dict, where: str) -> list[Row]:
     touch = int(touch)
     apart = [f[0] - t[0] for f, t in zip(ferrule, tip, strict=True)]
     at_touch = apart[touch]
-    way = 1.0 if apart[-1] >= at_touch else -1.0  # swept to the left, the ferrule leads there
-    found = []
+    sign = (
+        1.0 if apart[-1] >= at_touch else -1.0
+    )  # -1 if the brush sweeps to the left, where the ferrule leads
+    rows = []
     for i in range(touch + 1, len(ferrule)):
         depth = ferrule[touch][1] - ferrule[i][1]
         if depth > 0:
-            found.append(Row(kind, f"{where}, frame {i}", depth, {"value_mm": way * (apart[i] - at_touch)}))
-    if not found:
+            rows.append(Row(kind, f"{where}, frame {i}", depth, {"value_mm": sign * (apart[i] - at_touch)}))
+    if not rows:
         raise Error(
             "the ferrule never comes lower than at first touch: z counts upwards, in mm",
             f"{where}.ferrule_mm",
             code="measurement-missing",
         )
-    return found
+    return rows
 
 
-_READERS = {"centre_line": _centre_line, "video": _video}
+_READERS = {"centre_line": _read_centre_line, "video": _video}

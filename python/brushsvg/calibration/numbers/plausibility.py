@@ -1,5 +1,9 @@
-"""Measurements that no brush can have: other units, rows in a wrong order, values that say nothing. Each refusal says
-what to do."""
+"""Refuse measurements that no brush can have.
+
+They have wrong units or a wrong order of rows, or determine nothing.
+
+Each message says what to do. Outliers and odd values are found here, too.
+"""
 
 from __future__ import annotations
 
@@ -12,42 +16,47 @@ from ... import _core
 from ...errors import Error, Notice
 from ...model.confidence import law_band
 
-LEAST_ALPHA0_DEG = (
-    5.0  # a series that starts nearer to the motion cannot be read; in radians 90 degrees are 1.57
+# Least first angle of a series. A series that starts nearer to the motion cannot be read. An angle of 90 degrees that
+# was given in radians (1.57) is below it.
+MIN_ALPHA0_DEG = 5.0
+MAX_ANGLE_GROWTH_DEG = 5.0  # noise may let an angle grow by this much during a drag
+ANGLE_READING_ERROR_DEG = 6.0  # error of a reading, as in the article
+MAX_START_OFFSET_LAGS = 0.5  # in lags: a series may seem to begin this much earlier or later
+MAX_UNDETERMINED_SHARE = 0.25  # share of the depths at which the interval of a law may include 0
+MIN_OUTLIER_SIGMAS = 4.0  # standard deviations of normal noise: one value in ten thousand
+DISTINCT_DEPTH_SHARE = 0.02  # share of the greatest depth: depths that differ by less count as one
+# Lag / half width is 3 to 10 for round-6 and 40 for a liner of 20 mm. Outside of the first range, units are mixed up.
+LAG_PER_HALF_WIDTH, USUAL_LAG_PER_HALF_WIDTH = (0.02, 200.0), (0.3, 60.0)
+MIN_CONTRADICTION = 0.15  # relative misfit from which half widths and widths contradict each other
+MIN_MISTAKE_RATIO = 3.0  # the misfit falls by this factor if one was mistaken for the other
+# Half width / depth is 0.42 for round-6 and 0.2 for a liner. Widths in inches make it 25.4 times smaller, depths in
+# inches 25.4 times larger.
+HALF_WIDTH_PER_DEPTH, USUAL_HALF_WIDTH_PER_DEPTH = (0.01, 20.0), (0.05, 5.0)
+# Share of a lag by which it may fall at the next depth. If lags are read to half a millimetre, a rising lag seems to
+# fall this much once in fifty times.
+MAX_LAG_FALL = 0.1
+VISIBLE_MM = (
+    0.3  # the start of a mark is visible to some tenths of a mm: lags that differ by less may be equal
 )
-UNTURNED_DEG = 5.0  # by so much may an angle grow through its noise
-READ_TO_DEG = 6.0  # as the article read its own
-NOT_FROM_START = 0.5  # in lags: a series may seem to begin by so much earlier or later
-OPEN_PART = 0.25  # of the depths, at which a law may be nothing at all
-OUTLYING = 4.0  # standard deviations of normal noise: one in ten thousand
-SPREAD = 0.02  # of the greatest depth: depths that differ by less count as one
-# Lag over half width: 3 to 10 with round-6, 40 with a liner of 20 mm; outside, units have been mixed up.
-LAG_PER_HALF, ODD_LAG_PER_HALF = (0.02, 200.0), (0.3, 60.0)
-APART = 0.15  # share of their size by which half widths and widths contradict each other
-MISTAKEN = 3.0  # times closer they go together if one was taken for the other
-# 0.42 with round-6, 0.2 with a liner; read in inches 25.4 times less, or of depths in inches as much more
-HALF_PER_DEPTH, ODD_HALF_PER_DEPTH = (0.01, 20.0), (0.05, 5.0)
-FALLEN = 0.1  # of a lag: read to half a millimetre one that rises falls by so much once in fifty times
-SEEN_MM = 0.3  # where a mark begins is seen to some tenths: lags that differ by less may be one
-BEYOND = 1.5  # of the deepest measurement: a law of fourth degree says nothing there
-SMALL_MM = 1.0  # a brush that is not pressed deeper may have been measured in inches
+MAX_DEPTH_PER_MEASURED = 1.5  # times the deepest measurement: deeper, a law of fourth degree is meaningless
+MIN_USUAL_DEPTH_MM = 1.0  # a brush that is never pressed deeper may have been measured in inches
 
 
-def different(depths_mm: list[float]) -> int:
-    """How many depths there are, taking those for one that hardly differ."""
+def count_distinct_depths(depths_mm: list[float]) -> int:
+    """Count the depths, treating depths that hardly differ as one."""
     ordered = np.unique(depths_mm)
     count, at = 0, 0
     while at < len(ordered):
         count += 1
-        at = int(np.searchsorted(ordered, ordered[at] + SPREAD * ordered[-1], "right"))
+        at = int(np.searchsorted(ordered, ordered[at] + DISTINCT_DEPTH_SHARE * ordered[-1], "right"))
     return count
 
 
 def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
-    """Angles at distances of a drag, as they were read."""
-    if alpha0_deg < LEAST_ALPHA0_DEG:
+    """Raise Error for angles of a drag that are in radians or in the wrong order."""
+    if alpha0_deg < MIN_ALPHA0_DEG:
         raise Error(
-            f"the series starts {alpha0_deg:g} degrees from the motion, less than the {LEAST_ALPHA0_DEG:g} that can be "
+            f"the series starts {alpha0_deg:g} degrees from the motion, less than the {MIN_ALPHA0_DEG:g} that can be "
             "read: turn by 90 degrees before the drag; are these radians?",
             where,
             alpha0_deg,
@@ -63,7 +72,7 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
         )
     if len(s_mm) == len(alpha_deg) and len(s_mm) > 1:
         first, last = int(np.argmin(s_mm)), int(np.argmax(s_mm))
-        if alpha_deg[last] > alpha_deg[first] + UNTURNED_DEG:
+        if alpha_deg[last] > alpha_deg[first] + MAX_ANGLE_GROWTH_DEG:
             raise Error(
                 f"the angle grows from {alpha_deg[first]:g} degrees after {s_mm[first]:g} mm to {alpha_deg[last]:g} "
                 f"after {s_mm[last]:g} mm, but a dragged brush turns towards its motion: are the rows in the right "
@@ -73,23 +82,28 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
             )
 
 
-def refuse_other_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
-    """Angles that fall as a drag's do, but do not begin with the first one at 0 mm: ln tan(alpha/2), which falls by
-    1 per lag, is fitted with a beginning of its own, each reading weighed by what it is sure of."""
+def refuse_displaced_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
+    """Raise Error if the first angle is not the angle at 0 mm.
+
+    The other angles fall as in a drag.
+
+    ln tan(alpha/2) falls by 1 per lag. A line with a free start is fitted to it, and each reading is weighted by its
+    certainty.
+    """
     series = [(s, a) for s, a in zip(s_mm, alpha_deg, strict=True) if s > 0 and 0 < a < alpha0_deg]
     s, alpha = np.array(series).reshape(-1, 2).T * [[1.0], [math.pi / 180]]
     if len(np.unique(s)) < 2:
         return
-    fallen = np.log(np.tan(alpha / 2) / math.tan(math.radians(alpha0_deg) / 2))
+    log_ratio = np.log(np.tan(alpha / 2) / math.tan(math.radians(alpha0_deg) / 2))
     columns = np.column_stack([np.ones_like(s), s]) * np.sin(alpha)[:, None]
-    found, *_ = np.linalg.lstsq(columns, fallen * np.sin(alpha), rcond=None)
-    left = columns @ found - fallen * np.sin(alpha)
-    noise = max(math.sqrt(left @ left / max(len(s) - 2, 1)), math.radians(READ_TO_DEG))
+    line, *_ = np.linalg.lstsq(columns, log_ratio * np.sin(alpha), rcond=None)
+    residuals = columns @ line - log_ratio * np.sin(alpha)
+    noise = max(math.sqrt(residuals @ residuals / max(len(s) - 2, 1)), math.radians(ANGLE_READING_ERROR_DEG))
     error = noise * math.sqrt(np.linalg.inv(columns.T @ columns)[0, 0])
-    if abs(found[0]) > max(NOT_FROM_START, OUTLYING * error):
+    if abs(line[0]) > max(MAX_START_OFFSET_LAGS, MIN_OUTLIER_SIGMAS * error):
         raise Error(
-            f"the angles fall as if the drag had begun {abs(found[0]):.2g} lags "
-            f"{'before' if found[0] < 0 else 'after'} s_mm = 0, where it was {alpha0_deg:g} degrees: count s_mm from "
+            f"the angles fall as if the drag had begun {abs(line[0]):.2g} lags "
+            f"{'before' if line[0] < 0 else 'after'} s_mm = 0, where it was {alpha0_deg:g} degrees: count s_mm from "
             "where that drag begins, and all angles in degrees",
             where,
             code="angles-from-elsewhere",
@@ -98,85 +112,95 @@ def refuse_other_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
 
 @dataclass(frozen=True)
 class Outlier:
-    """size: the studentized residual, as the size of a normal value as unlikely; off_mm: from the law of the others."""
+    """A value that does not belong to the others.
+
+    size: the studentized residual, given as the size of an equally unlikely normal value. off_mm: distance from the
+    law of the other values.
+    """
 
     size: float
     off_mm: float
 
 
-def outliers(
+def find_outliers(
     depths_mm: list[float], residual_mm, free: int, powers_from: int, scatter=1.0
 ) -> dict[int, Outlier]:
-    """Values that do not belong to the others, by index.
+    """Find values that do not belong to the others, by index.
 
-    free: coefficients that were fitted, the least power powers_from; scatter: of each value, by that of the others. By
-    studentized residuals of least squares, each against the noise without it, where as unlikely as a normal value
-    beyond OUTLYING.
+    free: number of fitted coefficients; the lowest power is powers_from. scatter: standard deviation of each value,
+    relative to the others. The test uses studentized residuals of least squares, each compared with the noise without
+    that value. An outlier is as unlikely as a normal value beyond MIN_OUTLIER_SIGMAS.
     """
     unit = np.broadcast_to(scatter, len(residual_mm))
-    left, depths = np.array(residual_mm) / unit, np.array(depths_mm)
-    spare = len(left) - free - 1
+    scaled_residuals, depths = np.array(residual_mm) / unit, np.array(depths_mm)
+    spare = len(scaled_residuals) - free - 1
     if spare < 1:
         return {}
     columns = np.vander(depths / depths.max(), powers_from + free, increasing=True)[:, powers_from:]
     columns = columns / unit[:, None]
-    apart = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
-    apart = np.maximum(apart, 1e-9)
-    others = np.maximum((left @ left - left**2 / apart) / spare, 1e-18)
-    size = _core.as_normal(left / np.sqrt(apart * others), spare)
+    free_share = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
+    free_share = np.maximum(free_share, 1e-9)
+    other_variance = np.maximum(
+        (scaled_residuals @ scaled_residuals - scaled_residuals**2 / free_share) / spare, 1e-18
+    )
+    size = _core.as_normal(scaled_residuals / np.sqrt(free_share * other_variance), spare)
     return {
-        int(k): Outlier(float(size[k]), float(unit[k] * left[k] / apart[k]))
-        for k in np.flatnonzero(size > OUTLYING)
+        int(k): Outlier(float(size[k]), float(unit[k] * scaled_residuals[k] / free_share[k]))
+        for k in np.flatnonzero(size > MIN_OUTLIER_SIGMAS)
     }
 
 
-def outliers_of_kinds(
+def find_outliers_of_kinds(
     residual_mm: np.ndarray, spare: np.ndarray, scatter_mm: np.ndarray, freedom: np.ndarray
 ) -> dict[int, Outlier]:
-    """The same for values of several kinds in one fit: each against the scatter of its kind without it.
+    """Find outliers among several kinds of values in one fit.
 
-    All (n,): spare, the share of a value that the others do not fix; scatter_mm, of its kind with it, from so many
-    values to spare.
+    Each value is compared with the scatter of its kind.
+
+    All arrays are (n,). spare: 1 minus the leverage of the value. scatter_mm: scatter of its kind, with the value
+    included. freedom: degrees of freedom of that scatter.
     """
-    apart = np.maximum(spare, 1e-9)
-    inside = residual_mm / (
-        scatter_mm * np.sqrt(apart)
-    )  # its square is never more than freedom in least squares
-    found = {}
-    for k, (t, many) in enumerate(zip(inside, freedom, strict=True)):
-        if many < 3.0:
+    free_share = np.maximum(spare, 1e-9)
+    internal_residuals = residual_mm / (
+        scatter_mm * np.sqrt(free_share)
+    )  # in least squares its square is at most the degrees of freedom
+    outliers = {}
+    for k, (t, degrees) in enumerate(zip(internal_residuals, freedom, strict=True)):
+        if degrees < 3.0:
             continue
-        outside = abs(t) * math.sqrt((many - 1.0) / max(many - t**2, 1e-6))
-        size = float(_core.as_normal(outside, many - 1.0))
-        if size > OUTLYING:
-            found[k] = Outlier(size, float(residual_mm[k] / apart[k]))
-    return found
+        external_residual = abs(t) * math.sqrt((degrees - 1.0) / max(degrees - t**2, 1e-6))
+        size = float(_core.as_normal(external_residual, degrees - 1.0))
+        if size > MIN_OUTLIER_SIGMAS:
+            outliers[k] = Outlier(size, float(residual_mm[k] / free_share[k]))
+    return outliers
 
 
-def outliers_above_floor(
+def find_outliers_above_floor(
     depths_mm, values_mm, range_mm: tuple[float, float], degree: int
 ) -> dict[int, Outlier]:
-    """The same for a law that is a polynomial or 0, whichever is greater."""
+    """Find outliers of a law that is the greater of a polynomial and 0."""
     return {
         k: Outlier(size, off)
-        for k, (size, off) in off_the_others(depths_mm, values_mm, range_mm, degree).items()
-        if size > OUTLYING
+        for k, (size, off) in compare_with_other_points(depths_mm, values_mm, range_mm, degree).items()
+        if size > MIN_OUTLIER_SIGMAS
     }
 
 
-def off_the_others(
+def compare_with_other_points(
     depths_mm, values_mm, range_mm: tuple[float, float], degree: int
 ) -> dict[int, tuple[float, float]]:
-    """Return how unlikely each value is given the law with floor 0 of the others, as the size of a normal value, and
-    its distance from that law [mm].
+    """Compare each value with the law with floor 0 that is fitted to the other values.
 
-    The law of the others has a polynomial p at this depth, known to s, and a noise n about it. The value y is as
-    unlikely as the likeliest truth leaves it: the polynomial is above the floor, t^2 = (y - p)^2 / (n^2 + s^2),
-    or not, t^2 = y^2 / n^2 + max(0, p)^2 / s^2. Values whose law the others leave open are left out.
+    Return, by index, how unlikely the value is, as the size of an equally unlikely normal value, and its distance
+    from the law [mm]. Values are omitted if the others do not determine a law.
+
+    At the depth of the value y, the law of the others has the polynomial p with standard error s, and noise n. The
+    more likely of two cases counts. If the polynomial is above the floor, t^2 = (y - p)^2 / (n^2 + s^2). If it is
+    below the floor, t^2 = y^2 / n^2 + max(0, p)^2 / s^2.
     """
     depths, values = np.array(depths_mm, float), np.array(values_mm, float)
     shape = _core.LawShape(range_mm, degree, floor=0.0)
-    found = {}
+    comparisons = {}
     for k, (depth, value) in enumerate(zip(depths, values, strict=True)):
         if len(np.unique(np.delete(depths, k))) <= degree:
             continue
@@ -191,13 +215,13 @@ def off_the_others(
         if polynomial + variance / (variance + noise) * (value - polynomial) >= 0.0:
             squared = min(squared, (value - polynomial) ** 2 / (noise + variance))
         size = float(_core.as_normal(math.sqrt(squared), others.degrees_of_freedom))
-        found[k] = (size, value - others.law(depth))
-    return found
+        comparisons[k] = (size, value - others.law(depth))
+    return comparisons
 
 
-def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:
-    """A law is not followed far beyond what was measured."""
-    if range_mm[1] > BEYOND * deepest_mm:
+def refuse_extrapolation(law: str, deepest_mm: float, range_mm: tuple[float, float], where: str) -> None:
+    """Raise Error if the brush may be pressed far deeper than the law was measured."""
+    if range_mm[1] > MAX_DEPTH_PER_MEASURED * deepest_mm:
         raise Error(
             f"{law} was measured to a depth of {deepest_mm:g} mm, the brush is to be pressed {range_mm[1]:g} mm: "
             f'measure it deeper, or give "depth_range_mm": [{range_mm[0]:g}, {deepest_mm:g}]',
@@ -207,7 +231,7 @@ def refuse_range(law: str, deepest_mm: float, range_mm: tuple[float, float], whe
 
 
 def refuse_no_lag(points) -> None:
-    """A pen is not calibrated."""
+    """Raise Error if all lags are 0: a pen needs no calibration."""
     if not any(point.value_mm for point in points):
         raise Error(
             "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new -o with.json --lag 0",
@@ -217,22 +241,25 @@ def refuse_no_lag(points) -> None:
 
 
 def refuse_halves_as_widths(rows: dict) -> None:
-    """Widths that stand as half widths, or half widths as widths: with the half widths halved a law through 0 meets all
-    rows far closer. rows: kind to measurements.Row."""
+    """Raise Error for widths that were given as half widths.
+
+    If the half widths are halved, a law through 0 then fits all rows much better. rows: kind -> list of
+    measurements.Row.
+    """
     halves, widths = rows.get("half_width", []), rows.get("width", [])
     if min(len(halves), len(widths)) < 2 or len(halves) + len(widths) < 5:
         return
     depths = np.array([row.depth_mm for row in [*halves, *widths]])
     columns = np.column_stack([depths, depths**2])
 
-    def off(times: float) -> float:
-        """As a share of the values."""
+    def relative_misfit(times: float) -> float:
+        """Return the relative misfit with the half widths multiplied by `times`."""
         values = [times * row.numbers["value_mm"] for row in halves]
         values = np.array([*values, *(row.numbers["value_mm"] / 2 for row in widths)])
         found, *_ = np.linalg.lstsq(columns, values, rcond=None)
         return float(np.linalg.norm(columns @ found - values) / max(np.linalg.norm(values), 1e-12))
 
-    if off(1.0) > max(APART, MISTAKEN * off(0.5)):
+    if relative_misfit(1.0) > max(MIN_CONTRADICTION, MIN_MISTAKE_RATIO * relative_misfit(0.5)):
         raise Error(
             "these rows are twice what those of width say: half_width counts from the middle to one edge, width from "
             "edge to edge",
@@ -242,13 +269,16 @@ def refuse_halves_as_widths(rows: dict) -> None:
 
 
 def refuse_falling(law: str, points) -> None:
-    """A brush that is pressed deeper paints no narrower and trails no less."""
+    """Raise Error if a law falls with depth.
+
+    A brush that is pressed deeper paints wider and trails more.
+    """
     depths = np.array([point.depth_mm for point in points])
     values = np.array([point.value_mm for point in points])
     slope, middle = np.polyfit(depths - depths.mean(), values, 1)
-    left = values - middle - slope * (depths - depths.mean())
+    residuals = values - middle - slope * (depths - depths.mean())
     freedom = max(len(values) - 2, 1)
-    error = math.sqrt(left @ left / freedom / ((depths - depths.mean()) @ (depths - depths.mean())))
+    error = math.sqrt(residuals @ residuals / freedom / ((depths - depths.mean()) @ (depths - depths.mean())))
     drop = -slope * (depths.max() - depths.min())
     if slope < -3 * error and drop > 0.3 * abs(middle):
         raise Error(
@@ -261,8 +291,10 @@ def refuse_falling(law: str, points) -> None:
 
 
 def refuse_unexplained(law: str, points, fit) -> None:
-    """Widths that rise with depth in no way: through 0 and rising they are missed by what they differ among each
-    other."""
+    """Raise Error for values that do not rise with depth.
+
+    A law that rises from 0 then misses them by as much as they differ from each other.
+    """
     values = np.array([point.value_mm for point in points])
     if np.ptp(values) <= 0.05 * abs(values.mean()):
         raise Error(
@@ -281,8 +313,8 @@ def refuse_unexplained(law: str, points, fit) -> None:
 
 
 def refuse_width(depth_mm: float, width_mm: float) -> None:
-    """Of the deepest mark."""
-    if not HALF_PER_DEPTH[0] <= width_mm / 2 / depth_mm <= HALF_PER_DEPTH[1]:
+    """Raise Error if the width of the deepest mark is impossible for its depth."""
+    if not HALF_WIDTH_PER_DEPTH[0] <= width_mm / 2 / depth_mm <= HALF_WIDTH_PER_DEPTH[1]:
         raise Error(
             f"the width is {width_mm:.3g} mm at depth {depth_mm:g} mm: depths and widths both count in millimetres",
             "half_width",
@@ -291,14 +323,17 @@ def refuse_width(depth_mm: float, width_mm: float) -> None:
         )
 
 
-def refuse_brush(brush) -> None:
-    """Laws that do not go together: most of them are units mixed up."""
+def refuse_inconsistent_laws(brush) -> None:
+    """Raise Error for laws that contradict each other.
+
+    Most of them come from mixed units.
+    """
     depth = brush.depth_range_mm[1]
     lag, gap, widest, half = (
         law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     )
     refuse_width(depth, 2 * half)
-    if not LAG_PER_HALF[0] <= lag / half <= LAG_PER_HALF[1]:
+    if not LAG_PER_HALF_WIDTH[0] <= lag / half <= LAG_PER_HALF_WIDTH[1]:
         raise Error(
             f"the lag is {lag:.3g} mm and the width {2 * half:.3g} mm at depth {depth:g} mm: all lengths count in "
             "millimetres; for a pen that does not trail take brushsvg brush new --lag 0",
@@ -325,41 +360,47 @@ def refuse_brush(brush) -> None:
         )
 
 
-def refuse_open(brush, fitted) -> None:
-    """A law whose 95 % interval holds 0 over much of its depths; fitted: a calibrate.Fitted."""
+def refuse_undetermined_law(brush, fitted) -> None:
+    """Raise Error if the 95 % interval of a law includes 0 at many depths.
+
+    fitted: a from_measurements.Fitted.
+    """
     if not len(brush.covariance):
         return
     depths = np.linspace(*brush.depth_range_mm, 41)[1:]
     half, _ = law_band(brush, fitted.name, depths)
     values = getattr(brush, fitted.name)(depths)
-    if np.mean(half > values) <= OPEN_PART:
+    if np.mean(half > values) <= MAX_UNDETERMINED_SHARE:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))
-    todo = next(iter(fitted.list_outliers()), "measure it at more depths, from shallow to the deepest")
+    advice = next(iter(fitted.list_outliers()), "measure it at more depths, from shallow to the deepest")
     raise Error(
         f"these values do not determine the {fitted.name}: {values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at "
-        f"depth {depths[worst]:.3g} mm: {todo}",
+        f"depth {depths[worst]:.3g} mm: {advice}",
         fitted.name,
         code="law-undetermined",
     )
 
 
-def odd(brush, laws) -> list[Notice]:
-    """On what may be, but seldom is. laws: calibrate.Fitted of each."""
+def find_odd_values(brush, laws) -> list[Notice]:
+    """Return notices about values that are possible but rare.
+
+    laws: from_measurements.Fitted of each law.
+    """
     depth = brush.depth_range_mm[1]
     lag, half = brush.lag(depth), brush.half_width(depth)
-    said = []
-    if depth < SMALL_MM:
-        said.append(
+    notices = []
+    if depth < MIN_USUAL_DEPTH_MM:
+        notices.append(
             Notice(
                 "depth_mm",
                 f"the brush is pressed {depth:.3g} mm at most: were depths and values read in millimetres?",
                 code="not-millimetres",
             )
         )
-    elif not ODD_HALF_PER_DEPTH[0] <= half / depth <= ODD_HALF_PER_DEPTH[1]:
+    elif not USUAL_HALF_WIDTH_PER_DEPTH[0] <= half / depth <= USUAL_HALF_WIDTH_PER_DEPTH[1]:
         what = "widths" if half < depth else "depths"
-        said.append(
+        notices.append(
             Notice(
                 "half_width",
                 f"the width is {2 * half:.3g} mm at depth {depth:g} mm, which is odd: were {what} read in inches? All "
@@ -367,8 +408,8 @@ def odd(brush, laws) -> list[Notice]:
                 code="not-millimetres",
             )
         )
-    if not ODD_LAG_PER_HALF[0] <= lag / half <= ODD_LAG_PER_HALF[1]:
-        said.append(
+    if not USUAL_LAG_PER_HALF_WIDTH[0] <= lag / half <= USUAL_LAG_PER_HALF_WIDTH[1]:
+        notices.append(
             Notice(
                 "lag",
                 f"the lag is {lag / half:.2g} half widths at depth {depth:g} mm, which is odd: was one of them read in "
@@ -376,30 +417,30 @@ def odd(brush, laws) -> list[Notice]:
                 code="not-millimetres",
             )
         )
-    fitted = next(each for each in laws if each.name == "lag")
-    return said + _odd_lags(fitted) if fitted.fit is not None else said
+    fitted = next(law for law in laws if law.name == "lag")
+    return notices + _find_odd_lags(fitted) if fitted.fit is not None else notices
 
 
-def _odd_lags(fitted) -> list[Notice]:
-    """Of lags as they were read, which scatter or fall with depth."""
-    said = []
+def _find_odd_lags(fitted) -> list[Notice]:
+    """Return notices about measured lags that scatter or fall with depth."""
+    notices = []
     mean, rmse = np.mean([point.value_mm for point in fitted.points]), fitted.fit.law.rmse_mm
     if len(fitted.points) >= 4 and not fitted.outliers and rmse is not None and rmse > 0.25 * mean:
         sentence = f"the lag scatters by {rmse:.2g} mm round a mean of {mean:.2g} mm: are the rows in the right order?"
-        said.append(Notice("lag", sentence, code="law-scatters"))
+        notices.append(Notice("lag", sentence, code="law-scatters"))
     scatter_mm = 1.48 * float(
         np.median(np.abs(fitted.fit.residual_mm))
-    )  # of what one bad reading hardly moves
+    )  # a median, so one bad reading hardly changes it
     depths = sorted({point.depth_mm for point in fitted.points})
     read = [
         np.mean([point.value_mm for point in fitted.points if point.depth_mm == depth]) for depth in depths
     ]
     for k in range(len(depths) - 1):
-        # few values are followed badly: then the scatter is that of the law
-        if read[k] - read[k + 1] > max(SEEN_MM, min(2 * scatter_mm, FALLEN * read[k])):
+        # A law follows few values badly; then the scatter is that of the law.
+        if read[k] - read[k + 1] > max(VISIBLE_MM, min(2 * scatter_mm, MAX_LAG_FALL * read[k])):
             sentence = (
                 f"the lag was measured {read[k]:.3g} mm at depth {depths[k]:g} mm and {read[k + 1]:.3g} mm at "
                 f"{depths[k + 1]:g} mm, but bristles that are pressed deeper trail farther: measure both again"
             )
-            said.append(Notice("lag", sentence, code="law-falls"))
-    return said
+            notices.append(Notice("lag", sentence, code="law-falls"))
+    return notices

@@ -1,1 +1,1 @@
-"""A brush whose predicted marks overlap best with the painted ones."""
+"""Fit a brush whose predicted marks overlap best with the painted marks."""

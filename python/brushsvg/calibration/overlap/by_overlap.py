@@ -1,7 +1,10 @@
-"""A brush fitted to painted marks, changed so that it predicts further marks best: to the largest overlap.
+"""Change a fitted brush so that it predicts further marks best.
 
-Edges say what the usual mark is; overlap (intersection over union of painted and predicted area) says what to predict
-where marks vary and are displaced. overlap_search changes few numbers of the fit by edges, overlap_choice says which.
+The best prediction has the largest overlap.
+
+Edges determine the usual mark. The overlap (intersection over union of painted and predicted area) determines the best
+prediction if marks vary and are displaced. overlap_search changes few numbers of the fit by edges. overlap_choice
+chooses which numbers.
 """
 
 from __future__ import annotations
@@ -21,13 +24,17 @@ from .lag_by_outlines import Placed, PlacedMark
 from .overlap_choice import Predicting, best_predicting
 from .overlap_search import Begin, Target
 
-PIXEL, MARGIN_MM = 1 / 6, 8.0  # of the pictures: half widths of the deepest mark, around way and paint
+# Size of a pixel in half widths of the deepest mark, and margin of a picture around path and paint.
+PIXEL_HALF_WIDTHS, MARGIN_MM = 1 / 6, 8.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OverlapCalibration(ArrayValue):
-    """made: the marks with the brush that predicts best, at their places by it (Placed); by_edges: what it was made
-    of, the brush with intervals; found: what was changed."""
+    """The brush that predicts best, and the fit by edges from which it was made.
+
+    made: the marks with the brush that predicts best; their places are Placed. by_edges: the fit by edges, whose brush
+    has intervals. found: the changes.
+    """
 
     made: MarkCalibration
     by_edges: MarkCalibration
@@ -35,7 +42,10 @@ class OverlapCalibration(ArrayValue):
 
     @property
     def brush(self) -> _core.Brush:
-        """Without intervals where it is not that of the edges, since theirs are not its own."""
+        """Brush that predicts best.
+
+        It has no intervals unless it is the brush of the fit by edges, whose intervals are valid.
+        """
         return self.made.brush
 
     def __repr__(self) -> str:
@@ -43,43 +53,49 @@ class OverlapCalibration(ArrayValue):
 
 
 def by_overlap(
-    made: MarkCalibration, progress: Callable[[str], object] = lambda text: None
+    calibration: MarkCalibration, progress: Callable[[str], object] = lambda text: None
 ) -> OverlapCalibration:
-    """made: the fit of the marks by edges. Its outliers as a whole are left out here, too. progress: receives the
-    progress in words."""
-    fit, options = made.fit, copy(made.expected)
-    options.deepest_mm = made.brush.depth_range_mm[1]
-    seen = [
-        _seen(mark, residual, made)
-        for mark, residual in zip(made.painted.marks, fit.marks, strict=True)
+    """Change a fit by edges to the brush with the largest overlap.
+
+    calibration: the fit of the marks by edges. Marks that are outliers of that fit are left out. progress: receives the
+    progress in words.
+    """
+    fit, options = calibration.fit, copy(calibration.expected)
+    options.deepest_mm = calibration.brush.depth_range_mm[1]
+    marks = [
+        _to_plan_frame(mark, residual, calibration)
+        for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True)
         if not residual.outlier
     ]
-    targets = [_target(mark, made) for mark in seen]
-    found = best_predicting(
-        seen,
+    targets = [_make_target(mark, calibration) for mark in marks]
+    best = best_predicting(
+        marks,
         targets,
         Begin(fit.laws, fit.height_mm),
         options,
         lambda looks: progress(f"looked at {looks} sets of overlaps"),
     )
-    return _calibrated(made, found)
+    return _make_calibration(calibration, best)
 
 
-def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
-    """Where edges are chosen, their brush with its intervals."""
+def _make_calibration(calibration: MarkCalibration, found: Predicting) -> OverlapCalibration:
+    """Make the calibration from the result of the search.
+
+    If edges are chosen, it has the brush of the edges with its intervals.
+    """
     if found.kind == "edges":
-        return OverlapCalibration(made, made, found)
-    fit, count = made.fit, sum(not residual.outlier for residual in made.fit.marks)
-    brush = brush_of(found.laws, made.brush.name, made.brush.depth_range_mm)
-    brush.max_speed_mm_s = made.brush.max_speed_mm_s
+        return OverlapCalibration(calibration, calibration, found)
+    fit, count = calibration.fit, sum(not residual.outlier for residual in calibration.fit.marks)
+    brush = brush_of(found.laws, calibration.brush.name, calibration.brush.depth_range_mm)
+    brush.max_speed_mm_s = calibration.brush.max_speed_mm_s
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
-        was = getattr(brush, law)
+        law_of_brush = getattr(brush, law)
         profile = _core.Profile(
-            was.coefficients,
-            calibrated_mm=(0.0, made.painted.deepest_mm),
+            law_of_brush.coefficients,
+            calibrated_mm=(0.0, calibration.painted.deepest_mm),
             source=f"Fitted to {count} painted marks, to the largest overlap; without intervals.",
-            floor=was.floor,
-            floor_slope=was.floor_slope,
+            floor=law_of_brush.floor,
+            floor_slope=law_of_brush.floor_slope,
         )
         setattr(brush, law, profile)
     _core.check(brush)
@@ -96,22 +112,27 @@ def _calibrated(made: MarkCalibration, found: Predicting) -> OverlapCalibration:
             for residual in fit.marks
         ),
     )
-    return OverlapCalibration(replace(made, brush=brush, fit=placed, covariance=None), made, found)
+    return OverlapCalibration(
+        replace(calibration, brush=brush, fit=placed, covariance=None), calibration, found
+    )
 
 
-def _seen(mark, residual, made: MarkCalibration) -> _core.PaintedMark:
-    """A painted mark in the plan's frame, of the way as the machine ran it."""
-    fit = made.fit
+def _to_plan_frame(mark, residual, calibration: MarkCalibration) -> _core.PaintedMark:
+    """Return a painted mark in the frame of the plan.
+
+    Its path is the path that the machine executed.
+    """
+    fit = calibration.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     rings = [(np.array(ring) - fit.shift_mm - centre) @ back + centre for ring in mark.outline_mm]
     return _core.PaintedMark(mark.stroke, np.array(residual.way_mm), rings)
 
 
-def _target(mark: _core.PaintedMark, made: MarkCalibration) -> Target:
+def _make_target(mark: _core.PaintedMark, calibration: MarkCalibration) -> Target:
     poses = np.array(mark.poses_mm)
-    pixel = PIXEL * polyval(made.brush.depth_range_mm[1], made.fit.laws.half_width)
-    seen = np.vstack([poses[:, :2], *mark.outline_mm])
-    low, high = seen.min(axis=0) - MARGIN_MM, seen.max(axis=0) + MARGIN_MM
+    pixel = PIXEL_HALF_WIDTHS * polyval(calibration.brush.depth_range_mm[1], calibration.fit.laws.half_width)
+    points = np.vstack([poses[:, :2], *mark.outline_mm])
+    low, high = points.min(axis=0) - MARGIN_MM, points.max(axis=0) + MARGIN_MM
     size = np.ceil((high - low) / pixel) * pixel
     window = (*low.tolist(), *size.tolist())
     return Target(poses, _core.coverage(mark.outline_mm, window, 1 / pixel), window, 1 / pixel)

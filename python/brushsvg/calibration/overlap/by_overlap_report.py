@@ -1,4 +1,7 @@
-"""What the largest overlap made of a brush that edges showed, in words and as a picture."""
+"""Report a calibration to the largest overlap, in words and as a picture.
+
+The report compares it with the fit by edges.
+"""
 
 from __future__ import annotations
 
@@ -10,19 +13,21 @@ from ...model.describe import LAWS
 from ...model.plot import brush_picture
 from ...reporting.report_text import Report, verdict
 from ..law_text import coefficients, depths_shown, in_short, law_table, name_and_depths, paper_height
-from ..marks.mark_report import coinciding, overlaps
-from ..marks.mark_report import report as of_edges
-from ..marks.mark_report import report_picture as picture_of_edges
+from ..marks.mark_report import judge_overlap, overlaps
+from ..marks.mark_report import report as edge_report
+from ..marks.mark_report import report_picture as edge_report_picture
 
 
-def report(made, of_photo: bool = False) -> Report:
-    """What `brushsvg calibrate --aim overlap` prints. made: by_overlap.OverlapCalibration; of_photo: see
-    mark_report.report."""
-    brush, edges, found = made.brush, made.by_edges, made.found
+def report(calibration, of_photo: bool = False) -> Report:
+    """Return the report that `brushsvg calibrate --aim overlap` prints.
+
+    calibration: a by_overlap.OverlapCalibration. of_photo: see mark_report.report.
+    """
+    brush, edges, found = calibration.brush, calibration.by_edges, calibration.found
     if found.kind == "edges":
-        by_edges = of_edges(edges, of_photo)
+        by_edges = edge_report(edges, of_photo)
         return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
-    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(made.made)
+    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(calibration.made)
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(edges.painted.marks)} painted marks, to the largest "
         "overlap",
@@ -30,7 +35,7 @@ def report(made, of_photo: bool = False) -> Report:
         f"displacements of the edges' fit; by edges {in_place:.3f} and {moved:.3f}",
         chosen_in_words(found),
         f"{paper_height(found.height_mm)} ({edges.fit.height_mm:+.2f} mm by edges)",
-        *_machine(edges, found.offsets),
+        *_describe_machine(edges, found.offsets),
         "no intervals: those of the edges' fit do not hold for these laws",
     ]
     depths = depths_shown(brush)
@@ -43,10 +48,10 @@ def report(made, of_photo: bool = False) -> Report:
     ]
     by_edges = "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals"
     details = [*law_table(depths, columns), by_edges, "", *coefficients(brush)]
-    return Report(verdict(*coinciding(now_moved)), tuple(lines), tuple(details))
+    return Report(verdict(*judge_overlap(now_moved)), tuple(lines), tuple(details))
 
 
-KINDS = {
+KIND_NAMES = {
     "edges": "what edges showed",
     "disc": "a dragged disc",
     "laws": "laws and footprint",
@@ -55,40 +60,47 @@ KINDS = {
 
 
 def chosen_in_words(found) -> str:
-    """What the search was to change, and why: found is overlap_choice.Predicting."""
+    """Describe which numbers the search changed, and why.
+
+    found: an overlap_choice.Predicting.
+    """
     if not found.left_out:
         return (
-            f"changed: {KINDS[found.kind]}; the marks are too few to be parted, so whether that predicts further ones "
-            "better than edges do is not known"
+            f"changed: {KIND_NAMES[found.kind]}; the marks are too few to be parted, so whether that predicts further "
+            "ones better than edges do is not known"
         )
-    listed = "; ".join(f"{KINDS[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
+    listed = "; ".join(f"{KIND_NAMES[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
     return (
-        f"chosen: {KINDS[found.kind]}, since so marks that had no part in the fit overlap most, each of {found.parts} "
-        f"parts predicted by the others (mean of the overlaps in place and with each mark moved): {listed}"
+        f"chosen: {KIND_NAMES[found.kind]}, since so marks that had no part in the fit overlap most, each of "
+        f"{found.parts} parts predicted by the others (mean of the overlaps in place and with each mark moved): "
+        f"{listed}"
     )
 
 
-def _machine(edges, offsets) -> list[str]:
-    """What edges showed of it, and what was found in addition."""
-    lines, was = [], edges.fit.machine
+def _describe_machine(edges, offsets) -> list[str]:
+    """Describe the errors of the machine by edges, and with the additional ones."""
+    lines, machine_by_edges = [], edges.fit.machine
     if offsets.lean_mm_per_mm.any():
-        x, y = offsets.lean_mm_per_mm + was.lean_mm_per_mm
+        x, y = offsets.lean_mm_per_mm + machine_by_edges.lean_mm_per_mm
         lines.append(
             f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y "
-            "({:+.3f} and {:+.3f} by edges)".format(*was.lean_mm_per_mm)
+            "({:+.3f} and {:+.3f} by edges)".format(*machine_by_edges.lean_mm_per_mm)
         )
     if offsets.map.any():
-        axes = np.array([[was.scale[0], was.skew], [0.0, was.scale[1]]])
+        axes = np.array(
+            [[machine_by_edges.scale[0], machine_by_edges.skew], [0.0, machine_by_edges.scale[1]]]
+        )
         (a, b), (c, d) = (np.eye(2) + offsets.map) @ axes - np.eye(2)
         lines.append(
             f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y (scale "
-            f"{was.scale[0]:.4f} and {was.scale[1]:.4f}, skew {was.skew:+.4f} by edges)"
+            f"{machine_by_edges.scale[0]:.4f} and {machine_by_edges.scale[1]:.4f}, skew "
+            f"{machine_by_edges.skew:+.4f} by edges)"
         )
     return lines
 
 
-def report_picture(made, suffix: str) -> bytes:
-    """The laws, without bands where edges alone were not chosen."""
-    if made.found.kind == "edges":
-        return picture_of_edges(made.by_edges, suffix)
-    return brush_picture(made.brush, suffix)
+def report_picture(calibration, suffix: str) -> bytes:
+    """Draw the laws, with bands only if the fit by edges was chosen."""
+    if calibration.found.kind == "edges":
+        return edge_report_picture(calibration.by_edges, suffix)
+    return brush_picture(calibration.brush, suffix)

@@ -1,9 +1,9 @@
-"""The lag of painted marks by a brush whose outlines were measured, in place of the drops or eggs that a fit assumes.
+"""Fit the lag to painted marks with measured outlines.
 
-The fit of marks knows drops and eggs alone: where the true footprint is another it gives another lag. Here the
-outlines are those of the brush, and the numbers that change until the edges of painted and predicted marks agree are
-the lag, the height of the paper, and each mark's displacement. Least squares over distances by Gauss and Newton, under
-Tukey's loss, from what the fit found on.
+The usual fit only has drops and eggs as outlines, so a different footprint gives a different lag. Here the outlines of
+the brush are fixed. The lag, the height of the paper and the displacement of each mark change until the edges of
+painted and predicted marks agree. Distances are minimised by Gauss-Newton steps with Tukey's loss, starting at the
+usual fit.
 """
 
 from __future__ import annotations
@@ -20,20 +20,25 @@ from ...errors import Error
 from ...geometry.rings import signed_area
 from ...model.confidence import LAWS, places
 from ..marks.from_marks import LAG_TERMS, MarkCalibration
-from ..marks.stray_marks import OUTLYING
+from ..marks.stray_marks import MAX_RESIDUAL_SIGMAS
 
-ROUNDS = 8
-SETTLED_MM = 0.01  # of the lag, at any depth
-STEP_MM = 0.05  # by which the derivatives' lags, heights and places differ: less, and chords of outlines show
-LEAST_NOISE_MM = 0.05  # of an edge, as the fit has it
-FARTHEST = 0.3  # share of a lag that outlines may change: more, and they are of another brush
+MAX_ROUNDS = 8  # Gauss-Newton steps
+SETTLED_MM = 0.01  # the fit has settled if the lag changes by less at any depth
+DERIVATIVE_STEP_MM = (
+    0.05  # step of the derivatives; with a smaller one, the chords of the outlines have an effect
+)
+MIN_NOISE_MM = 0.05  # least noise of an edge, as in the usual fit
+MAX_LAG_CHANGE = 0.3  # largest relative change of a lag; with more, the outlines belong to another brush
 
 
 @dataclass(frozen=True)
 class LagByOutlines:
-    """made: the marks, and what they say of the brush by its own outlines, at their places by these (Placed);
-    before: what the fit said of them by drops or eggs; own: the brush whose outlines and other laws stay; height_mm: of
-    the paper above the taught one; noise_mm: residual of the edges (robust standard deviation)."""
+    """The lag of a brush with measured outlines.
+
+    made: the marks with the new brush; their places are Placed. before: the usual fit, with drops or eggs. own: the
+    brush with the outlines and the other laws, which stay unchanged. height_mm: of the paper above the taught height.
+    noise_mm: robust standard deviation of the residuals of the edges.
+    """
 
     made: MarkCalibration
     before: MarkCalibration
@@ -46,69 +51,82 @@ class LagByOutlines:
         return self.made.brush
 
 
-def lag_by_outlines(made: MarkCalibration, own: _core.Brush, name: str) -> LagByOutlines:
-    """made: what was fitted to marks of strokes; own: whose outlines were measured. Error where they are assumed, do
-    not reach as deep as the strokes, or where marks and outlines are not of one brush."""
+def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -> LagByOutlines:
+    """Fit the lag of a brush with measured outlines to painted marks.
+
+    calibration: the usual fit to marks of strokes. own: the brush whose outlines were measured. name: the name of the
+    result.
+
+    Raises Error if the outlines are assumed, if they do not reach the depth of the strokes, and if marks and outlines
+    do not belong to one brush.
+    """
     refuse_assumed(own)
-    _refuse_shallow(own, made.painted.deepest_mm)
-    edges = _Edges(made, own)
-    fitted_lag = np.array(made.fit.laws.lag)
-    depths = np.linspace(0.0, made.painted.deepest_mm, 21)[1:]
-    terms = min(LAG_TERMS, made.painted.depths)
-    # lags at so many depths, as coefficients
-    at = np.linspace(0.0, made.painted.deepest_mm, terms + 1)[1:]
+    _refuse_shallow(own, calibration.painted.deepest_mm)
+    edges = _Edges(calibration, own)
+    fitted_lag = np.array(calibration.fit.laws.lag)
+    depths = np.linspace(0.0, calibration.painted.deepest_mm, 21)[1:]
+    terms = min(LAG_TERMS, calibration.painted.depths)
+    # Matrix from lags at `terms` depths to coefficients.
+    at = np.linspace(0.0, calibration.painted.deepest_mm, terms + 1)[1:]
     to_law = np.linalg.inv(np.vander(at, terms, increasing=True))
-    more = np.zeros(terms)
+    lag_changes = np.zeros(terms)
     height, displaced = (
-        made.fit.height_mm,
-        np.array([residual.displacement_mm for residual in made.fit.marks]),
+        calibration.fit.height_mm,
+        np.array([residual.displacement_mm for residual in calibration.fit.marks]),
     )
-    for _ in range(ROUNDS):
-        off, slopes = edges.looked_at(_raised(fitted_lag, to_law @ more), to_law, height, displaced)
-        change, covariance, noise = edges.solved(off, slopes, height, displaced)
-        more, height, displaced = (
-            more + change[:terms],
+    for _ in range(MAX_ROUNDS):
+        distances, slopes = edges.distances_and_slopes(
+            _add_polynomials(fitted_lag, to_law @ lag_changes), to_law, height, displaced
+        )
+        change, covariance, noise = edges.solve_step(distances, slopes, height, displaced)
+        lag_changes, height, displaced = (
+            lag_changes + change[:terms],
             height + change[terms],
             displaced + change[terms + 1 :].reshape(-1, 2),
         )
-        left = float(np.abs(polyval(depths, to_law @ change[:terms])).max())
-        if left < SETTLED_MM:
+        last_change = float(np.abs(polyval(depths, to_law @ change[:terms])).max())
+        if last_change < SETTLED_MM:
             break
     else:
         raise Error(
-            f"by the outlines of brush {own.name} the lag does not settle, its last change was {left:.2f} mm: are "
-            "strokes and dabs of one brush?",
+            f"by the outlines of brush {own.name} the lag does not settle, its last change was {last_change:.2f} mm: "
+            "are strokes and dabs of one brush?",
             "lag",
-            left,
+            last_change,
             code="law-undetermined",
         )
-    # no shorter than the tip gap: what that is off, the lag is off the other way
-    lag = _raised(_raised(fitted_lag, to_law @ more), np.zeros(len(own.tip_gap.coefficients)))
-    _refuse_far(lag, fitted_lag, depths, own)
+    # The lag has at least as many coefficients as the tip gap, because an error of the tip gap changes the lag by the
+    # opposite amount.
+    lag = _add_polynomials(
+        _add_polynomials(fitted_lag, to_law @ lag_changes), np.zeros(len(own.tip_gap.coefficients))
+    )
+    _refuse_changed_lag(lag, fitted_lag, depths, own)
     brush = _with_lag(own, lag, name)
-    block = _raised_covariance(made, to_law @ covariance[:terms, :terms] @ to_law.T)
-    whole = _joined(own, brush, block)
-    half = _core.deviations_of_95() * np.sqrt(np.diag(whole)[: len(lag)])
+    lag_covariance = _lag_covariance(calibration, to_law @ covariance[:terms, :terms] @ to_law.T)
+    brush_covariance = _join_covariance(own, brush, lag_covariance)
+    half = _core.deviations_of_95() * np.sqrt(np.diag(brush_covariance)[: len(lag)])
     brush.lag = _core.Profile(
         lag.tolist(),
-        calibrated_mm=(0.0, made.painted.deepest_mm),
-        source=f"Fitted to {len(made.painted.marks)} painted marks by the outlines of brush {own.name}.",
+        calibrated_mm=(0.0, calibration.painted.deepest_mm),
+        source=f"Fitted to {len(calibration.painted.marks)} painted marks by the outlines of brush {own.name}.",
         half_interval_95=half.tolist(),
     )
-    brush.covariance = whole.tolist()
+    brush.covariance = brush_covariance.tolist()
     _core.check(brush)
-    fit = made.fit
+    fit = calibration.fit
     marks = [
         PlacedMark(np.array(residual.way_mm), tuple(by.tolist()))
         for residual, by in zip(fit.marks, displaced, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
-    return LagByOutlines(replace(made, brush=brush, fit=placed), made, own, float(height), noise)
+    return LagByOutlines(
+        replace(calibration, brush=brush, fit=placed), calibration, own, float(height), noise
+    )
 
 
 @dataclass(frozen=True)
 class PlacedMark:
-    """Return the way of a mark as the machine ran it, and the displacement of the mark."""
+    """The path of a mark as the machine executed it, and the displacement of the mark."""
 
     way_mm: np.ndarray
     displacement_mm: tuple[float, float]
@@ -116,7 +134,10 @@ class PlacedMark:
 
 @dataclass(frozen=True)
 class Placed:
-    """Return the places of marks by the fit of drops or eggs: sheet, height of the paper, each mark."""
+    """The places of marks from the fit of drops or eggs.
+
+    They have the pose of the sheet, the height of the paper and each mark.
+    """
 
     turn_rad: float
     shift_mm: tuple[float, float]
@@ -126,55 +147,72 @@ class Placed:
 
 
 class _Edges:
-    """Points of the painted outlines in the plan's frame, mark by mark, against what a brush would have painted."""
+    """Compares painted outlines with the marks that a brush would paint.
 
-    def __init__(self, made: MarkCalibration, own: _core.Brush):
-        self.made, self.own = made, own
+    The points are in the frame of the plan.
+    """
+
+    def __init__(self, calibration: MarkCalibration, own: _core.Brush):
+        self.made, self.own = calibration, own
         self.points = [
-            np.array(residual.point_mm) + np.array(residual.displacement_mm) for residual in made.fit.marks
+            np.array(residual.point_mm) + np.array(residual.displacement_mm)
+            for residual in calibration.fit.marks
         ]
-        self.of = np.repeat(np.arange(len(self.points)), [len(each) for each in self.points])
+        self.mark_of_point = np.repeat(np.arange(len(self.points)), [len(points) for points in self.points])
 
-    def looked_at(self, lag, to_law, height, displaced) -> tuple[np.ndarray, np.ndarray]:
-        """Distances (n,) outward from the predicted edges, and their slopes over lags, height and each displacement."""
-        rings = self._painted(lag, height)
-        off = self._off(rings, displaced)
+    def distances_and_slopes(self, lag, to_law, height, displaced) -> tuple[np.ndarray, np.ndarray]:
+        """Return the distances (n,) from the predicted edges, and derivatives.
+
+        Distances are positive outward.
+
+        The derivatives are with respect to the lags, the height and the displacement of each mark.
+        """
+        rings = self._predict_rings(lag, height)
+        off = self._distances(rings, displaced)
         columns = [
-            self._off(self._painted(_raised(lag, STEP_MM * row), height), displaced) for row in to_law.T
+            self._distances(
+                self._predict_rings(_add_polynomials(lag, DERIVATIVE_STEP_MM * row), height), displaced
+            )
+            for row in to_law.T
         ]
-        columns.append(self._off(self._painted(lag, height + STEP_MM), displaced))
+        columns.append(self._distances(self._predict_rings(lag, height + DERIVATIVE_STEP_MM), displaced))
         slopes = np.zeros((len(off), len(columns) + 2 * len(self.points)))
-        slopes[:, : len(columns)] = (np.column_stack(columns) - off[:, None]) / STEP_MM
-        for axis, step in enumerate(STEP_MM * np.eye(2)):
-            moved = (self._off(rings, displaced + step) - off) / STEP_MM
-            slopes[np.arange(len(off)), len(columns) + 2 * self.of + axis] = moved
+        slopes[:, : len(columns)] = (np.column_stack(columns) - off[:, None]) / DERIVATIVE_STEP_MM
+        for axis, step in enumerate(DERIVATIVE_STEP_MM * np.eye(2)):
+            moved = (self._distances(rings, displaced + step) - off) / DERIVATIVE_STEP_MM
+            slopes[np.arange(len(off)), len(columns) + 2 * self.mark_of_point + axis] = moved
         return off, slopes
 
-    def solved(self, off, slopes, height, displaced) -> tuple[np.ndarray, np.ndarray, float]:
-        """The step, the covariance of what it ends at, and the noise. What is known beforehand: height and
-        displacements, as in the fit; neighbouring points count for less than as many independent ones."""
+    def solve_step(self, distances, slopes, height, displaced) -> tuple[np.ndarray, np.ndarray, float]:
+        """Return the Gauss-Newton step, the covariance of its result, and the noise.
+
+        Height and displacements have the priors of the usual fit. Neighbouring points are correlated, so they count
+        less than independent points.
+        """
         expected, fit = self.made.expected, self.made.fit
-        noise = max(LEAST_NOISE_MM, 1.4826 * float(np.median(np.abs(off))))
-        weight = np.clip(1 - (off / (OUTLYING * noise)) ** 2, 0.0, 1.0)  # the root of Tukey's
-        alike = noise * np.sqrt(fit.samples / max(fit.effective_samples, 1.0))
+        noise = max(MIN_NOISE_MM, 1.4826 * float(np.median(np.abs(distances))))
+        weight = np.clip(
+            1 - (distances / (MAX_RESIDUAL_SIGMAS * noise)) ** 2, 0.0, 1.0
+        )  # square root of Tukey's weight
+        point_sigma = noise * np.sqrt(fit.samples / max(fit.effective_samples, 1.0))
         first = slopes.shape[1] - 1 - displaced.size
-        known = np.zeros((1 + displaced.size, slopes.shape[1]))
-        known[0, first] = 1 / expected.height_mm.sigma
-        known[1:, first + 1 :] = np.eye(displaced.size) / expected.displacement_mm
-        usual = np.append(
+        prior_rows = np.zeros((1 + displaced.size, slopes.shape[1]))
+        prior_rows[0, first] = 1 / expected.height_mm.sigma
+        prior_rows[1:, first + 1 :] = np.eye(displaced.size) / expected.displacement_mm
+        prior_values = np.append(
             (expected.height_mm.value - height) / expected.height_mm.sigma,
             -displaced.ravel() / expected.displacement_mm,
         )
-        both = np.vstack([slopes * (weight / alike)[:, None], known])
-        right_side = np.append(-off * weight / alike, usual)
-        inverse = np.linalg.inv(both.T @ both)
-        # common shift of all edges, painted or measured on dabs
-        together = float(np.hypot(self.made.edge_mm, _unsure_mm(self.own)))
-        moved = inverse @ both.T[:, : len(off)] @ (weight / alike * together)
-        covariance = inverse + np.outer(moved, moved)
-        return inverse @ both.T @ right_side, covariance, noise
+        rows = np.vstack([slopes * (weight / point_sigma)[:, None], prior_rows])
+        right_side = np.append(-distances * weight / point_sigma, prior_values)
+        inverse = np.linalg.inv(rows.T @ rows)
+        # Common shift of all edges, both of the painted marks and of the measured dabs.
+        common_shift_mm = float(np.hypot(self.made.edge_mm, _outline_error_mm(self.own)))
+        change = inverse @ rows.T[:, : len(distances)] @ (weight / point_sigma * common_shift_mm)
+        covariance = inverse + np.outer(change, change)
+        return inverse @ rows.T @ right_side, covariance, noise
 
-    def _painted(self, lag, height: float) -> list:
+    def _predict_rings(self, lag, height: float) -> list:
         brush = _with_lag(self.own, lag, self.own.name)
         passes = []
         for mark, residual in zip(self.made.painted.marks, self.made.fit.marks, strict=True):
@@ -183,19 +221,19 @@ class _Edges:
             passes.append(_core.Pass(mark.stroke, np.column_stack([poses[:, :2], -depth])))
         painted = _core.simulate(_core.Plan(brush.name, "", (1.0, 1.0), passes), brush)
         _core.trace_outlines(painted, brush)
-        return [[np.array(ring) for ring in one.outline_mm] for one in painted.passes]
+        return [[np.array(ring) for ring in painted_pass.outline_mm] for painted_pass in painted.passes]
 
-    def _off(self, painted: list, displaced: np.ndarray) -> np.ndarray:
+    def _distances(self, painted: list, displaced: np.ndarray) -> np.ndarray:
         return np.concatenate(
             [
-                _outward(points - by, rings)
+                _outward_distances(points - by, rings)
                 for points, by, rings in zip(self.points, displaced, painted, strict=True)
             ]
         )
 
 
-def _outward(points: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
-    """Distances of points from a mark's edge, negative inside."""
+def _outward_distances(points: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
+    """Return the distances of points from the edge of a mark, negative inside."""
     away = np.full(len(points), -np.inf)
     for is_hole in (False, True):
         for ring in rings:
@@ -207,23 +245,28 @@ def _outward(points: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     return -away
 
 
-def _raised(law, by) -> np.ndarray:
-    """The sum of two polynomials."""
+def _add_polynomials(law, by) -> np.ndarray:
+    """Return the sum of two polynomials."""
     out = np.zeros(max(len(law), len(by)))
     out[: len(law)] += law
     out[: len(by)] += by
     return out
 
 
-def _raised_covariance(made: MarkCalibration, of_step: np.ndarray) -> np.ndarray:
-    """Of the lag's coefficients: of what was found here, and where the fit has more of them, of that part of it which
-    so few do not follow."""
-    fitted = np.array(made.covariance)[: len(made.fit.laws.lag), : len(made.fit.laws.lag)]
+def _lag_covariance(calibration: MarkCalibration, of_step: np.ndarray) -> np.ndarray:
+    """Return the covariance of all coefficients of the lag.
+
+    It is the covariance of the step. If the usual fit has more coefficients, the covariance of the part that the fewer
+    coefficients cannot follow is added.
+    """
+    fitted = np.array(calibration.covariance)[
+        : len(calibration.fit.laws.lag), : len(calibration.fit.laws.lag)
+    ]
     few, many = len(of_step), max(len(of_step), len(fitted))
     out = np.zeros((many, many))
     out[:few, :few] = of_step
     if many > few:
-        share = np.linspace(0.0, made.expected.deepest_mm, 41)[1:]
+        share = np.linspace(0.0, calibration.expected.deepest_mm, 41)[1:]
         powers = np.vander(share, many, increasing=True)
         followed = np.zeros((many, many))
         followed[:few] = np.linalg.lstsq(powers[:, :few], powers, rcond=None)[0]
@@ -232,10 +275,10 @@ def _raised_covariance(made: MarkCalibration, of_step: np.ndarray) -> np.ndarray
     return out
 
 
-def _unsure_mm(own: _core.Brush) -> float:
-    """Of the outlines, as their brush file says."""
-    said = json.loads(own.extra or "{}").get("footprints", {}).get("standard_error_mm", 0.0)
-    return float(said) if isinstance(said, (int, float)) and np.isfinite(said) else 0.0
+def _outline_error_mm(own: _core.Brush) -> float:
+    """Return the standard error of the outlines from the brush file [mm]."""
+    error_mm = json.loads(own.extra or "{}").get("footprints", {}).get("standard_error_mm", 0.0)
+    return float(error_mm) if isinstance(error_mm, (int, float)) and np.isfinite(error_mm) else 0.0
 
 
 def refuse_assumed(own: _core.Brush) -> None:
@@ -259,17 +302,17 @@ def _refuse_shallow(own: _core.Brush, deepest_mm: float) -> None:
         )
 
 
-def _refuse_far(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -> None:
-    usual, now = polyval(depths, fitted_lag), polyval(depths, lag)
-    share = np.abs(now - usual) / np.maximum(usual, usual.max() / 4)
+def _refuse_changed_lag(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -> None:
+    fitted, new = polyval(depths, fitted_lag), polyval(depths, lag)
+    share = np.abs(new - fitted) / np.maximum(fitted, fitted.max() / 4)
     worst = int(share.argmax())
-    if share[worst] > FARTHEST or polyval(np.append(0.0, depths), lag).min() < 0:
+    if share[worst] > MAX_LAG_CHANGE or polyval(np.append(0.0, depths), lag).min() < 0:
         raise Error(
-            f"by the outlines of brush {own.name} the lag at depth {depths[worst]:.3g} mm would be {now[worst]:.1f} mm "
-            f"where it is {usual[worst]:.1f} mm by the marks alone, more than {100 * FARTHEST:g} % off: are strokes "
-            "and dabs of one brush?",
+            f"by the outlines of brush {own.name} the lag at depth {depths[worst]:.3g} mm would be {new[worst]:.1f} mm "
+            f"where it is {fitted[worst]:.1f} mm by the marks alone, more than {100 * MAX_LAG_CHANGE:g} % off: are "
+            "strokes and dabs of one brush?",
             "lag",
-            float(now[worst]),
+            float(new[worst]),
             code="dabs-of-another-brush",
         )
 
@@ -281,19 +324,23 @@ def _with_lag(own: _core.Brush, lag, name: str) -> _core.Brush:
     return brush
 
 
-def _joined(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
-    """Covariance over the coefficients of the brush: of the lag as it was found, of the others as they were. The lag
-    was found from the places of tips, so it is off by what the tip gap is off, the other way."""
-    at, was = places(brush), places(own)
-    out = np.zeros((at[LAWS[-1]].stop,) * 2)
-    out[: len(of_lag), : len(of_lag)] = of_lag
-    known = np.array(own.covariance)
-    if len(known):
-        others = slice(at["lag"].stop, None)
-        out[others, others] = known[was["lag"].stop :, was["lag"].stop :]
-        gap = at["tip_gap"]
+def _join_covariance(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
+    """Return the covariance of all coefficients of the brush.
+
+    It joins the covariances of the fitted lag and of the unchanged other laws.
+
+    The lag was found from the places of tips, so an error of the tip gap changes the lag by the opposite amount.
+    """
+    new_places, old_places = places(brush), places(own)
+    covariance = np.zeros((new_places[LAWS[-1]].stop,) * 2)
+    covariance[: len(of_lag), : len(of_lag)] = of_lag
+    old_covariance = np.array(own.covariance)
+    if len(old_covariance):
+        others = slice(new_places["lag"].stop, None)
+        covariance[others, others] = old_covariance[old_places["lag"].stop :, old_places["lag"].stop :]
+        gap = new_places["tip_gap"]
         powers = gap.stop - gap.start
-        out[:powers, :powers] += out[gap, gap]
-        out[:powers, others] -= out[gap, others]
-        out[others, :powers] -= out[others, gap]
-    return out
+        covariance[:powers, :powers] += covariance[gap, gap]
+        covariance[:powers, others] -= covariance[gap, others]
+        covariance[others, :powers] -= covariance[others, gap]
+    return covariance

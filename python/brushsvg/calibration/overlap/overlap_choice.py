@@ -1,9 +1,9 @@
-"""Choose which numbers of a brush the largest overlap is to change, by marks that had no part in it.
+"""Choose by cross-validation which numbers of a brush the overlap search changes.
 
-The more numbers a search may change, the more marks overlap with what it was fitted to; whether they predict others is
-another matter. So the marks are parted, each part is predicted by the others, edges included, and the kind of
-search is chosen with which the parts left out overlap most (cross-validation): half at their places, half where each
-may move, as in the search.
+The more numbers a search may change, the more its result overlaps with the marks to which it was fitted. It may not
+predict other marks better. The marks are therefore divided into parts, and each part is predicted by the others,
+including the fit by edges. The kind of search wins with which the parts that were left out overlap most. As in the
+search, half of the score is the overlap in place, and half the overlap if each mark may move.
 """
 
 from __future__ import annotations
@@ -24,24 +24,26 @@ from .overlap_search import (
     Search,
     Target,
     best_from,
-    each_kind,
-    few_of,
-    middle_of,
-    polished,
+    choose_few,
+    mean_place,
+    refine_with_all,
+    search_each_kind,
 )
 
-HALVES = 30  # marks from which on two parts do; fewer are parted in three: each fit needs enough of them
-LEAST = 9  # marks; the edges of fewer, parted, leave laws open
-EVERY = 20  # looks between two words on how far it is
+# From this number of marks on, two parts are enough. Fewer marks are divided into three, so that each fit has enough.
+MIN_MARKS_FOR_TWO_PARTS = 30
+MIN_MARKS = 9  # least number of marks; with fewer, the edges of the parts do not determine the laws
+PROGRESS_INTERVAL = 20  # evaluations between two reports of the progress
 
 
 @dataclass(frozen=True, eq=False)
 class Predicting:
-    """What overlaps most: laws as a fit of marks has them, height of the paper, displacement of all marks, what the
-    machine does in addition; the overlap by edges and now, and how many numbers were changed.
+    """The brush with the largest overlap.
 
-    kind: one of KINDS; parts: into how many the marks were parted to choose it, 0 where they are too few; left_out: of
-    each kind the overlaps of marks left out, at their places and where each may move.
+    laws: in the form of a fit of marks. height_mm: of the paper. shift_mm: displacement of all marks. offsets:
+    additional errors of the machine. before, overlap: mean overlap by edges, and now. numbers: how many numbers were
+    changed. kind: one of KINDS. parts: number of parts for the choice of the kind, 0 if there are too few marks.
+    left_out: for each kind, the overlaps of the marks that were left out, in place and if each may move.
     """
 
     laws: _core.MarkLaws
@@ -63,30 +65,35 @@ def best_predicting(
     options: _core.MarkOptions,
     progress: Callable[[int], object] = lambda looks: None,
 ) -> Predicting:
-    """marks: in the frame of the targets, which they are; begin: the fit of all of them by edges. progress: receives
-    how many overlaps were looked at."""
+    """Find the brush that predicts further marks best.
+
+    marks: the marks of the targets, in the same frame. begin: the fit of all marks by edges. progress: receives the
+    number of evaluated overlaps.
+    """
     looks = 0
 
     def look() -> None:
         nonlocal looks
         looks += 1
-        if looks % EVERY == 0:
+        if looks % PROGRESS_INTERVAL == 0:
             progress(looks)
 
-    tried = _tried(marks, targets, begin.laws.round_tail, options, look)
-    if not tried:
+    results = _search_without_parts(marks, targets, begin.laws.round_tail, options, look)
+    if not results:
         return largest_overlap(targets, begin, options, look)
-    left_out = {kind: np.vstack([one.overlaps for one in tried[kind]]).mean(axis=0) for kind in tried}
-    kind = max(left_out, key=lambda one: left_out[one].sum())
-    search = Search(begin, options, targets, middle_of(targets))
-    starts = [one.x for one in tried[kind] if len(one.x) == len(search.begin)]
+    left_out = {
+        kind: np.vstack([result.overlaps for result in results[kind]]).mean(axis=0) for kind in results
+    }
+    kind = max(left_out, key=lambda result: left_out[result].sum())
+    search = Search(begin, options, targets, mean_place(targets))
+    starts = [result.x for result in results[kind] if len(result.x) == len(search.begin)]
     if starts:
-        x = best_from(search, kind, starts, few_of(targets), look)
-    else:  # fewer marks determine fewer numbers of a law
-        kind, x = _searched(search, targets, look, kind)
-    found = _predicting(search, kind, x, targets, look)
-    means = {one: (float(in_place), float(moved)) for one, (in_place, moved) in left_out.items()}
-    return replace(found, parts=len(tried["edges"]), left_out=means)
+        x = best_from(search, kind, starts, choose_few(targets), look)
+    else:  # the parts have fewer marks, which determine fewer numbers of a law
+        kind, x = _search_few(search, targets, look, kind)
+    best = _finish_search(search, kind, x, targets, look)
+    means = {result: (float(in_place), float(moved)) for result, (in_place, moved) in left_out.items()}
+    return replace(best, parts=len(results["edges"]), left_out=means)
 
 
 def largest_overlap(
@@ -95,57 +102,77 @@ def largest_overlap(
     options: _core.MarkOptions,
     look: Callable[[], None] = lambda: None,
 ) -> Predicting:
-    """By the kind of search that may change most."""
-    search = Search(begin, options, targets, middle_of(targets))
-    return _predicting(search, *_searched(search, targets, look), targets, look)
+    """Find the largest overlap with the least restricted kind of search."""
+    search = Search(begin, options, targets, mean_place(targets))
+    return _finish_search(search, *_search_few(search, targets, look), targets, look)
 
 
-def _searched(search: Search, targets: list[Target], look, last: str | None = None) -> tuple[str, np.ndarray]:
-    """The kind of search that may change most, or this one, and what it ends with on few marks."""
+def _search_few(
+    search: Search, targets: list[Target], look, last: str | None = None
+) -> tuple[str, np.ndarray]:
+    """Search with few marks, and return the last kind and its vector.
+
+    last: the last kind to try; None for all possible kinds.
+    """
     kind, x = "edges", search.begin
-    for kind, x in each_kind(search, few_of(targets), look):  # noqa: B007
+    for kind, x in search_each_kind(search, choose_few(targets), look):  # noqa: B007
         if kind == last:
             break
     return kind, x
 
 
-def _predicting(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
-    x = polished(search, kind, x, targets, look)
-    before, now = (float(search.overlaps(each, targets)[:, 0].mean()) for each in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.changed(kind), kind, 0, {})
+def _finish_search(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
+    x = refine_with_all(search, kind, x, targets, look)
+    before, now = (float(search.overlaps(vector, targets)[:, 0].mean()) for vector in (search.begin, x))
+    return Predicting(*search.read(x), before, now, search.count_changed(kind), kind, 0, {})
 
 
 @dataclass(frozen=True, eq=False)
-class _Tried:
-    """What a search without a part of the marks ended with, and how the marks of that part overlap with it (n, 2)."""
+class _PartResult:
+    """The result of a search without a part of the marks.
+
+    overlaps: the overlaps (n, 2) of that part with the result.
+    """
 
     x: np.ndarray
     overlaps: np.ndarray
 
 
-def _tried(marks, targets: list[Target], round_tail: bool, options, look) -> dict[str, list[_Tried]]:
-    """Each kind of search without each part of the marks; empty where they are too few."""
-    parts = 2 if len(marks) >= HALVES else 3
-    if len(marks) < LEAST:
+def _search_without_parts(
+    marks, targets: list[Target], round_tail: bool, options, look
+) -> dict[str, list[_PartResult]]:
+    """Run each kind of search without each part of the marks.
+
+    Return an empty dict if there are too few marks.
+    """
+    parts = 2 if len(marks) >= MIN_MARKS_FOR_TWO_PARTS else 3
+    if len(marks) < MIN_MARKS:
         return {}
-    edges, part, middle = _of_edges(options, round_tail), np.arange(len(marks)) % parts, middle_of(targets)
-    found: dict[str, list[_Tried]] = {}
+    edges, part, middle = (
+        _edge_options(options, round_tail),
+        np.arange(len(marks)) % parts,
+        mean_place(targets),
+    )
+    by_kind: dict[str, list[_PartResult]] = {}
     for k in range(parts):
-        taught = [one for one, at in zip(targets, part, strict=True) if at != k]
-        out = [one for one, at in zip(targets, part, strict=True) if at == k]
+        kept_targets = [item for item, at in zip(targets, part, strict=True) if at != k]
+        left_out_targets = [item for item, at in zip(targets, part, strict=True) if at == k]
         try:
-            of_others = [one for one, at in zip(marks, part, strict=True) if at != k]
-            fit = _core.fit_marks(of_others, None, edges)
+            kept_marks = [item for item, at in zip(marks, part, strict=True) if at != k]
+            fit = _core.fit_marks(kept_marks, None, edges)
         except Error:
             return {}
-        search = Search(Begin(fit.laws, fit.height_mm, fit.shift_mm), options, taught, middle)
-        for kind, x in each_kind(search, few_of(taught), look):
-            found.setdefault(kind, []).append(_Tried(x, search.overlaps(x, out)))
-    return {kind: each for kind, each in found.items() if len(each) == parts}
+        search = Search(Begin(fit.laws, fit.height_mm, fit.shift_mm), options, kept_targets, middle)
+        for kind, x in search_each_kind(search, choose_few(kept_targets), look):
+            by_kind.setdefault(kind, []).append(_PartResult(x, search.overlaps(x, left_out_targets)))
+    return {kind: results for kind, results in by_kind.items() if len(results) == parts}
 
 
-def _of_edges(options: _core.MarkOptions, round_tail: bool) -> _core.MarkOptions:
-    """For a part of the marks, whose ways are as the machine ran them and whose sheet is turned back."""
+def _edge_options(options: _core.MarkOptions, round_tail: bool) -> _core.MarkOptions:
+    """Return the options for a fit by edges of a part of the marks.
+
+    The paths of these marks already include the errors of the machine, and the turn of the sheet is already undone.
+    """
     edges = copy(options)
     for key, _ in PARTS.values():
         setattr(edges, key, 0.0)

@@ -1,19 +1,19 @@
-"""Search for the brush whose marks overlap most with painted ones, in few numbers on top of the fit by edges.
+"""Search for the brush whose marks overlap most with painted marks.
 
-Changed are lag (as values at depths), tip gap, half width, the footprint's two lengths, the height of the paper and the
-displacement of the sheet; on request lean and a map of the ways. By a simplex of Nelder and Mead, on a part of the
-marks first.
+The search changes few numbers of the fit by edges. They are the lag (as values at depths), the tip gap, the half width,
+the two lengths of the footprint, the height of the paper and the displacement of the sheet. On request it also changes
+lean and a map of the paths. It uses the simplex method of Nelder and Mead, at first on a part of the marks.
 
-Where marks are displaced by chance, a wider brush overlaps more than the true one: its mark reaches all places at which
-paint may be. So half of the aim is the overlap where each mark may move by what displacements are expected to be: there
-the true width overlaps most. See docs/reference/measurements.md.
+If marks are displaced by chance, a wider brush overlaps more than the true brush, because its mark reaches all places
+with paint. Half of the objective is therefore the overlap if each mark may move within the expected displacements.
+The true width maximises this part. See docs/reference/measurements.md.
 
-What the machine does is changed with the laws, in one search: found before or after them, lean is what lag makes of it.
-A simplex of so many numbers stops too early: pictures of predicted and painted marks are registered first, by least
-squares. The laws without a machine are one more start.
+Errors of the machine are changed together with the laws, in one search. If they were found before or after the laws,
+the lag would bias the lean. A simplex with that many numbers stops too early. Pictures of predicted and painted marks
+are therefore registered first, by least squares. The laws without a machine are one more start.
 
-Lag and footprint are hard to separate where the brush hardly turns, so that a footprint that is not round has its
-price, as for the edges: squares of what it is off, weighed against overlaps as if those scattered normally.
+Lag and footprint are hard to separate if the brush hardly turns. A footprint that is not round therefore has a cost, as
+in the fit by edges. The cost is the squared deviation, weighted against overlaps as if they scattered normally.
 """
 
 from __future__ import annotations
@@ -31,19 +31,21 @@ from numpy.polynomial.polynomial import polyval
 from ... import _core
 from ..marks.from_marks import brush_of, front_ratio, widest_ratio
 
-# Share of the overlap with each mark moved: 0 paints too wide, 1 ignores the places of marks
-SHIFTED = 0.5
-FARTHEST = 2.0  # how far, in standard deviations of what displacements are expected to be
-FEW = 30  # marks on which the search begins
-# How far overlaps of single marks scatter, and beyond what a footprint is not called round, in half widths: length
-# behind the widest section, in front of it, from there to the centre of friction
-SCATTER, ROUND = 0.1, (0.4, 0.3, 0.4)
-ROUGHLY_MM = 0.2  # rows of a mark while searching; the area changes by 0.05 %
-# Numbers by which laws change; half widths only where the edges' have as many. At one depth, too, lag at the touch is
-# not that of the depth: a brush that is lifted draws its mark on behind it. It begins as this share
-LAG_TERMS, HALF_TERMS, TOUCH = 2, 2, 0.5
-# By how much ways are scaled, skewed and turned at all, per mm: robot and camera are not one frame
-MAP = 0.03
+# Share of the overlap with moved marks in the objective. With 0 the brush gets too wide. With 1 the places of marks
+# have no effect.
+MOVED_SHARE = 0.5
+MAX_MOVE_SIGMAS = 2.0  # largest move of a mark, in standard deviations of the expected displacements
+FIRST_MARK_COUNT = 30  # number of marks on which the search begins
+# Standard deviation of the overlaps of single marks. Deviations of a round footprint, in half widths: length behind the
+# widest section, length in front of it, and from there to the centre of friction.
+OVERLAP_SIGMA, ROUNDNESS_SIGMAS = 0.1, (0.4, 0.3, 0.4)
+ROW_SPACING_MM = 0.2  # spacing of the rows of a mark during the search; the area changes by 0.05 %
+# Numbers by which the laws change. The half width has at most as many as in the fit by edges. Even with a single depth,
+# the lag at first touch differs from the lag at that depth, because a lifted brush pulls its mark behind it. The lag at
+# touch starts as this share.
+LAG_TERMS, HALF_TERMS, TOUCH_LAG_SHARE = 2, 2, 0.5
+# Standard deviation of scale, skew and turn of the paths, per mm. Robot and camera have different frames.
+MAP_SIGMA = 0.03
 STEPS = {
     "lag": 0.8,
     "tip_gap": 0.4,
@@ -52,23 +54,28 @@ STEPS = {
     "height": 0.4,
     "shift": 0.4,
     "lean": 0.2,
-    "map": MAP,
+    "map": MAP_SIGMA,
 }
-# Overlaps looked at: by a disc; from each start on few marks, then from the better one, and on all
-DISC, FIRST, BETTER, LAST = 120, 100, 160, 200
-# With the machine's numbers pictures are registered first: blurs, steps at each, differences as shares of STEPS
-BLURS_PX, ROUNDS, NEAR = (6, 2), 6, 0.1
-HIGHEST_MM, WIDEST_MM, LEAST_LAG_MM, LEAST_SHAPE = 6.0, 20.0, 0.02, 0.1  # outside: no brush, no paper
+# Evaluations: for a disc; from each start on few marks; from the better start; and on all marks.
+DISC_EVALUATIONS, START_EVALUATIONS, CONTINUED_EVALUATIONS, FINAL_EVALUATIONS = 120, 100, 160, 200
+# Registration of pictures, for the numbers of the machine: blurs, steps per blur, differences as shares of STEPS.
+BLURS_PX, REGISTRATION_STEPS, DIFFERENCE_SHARE = (6, 2), 6, 0.1
+# Limits of the paper height, the half width, the lag and the lengths of the footprint. No brush or paper is outside.
+MAX_HEIGHT_MM, MAX_HALF_WIDTH_MM, MIN_LAG_MM, MIN_SHAPE = 6.0, 20.0, 0.02, 0.1
 MACHINE = ("lean", "map")
-# What may be changed: nothing; a dragged disc; laws and footprint; those and the machine
+# Kinds of search, by what they may change: nothing; a dragged disc; laws and footprint; laws, footprint and machine.
 KINDS = ("edges", "disc", "laws", "machine")
-HELD = {"disc": ("tip_gap", "shape", *MACHINE), "laws": MACHINE, "machine": ()}
+# Numbers that a kind of search does not change.
+FIXED_NUMBERS = {"disc": ("tip_gap", "shape", *MACHINE), "laws": MACHINE, "machine": ()}
 
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """A mark to be predicted. poses_mm: of the TCP on the plan; paint: share of each pixel that is painted, row 0 at
-    the top; window_mm: lower left corner and size."""
+    """A painted mark that the search predicts.
+
+    poses_mm: poses of the TCP in the plan. paint: painted share of each pixel, row 0 at the top. window_mm: lower left
+    corner and size of the picture.
+    """
 
     poses_mm: np.ndarray
     paint: np.ndarray
@@ -78,15 +85,18 @@ class Target:
 
 @dataclass(frozen=True, eq=False)
 class MachineOffsets:
-    """Displacement of a machine's ways in addition to the fit by edges: by lean_mm_per_mm (2,) of depth, and by map
-    (2, 2) times the way from centre_mm (2,), mm per mm."""
+    """Errors of a machine in addition to the fit by edges.
+
+    Paths are displaced by lean_mm_per_mm (2,) times the depth, and by map (2, 2) [mm/mm] times the vector from
+    centre_mm (2,).
+    """
 
     lean_mm_per_mm: np.ndarray
     map: np.ndarray
     centre_mm: np.ndarray
 
     def way(self, poses_mm: np.ndarray, height_mm: float) -> np.ndarray:
-        """poses_mm (n, 3) as it runs them over paper of this height."""
+        """Return the poses (n, 3) as the machine executes them over paper of this height."""
         poses = np.array(poses_mm)
         depth = np.maximum(height_mm - poses[:, 2:], 0.0)
         poses[:, :2] += (poses[:, :2] - self.centre_mm) @ self.map.T + depth * self.lean_mm_per_mm
@@ -95,7 +105,10 @@ class MachineOffsets:
 
 @dataclass(frozen=True, eq=False)
 class Begin:
-    """The fit by edges, at which the search starts. shift_mm: of the marks, where their frame does not hold it."""
+    """The fit by edges, at which the search starts.
+
+    shift_mm: shift of the marks, if their frame does not include it.
+    """
 
     laws: _core.MarkLaws
     height_mm: float
@@ -103,13 +116,13 @@ class Begin:
 
 
 class Search:
-    """The numbers that are changed, as one vector, and what it costs."""
+    """The numbers that the search changes, as one vector, and the objective."""
 
     def __init__(self, begin: Begin, options: _core.MarkOptions, targets: list[Target], centre_mm):
         laws, height_mm = begin.laws, begin.height_mm
         self.laws, self.height_mm, self.count = laws, height_mm, len(targets)
         self.deepest_mm = deepest = options.deepest_mm
-        self.farthest_mm = FARTHEST * options.displacement_mm
+        self.farthest_mm = MAX_MOVE_SIGMAS * options.displacement_mm
         half = min(HALF_TERMS, len(laws.half_width) - 1)
         self.lag_at = np.linspace(0, deepest, LAG_TERMS)
         self.half_at = np.linspace(0, deepest, half + 1)
@@ -123,25 +136,26 @@ class Search:
             "height": [height_mm] if self.has_height else [],
             "shift": begin.shift_mm,
         }
-        # lean is a shift where all depths are one
+        # With a single depth, lean is equivalent to a shift.
         parts["lean"] = np.zeros(2 if options.lean_mm_per_mm > 0 and self.has_height else 0)
         parts["map"] = np.zeros(4 if options.axes > 0 else 0)
-        self.begin = np.concatenate([np.asarray(each, float) for each in parts.values()])
-        ends = np.cumsum([len(each) for each in parts.values()])
+        self.begin = np.concatenate([np.asarray(numbers, float) for numbers in parts.values()])
+        ends = np.cumsum([len(numbers) for numbers in parts.values()])
         self.at = {
-            name: slice(end - len(each), end) for (name, each), end in zip(parts.items(), ends, strict=True)
+            name: slice(end - len(numbers), end)
+            for (name, numbers), end in zip(parts.items(), ends, strict=True)
         }
-        self.steps = np.concatenate([np.full(len(each), STEPS[name]) for name, each in parts.items()])
+        self.steps = np.concatenate([np.full(len(numbers), STEPS[name]) for name, numbers in parts.items()])
         self.has_machine = bool(len(parts["lean"]) + len(parts["map"]))
         self.lean_sigma = options.lean_mm_per_mm
         self.centre_mm = centre_mm
-        # a round tail's length in half widths is that of a disc, a pointed one's what it usually is
+        # A round tail is as long as the tail of a disc, in half widths; a pointed tail has its usual length.
         self.usual_shape = np.array([1.0 if laws.round_tail else options.widest_per_half.value, 1.0])
 
     def disc(self) -> np.ndarray:
         x = self.as_disc(self.begin)
         if self.one_depth:
-            x[self.at["lag"]][0] = max(TOUCH * x[self.at["lag"]][0], LEAST_LAG_MM)
+            x[self.at["lag"]][0] = max(TOUCH_LAG_SHARE * x[self.at["lag"]][0], MIN_LAG_MM)
         return x
 
     def as_disc(self, x) -> np.ndarray:
@@ -149,31 +163,31 @@ class Search:
         x[self.at["tip_gap"]], x[self.at["shape"]] = x[self.at["half_width"]].sum(), 1.0
         return x
 
-    def changed(self, kind: str) -> int:
-        """How many numbers a kind of search changes."""
-        return 0 if kind == "edges" else int(self.without(*HELD[kind]).sum())
+    def count_changed(self, kind: str) -> int:
+        """Return how many numbers a kind of search changes."""
+        return 0 if kind == "edges" else int(self.free_numbers(*FIXED_NUMBERS[kind]).sum())
 
-    def without(self, *names: str) -> np.ndarray:
-        """Which numbers are changed when these are not."""
+    def free_numbers(self, *names: str) -> np.ndarray:
+        """Return a mask of the numbers that are changed if the named ones are fixed."""
         free = np.ones(len(self.begin), bool)
         for name in names:
             free[self.at[name]] = False
         return free
 
     def read(self, x) -> tuple[_core.MarkLaws, float, np.ndarray, MachineOffsets]:
-        """Laws, height of the paper, displacement, machine."""
+        """Return the laws, paper height, displacement and machine of a vector."""
         change, deepest, old = x - self.begin, self.deepest_mm, self.laws
         half = np.cumsum(change[self.at["half_width"]])
         behind, front = change[self.at["shape"]]
         laws = _core.MarkLaws(
-            _added(old.lag, _through(self.lag_at, change[self.at["lag"]], 0)),
-            _added(old.tip_gap, [0.0, float(change[self.at["tip_gap"]][0]) / deepest]),
-            _added(old.half_width, [0.0, *_through(self.half_at[1:], half, 1)]),
+            _add_polynomials(old.lag, _interpolate_law(self.lag_at, change[self.at["lag"]], 0)),
+            _add_polynomials(old.tip_gap, [0.0, float(change[self.at["tip_gap"]][0]) / deepest]),
+            _add_polynomials(old.half_width, [0.0, *_interpolate_law(self.half_at[1:], half, 1)]),
             old.widest_per_half + behind,
             old.front_per_half + front,
             old.round_tail,
-            _added(old.widest_by_depth, [behind]) if old.widest_by_depth else [],
-            _added(old.front_by_depth, [front]) if old.front_by_depth else [],
+            _add_polynomials(old.widest_by_depth, [behind]) if old.widest_by_depth else [],
+            _add_polynomials(old.front_by_depth, [front]) if old.front_by_depth else [],
         )
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
         lean, by_map = (x[self.at[name]] for name in MACHINE)
@@ -186,26 +200,32 @@ class Search:
 
     def loss(self, x, targets: list[Target]) -> float:
         laws, height, shift, machine = self.read(x)
-        if self._impossible(x, laws, height):
+        if self._is_impossible(x, laws, height):
             return 1.0
-        aim = self._overlaps(targets, laws, height, shift, machine) @ (1 - SHIFTED, SHIFTED)
-        return 1 - float(aim.mean()) + float(self._price(x) @ self._price(x)) / self.count
+        aim = self._overlaps(targets, laws, height, shift, machine) @ (1 - MOVED_SHARE, MOVED_SHARE)
+        return 1 - float(aim.mean()) + float(self._cost_terms(x) @ self._cost_terms(x)) / self.count
 
     def differences(self, x, targets: list[Target], blur_px: int) -> np.ndarray | None:
-        """Of predicted and painted pixels, blurred; squares are shares of each mark's paint, and the price. None where
-        there is no such brush."""
+        """Return the blurred differences of pixels, and the cost terms.
+
+        The differences are predicted minus painted.
+
+        The squares of the differences are shares of the paint of each mark. Return None if the brush is impossible.
+        """
         laws, height, shift, machine = self.read(x)
-        if self._impossible(x, laws, height):
+        if self._is_impossible(x, laws, height):
             return None
-        pictures = predicted(_move_targets(targets, machine, height), laws, height, shift, self.deepest_mm)
+        pictures = predict_pictures(
+            _move_targets(targets, machine, height), laws, height, shift, self.deepest_mm
+        )
         out = [
-            blur_px / np.sqrt(target.paint.sum()) * _blurred(picture - target.paint, blur_px).ravel()
+            blur_px / np.sqrt(target.paint.sum()) * _blur(picture - target.paint, blur_px).ravel()
             for target, picture in zip(targets, pictures, strict=True)
         ]
-        return np.concatenate([*out, self._price(x)])
+        return np.concatenate([*out, self._cost_terms(x)])
 
     def overlaps(self, x, targets: list[Target]) -> np.ndarray:
-        """Return the overlap of each mark at its place, and where it may move (n, 2)."""
+        """Return the overlaps (n, 2) of the marks: in place, and moved."""
         laws, height, shift, machine = self.read(x)
         return self._overlaps(targets, laws, height, shift, machine)
 
@@ -217,39 +237,50 @@ class Search:
             return soft_overlap(target.paint, picture), moved
 
         moved_targets = _move_targets(targets, machine, height)
-        return np.array(of_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
+        return np.array(map_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
 
-    def _price(self, x) -> np.ndarray:
-        """Return the cost of a footprint that is not round, and of a machine with errors: its squares over all
-        marks."""
+    def _cost_terms(self, x) -> np.ndarray:
+        """Return the cost terms of the footprint and the machine.
+
+        A footprint that is not round has a cost, and a machine with errors.
+
+        The cost is the sum of their squares, for all marks together.
+        """
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
-            friction = 0.0  # drops hold no disc
-        off = np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUND
-        lean, by_map = x[self.at["lean"]] / (self.lean_sigma or 1.0), x[self.at["map"]] / MAP
-        return np.sqrt(SCATTER / 2) * np.concatenate([off, lean, by_map])
+            friction = 0.0  # a drop contains no disc
+        off = (
+            np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUNDNESS_SIGMAS
+        )
+        lean, by_map = x[self.at["lean"]] / (self.lean_sigma or 1.0), x[self.at["map"]] / MAP_SIGMA
+        return np.sqrt(OVERLAP_SIGMA / 2) * np.concatenate([off, lean, by_map])
 
-    def _impossible(self, x, laws, height: float) -> bool:
-        """Laws that no brush has: a lag below 0, a width that falls, on all depths that the paper's height makes; a lag
-        at the touch that is longer than at the one depth, which no mark would show."""
+    def _is_impossible(self, x, laws, height: float) -> bool:
+        """Return whether no brush has these laws.
+
+        The lag must be positive and the width must not fall at all depths that the paper height causes. With a single
+        depth, the lag at first touch must not exceed the lag at that depth, because no mark would show it.
+        """
         if (
-            abs(height) > HIGHEST_MM
-            or x[self.at["shape"]].min() < LEAST_SHAPE
+            abs(height) > MAX_HEIGHT_MM
+            or x[self.at["shape"]].min() < MIN_SHAPE
             or x[self.at["half_width"]][0] <= 0
             or (self.one_depth and np.diff(x[self.at["lag"]])[0] < 0)
         ):
             return True
         depths = np.linspace(0, self.deepest_mm + max(0.0, height), 12)
         half, lag = polyval(depths, laws.half_width), polyval(depths, laws.lag)
-        return bool(lag.min() < LEAST_LAG_MM or np.diff(half).min() < 0 or half[-1] > WIDEST_MM)
+        return bool(lag.min() < MIN_LAG_MM or np.diff(half).min() < 0 or half[-1] > MAX_HALF_WIDTH_MM)
 
 
-def each_kind(
+def search_each_kind(
     search: Search, few: list[Target], look: Callable[[], None] = lambda: None
 ) -> Iterator[tuple[str, np.ndarray]]:
-    """KINDS that there are, one after the other, with the numbers that overlap most with few marks; each begins where
-    those before it ended."""
+    """Yield each possible kind of search with its best vector for few marks.
+
+    Each kind starts where the earlier kinds ended. look: called before each evaluation.
+    """
 
     def loss(x) -> float:
         look()
@@ -257,34 +288,41 @@ def each_kind(
 
     yield "edges", search.begin
     starts, steps = [search.begin], search.steps
-    alone = search.without(*HELD["laws"])
+    free = search.free_numbers(*FIXED_NUMBERS["laws"])
     if search.laws.round_tail:
-        disc = _simplex(
+        disc = _minimise(
             lambda x: loss(search.as_disc(x)),
             search.disc(),
             steps,
-            search.without(*HELD["disc"]),
-            DISC,
+            search.free_numbers(*FIXED_NUMBERS["disc"]),
+            DISC_EVALUATIONS,
         )
         starts.append(search.as_disc(disc.all_x))
         yield "disc", starts[-1]
-    x = _best_of(loss, starts, steps, alone)
+    x = _search_from_starts(loss, starts, steps, free)
     yield "laws", x
     if search.has_machine:
-        machine = search.without(*HELD["machine"])
-        x = _best_of(loss, [_registered(search, search.begin, machine, few, look), x], 0.4 * steps, machine)
+        machine = search.free_numbers(*FIXED_NUMBERS["machine"])
+        x = _search_from_starts(
+            loss, [_register_pictures(search, search.begin, machine, few, look), x], 0.4 * steps, machine
+        )
         yield "machine", x
 
 
-def _best_of(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
-    """The best of searches from these starts; only the one that is ahead goes on."""
-    found = [_simplex(loss, start, steps, free, FIRST) for start in starts]
-    best = min(found, key=lambda one: one.fun)
-    return _simplex(loss, best.all_x, steps, free, BETTER, best.final_simplex[0]).all_x
+def _search_from_starts(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
+    """Search from several starts, and continue only the best search.
+
+    Return its vector.
+    """
+    searches = [_minimise(loss, start, steps, free, START_EVALUATIONS) for start in starts]
+    best = min(searches, key=lambda search_result: search_result.fun)
+    return _minimise(loss, best.all_x, steps, free, CONTINUED_EVALUATIONS, best.final_simplex[0]).all_x
 
 
-def polished(search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
-    """Continue the search of few marks with all."""
+def refine_with_all(
+    search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]
+) -> np.ndarray:
+    """Continue a search that used few marks with all marks."""
     if kind == "edges":
         return x
 
@@ -292,19 +330,24 @@ def polished(search: Search, kind: str, x, targets: list[Target], look: Callable
         look()
         return search.loss(search.as_disc(x) if kind == "disc" else x, targets)
 
-    found = _simplex(loss, x, 0.4 * search.steps, search.without(*HELD[kind]), LAST).all_x
-    return search.as_disc(found) if kind == "disc" else found
+    refined = _minimise(
+        loss, x, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]), FINAL_EVALUATIONS
+    ).all_x
+    return search.as_disc(refined) if kind == "disc" else refined
 
 
-def middle_of(targets: list[Target]) -> np.ndarray:
-    """What a map of ways leaves where it is."""
+def mean_place(targets: list[Target]) -> np.ndarray:
+    """Return the point that a map of the paths leaves unchanged."""
     return np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
 
 
 def best_from(
     search: Search, kind: str, starts: list[np.ndarray], few: list[Target], look: Callable[[], None]
 ):
-    """The numbers of one kind that overlap most, from what such searches with a part of the marks ended with."""
+    """Return the vector of one kind that overlaps most.
+
+    starts: results of searches of this kind with parts of the marks.
+    """
 
     def loss(x) -> float:
         look()
@@ -312,27 +355,33 @@ def best_from(
 
     if kind == "edges":
         return search.begin
-    return _best_of(loss, starts, 0.4 * search.steps, search.without(*HELD[kind]))
+    return _search_from_starts(loss, starts, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]))
 
 
-def few_of(targets: list[Target]) -> list[Target]:
-    return targets[:: max(1, len(targets) // FEW)]
+def choose_few(targets: list[Target]) -> list[Target]:
+    return targets[:: max(1, len(targets) // FIRST_MARK_COUNT)]
 
 
 def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: float) -> list[Target]:
     if not (machine.lean_mm_per_mm.any() or machine.map.any()):
         return targets
-    return [replace(one, poses_mm=machine.way(one.poses_mm, height_mm)) for one in targets]
+    return [replace(target, poses_mm=machine.way(target.poses_mm, height_mm)) for target in targets]
 
 
-def _registered(search: Search, x, free, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
-    """Least squares of predicted less painted pixels, blurred pictures first, by forward differences, as
-    pictures are registered. free: which numbers are changed."""
+def _register_pictures(
+    search: Search, x, free, targets: list[Target], look: Callable[[], None]
+) -> np.ndarray:
+    """Register predicted and painted pictures by least squares.
+
+    The more blurred pictures come first.
+
+    Derivatives are forward differences. free: mask of the numbers that are changed.
+    """
     from scipy.optimize import least_squares
 
     steps, x = search.steps[free], np.array(x)
 
-    def filled(changed) -> np.ndarray:
+    def fill_free(changed) -> np.ndarray:
         out = x.copy()
         out[free] = changed
         return out
@@ -341,38 +390,45 @@ def _registered(search: Search, x, free, targets: list[Target], look: Callable[[
 
         def differences(changed, blur_px=blur_px):
             look()
-            return search.differences(filled(changed), targets, blur_px)
+            return search.differences(fill_free(changed), targets, blur_px)
 
         begin = differences(x[free])
         if begin is None:
             return x
 
-        def or_far(changed, begin=begin, differences=differences):
-            found = differences(changed)
-            return np.ones(len(begin)) if found is None else found
+        def differences_or_ones(changed, begin=begin, differences=differences):
+            residuals = differences(changed)
+            return np.ones(len(begin)) if residuals is None else residuals
 
         def slopes(changed, differences=differences):
             now, out = differences(changed), []
-            for d in np.diag(NEAR * steps):
+            for d in np.diag(DIFFERENCE_SHARE * steps):
                 there, sign = differences(changed + d), 1.0
                 if there is None:
                     there, sign = differences(changed - d), -1.0
                 out.append(np.zeros(len(now)) if there is None else sign * (there - now) / d.sum())
             return np.column_stack(out)
 
-        x = filled(least_squares(or_far, x[free], slopes, x_scale=steps, max_nfev=ROUNDS, ftol=1e-3).x)
+        x = fill_free(
+            least_squares(
+                differences_or_ones, x[free], slopes, x_scale=steps, max_nfev=REGISTRATION_STEPS, ftol=1e-3
+            ).x
+        )
     return x
 
 
-def _blurred(picture, blur_px: int) -> np.ndarray:
+def _blur(picture, blur_px: int) -> np.ndarray:
     return cv2.GaussianBlur(np.float64(picture), (0, 0), blur_px)[::blur_px, ::blur_px]
 
 
-def _simplex(loss, x, steps, free, most: int, corners=None):
-    """Nelder and Mead over the free numbers, from x or from the corners that an earlier search ended with."""
+def _minimise(loss, x, steps, free, most: int, corners=None):
+    """Minimise the loss over the free numbers by Nelder and Mead.
+
+    The search starts at x, or at the corners with which an earlier search ended. most: largest number of evaluations.
+    """
     from scipy.optimize import minimize
 
-    def filled(changed) -> np.ndarray:
+    def fill_free(changed) -> np.ndarray:
         out = np.array(x)
         out[free] = changed
         return out
@@ -380,44 +436,61 @@ def _simplex(loss, x, steps, free, most: int, corners=None):
     if corners is None:
         corners = np.vstack([x[free], *(x[free] + d for d in np.diag(steps[free]))])
     simplex = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
-    found = minimize(lambda changed: loss(filled(changed)), x[free], method="Nelder-Mead", options=simplex)
-    found.all_x = filled(found.x)
-    return found
+    result = minimize(
+        lambda changed: loss(fill_free(changed)), x[free], method="Nelder-Mead", options=simplex
+    )
+    result.all_x = fill_free(result.x)
+    return result
 
 
-def _through(depths, values, first: int) -> list[float]:
-    """Coefficients from the power `first` on of the law with these values at as many depths."""
+def _interpolate_law(depths, values, first: int) -> list[float]:
+    """Return the coefficients of the law with these values at as many depths.
+
+    They start at the power `first`.
+    """
     powers = np.arange(first, first + len(values))
     return np.linalg.solve(np.asarray(depths)[:, None] ** powers, values).tolist()
 
 
-def _added(law, change) -> list[float]:
+def _add_polynomials(law, change) -> list[float]:
     out = np.zeros(max(len(law), len(change)))
     out[: len(law)] += law
     out[: len(change)] += change
     return out.tolist()
 
 
-def predicted(targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float) -> list[np.ndarray]:
-    """Anti-aliased pictures of what such a brush paints, which change smoothly; footprints of half as many vertices."""
-    return of_predicted(lambda target, picture: picture, targets, laws, height_mm, shift_mm, deepest_mm)
+def predict_pictures(
+    targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
+) -> list[np.ndarray]:
+    """Return anti-aliased pictures of the marks of a brush.
+
+    They change smoothly with its laws.
+
+    The footprints have half as many vertices.
+    """
+    return map_predicted(lambda target, picture: picture, targets, laws, height_mm, shift_mm, deepest_mm)
 
 
-def of_predicted(
+def map_predicted(
     what: Callable, targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
 ) -> list:
-    """what(target, picture) of each target, on all processors."""
+    """Call what(target, picture) with the predicted picture of each target.
+
+    Return the results. All processors are used.
+    """
     deepest = max(deepest_mm, *(-target.poses_mm[:, 2].min() for target in targets))
     brush = brush_of(laws, "fitted", (0.0, deepest + max(0.0, height_mm)))
-    outlines = [(one.depth_mm, np.array(one.outline_mm)[::2]) for one in brush.footprints.dragged]
+    outlines = [
+        (footprint.depth_mm, np.array(footprint.outline_mm)[::2]) for footprint in brush.footprints.dragged
+    ]
     brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
 
-    def of_one(target: Target):
-        way = _core.Pass("mark", on_paper(target.poses_mm, height_mm, shift_mm))
-        marks = _core.simulate(_core.Plan("fitted", "", (1.0, 1.0), [way]), brush, ROUGHLY_MM)
+    def evaluate(target: Target):
+        stroke_pass = _core.Pass("mark", on_paper(target.poses_mm, height_mm, shift_mm))
+        marks = _core.simulate(_core.Plan("fitted", "", (1.0, 1.0), [stroke_pass]), brush, ROW_SPACING_MM)
         return what(target, _core.coverage(marks, brush, target.window_mm, target.px_per_mm))
 
-    return list(_workers().map(of_one, targets))
+    return list(_workers().map(evaluate, targets))
 
 
 @cache
@@ -426,7 +499,10 @@ def _workers() -> ThreadPoolExecutor:
 
 
 def on_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
-    """Return the TCP's way with the heights and places of paper and sheet that were found."""
+    """Return the poses of the TCP relative to the fitted paper.
+
+    The paper has the given height and shift.
+    """
     poses = np.array(poses_mm)
     poses[:, :2] += shift_mm
     poses[:, 2] = np.minimum(poses[:, 2] - height_mm, 0.0)
@@ -440,12 +516,15 @@ def soft_overlap(paint, picture) -> float:
 
 
 def best_shift(picture, paint, px_mm: float, farthest_mm: float) -> tuple[float, np.ndarray]:
-    """Largest overlap when the prediction moves by whole pixels up to farthest_mm; where to [mm], y up."""
+    """Return the largest overlap of a moved prediction, and the move [mm].
+
+    The prediction moves by whole pixels. The move has y up.
+    """
     reach = int(farthest_mm / px_mm)
-    grown = cv2.copyMakeBorder(np.float32(paint), reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0)
-    found = cv2.matchTemplate(grown, np.float32(picture), cv2.TM_CCORR)
+    padded = cv2.copyMakeBorder(np.float32(paint), reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0)
+    common = cv2.matchTemplate(padded, np.float32(picture), cv2.TM_CCORR)
     total = picture.sum() + paint.sum()
     y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-    score = np.where(x**2 + y**2 <= reach**2, found / np.maximum(total - found, 1e-9), 0)
+    score = np.where(x**2 + y**2 <= reach**2, common / np.maximum(total - common, 1e-9), 0)
     k = np.unravel_index(int(score.argmax()), score.shape)
     return float(score[k]), np.array([x[k], -y[k]]) * px_mm

@@ -1,1 +1,1 @@
-"""A known brush, updated by a painted job."""
+"""Update a known brush by a painted job."""

@@ -1,4 +1,7 @@
-"""What a brush file says of its laws, and how sure it is: the prior of a fit to further marks."""
+"""Make the prior of a fit to further marks from a brush file.
+
+The prior has the laws of the file and their uncertainty.
+"""
 
 from __future__ import annotations
 
@@ -11,20 +14,26 @@ from ...errors import Error
 from ...model.confidence import LAWS, places
 from ..marks.from_marks import GAP_TERMS, HALF_TERMS, LAG_TERMS, laws_of
 
-# Of a law, as standard deviation: what an assumed one may be off, and what a polynomial of low degree is off even where
-# its numbers are sure. With 0 in place of the latter a brush of few depths could never learn that its law bends.
-ASSUMED, FORM = 0.2, 0.002
-RATIO = 0.5  # of the widest section's place over the half width, where the file does not say how sure it is
-ROUND_TAIL = 0.68  # half way down the tail a drop has 0.5 of its half width, an egg 0.87
-DEPTHS = 41
+# Relative standard deviations of an assumed law, and of the error of a polynomial of low degree with exact
+# coefficients. With 0 for the latter, a brush of few depths could never learn that its law bends.
+ASSUMED_SIGMA, FORM_SIGMA = 0.2, 0.002
+# Standard deviation of the ratio of the widest section to the half width, if the file has no uncertainty.
+RATIO_SIGMA = 0.5
+# Least width of a round tail half way to the widest section, relative to the greatest width. A drop has 0.5, an egg
+# 0.87.
+MIN_ROUND_TAIL_WIDTH = 0.68
+DEPTH_COUNT = 41  # depths at which laws are compared
 TERMS = {"lag": LAG_TERMS, "tip_gap": GAP_TERMS, "half_width": HALF_TERMS}
 
 
 @dataclass(frozen=True)
 class KnownLaws:
-    """laws: of the brush, in the numbers that marks are fitted with; covariance (n, n) of those: lag, tip_gap and
-    half_width without their constant 0, widest_per_half. how: by law, in words, how sure the file is. off_mm: by law,
-    the greatest distance of the laws from the brush's own."""
+    """The laws of a brush as a prior.
+
+    laws: in the form of a fit of marks. covariance (n, n): of lag, tip_gap and half_width without their constant 0, and
+    of widest_per_half. how: for each law, a description of its uncertainty in the file. off_mm: for each law, its
+    largest distance from the law of the brush.
+    """
 
     laws: _core.MarkLaws
     covariance: np.ndarray
@@ -33,12 +42,15 @@ class KnownLaws:
     deepest_mm: float
 
     def prior(self, wider: dict[str, float]) -> _core.LawPrior:
-        """wider: by law, how many times as wide the intervals are taken."""
+        """Return the prior for a fit. wider: for each law, the factor of its intervals."""
         rows = root_of_inverse(self.widened(wider))
         return _core.LawPrior(self.laws, rows.tolist())
 
     def loosened(self, share: float) -> dict[str, float]:
-        """By law, how many times as wide it must be taken to be unsure by this share of it (rms over depths)."""
+        """Return the factor of each law for a relative error of `share`.
+
+        The error is a standard deviation, rms over depths.
+        """
         own = self.laws
         values = {"lag": own.lag, "tip_gap": own.tip_gap[1:], "half_width": own.half_width[1:]}
         out, depths = {}, np.arange(1, 5) / 4 * self.deepest_mm
@@ -55,13 +67,16 @@ class KnownLaws:
         return out
 
     def unfollowed(self, share: float, deepest_mm: float) -> np.ndarray:
-        """Covariance of numbers whose laws were measured down to this depth, each time off by a share of them."""
-        at, own, depths = numbers_of(), self.laws, np.linspace(0.0, deepest_mm, DEPTHS)[1:]
+        """Return the covariance of laws with a relative error of `share`.
+
+        The laws are measured down to deepest_mm.
+        """
+        at, own, depths = numbers_of(), self.laws, np.linspace(0.0, deepest_mm, DEPTH_COUNT)[1:]
         out = np.diag(np.full(len(self.covariance), (share * own.widest_per_half) ** 2))
         for law in TERMS:
             values = np.polynomial.polynomial.polyval(depths, getattr(own, law))
-            size = np.maximum(values, values[DEPTHS // 4])
-            out[at[law], at[law]] = as_measured(law, depths, share * size)
+            size = np.maximum(values, values[DEPTH_COUNT // 4])
+            out[at[law], at[law]] = covariance_as_measured(law, depths, share * size)
         return out
 
     def widened(self, wider: dict[str, float]) -> np.ndarray:
@@ -72,7 +87,10 @@ class KnownLaws:
 
 
 def numbers_of() -> dict[str, slice]:
-    """Return where each law's numbers are among those of a fit; tip_to_widest: its ratio to the half width."""
+    """Return the slice of each law in the numbers of a fit.
+
+    tip_to_widest is its ratio to the half width.
+    """
     lag, gap, half = LAG_TERMS, LAG_TERMS + GAP_TERMS, LAG_TERMS + GAP_TERMS + HALF_TERMS
     return {
         "lag": slice(0, lag),
@@ -83,55 +101,69 @@ def numbers_of() -> dict[str, slice]:
 
 
 def root_of_inverse(covariance: np.ndarray) -> np.ndarray:
-    """Rows (n, n) that make standard normal numbers of what has this covariance."""
+    """Return the matrix (n, n) from numbers to standard normal numbers.
+
+    covariance (n, n): of the numbers.
+    """
     unit = np.sqrt(np.diag(covariance))
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     return (vectors / np.sqrt(np.maximum(values, 1e-12))).T / unit
 
 
 def known_laws(brush: _core.Brush) -> KnownLaws:
-    """Error for a brush that does not trail."""
-    depths = _depths(brush)
+    """Return the laws of a brush as a prior.
+
+    Raises Error for a brush that does not trail.
+    """
+    depths = _sample_depths(brush)
     if max(brush.lag(d) for d in depths) <= 0:
         raise Error(
             f"brush {brush.name} does not trail: nothing of it is learnt from marks",
             "lag",
             code="pen-without-lag",
         )
-    near = laws_of(brush)
+    fitted_laws = laws_of(brush)
     laws = _core.MarkLaws(
-        near.lag,
-        near.tip_gap,
-        near.half_width,
-        near.widest_per_half,
-        near.front_per_half,
+        fitted_laws.lag,
+        fitted_laws.tip_gap,
+        fitted_laws.half_width,
+        fitted_laws.widest_per_half,
+        fitted_laws.front_per_half,
         _has_round_tail(brush),
     )
-    to = _to_numbers(brush, depths, laws.widest_per_half)
-    whole = _of_the_file(brush)
-    covariance, how = to @ whole @ to.T, {}
+    to_numbers = _to_numbers(brush, depths, laws.widest_per_half)
+    file_covariance = _covariance_in_file(brush)
+    covariance, how = to_numbers @ file_covariance @ to_numbers.T, {}
     for law, place in numbers_of().items():
-        own = places(brush)[law]
-        if np.any(whole[own, own]):
-            how[law], block = "the covariance in its file", _of_form(brush, law, depths, laws.widest_per_half)
+        coefficients = places(brush)[law]
+        if np.any(file_covariance[coefficients, coefficients]):
+            how[law], block = (
+                "the covariance in its file",
+                _form_covariance(brush, law, depths, laws.widest_per_half),
+            )
         elif law == "tip_to_widest":
-            half = _core.deviations_of_95() * RATIO
+            half = _core.deviations_of_95() * RATIO_SIGMA
             how[law] = (
                 f"nothing it says: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip (95 %)"
             )
-            block = RATIO**2
+            block = RATIO_SIGMA**2
         else:
-            block, how[law] = _said(getattr(brush, law), law, depths, to[place, own])
+            block, how[law] = _covariance_without_file(
+                getattr(brush, law), law, depths, to_numbers[place, coefficients]
+            )
         covariance[place, place] += block
-    return KnownLaws(laws, covariance, how, _off(brush, laws, depths), float(depths[-1]))
+    return KnownLaws(laws, covariance, how, _largest_distances(brush, laws, depths), float(depths[-1]))
 
 
-def _depths(brush) -> np.ndarray:
-    return np.linspace(*brush.depth_range_mm, DEPTHS)[1:]
+def _sample_depths(brush) -> np.ndarray:
+    return np.linspace(*brush.depth_range_mm, DEPTH_COUNT)[1:]
 
 
-def as_measured(law: str, depths: np.ndarray, sd_mm: np.ndarray) -> np.ndarray:
-    """Covariance of a law's numbers, measured at as many depths as there are of them, each with its error."""
+def covariance_as_measured(law: str, depths: np.ndarray, sd_mm: np.ndarray) -> np.ndarray:
+    """Return the covariance of the coefficients of a measured law.
+
+    The law is measured at as many depths as it has coefficients, with errors sd_mm.
+    """
     terms, first = TERMS[law], 0 if law == "lag" else 1
     at = np.linspace(0.0, depths[-1], terms + first)[first:]
     inverse = np.linalg.inv(np.vander(at, terms + first, increasing=True)[:, first:])
@@ -139,49 +171,67 @@ def as_measured(law: str, depths: np.ndarray, sd_mm: np.ndarray) -> np.ndarray:
     return (inverse * sd**2) @ inverse.T
 
 
-def _of_form(brush, law: str, depths: np.ndarray, ratio: float):
-    """What a law that is sure may still be off for being of low degree."""
+def _form_covariance(brush, law: str, depths: np.ndarray, ratio: float):
+    """Return the covariance of a law from its low degree alone."""
     if law == "tip_to_widest":
-        return (FORM * ratio) ** 2
-    return as_measured(law, depths, FORM * _size(getattr(brush, law), depths))
+        return (FORM_SIGMA * ratio) ** 2
+    return covariance_as_measured(law, depths, FORM_SIGMA * _size_of_law(getattr(brush, law), depths))
 
 
-def _size(law, depths: np.ndarray) -> np.ndarray:
-    """Of a law at depths, and near the touch, where it may be 0, what it is at a quarter of the greatest one."""
+def _size_of_law(law, depths: np.ndarray) -> np.ndarray:
+    """Return the size of a law at depths.
+
+    The size is at least the value at a quarter of the greatest depth.
+
+    Near first touch the law may be 0.
+    """
     return np.maximum([law(d) for d in depths], law(depths[-1] / 4))
 
 
-def _of_the_file(brush) -> np.ndarray:
-    """Covariance over a brush's coefficients, 0 where it has none."""
+def _covariance_in_file(brush) -> np.ndarray:
+    """Return the covariance of the coefficients of a brush.
+
+    It is 0 if the file has none.
+    """
     size = places(brush)[LAWS[-1]].stop
     return np.array(brush.covariance) if len(brush.covariance) else np.zeros((size, size))
 
 
-def _said(law, name: str, depths: np.ndarray, to_numbers: np.ndarray) -> tuple[np.ndarray, str]:
-    """Of a law without covariance: by its RMSE, its half-intervals, or as an assumed one. The intervals of single
-    coefficients make no band, and where they have an RMSE it is the wider."""
+def _covariance_without_file(
+    law, name: str, depths: np.ndarray, to_numbers: np.ndarray
+) -> tuple[np.ndarray, str]:
+    """Return the covariance of a law without one, and a description of its origin.
+
+    It comes from the RMSE of the law, from its half intervals, or from the assumption for unmeasured laws. The RMSE
+    comes first, because the intervals of single coefficients make no band and the RMSE is wider.
+    """
     half = np.array(law.half_interval_95)
     if law.rmse_mm is not None:
         error = np.full_like(depths, law.rmse_mm)
-        return as_measured(
+        return covariance_as_measured(
             name, depths, error
         ), f"its RMSE, {law.rmse_mm:g} mm at each of {TERMS[name]} depths"
     if not half.any():
-        error = ASSUMED * _size(law, depths)
-        return as_measured(name, depths, error), f"nothing it says: {100 * ASSUMED:g} % (standard deviation)"
-    some = half > 0
-    powers = np.vander(depths, len(half), increasing=True)[:, some]
-    alike = np.linalg.pinv(powers.T @ powers)
-    sd = half[some] / _core.deviations_of_95() / np.sqrt(np.diag(alike))
-    to = to_numbers[:, some]
-    form = as_measured(name, depths, FORM * _size(law, depths))
-    return to @ (
-        alike * np.outer(sd, sd)
-    ) @ to.T + form, "its half-intervals, as for numbers fitted to even depths"
+        error = ASSUMED_SIGMA * _size_of_law(law, depths)
+        return covariance_as_measured(
+            name, depths, error
+        ), f"nothing it says: {100 * ASSUMED_SIGMA:g} % (standard deviation)"
+    has_interval = half > 0
+    powers = np.vander(depths, len(half), increasing=True)[:, has_interval]
+    unit_covariance = np.linalg.pinv(powers.T @ powers)
+    sd = half[has_interval] / _core.deviations_of_95() / np.sqrt(np.diag(unit_covariance))
+    selected = to_numbers[:, has_interval]
+    form = covariance_as_measured(name, depths, FORM_SIGMA * _size_of_law(law, depths))
+    return selected @ (
+        unit_covariance * np.outer(sd, sd)
+    ) @ selected.T + form, "its half-intervals, as for numbers fitted to even depths"
 
 
 def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:
-    """From a brush's coefficients to the fit's numbers, nearest over its depths."""
+    """Return the matrix from the coefficients of a brush to those of a fit.
+
+    The laws of the fit are nearest over the depths of the brush.
+    """
     at, to = places(brush), numbers_of()
     out = np.zeros((to["tip_to_widest"].stop, at[LAWS[-1]].stop))
     for law, terms in TERMS.items():
@@ -199,7 +249,10 @@ def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:
 
 
 def _has_round_tail(brush) -> bool:
-    """By how wide the footprint is half way from its tip to its widest section."""
+    """Return whether the tail of the footprint is round.
+
+    The width half way between the tip and the widest section decides.
+    """
     shares = []
     for shape in brush.footprints.dragged:
         x, y = np.array(shape.outline_mm).T
@@ -209,18 +262,20 @@ def _has_round_tail(brush) -> bool:
         shares.append(
             np.interp(widest / 2, x[tail][order], np.abs(y[tail][order])) / max(np.abs(y).max(), 1e-9)
         )
-    return float(np.median(shares)) > ROUND_TAIL
+    return float(np.median(shares)) > MIN_ROUND_TAIL_WIDTH
 
 
-def _off(brush, laws, depths: np.ndarray) -> dict[str, float]:
+def _largest_distances(brush, laws, depths: np.ndarray) -> dict[str, float]:
     half = np.polynomial.polynomial.polyval(depths, laws.half_width)
-    near = {
+    fitted_values = {
         "lag": np.polynomial.polynomial.polyval(depths, laws.lag),
         "tip_gap": np.polynomial.polynomial.polyval(depths, laws.tip_gap),
         "tip_to_widest": laws.widest_per_half * half,
         "half_width": half,
     }
     return {
-        law: float(max(abs(getattr(brush, law)(d) - v) for d, v in zip(depths, near[law], strict=True)))
+        law: float(
+            max(abs(getattr(brush, law)(d) - v) for d, v in zip(depths, fitted_values[law], strict=True))
+        )
         for law in LAWS
     }
