@@ -33,7 +33,7 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 
 WORDS = Path("/usr/share/dict/american-english")
 NTH = 1000
@@ -77,7 +77,7 @@ def case(text: str, font: bytes, size_mm: float, brush_name: str, compensation: 
         file = Path(folder, "text.svg")
         file.write_text(document, encoding="utf-8")
         work = prepare(file, Options(brush=brush, compensation=compensation))
-    rings = [ring for element in read_svg(document.encode()).elements for ring in filled(element)]
+    rings = [ring for element in read_svg(document.encode()).elements for ring in filled_rings(element)]
     mark = predict(work).outline_mm
     px_per_mm = EM_PX / size_mm
     return Case(text, _picture(rings, px_per_mm), _picture(mark, px_per_mm))

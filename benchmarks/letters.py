@@ -46,8 +46,8 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
-from brushsvg.strokes.skeleton import filled
-from brushsvg.strokes.swept_areas import region, unpainted
+from brushsvg.strokes.skeleton import filled_rings
+from brushsvg.strokes.swept_areas import region, unpainted_area
 from brushsvg.strokes.wide_shapes import within_reach
 
 GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
@@ -83,7 +83,7 @@ class Painted:
 
 
 def fitting_mm(font: bytes, brush, stem_of: str = "l") -> float:
-    stem = region(filled(_drawn(stem_of, font, LARGEST_MM)))
+    stem = region(filled_rings(_drawn(stem_of, font, LARGEST_MM)))
     wide = 2 * shapely.maximum_inscribed_circle(stem, 0.01).length
     return float(min(np.floor(LARGEST_MM * STEM * 2 * brush.half_width_range_mm()[1] / wide), LARGEST_MM))
 
@@ -101,7 +101,7 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         file.write_text(document, encoding="utf-8")
         work = prepare(file, Options(brush=brush, compensation=compensation))
     rings = [
-        ring for element in read_svg(document.encode()).elements for ring in filled(element)
+        ring for element in read_svg(document.encode()).elements for ring in filled_rings(element)
     ]  # dots, too
     mark_rings = predict(work).outline_mm
     shape, mark = region(rings), region(mark_rings)
@@ -112,7 +112,7 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         text,
         rings,
         mark_rings,
-        _pieces(unpainted(bare, strokes), shape, finest),
+        _pieces(unpainted_area(bare, strokes), shape, finest),
         _pieces(bare, shape, finest),
         any(notice.code in ("unreached", "mark-misses") for notice in work.notices),
         shape.intersection(mark).area / shape.union(mark).area,

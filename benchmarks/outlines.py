@@ -18,7 +18,7 @@ from brushsvg import _core
 from brushsvg.geometry.rings import with_holes
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 from brushsvg.strokes.skeleton.graph import build_skeleton
 from brushsvg.strokes.skeleton.reading_order import order_strokes
 from brushsvg.strokes.skeleton.shape_to_strokes import (
@@ -63,7 +63,7 @@ def main() -> None:
     options = parser.parse_args()
     elements = glyphs(options.font.read_bytes(), options.count, options.size)
 
-    filling, shapes = ms_each(elements, filled)
+    filling, shapes = ms_each(elements, filled_rings)
     areas = [area for shape in shapes for area in with_holes(shape)]
     per_glyph = len(areas) / len(shapes)
     axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, MIN_BRANCH_AREA, MIN_LIMB_AREA))

@@ -15,9 +15,9 @@ import numpy as np
 
 from brushsvg import _core
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.paint_reload import in_loads
-from brushsvg.machine.preflight import look
-from brushsvg.machine.writer import encoded
+from brushsvg.machine.paint_reload import split_into_loads
+from brushsvg.machine.preflight import check_job
+from brushsvg.machine.writer import encode_checked
 from brushsvg.model.library import find_brush
 from brushsvg.read import read_drawing
 from brushsvg.strokes.extraction import strokes as strokes_of
@@ -67,9 +67,9 @@ def main() -> None:
             lambda: _core.compensate(strokes, brush, design.sheet_mm),
         )
         marks = stage("simulate", lambda: _core.simulate(done.plan, brush))
-        loads = in_loads(done.plan, brush, find_cell())
-        walk = stage("limits", lambda: look(loads, brush, marks, find_cell(), 0.05))
-        stage("G-code", lambda: "".join(encoded(".ngc", done.plan, walk, brush, "page")))
+        loads = split_into_loads(done.plan, brush, find_cell())
+        walk = stage("limits", lambda: check_job(loads, brush, marks, find_cell(), 0.05))
+        stage("G-code", lambda: "".join(encode_checked(".ngc", done.plan, walk, brush, "page")))
         begin = time.perf_counter()
         ran = subprocess.run(
             [Path(sys.executable).with_name("brushsvg"), "convert", drawing, "-o", program],

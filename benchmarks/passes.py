@@ -40,7 +40,7 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 from brushsvg.strokes.swept_areas import region
 
 FONTS = Path("/usr/share/fonts")
@@ -135,7 +135,7 @@ def document(name: str, brush, times: float) -> str:
         )
     face, letter = name.split()
     font = (FONTS / FACES[face]).read_bytes()
-    stem = region(filled(_drawn("l", font, 100.0)))
+    stem = region(filled_rings(_drawn("l", font, 100.0)))
     size_mm = 100 * times * wide_mm / (2 * shapely.maximum_inscribed_circle(stem, 0.01).length)
     return text_svg(letter, font, size_mm=float(size_mm))[0]
 
@@ -149,7 +149,7 @@ def fill(name: str, brush_name: str, times: float, pictures: Path | None) -> Fil
         begun = time.process_time()
         work = prepare(file, Options(brush=brush, wide="passes"))
         seconds = time.process_time() - begun
-    rings = [ring for element in read_svg(drawing.encode()).elements for ring in filled(element)]
+    rings = [ring for element in read_svg(drawing.encode()).elements for ring in filled_rings(element)]
     mark_rings = predict(work).outline_mm
     shape, mark = region(rings), region(mark_rings)
     if pictures:

@@ -33,7 +33,7 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 from brushsvg.strokes.swept_areas import region
 
 ACROSS = np.linspace(-0.9, 0.9, 19)  # where rays run, in half widths
@@ -105,7 +105,7 @@ def pairs(text: str, font: bytes, size_mm: float, brush_name: str) -> tuple[str,
         file = Path(folder, "glyph.svg")
         file.write_text(document, encoding="utf-8")
         work = prepare(file, Options(brush=find_brush(brush_name)))
-    shape = region(filled(read_svg(document.encode()).elements[0]))
+    shape = region(filled_rings(read_svg(document.encode()).elements[0]))
     mark = region(predict(work).outline_mm)
     drawn = [stroke for stroke in work.drawn if stroke.origin.lane == 1]
     found = [

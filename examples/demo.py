@@ -13,7 +13,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.show.evaluation import report
 
 
@@ -24,8 +24,8 @@ def main(drawing: Path, directory: Path) -> None:
     work = works["closed"]
     works["best"] = constant_lag.best_constant(work)
     marks = {how: prediction.predict(works[how]) for how in works}
-    loads = in_loads(work.plan, work.brush, cell)
-    walk = preflight.look(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)
+    loads = split_into_loads(work.plan, work.brush, cell)
+    walk = preflight.check_job(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)
     if walk.problems:
         raise RefusedError(str(drawing), walk.problems)
     warn(str(drawing), work.notices)
@@ -43,11 +43,15 @@ def main(drawing: Path, directory: Path) -> None:
     }
     table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
     files = {
-        ".plan.json": writer.encoded(".json", work.plan, walk, work.brush, work.title),
-        ".ngc": writer.encoded(".ngc", work.plan, walk, work.brush, work.title, outputs.notes(work)),
-        ".marks.svg": outputs.picture(".svg", work, marks["closed"]),
-        ".report.txt": report.as_text(".txt", outputs.reported(work, marks["closed"], cell)) + "\n" + table,
-        ".html": outputs.played(work, loads, marks["closed"], cell),
+        ".plan.json": writer.encode_checked(".json", work.plan, walk, work.brush, work.title),
+        ".ngc": writer.encode_checked(
+            ".ngc", work.plan, walk, work.brush, work.title, outputs.header_lines(work)
+        ),
+        ".marks.svg": outputs.make_picture(".svg", work, marks["closed"]),
+        ".report.txt": report.as_text(".txt", outputs.make_report(work, marks["closed"], cell))
+        + "\n"
+        + table,
+        ".html": outputs.make_animation(work, loads, marks["closed"], cell),
         ".png": comparison_png(works, marks, totals),
     }
     directory.mkdir(parents=True, exist_ok=True)

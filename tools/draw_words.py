@@ -19,7 +19,7 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
 from brushsvg.read.text import text_svg
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from letters import fitting_mm
@@ -33,7 +33,7 @@ def row(font: bytes, word: str) -> list[np.ndarray]:
     brush = find_brush("round-6")
     size_mm = fitting_mm(font, brush)
     document, _ = text_svg(word, font, size_mm=size_mm)
-    drawn = [ring for element in read_svg(document.encode()).elements for ring in filled(element)]
+    drawn = [ring for element in read_svg(document.encode()).elements for ring in filled_rings(element)]
     marks = []
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "word.svg")

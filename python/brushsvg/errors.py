@@ -100,12 +100,12 @@ def join_advice(sentence: str, advice: str) -> str:
     return f"{sentence}; {advice}" if advice else sentence
 
 
-def shown(number: float) -> str:
+def format_value(number: float) -> str:
     """A number of a file in a sentence: whole numbers of TOML have no end."""
     return str(number)[:40] if isinstance(number, int) else f"{number:g}"
 
 
-def need(value, kind: type | tuple[type, ...], what: str) -> None:
+def require_type(value, kind: type | tuple[type, ...], what: str) -> None:
     """Error for a value of another Python type than what it should be, in words. True is no number."""
     kinds = kind if isinstance(kind, tuple) else (kind,)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
@@ -114,7 +114,7 @@ def need(value, kind: type | tuple[type, ...], what: str) -> None:
 
 def need_number(value, what: str, least: float, greatest: float) -> float:
     """The number itself. Error for what is none, and outside of [least, greatest]."""
-    need(value, Real, f"a number, which {what} is")
+    require_type(value, Real, f"a number, which {what} is")
     try:
         number = float(value)
     except OverflowError:  # an integer of hundreds of digits
@@ -149,7 +149,7 @@ def need_one_of(value, choices: tuple, what: str) -> None:
         raise Error(f"{what} is {known} or {choices[-1]}, not {str(value)[:40]!r}", code="choice-unknown")
 
 
-def lacking(what: str, *packages: str) -> Error:
+def missing_packages_error(what: str, *packages: str) -> Error:
     """Return a refusal because packages of an extra are missing, with the command that installs them."""
     return Error(
         f"{what} {' and '.join(packages)}: install with  {command_to_add(*packages)}", code="package-missing"
@@ -168,7 +168,7 @@ def command_to_add(*packages: str) -> str:
     return f"{sys.executable} -m pip install {names}"
 
 
-def unexpected(mistake: Exception) -> Error:
+def describe_unexpected(mistake: Exception) -> Error:
     """What a user is shown of an exception that is no refusal: there was no memory, or the mistake is ours."""
     text = str(mistake)
     is_unloaded = isinstance(mistake, ImportError) and "failed to map segment" in text

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
-from .errors import Error, need
+from .errors import Error, require_type
 from .suggestions import did_you_mean
 
 try:
@@ -46,7 +46,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     except IsADirectoryError:
         sentence = "this is a directory, not a file"
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
-        sentence = f"the file cannot be read: {reason(problem)}"
+        sentence = f"the file cannot be read: {system_reason(problem)}"
     raise Error(sentence, file=os.fspath(path), code="file-unreadable")
 
 
@@ -71,7 +71,7 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
     """
     if isinstance(name_or_path, os.PathLike):
         return Path(name_or_path)
-    need(name_or_path, str, f"the name or the path of a {kind}")
+    require_type(name_or_path, str, f"the name or the path of a {kind}")
     names = names_in(shipped, suffix)
     if name_or_path in names:
         return shipped / f"{name_or_path}{suffix}"
@@ -143,7 +143,9 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
         raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         raise Error(
-            f"the file cannot be written: {reason(problem)}", file=os.fspath(path), code="file-unwritable"
+            f"the file cannot be written: {system_reason(problem)}",
+            file=os.fspath(path),
+            code="file-unwritable",
         ) from None
     finally:
         for left in staged.values():
@@ -151,7 +153,7 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
         held.close()
 
 
-def reason(problem: Exception) -> str:
+def system_reason(problem: Exception) -> str:
     """What the system says of a file, as the end of a sentence."""
     return (getattr(problem, "strerror", None) or str(problem)).lower()
 

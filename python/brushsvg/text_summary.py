@@ -11,7 +11,7 @@ MOST_ALIKE = 3  # of a kind, each on a line of its own
 MOST_NAMED = 4  # whose sentence is the very same: a brush has as many laws
 
 
-def summarized(notices: Iterable[Notice]) -> list[Notice]:
+def summarize_notices(notices: Iterable[Notice]) -> list[Notice]:
     """The notices in the order in which each kind comes first; the rest of a kind is counted."""
     kinds: dict[tuple, list[Notice]] = {}
     for notice in notices:

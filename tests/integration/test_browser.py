@@ -15,7 +15,7 @@ from brushsvg.jobs import outputs, prediction
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import preparation
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.writer import whole_program
 from brushsvg.show.timeline import timeline
 
@@ -59,7 +59,7 @@ class Browser:
 
 
 def loads_of(work):
-    return in_loads(work.plan, work.brush, find_cell())
+    return split_into_loads(work.plan, work.brush, find_cell())
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +170,7 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     assert step_mm.max() > 30
     rows = timeline(whole_program(loads_of(work), work.brush, find_cell()), marks)
     moment = rows.time_s[np.flatnonzero(~np.isnan(rows.depth_mm))[row]]
-    (tmp_path / "a.html").write_bytes(outputs.played(work, loads_of(work), marks, find_cell()))
+    (tmp_path / "a.html").write_bytes(outputs.make_animation(work, loads_of(work), marks, find_cell()))
     image, said = browser.shown(tmp_path / "a.html", f"t={moment:.3f}&bare")
     assert said == []
     assert overlap(image, until(marks, 0, marks.passes[0].pose[row]), work) > 0.98

@@ -25,7 +25,7 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.design import Design, Element
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 from brushsvg.strokes.wide_shapes import within_reach
 
 SEED = 20260
@@ -57,7 +57,7 @@ def found(characters):
         for path_data, middle in zip(each["strokes"], each["medians"], strict=True):
             element = outline("s", path_data)
             made, _ = strokes(Design((CHARACTER_MM, CHARACTER_MM), (element,)))
-            rows.append((made, filled(element), np.array(middle) * MM_PER_UNIT))
+            rows.append((made, filled_rings(element), np.array(middle) * MM_PER_UNIT))
     return rows
 
 
@@ -112,7 +112,7 @@ def test_letters_are_covered(lettering, kind):
     for text in string.ascii_letters + string.digits:
         drawing = letter(font, text)
         made, _ = strokes(drawing)
-        shares[text] = covered(swept(made), filled(drawing.elements[0]))
+        shares[text] = covered(swept(made), filled_rings(drawing.elements[0]))
     print(
         f"{kind}: covered {np.mean(list(shares.values())):.4f}, least {min(shares.items(), key=lambda x: x[1])}"
     )
@@ -186,7 +186,7 @@ def test_no_limb_is_lost(lettering, kind, weight, em_mm):
     """Connected pieces of a letter that neither paint nor a disc of any stroke reaches, beyond 3 % of it."""
     import shapely
 
-    from brushsvg.strokes.swept_areas import region, unpainted
+    from brushsvg.strokes.swept_areas import region, unpainted_area
 
     brush, lost = find_brush("round-6"), []
     for text in LIMBS:
@@ -196,8 +196,8 @@ def test_no_limb_is_lost(lettering, kind, weight, em_mm):
             _core.compensate(made, brush, design.sheet_mm, "closed", 0.05, None).plan, brush
         )
         _core.trace_outlines(marks, brush)
-        shape = region([ring for element in design.elements for ring in filled(element)])
-        left = unpainted(shape.difference(region(marks.outline_mm)), made).buffer(-0.3).buffer(0.3)
+        shape = region([ring for element in design.elements for ring in filled_rings(element)])
+        left = unpainted_area(shape.difference(region(marks.outline_mm)), made).buffer(-0.3).buffer(0.3)
         lost += [text for piece in shapely.get_parts(left) if piece.area > 0.03 * shape.area]
     print(f"{kind}: {len(lost)} pieces lost {lost}")
     assert lost == []

@@ -18,7 +18,7 @@ from shapely.ops import unary_union
 
 from brushsvg import _core
 from brushsvg.cli import main
-from brushsvg.comparison.corrections import Correction, corrected
+from brushsvg.comparison.corrections import Correction, apply_corrections
 from brushsvg.comparison.job_page import job_page
 from brushsvg.jobs.json_files import read_plan
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
@@ -443,7 +443,7 @@ def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
         )
         for a_pass in plan.passes
     )
-    after = studio.rings(corrected(plan, requested, BRUSH))
+    after = studio.rings(apply_corrections(plan, requested, BRUSH))
     for name, rings in before.items():
         expected, moved = area(rings).buffer(by_mm), area(after[name])
         apart_mm2 = expected.symmetric_difference(moved).area

@@ -23,7 +23,7 @@ from brushsvg.machine.cells.cell import (
     robot_from_paper,
 )
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
 from brushsvg.verify import against_plan, simulate_program
@@ -276,6 +276,8 @@ def test_programs_for_machines_that_go_elsewhere_are_allowed_and_come_back(seed)
     cell = replace(cell, machine=Machine(**axes))
     plan = random_plan(rng, brush, cell.heights.lowest_mm)
     text = "".join(writer.encode(LANGUAGES[name], plan, brush, "random", (), cell))
-    ran = simulate_program.run(read_program(text, LANGUAGES[name], cell), brush, cell, plan.sheet_mm)
+    ran = simulate_program.simulate_program(
+        read_program(text, LANGUAGES[name], cell), brush, cell, plan.sheet_mm
+    )
     assert ran.problems == []
-    assert against_plan.with_plan(ran, in_loads(plan, brush, cell), cell)[1] == []
+    assert against_plan.with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []

@@ -8,8 +8,8 @@ from diagnostics import in_json, is_reported
 from brushsvg.cli import main
 from brushsvg.cli.commands.drawings import check
 from brushsvg.machine.paint_reload import PlanInLoads
-from brushsvg.machine.preflight import look
-from brushsvg.machine.program import WHOLE_JOB, walked
+from brushsvg.machine.preflight import check_job
+from brushsvg.machine.program import WHOLE_JOB, make_checked_program
 
 LANGUAGES = {
     "linuxcnc-3axis": ".ngc",
@@ -47,15 +47,15 @@ def whole(plan):
 
 def program(plan, brush, cell, header=(), job=WHOLE_JOB):
     """Its moves, or an Error where something forbids them."""
-    return replace(walked(whole(plan), brush, cell, job).allowed(), header=header)
+    return replace(make_checked_program(whole(plan), brush, cell, job).allowed(), header=header)
 
 
 def forbidden(plan, brush, cell):
-    return walked(whole(plan), brush, cell).problems
+    return make_checked_program(whole(plan), brush, cell).problems
 
 
 def problems(plan, brush, marks, cell, tolerance_mm):
-    return look(whole(plan), brush, marks, cell, tolerance_mm).problems
+    return check_job(whole(plan), brush, marks, cell, tolerance_mm).problems
 
 
 def is_refused_when_damaged(capsys, path, old, new, reported, *words):

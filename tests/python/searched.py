@@ -1,7 +1,7 @@
 """Strokes as a search makes them, for tests of the ways to fill a shape."""
 
 from brushsvg import _core
-from brushsvg.strokes.stroke_search import searched
+from brushsvg.strokes.stroke_search import search_strokes
 from brushsvg.strokes.wide_shapes import within_reach
 
 
@@ -12,7 +12,7 @@ def passes_of(strokes, brush):
     def compensated(some):
         return _core.compensate(some, brush, None, start="auto", end="auto")
 
-    return searched(strokes, painted, target, compensated, brush).painted
+    return search_strokes(strokes, painted, target, compensated, brush).painted
 
 
 def mark_of(strokes, brush):

@@ -41,7 +41,9 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
     rows = timeline(whole_program(whole(work.plan), work.brush, find_cell()), marks)
     sent = {
         name: np.cumsum(steps)
-        for name, steps in data_of(outputs.played(work, whole(work.plan), marks, find_cell()))["rows"].items()
+        for name, steps in data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))[
+            "rows"
+        ].items()
     }
     assert np.abs(sent["t"] / 1000 - rows.time_s).max() <= 0.0005 + 1e-9
     for axis, name in enumerate("xyz"):
@@ -58,7 +60,7 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
 
 def test_the_rings_are_those_of_the_prediction(tmp_path):
     work, marks = work_of(tmp_path)
-    data = data_of(outputs.played(work, whole(work.plan), marks, find_cell()))
+    data = data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))
     (a_pass,) = data["passes"]
     assert (a_pass["name"], a_pass["colour"]) == ("line", "#203060")
     for sent, ring in zip(a_pass["rings"], marks.passes[0].outline_mm, strict=True):
@@ -72,7 +74,7 @@ def test_the_rings_are_those_of_the_prediction(tmp_path):
 def test_a_plan_does_not_hold_its_target(tmp_path):
     work, marks = work_of(tmp_path)
     object.__setattr__(work, "strokes", None)
-    assert data_of(outputs.played(work, whole(work.plan), marks, find_cell()))["wanted"] == []
+    assert data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))["wanted"] == []
 
 
 def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
@@ -81,8 +83,8 @@ def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
     passes = plan.passes
     passes[0].stroke, passes[0].colour = HOSTILE.replace("\ud83d", ""), '"><img src=x onerror=alert(1)>'
     plan.passes = passes
-    page = outputs.played(work, whole(work.plan), marks, find_cell())
-    plain = outputs.played(*played_of(tmp_path), find_cell())
+    page = outputs.make_animation(work, whole(work.plan), marks, find_cell())
+    plain = outputs.make_animation(*played_of(tmp_path), find_cell())
     for word in (b"<script", b"</script", b"<!--", b"<img"):
         assert page.lower().count(word) == plain.lower().count(word), word
     data = data_of(page)
@@ -91,20 +93,20 @@ def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
 
 
 def test_the_page_asks_for_nothing_from_outside(tmp_path):
-    page = outputs.played(*played_of(tmp_path), find_cell()).decode()
+    page = outputs.make_animation(*played_of(tmp_path), find_cell()).decode()
     assert "default-src 'none'" in page
     assert not re.findall(r"(?:https?:|\bsrc=|\bhref=|@import|url\()", page)
     assert "/*" not in re.sub(r"(?s)<style>.*?</style>", "", page)  # every mark of the template was filled
 
 
 def test_same_input_same_bytes(tmp_path):
-    first, second = (outputs.played(*played_of(tmp_path), find_cell(), 5.0) for _ in range(2))
+    first, second = (outputs.make_animation(*played_of(tmp_path), find_cell(), 5.0) for _ in range(2))
     assert first == second
     assert data_of(first)["speed"] == 5.0
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.5])
 def test_numbers_are_whole(tmp_path, speed):
-    data = data_of(outputs.played(*played_of(tmp_path), find_cell(), speed))
+    data = data_of(outputs.make_animation(*played_of(tmp_path), find_cell(), speed))
     for name, steps in data["rows"].items():
         assert all(isinstance(step, int) for step in steps), name

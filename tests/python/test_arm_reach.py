@@ -20,8 +20,8 @@ from brushsvg.machine.arm import joints, place
 from brushsvg.machine.arm.follow import flange_at, follow, joint_rates, lowest_joint_mm
 from brushsvg.machine.cells.cell import robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
-from brushsvg.machine.frames import moved
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.frames import transform_points
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.program import unchecked_program
 from brushsvg.machine.setup_programs import over_sheet
 from brushsvg.model.library import find_brush
@@ -64,7 +64,9 @@ def plan_of(line):
 
 
 def look(cell, plan):
-    return preflight.look(in_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05)
+    return preflight.check_job(
+        split_into_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05
+    )
 
 
 @sample("which", range(len(JOBS)), keep=4)
@@ -116,7 +118,7 @@ def test_the_nearest_place_may_be_a_turn():
     cell, plan = job("irb120", (-450, 90, 20), (), ACROSS, (), {})
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"
-    made = unchecked_program(in_loads(plan, BRUSH, cell), BRUSH, cell)
+    made = unchecked_program(split_into_loads(plan, BRUSH, cell), BRUSH, cell)
     found = place.nearest(
         made, joints.joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999
     )
@@ -194,7 +196,7 @@ def test_the_posture_with_the_highest_elbow_is_suggested(name):
     assert not found.problems
     height = elbow_mm(name, found.start_rad)[2]
     assert height > robot_from_paper(cell)[2, 3]
-    first = moved(made.robot_from_frame, next(made.sections()).moves[0].points_mm[:1])[0]
+    first = transform_points(made.robot_from_frame, next(made.sections()).moves[0].points_mm[:1])[0]
     for start in solved.solutions(flange_at(cell, made.robot_from_frame, first)):
         named = replace(cell.arm, posture_deg=tuple(np.degrees(start).tolist()))
         other = follow(replace(made, cell=replace(cell, arm=named)), joints.joints_of(named))

@@ -18,7 +18,13 @@ from brushsvg.machine.cells.cell_file import (
     read_cell,
     write_cell,
 )
-from brushsvg.machine.frames import frame_of_pose, moved, normal_tilt_deg, rotation, rotation_vector
+from brushsvg.machine.frames import (
+    frame_of_pose,
+    normal_tilt_deg,
+    rotation,
+    rotation_vector,
+    transform_points,
+)
 from brushsvg.machine.posts import POSTS
 
 TEXT = (SHIPPED / "linuxcnc-3axis.toml").read_text(encoding="utf-8")
@@ -224,7 +230,9 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 2000, 16.0), np.arange(0, 2000, 16.0)))
         is_met = True
         for height in (0.0, cell.heights.safe_mm):
-            points = moved(robot_from_paper(cell), np.column_stack([x, y, np.full(len(x), height)]))
+            points = transform_points(
+                robot_from_paper(cell), np.column_stack([x, y, np.full(len(x), height)])
+            )
             away = np.linalg.norm(points, axis=1)
             inside = ((points >= low) & (points <= workspace.box_mm[1])).all(axis=1)
             is_met &= bool((inside & (away >= 100) & (away <= workspace.reach_mm[1])).any())
@@ -269,7 +277,7 @@ def test_nothing_is_odd_about_shipped_cells(name):
 def test_the_frame_of_taught_points_is_where_they_were():
     truth = frame_of_pose((120.0, -340.0, 25.0), (1.0, -0.5, 37.0))
     on_paper = np.array([(0, 0, 0), (210, 0, 0), (14, 150, 0), (180, 120, 0)], dtype=float)
-    taught = tuple(map(tuple, moved(truth, on_paper).tolist()))
+    taught = tuple(map(tuple, transform_points(truth, on_paper).tolist()))
     cell = replace(FULL, paper=Paper(taught_mm=taught))
     assert robot_from_paper(cell) == pytest.approx(truth, abs=1e-9)
     higher = robot_from_paper(cell, 2.0)

@@ -38,7 +38,7 @@ def text_of(work, name, **job):
 
 
 def ran(text, cell, work):
-    return simulate_program.run(
+    return simulate_program.simulate_program(
         read_program(text, LANGUAGES[cell.name], cell), work.brush, cell, work.plan.sheet_mm
     )
 

@@ -5,7 +5,7 @@ import pytest
 from diagnostics import refused
 
 from brushsvg import _core, find_brush
-from brushsvg.comparison.corrections import Correction, corrected
+from brushsvg.comparison.corrections import Correction, apply_corrections
 
 BRUSH = find_brush("round-6")  # trails by 10.2 mm at 5 mm of depth
 POSES = [(30, 30, 0), (32, 30, -5), (70, 30, -5), (72, 30, 0)]
@@ -21,11 +21,11 @@ def correction(away_mm, replanned):
 
 def test_a_stroke_may_begin_twice_as_far_away_as_the_brush_trails():
     """The guess of one lag was 6 mm short, and the second sheet's corrections were refused as those of another job."""
-    (made,) = corrected(plan(), (correction(5.8, True),), BRUSH).passes
+    (made,) = apply_corrections(plan(), (correction(5.8, True),), BRUSH).passes
     assert made.poses_mm[0].tolist() == pytest.approx([30.5, 30, 0])
 
 
 @pytest.mark.parametrize(("away_mm", "replanned"), [(5.8, False), (21.0, True)])
 def test_farther_away_it_is_another_job(away_mm, replanned):
     with refused("corrections-of-another-job", "a"):
-        corrected(plan(), (correction(away_mm, replanned),), BRUSH)
+        apply_corrections(plan(), (correction(away_mm, replanned),), BRUSH)

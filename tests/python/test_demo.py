@@ -15,7 +15,7 @@ from diagnostics import in_json, refused
 from brushsvg.cli import main
 from brushsvg.cli.commands.installation import demo, doctor
 from brushsvg.cli.install_plugin import install_inkscape
-from brushsvg.errors import command_to_add, lacking
+from brushsvg.errors import command_to_add, missing_packages_error
 
 ROOT = Path(__file__).parents[2]
 
@@ -162,7 +162,7 @@ def test_packages_are_added_by_what_installed_brushsvg(tmp_path, monkeypatch, fi
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     assert command_to_add("a", "b").split() == list(command)
     with refused("package-missing"):
-        raise lacking("this needs", "a", "b")
+        raise missing_packages_error("this needs", "a", "b")
 
 
 def test_without_pip_uv_adds_packages(monkeypatch):

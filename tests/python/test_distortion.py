@@ -134,7 +134,7 @@ def test_a_map_that_is_no_grid_is_refused(rows, said):
 def test_what_was_planned_comes_back(desk, name, machine):
     work, cell = preparation.prepare("two.svg"), cell_with(machine, name)
     read = read_program(text_of(work, cell), LANGUAGES[name], cell)
-    back = simulate_program.run(read, work.brush, cell, work.plan.sheet_mm)
+    back = simulate_program.simulate_program(read, work.brush, cell, work.plan.sheet_mm)
     assert back.problems == []
     for expected, found in zip(work.plan.passes, back.plan.passes, strict=True):
         away = np.linalg.norm(found.poses_mm[None] - expected.poses_mm[:, None], axis=2).min(axis=1)
@@ -174,7 +174,7 @@ def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, 
     )
     text = "".join(writer.encode(".ngc", plan, brush, "c", (), cell))
     assert bool(re.search(r"(?m)^G[23] ", text)) == are_reported
-    back = simulate_program.run(read_program(text, ".ngc", cell), brush, cell, plan.sheet_mm)
+    back = simulate_program.simulate_program(read_program(text, ".ngc", cell), brush, cell, plan.sheet_mm)
     assert back.problems == [] and bool(back.plan.passes[0].arcs) == are_reported
     found = np.asarray(back.plan.passes[0].poses_mm)
     deep = found[found[:, 2] < -2.9]
@@ -190,8 +190,8 @@ def test_limits_are_checked_for_commanded_places(desk):
     )
     straight = replace(tight, machine=None)
     marks = _core.simulate(work.plan, work.brush)
-    assert preflight.look(_loads(work), work.brush, marks, straight, 0.05).problems == []
-    assert preflight.look(_loads(work), work.brush, marks, tight, 0.05).problems != []
+    assert preflight.check_job(_loads(work), work.brush, marks, straight, 0.05).problems == []
+    assert preflight.check_job(_loads(work), work.brush, marks, tight, 0.05).problems != []
 
 
 def _loads(work):

@@ -13,7 +13,7 @@ from brushsvg.read import ReadOptions
 from brushsvg.read.design import Design
 from brushsvg.read.dxf import entity_walk, read_dxf, splines
 from brushsvg.strokes.extraction import strokes
-from brushsvg.text_summary import summarized
+from brushsvg.text_summary import summarize_notices
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
 
@@ -401,7 +401,7 @@ def test_what_was_repaired_is_reported_where_it_is_painted(more, words):
     """The audit takes away what it cannot understand: another width, a solid line in place of dashes."""
     lines = [LOOK.format(y=y) + more for y in range(5)]
     notices = read_dxf(text_dxf(LOOK.format(y=9), *lines), OPTIONS).notices
-    reported = [notice for notice in summarized(notices) if notice.code == "dxf-repaired"]
+    reported = [notice for notice in summarize_notices(notices) if notice.code == "dxf-repaired"]
     assert [words in notice.sentence for notice in reported] == [True], notices
     assert reported[0].where.startswith("LINE(#") and gives(reported[0].where, "4")
 

@@ -13,7 +13,7 @@ from brushsvg import _core
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.fanuc import REMARK_LETTERS, programs
 from brushsvg.verify.readback import read_program
-from brushsvg.verify.readback.header import made
+from brushsvg.verify.readback.header import read_header
 
 
 def waves(strokes: int, poses: int):
@@ -132,7 +132,7 @@ def test_remarks_are_as_long_as_the_pendant_shows_them_and_read_as_they_were():
     remarks = [line for line in text.split("\n") if line.startswith(" : !")]
     assert len(remarks) == 9 and max(map(len, remarks)) == len(" : !") + REMARK_LETTERS + len(" ;")
     said = f"title: {title}".replace(";", ",")
-    assert made(text).title == said.removeprefix("title: ")
+    assert read_header(text).title == said.removeprefix("title: ")
     assert sound(text, find_cell("lrmate200id")).header[0] == said
     acts = read_program(text, ".ls", on("lrmate200id", SQUARE)).acts
     assert f"({said})" in [act.text for act in acts]

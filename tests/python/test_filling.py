@@ -16,7 +16,7 @@ from brushsvg.strokes.contour_rings import Line
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.fillings import find_wide_shapes
 from brushsvg.strokes.skeleton import shape_to_strokes
-from brushsvg.strokes.swept_areas import painted, region
+from brushsvg.strokes.swept_areas import painted_area, region
 from brushsvg.strokes.wide_shapes import within_reach
 
 HALF_MM = 4.2  # of round-6 at its deepest
@@ -53,7 +53,9 @@ def of(d: str, rest: str = 'fill="red" fill-rule="nonzero" stroke="none"'):
 
 def intended_by(made):
     """What discs of passes paint, and what their targets hold beyond, in the corners of square ends."""
-    return shapely.union_all([painted(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)])
+    return shapely.union_all(
+        [painted_area(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)]
+    )
 
 
 def share_left(shape, made) -> float:
@@ -76,7 +78,7 @@ def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     # each its own, up to the tips of corners that it ends in: `refined` would draw it to the whole shape
     for each in (each for each in passes if each.wanted_mm):
         beyond = HALF_MM * (1 / np.sin(np.radians(58 / 2)) - 1)
-        assert region(each.wanted_mm).difference(painted([each]).buffer(beyond)).area < 0.01
+        assert region(each.wanted_mm).difference(painted_area([each]).buffer(beyond)).area < 0.01
     expected = region(_core.unite([ring for each in target for ring in _core.wanted_outline(each, 0.01)]))
     assert expected.symmetric_difference(shape).area < 0.006 * shape.area
     assert paint.intersection(shape).area / paint.union(shape).area > 0.97
@@ -275,7 +277,7 @@ def test_a_line_of_changing_width_is_as_wide_as_its_knots_say():
     knots = [(0.0, 0.1), (0.4, 4.2), (1.0, 4.2)]
     stroke = _core.Stroke(middle_mm=np.array([[0, 0, 10 / 3, 0, 20 / 3, 0, 10, 0]]), half_width=knots)
     target = _core.area(_core.wanted_outline(stroke, 0.005))
-    assert target == pytest.approx(painted([stroke]).area, rel=2e-3)
+    assert target == pytest.approx(painted_area([stroke]).area, rel=2e-3)
     assert target == pytest.approx(105.8, abs=0.3)
 
 
@@ -286,7 +288,7 @@ def test_what_is_no_lettering_is_left_to_the_middle_lines():
     assert find_contour_passes(rough, 0.0, HALF_MM) == []
     assert find_contour_passes(shapely.box(0, 0, 4000, 4000), 0.0, 1.0) == []
     line = Line(np.array([[0.0, 0, 1, 0, 2, 0, 3, 0]]), [(0.0, 1.0)])
-    assert painted([line]).area == pytest.approx(6 + np.pi, rel=1e-3)
+    assert painted_area([line]).area == pytest.approx(6 + np.pi, rel=1e-3)
 
 
 @pytest.mark.parametrize("names", [("icon/1", "icon/2"), ("a", "b")])

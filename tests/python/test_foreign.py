@@ -13,7 +13,7 @@ from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.read import ReadOptions
 from brushsvg.read.gcode import read_gcode
 from brushsvg.read.gcode.pen import read_pen
-from brushsvg.read.gcode.toolpaths import ways
+from brushsvg.read.gcode.toolpaths import read_moves
 
 INCHES = """%
 N10 G20 G90 (a plate)
@@ -58,7 +58,7 @@ def desk(tmp_path, monkeypatch):
 
 def drawn(text):
     """Places (n, 2) [mm] to which the pen goes while it is down, with their lines."""
-    some = ways(text)
+    some = read_moves(text)
     down = zip(some, read_pen(some).down, strict=True)
     return {way.line: way.points_mm[-1, :2].round(6).tolist() for way, is_down in down if is_down}
 
@@ -66,12 +66,12 @@ def drawn(text):
 def test_inches_circles_and_relative_places():
     target = {6: [50.8, 25.4], 8: [63.5, 38.1], 13: [63.5, 50.8]}
     assert drawn(INCHES) == target
-    (circle,) = [way for way in ways(INCHES) if way.turn]
+    (circle,) = [way for way in read_moves(INCHES) if way.turn]
     assert circle.turn == -1 and circle.centre_mm == pytest.approx((50.8, 38.1))
     assert np.linalg.norm(circle.points_mm[:, :2] - circle.centre_mm, axis=1) == pytest.approx(12.7)
     assert circle.points_mm[:, 0].min() == pytest.approx(50.8 - 12.7, abs=0.05), "three quarters, by the left"
     by_radius = INCHES.replace("I0 J0.5", "R-0.5")
-    (again,) = [way for way in ways(by_radius) if way.turn]
+    (again,) = [way for way in read_moves(by_radius) if way.turn]
     assert again.points_mm == pytest.approx(circle.points_mm)
 
 
@@ -101,7 +101,7 @@ def test_check_does_not_take_a_tone_for_a_servo(desk, capsys):
 
 def test_a_servo_stays_down_on_rapid_ways_after_m4():
     """convert reads a laser's program, and check one for a servo, which M4 sets as M3 does."""
-    down = [way for way in ways("G21G90\nG0X0Y0\nM4S30\nG1X20Y0F900\nG0X40Y0\nM5\n") if way.rapid][-1]
+    down = [way for way in read_moves("G21G90\nG0X0Y0\nM4S30\nG1X20Y0F900\nG0X40Y0\nM5\n") if way.rapid][-1]
     assert down.power == 30.0
 
 
@@ -142,7 +142,7 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
 )
 def test_what_is_not_known_is_refused(old, new, reported):
     with refused(reported):
-        ways(INCHES.replace(old, new, 1))
+        read_moves(INCHES.replace(old, new, 1))
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
 
 def test_where_nothing_shows_when_the_pen_is_down_it_is_refused():
     with refused("pen-unknown"):
-        read_pen(ways("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
+        read_pen(read_moves("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
 
 
 def test_check_predicts_what_a_brush_paints(desk, capsys):
@@ -314,7 +314,7 @@ FULL = "G90\nG0 Z5\nG0 X60 Y60\nG1 Z-1 F300\n{}\nG0 Z5\nM2\n"
 @pytest.mark.parametrize("line", ["G2 X60 Y60 I10 J0", "G3 I10", "G2 X60.0001 Y60 I10 J0"])
 def test_a_full_circle_is_drawn(desk, capsys, line):
     (desk / "circle.gcode").write_text(FULL.format(line))
-    (circle,) = [way for way in ways(FULL.format(line)) if way.turn]
+    (circle,) = [way for way in read_moves(FULL.format(line)) if way.turn]
     assert np.ptp(circle.points_mm[:, :2], axis=0) == pytest.approx([20, 20], abs=0.02)
     assert call(capsys, "convert", "circle.gcode", "-o", "marks.json", "--width", "3")[0] == 0
     status, out, _ = call(capsys, "check", "circle.gcode", "--json")
@@ -325,7 +325,7 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
 def test_nothing_is_read_after_the_end_of_a_program(end):
     """Words after M2 on its line made the program go on."""
     moves = "G90\nG0 Z5\nG0 X60 Y60\nG1 Z-1 F300\nG1 X80\n"
-    assert len(ways(f"{moves}{end}\nG1 X90 Y90\n")) == len(ways(moves))
+    assert len(read_moves(f"{moves}{end}\nG1 X90 Y90\n")) == len(read_moves(moves))
 
 
 @pytest.mark.parametrize(
@@ -359,7 +359,7 @@ def test_m3_s0_is_up_and_an_angle_of_0_is_one():
     assert drawn(off) == drawn(off.replace("M3 S0", "M5").replace("\nS0", "\nM5")) != []
     angle = "G21 G90\nM280 P0 S90\nG0 X10 Y10\nM280 P0 S0\nG1 X40 F900\nM280 P0 S90\n"
     assert drawn(angle) == drawn(angle.replace("S0", "S10")) != []
-    assert [way.power for way in ways(angle)][-1] == 0.0
+    assert [way.power for way in read_moves(angle)][-1] == 0.0
 
 
 @pytest.mark.parametrize("pen", DOTS)

@@ -13,7 +13,7 @@ from programs import program
 from brushsvg import _core, find_brush, read_plan, save_brush, write_cell, write_program
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.motion import program_in_robot_frame
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT
 from brushsvg.machine.realised.rounding import as_written
@@ -168,7 +168,7 @@ def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm
     poses = np.array(HALF_TURNS)
     poses[-1, 0] -= off_mm
     a_pass = _core.Pass("round", poses, 20.0, arcs=[_core.Arc(0, 11, (40.0, 30.0), 1)])
-    (loaded,) = in_loads(_core.Plan("b", "", (100.0, 60.0), [a_pass]), None, cell).loads
+    (loaded,) = split_into_loads(_core.Plan("b", "", (100.0, 60.0), [a_pass]), None, cell).loads
     written = as_written(loaded, cell, np.eye(4))
     assert bool(written.arcs) == is_circle
     spokes = np.linalg.norm(written.poses_mm[:, :2] - (40, 30), axis=1)
@@ -281,5 +281,7 @@ def test_a_stroke_is_read_as_fast_as_its_fastest_move():
         "F1200.0\nG1 X12.5000 Y10.0000 Z-3.0000", "F1500.0\nG1 X12.5000 Y10.0000 Z-3.0000\nF1200.0"
     )
     cell = find_cell("linuxcnc-3axis")
-    ran = simulate_program.run(read_program(text, ".ngc", cell), find_brush("round-6"), cell, (100.0, 60.0))
+    ran = simulate_program.simulate_program(
+        read_program(text, ".ngc", cell), find_brush("round-6"), cell, (100.0, 60.0)
+    )
     assert ran.plan.passes[0].speed_mm_s == 25.0

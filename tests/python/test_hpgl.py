@@ -14,7 +14,7 @@ from brushsvg import _core
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Machine, Paper, Pen, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
@@ -158,9 +158,9 @@ def test_random_lines_come_back(seed):
         if leg.kind in ("feed", "rapid"):
             assert leg.end[2] == leg.start[2] and (leg.kind == "rapid") == (leg.end[2] > 0)
         assert leg.kind != "feed" or leg.speed_mm_s <= plan.passes[0].speed_mm_s
-    ran = simulate_program.run(read_program(text, ".hpgl", cell), brush, cell, SHEET)
+    ran = simulate_program.simulate_program(read_program(text, ".hpgl", cell), brush, cell, SHEET)
     assert ran.problems == []
-    assert against_plan.with_plan(ran, in_loads(plan, brush, cell), cell)[1] == []
+    assert against_plan.with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []
 
 
 def test_a_plotter_takes_its_pens_by_the_colours_of_the_cell(tmp_path, capsys, monkeypatch):

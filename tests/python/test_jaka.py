@@ -13,7 +13,7 @@ from test_urscript import ARC, STROKES, text_for
 from brushsvg.cli import main
 from brushsvg.machine.cells.cell import Blending, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.frames import moved, rotation, rotation_deg
+from brushsvg.machine.frames import rotation, rotation_deg, transform_points
 from brushsvg.verify.readback import read_program
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "two_strokes.jks"
@@ -79,7 +79,7 @@ def touched(robot, cell):
     rows = [
         (name, point, speed, cut)
         for name, poses, speed, _, cut in moves(robot)
-        for point in moved(back, poses[:, :3])
+        for point in transform_points(back, poses[:, :3])
     ]
     return [row for row in rows if row[1][2] < cell.heights.clearance_mm - 2e-3]
 

@@ -9,7 +9,7 @@ from svg_text import read
 from brushsvg import _core
 from brushsvg.__main__ import main
 from brushsvg.strokes.extraction import strokes
-from brushsvg.strokes.joining import joined
+from brushsvg.strokes.joining import join_lines
 
 LINE = 'fill="none" stroke="black" stroke-width="4"'
 
@@ -29,7 +29,7 @@ def length_mm(stroke) -> float:
 
 
 def test_a_rectangle_in_four_lines_is_a_closed_one():
-    made, notices = joined(of("M10 10H40", "M40 10V40", "M10 40H40", "M10 40V10"))
+    made, notices = join_lines(of("M10 10H40", "M40 10V40", "M10 40H40", "M10 40V10"))
     assert [(stroke.id, stroke.closed) for stroke in made] == [("a", True)]
     assert length_mm(made[0]) == pytest.approx(120, abs=1e-6)
     assert ends(made[0])[:2] == ends(made[0])[2:]
@@ -39,7 +39,7 @@ def test_a_rectangle_in_four_lines_is_a_closed_one():
 
 
 def test_a_line_keeps_its_direction_and_gets_what_comes_before_it():
-    made, _ = joined(of("M40 30H60", "M20 30H40", "M80 40L60 30"))
+    made, _ = join_lines(of("M40 30H60", "M20 30H40", "M80 40L60 30"))
     assert [stroke.id for stroke in made] == ["a"]
     (sheet,) = {ends(stroke)[1] for stroke in of("M0 30H9")}
     assert ends(made[0]) == [20, sheet, 80, sheet - 10]
@@ -48,7 +48,7 @@ def test_a_line_keeps_its_direction_and_gets_what_comes_before_it():
 
 
 def test_the_straightest_goes_on_and_no_line_turns_back():
-    made, _ = joined(of("M10 30H40", "M40 30L70 50", "M40 30H70", "M10 31H40.5", "M40.5 31L12 33"))
+    made, _ = join_lines(of("M10 30H40", "M40 30L70 50", "M40 30H70", "M10 31H40.5", "M40.5 31L12 33"))
     assert [stroke.id for stroke in made] == ["a", "b", "d", "e"]
     assert ends(made[0])[2] == 70
     assert length_mm(made[0]) == pytest.approx(60)
@@ -66,14 +66,14 @@ def test_the_straightest_goes_on_and_no_line_turns_back():
 )
 def test_lines_of_another_kind_stay_alone(other):
     made = strokes(read(f'<path id="a" d="M10 30H40" {LINE}/>{other}'))[0]
-    assert joined(made) == (made, [])
+    assert join_lines(made) == (made, [])
 
 
 def test_widths_run_on_through_the_joint():
     first, second = of("M10 30H40", "M50 30H40")
     first.half_width = [(0.0, 1.0), (1.0, 2.0)]
     second.half_width = [(0.0, 3.0), (0.5, 2.0), (1.0, 2.0)]
-    ((both,), _) = joined([first, second])
+    ((both,), _) = join_lines([first, second])
     at, half = np.array(both.half_width).T
     assert np.interp([0, 30, 35, 40], at * 40, half) == pytest.approx([1, 2, 2, 3])
 

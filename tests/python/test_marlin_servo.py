@@ -13,7 +13,7 @@ from brushsvg import _core
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Paper, Pen, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.writer import text_of
 from brushsvg.model.library import find_brush
@@ -79,9 +79,11 @@ def test_what_is_drawn_is_the_plan_and_check_takes_it(seed):
             assert leg.speed_mm_s <= plan.passes[0].speed_mm_s
     target = [line @ turn.T + (12.0, 20.0) for line in lines]
     assert np.abs(np.array(strokes) - np.array(target)).max() <= 0.5e-3 + 1e-9
-    ran = simulate_program.run(read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET)
+    ran = simulate_program.simulate_program(
+        read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET
+    )
     assert ran.problems == []
-    assert against_plan.with_plan(ran, in_loads(plan, find_brush("rigid"), cell), cell)[1] == []
+    assert against_plan.with_plan(ran, split_into_loads(plan, find_brush("rigid"), cell), cell)[1] == []
 
 
 def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):

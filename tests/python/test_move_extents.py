@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from brushsvg.machine.cells.cell import Blending
-from brushsvg.machine.frames import frame_of_pose, moved
+from brushsvg.machine.frames import frame_of_pose, transform_points
 from brushsvg.machine.move_extents import (
     bounds,
     distances_from_origin,
     find_place_inside,
+    make_paths,
     paths_in_frame,
-    ways,
 )
 from brushsvg.machine.realised.corner_blending import blend_radii, cut_corners
 
@@ -55,8 +55,8 @@ def both(frame, start, end, circle):
     """A line and a circle, and places on them, in a frame."""
     line = np.linspace(start, end, COUNT)
     return (
-        paths_in_frame(frame, ways([[start, end]], [circle[:3]])),
-        moved(frame, np.vstack([line, sampled(circle)])),
+        paths_in_frame(frame, make_paths([[start, end]], [circle[:3]])),
+        transform_points(frame, np.vstack([line, sampled(circle)])),
         max(math.dist(start, end), np.linalg.norm(np.diff(sampled(circle), axis=0), axis=1).sum()) / COUNT,
     )
 
@@ -91,7 +91,10 @@ def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, s
 @given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
 def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
     """Only programs that were changed have one; all that circle and climb span is checked instead."""
-    some, places = paths_in_frame(frame, ways([], [circle[:3]])), moved(frame, sampled(circle))
+    some, places = (
+        paths_in_frame(frame, make_paths([], [circle[:3]])),
+        transform_points(frame, sampled(circle)),
+    )
     low, high = bounds(some)
     assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
     away = np.linalg.norm(places, axis=1)
@@ -106,7 +109,7 @@ def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, 
 
 def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
     """As machines run it, and as no places of its ends show."""
-    some = ways([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
+    some = make_paths([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
     low, high = bounds(some)
     assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))
     assert distances_from_origin(some) == pytest.approx((math.hypot(4, 2), math.hypot(10, 2)))
@@ -115,11 +118,13 @@ def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
 
 def test_ways_that_stay_in_a_place_or_run_along_a_side():
     box = (0, 0, 0), (10, 10, 10)
-    assert find_place_inside(ways([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
-    assert find_place_inside(ways([[(5, 5, 15)]]), *box) is None
-    assert find_place_inside(ways([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, "along a side is not inside"
-    assert find_place_inside(ways([[(-5, 5, 9.9), (15, 5, 9.9)]]), *box) == pytest.approx([5, 5, 9.9])
-    assert find_place_inside(ways([]), *box) is None
+    assert find_place_inside(make_paths([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
+    assert find_place_inside(make_paths([[(5, 5, 15)]]), *box) is None
+    assert find_place_inside(make_paths([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, (
+        "along a side is not inside"
+    )
+    assert find_place_inside(make_paths([[(-5, 5, 9.9), (15, 5, 9.9)]]), *box) == pytest.approx([5, 5, 9.9])
+    assert find_place_inside(make_paths([]), *box) is None
 
 
 @given(st.floats(0.05, 3.0), st.floats(5, 200), st.floats(5, 200), st.floats(1e-3, 2))
@@ -143,17 +148,19 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
 
 
 def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
-    half = ways([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
+    half = make_paths([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
     assert find_place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
     assert find_place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
 
 
 def test_the_nearest_place_of_a_climbing_circle_is_on_its_way():
-    climbing = ways([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # round the z axis: nearest where it passes z 0
+    climbing = make_paths(
+        [], [((2, 0, -3), (2, 0, 5), (0, 0, 1))]
+    )  # round the z axis: nearest where it passes z 0
     assert distances_from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
 
 
 def test_a_circle_that_only_grazes_a_box_is_found_in_it():
-    flat = ways([], [((10, 0, 0), (10, 0, 0), (0, 0, 1))])
+    flat = make_paths([], [((10, 0, 0), (10, 0, 0), (0, 0, 1))])
     place = find_place_inside(flat, (-0.5, 9.9, -1), (0.5, 11, 1))
     assert place == pytest.approx((0, 10, 0))

@@ -217,9 +217,9 @@ def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
     assert _core.overlap(marks(made), shape) > 0.91
     assert made[0].closed == (name == "O")
     (outline,) = read(f'<g fill="red" stroke="none">{path(d)}</g>').elements
-    from brushsvg.strokes.skeleton import filled
+    from brushsvg.strokes.skeleton import filled_rings
 
-    assert _core.overlap(shape, filled(outline)) > 0.999, "the parts make up the shape"
+    assert _core.overlap(shape, filled_rings(outline)) > 0.999, "the parts make up the shape"
 
 
 def test_pointed_tips_can_be_painted():
@@ -519,9 +519,9 @@ def test_hostile_outlines(name, rule):
         assert np.isfinite(stroke.middle_mm).all()
         assert all(np.isfinite(knot).all() and knot[1] >= 0 for knot in stroke.half_width)
         assert stroke.wanted_mm
-    from brushsvg.strokes.skeleton import filled
+    from brushsvg.strokes.skeleton import filled_rings
 
-    shape = filled(design.elements[0])
+    shape = filled_rings(design.elements[0])
     assert _core.area(target(made)) == pytest.approx(_core.area(shape), rel=0.02, abs=1e-3)
     if name not in ("an eight", "a loop that folds over itself", "nested holes", "a hole that touches"):
         assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape) + 1e-3, (

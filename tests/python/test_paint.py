@@ -19,15 +19,15 @@ from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
-    in_loads,
     load_length_mm,
     painted_mm,
-    too_long,
-    visits,
-    without_paint,
+    report_long_strokes,
+    report_missing_paint,
+    split_into_loads,
+    station_visits,
 )
-from brushsvg.machine.preflight import look
-from brushsvg.machine.program import make_visit, walked
+from brushsvg.machine.preflight import check_job
+from brushsvg.machine.program import make_checked_program, make_visit
 from brushsvg.model.library import find_brush
 from brushsvg.show.evaluation.report import PaintedPlan, measure
 
@@ -61,12 +61,12 @@ def names(found):
 
 
 def test_no_reload_no_visits():
-    assert visits(whole(plan_of((10, "#000000", ""))), find_cell()) == ()
+    assert station_visits(whole(plan_of((10, "#000000", ""))), find_cell()) == ()
 
 
 def test_paint_lasts_so_far():
     plan = plan_of(*[(40, "#000000", "")] * 6)
-    assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
+    assert names(station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
         ["black"],
         [],
         ["black"],
@@ -74,18 +74,25 @@ def test_paint_lasts_so_far():
         ["black"],
         [],
     ]
-    assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)))) == [["black"], [], [], [], [], []]
+    assert names(station_visits(whole(plan), cell_with(Reload("length", 1000.0)))) == [
+        ["black"],
+        [],
+        [],
+        [],
+        [],
+        [],
+    ]
 
 
 def test_every_stroke_or_every_layer():
     plan = plan_of((9, "#000000", "a"), (9, "#000000", "a"), (9, "#000000", "b"))
-    assert names(visits(whole(plan), cell_with(Reload("stroke")))) == [["black"]] * 3
-    assert names(visits(whole(plan), cell_with(Reload("layer")))) == [["black"], [], ["black"]]
+    assert names(station_visits(whole(plan), cell_with(Reload("stroke")))) == [["black"]] * 3
+    assert names(station_visits(whole(plan), cell_with(Reload("layer")))) == [["black"], [], ["black"]]
 
 
 def test_another_colour_is_washed_for():
     plan = plan_of((9, "#000000", ""), (9, "#FF0000", ""), (9, "#00ff00", ""), (9, "#000000", ""))
-    found = names(visits(whole(plan), cell_with(Reload("length", wash="water"))))
+    found = names(station_visits(whole(plan), cell_with(Reload("length", wash="water"))))
     assert found == [["black"], ["water", "any"], [], ["water", "black"]], (
         "red and green come from one vessel"
     )
@@ -93,7 +100,7 @@ def test_another_colour_is_washed_for():
 
 def test_a_resumed_job_begins_with_paint():
     plan = plan_of(*[(40, "#000000", "")] * 4)
-    assert names(visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
+    assert names(station_visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
         [],
         [],
         ["black"],
@@ -104,13 +111,13 @@ def test_a_resumed_job_begins_with_paint():
 def test_what_is_not_painted_again_asks_for_no_paint():
     plan = plan_of((40, "#00ff00", ""), (40, "#000000", ""))
     cell = cell_with(Reload("stroke"), BLACK)
-    assert names(visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
+    assert names(station_visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
 
 
 def test_a_colour_that_nobody_serves_is_refused():
     cell = cell_with(Reload("stroke"), BLACK)
     with refused("colour-not-served #ff0000 #000000", "s2"):
-        visits(whole(plan_of((9, "#000000", ""), (9, "#ff0000", ""))), cell)
+        station_visits(whole(plan_of((9, "#000000", ""), (9, "#ff0000", ""))), cell)
 
 
 def test_a_visit_goes_down_into_the_paint_and_drips_off():
@@ -232,8 +239,12 @@ def test_cell_check_refuses_what_convert_would_refuse_of_a_station(capsys, tmp_p
 
 def test_a_stroke_may_ask_for_paint_or_go_without():
     plan = plan_of((9, "#000000", ""), (9, "#000000", "", REQUESTED), (999, "#000000", "", REFUSED))
-    assert names(visits(whole(plan), cell_with(Reload("length", 100.0)))) == [["black"], ["black"], []]
-    loads = in_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))).loads
+    assert names(station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
+        ["black"],
+        ["black"],
+        [],
+    ]
+    loads = split_into_loads(plan, find_brush("round-6"), cell_with(Reload("length", 100.0))).loads
     assert [(a_pass.stroke, a_pass.load) for a_pass in loads] == [(each.stroke, 0) for each in plan.passes]
 
 
@@ -248,9 +259,9 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
     ]
     plan = _core.Plan(brush.name, "", (400.0, 100.0), passes)
     cell = cell_with(Reload("length", every, 5.0))
-    loads = in_loads(plan, brush, cell)
+    loads = split_into_loads(plan, brush, cell)
     assert [a_pass.stroke for a_pass in loads.loads] == names
-    assert [bool(stations) for stations in visits(loads, cell)] == [
+    assert [bool(stations) for stations in station_visits(loads, cell)] == [
         True,
         False,
         True,
@@ -259,7 +270,7 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
         False,
         True,
     ]
-    assert visits(whole(plan), cell) == visits(loads, cell)
+    assert station_visits(whole(plan), cell) == station_visits(loads, cell)
 
 
 def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
@@ -269,12 +280,14 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
     hairline = np.column_stack([np.linspace(0, 150, 40), np.zeros(40), np.full(40, -0.04)])
     for poses in (np.column_stack([step, np.full(40, -5.0)]), hairline):
         passes = [_core.Pass("rub", poses + np.array([30, 30, 0]), 20.0, "", "#000000")]
-        plan = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell)
+        plan = split_into_loads(_core.Plan(brush.name, "", (400.0, 100.0), passes), brush, cell)
         assert [(a_pass.stroke, a_pass.load) for a_pass in plan.loads] == [("rub", 0)]
-        (reported,) = too_long(plan, brush, cell)
+        (reported,) = report_long_strokes(plan, brush, cell)
         assert agrees(reported, f"load-too-long {painted_mm(plan.loads[0]):.0f}", "rub")
         passes[0].settings = REFUSED
-        assert too_long(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
+        assert (
+            report_long_strokes(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
+        )
     for every in (40.0, 90.0):  # a line is cut between its two poses
         long = [
             _core.Pass(
@@ -282,8 +295,8 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
             )
         ]
         cell = cell_with(Reload("length", every, 5.0))
-        loads = in_loads(_core.Plan(brush.name, "", (400.0, 100.0), long), brush, cell)
-        assert len(loads.loads) >= 350 / every and too_long(loads, brush, cell) == []
+        loads = split_into_loads(_core.Plan(brush.name, "", (400.0, 100.0), long), brush, cell)
+        assert len(loads.loads) >= 350 / every and report_long_strokes(loads, brush, cell) == []
 
 
 def long_plan(brush):
@@ -304,7 +317,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     brush = find_brush("round-6")
     cell = cell_with(Reload("length", 120.0, 6.0))
     plan = long_plan(brush)
-    loads = in_loads(plan, brush, cell)
+    loads = split_into_loads(plan, brush, cell)
     assert [a_pass.stroke for a_pass in loads.loads] == [
         "short",
         "long",
@@ -316,7 +329,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in loads.loads] == names_of_loads
     assert [a_pass.load for a_pass in loads.loads] == [0, 1, 2, 3, 0]
     assert {a_pass.settings for a_pass in loads.loads} == {_core.Settings()}
-    assert names(visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
+    assert names(station_visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
     assert max(map(painted_mm, loads.loads)) < 120 + 8
     rings = []
     for each in (plan, loads.as_plan()):
@@ -325,7 +338,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
         rings.append(marks.outline_mm)
     assert len(rings[0]) == len(rings[1]), "no gap, no island"
     assert _core.overlap(*rings) > 0.99
-    assert in_loads(plan, brush, cell_with(Reload("length", 1000.0))) == whole(plan)
+    assert split_into_loads(plan, brush, cell_with(Reload("length", 1000.0))) == whole(plan)
 
 
 def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
@@ -335,7 +348,7 @@ def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
 
     def fetched(brush, reload):
         cell = cell_with(reload)
-        return [bool(each) for each in visits(in_loads(plan, brush, cell), cell)]
+        return [bool(each) for each in station_visits(split_into_loads(plan, brush, cell), cell)]
 
     assert fetched(brush, reload) == [True, False, False, False, True, False], "nobody knows how it narrows"
     brush.paint = _core.Paint(0.4)
@@ -351,9 +364,9 @@ def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
 def test_a_long_stroke_is_painted_in_parts_as_short_as_the_brush_asks_for():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 1000.0, 6.0, narrower_percent=6.0))
     plan = long_plan(brush)
-    assert in_loads(plan, brush, cell).strokes() == ["short", "long", "last"]
+    assert split_into_loads(plan, brush, cell).strokes() == ["short", "long", "last"]
     brush.paint = _core.Paint(0.5)
-    loads = in_loads(plan, brush, cell)
+    loads = split_into_loads(plan, brush, cell)
     lasts = -1000 * np.log(0.94) / 0.5
     assert loads.strokes().count("long") == 3
     assert max(map(painted_mm, loads.loads)) < lasts + 8
@@ -367,8 +380,8 @@ def test_prediction_narrows_whole_strokes_as_their_loads():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 150.0, 6.0))
     brush.paint = _core.Paint(3.0)
     plan = long_plan(brush)
-    loads = in_loads(plan, brush, cell)
-    fetched = [bool(each) for each in visits(loads, cell)]
+    loads = split_into_loads(plan, brush, cell)
+    fetched = [bool(each) for each in station_visits(loads, cell)]
     assert loads.strokes() == ["short", "long", "long", "long", "last"] and fetched[-1] is False
     parts = _core.simulate(loads.as_plan(), brush)
     _core.narrow(parts, brush.paint, [[0.0] if each else [] for each in fetched])
@@ -391,7 +404,7 @@ def test_parts_begin_where_they_were_cut():
     painted less its landing, its lift and what it came back."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 150.0, 6.0))
     plan = long_plan(brush)
-    loads = in_loads(plan, brush, cell)
+    loads = split_into_loads(plan, brush, cell)
     _, dips, _ = dips_mm(plan.passes, loads, cell)
     line = np.asarray(plan.passes[1].poses_mm)[:, :2]
     along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
@@ -404,47 +417,50 @@ def test_paint_that_lasts_too_short_to_come_back_is_refused():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 1000.0, 6.0, narrower_percent=1.0))
     brush.paint = _core.Paint(1.0)
     with refused("load-too-short round-6 10.1 6"):
-        in_loads(plan_of((40, "#000000", "")), brush, cell)
+        split_into_loads(plan_of((40, "#000000", "")), brush, cell)
 
 
 def test_a_brush_that_says_nothing_of_its_paint_is_reported():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 200.0, narrower_percent=5.0))
-    assert are_reported(without_paint(brush, cell), "paint-unknown round-6 narrower_percent")
-    assert not without_paint(brush, cell_with(Reload("length", 200.0)))
+    assert are_reported(report_missing_paint(brush, cell), "paint-unknown round-6 narrower_percent")
+    assert not report_missing_paint(brush, cell_with(Reload("length", 200.0)))
     brush.paint = _core.Paint(0.4)
-    assert not without_paint(brush, cell)
+    assert not report_missing_paint(brush, cell)
 
 
 def test_loads_are_no_plan():
     """What was cut is not cut again, nor reported as if each load were a stroke."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
-    loads = in_loads(long_plan(brush), brush, cell)
-    for taken in (lambda: in_loads(loads, brush, cell), lambda: measure(PaintedPlan(loads, None, brush))):
+    loads = split_into_loads(long_plan(brush), brush, cell)
+    for taken in (
+        lambda: split_into_loads(loads, brush, cell),
+        lambda: measure(PaintedPlan(loads, None, brush)),
+    ):
         with pytest.raises(AttributeError, match="passes"):
             taken()
     with pytest.raises(AttributeError, match="loads"):
-        visits(long_plan(brush), cell)
+        station_visits(long_plan(brush), cell)
 
 
 def test_loads_that_were_written_as_a_plan_are_not_cut_again():
     """Parts are longer than a load by what the brush comes back: as strokes they would be cut once more."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
-    loads = in_loads(long_plan(brush), brush, cell)
+    loads = split_into_loads(long_plan(brush), brush, cell)
     text = _core.write_plan(loads.as_plan())
     assert [a_pass.get("load") for a_pass in json.loads(text)["passes"]] == [None, 1, 2, 3, None]
     back = _core.read_plan(text)
-    again = in_loads(back, brush, cell)
+    again = split_into_loads(back, brush, cell)
     assert [a_pass.stroke for a_pass in again.loads] == [a_pass.stroke for a_pass in loads.loads]
     assert again.strokes() == loads.strokes() == ["short", "long", "long", "long", "last"]
-    assert visits(again, cell) == visits(loads, cell)
+    assert station_visits(again, cell) == station_visits(loads, cell)
     for before, after in zip(loads.loads, again.loads, strict=True):
         assert np.abs(before.poses_mm - after.poses_mm).max() <= 1e-7
-    shorter = in_loads(back, brush, cell_with(Reload("length", 30.0))).strokes()
+    shorter = split_into_loads(back, brush, cell_with(Reload("length", 30.0))).strokes()
     assert shorter.count("long") == 3 and shorter.count("short") > 1
     for passes in ([2, 1, 3], [2], [1, 0, 2], [1, 3]):
         lost = _core.Plan(back.brush, "", back.sheet_mm, [back.passes[k] for k in passes])
         with refused("load-out-of-order"):
-            in_loads(lost, brush, cell)
+            split_into_loads(lost, brush, cell)
     for written, code in (('"2"', "wrong-type"), ("-2", "out-of-range")):
         with refused(code, "passes[2].load"):
             _core.read_plan(text.replace('"load": 2', f'"load": {written}'))
@@ -455,7 +471,7 @@ def test_what_every_load_does_is_reported_once_of_its_stroke():
     plan = long_plan(brush)
     for a_pass in plan.passes:
         a_pass.speed_mm_s = 99.0
-    reported = walked(in_loads(plan, brush, cell), brush, cell).problems
+    reported = make_checked_program(split_into_loads(plan, brush, cell), brush, cell).problems
     assert [where for where, _ in reported] == ["short", "long", "last"]
 
 
@@ -489,7 +505,9 @@ def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
     cell = replace(cell, workspace=replace(cell.workspace, keep_out_mm=(wall,)))
     cell = replace(cell, stations=(replace(ANY, wipe_mm=()),))
     plan = long_plan(brush)
-    reported = look(in_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05).problems
+    reported = check_job(
+        split_into_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05
+    ).problems
     assert {each.code for each in reported} == {"in-kept-out-box"}
 
 

@@ -12,9 +12,9 @@ from test_urscript import ARC, STROKES, text_for
 from brushsvg import _core, find_brush
 from brushsvg.machine.cells.cell import Reload, RoboDK, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import walked
+from brushsvg.machine.program import make_checked_program
 from brushsvg.machine.writer import text_of
 
 POST = Path(__file__).with_name("robodk_post.py")
@@ -53,9 +53,9 @@ def test_a_circle_right_after_the_press_is_painted_at_the_speed_of_painting():
     poses = [[50, 30, 0], *round_.tolist(), [70, 20, -2], [70, 20, 0]]
     a_pass = _core.Pass("s", poses, 17.0, arcs=[_core.Arc(1, 9, (60, 30), -1)])
     cell = replace(cell_with(POST), arm=None)
-    loads = in_loads(_core.Plan("round-6", "", (100, 60), [a_pass]), find_brush("round-6"), cell)
+    loads = split_into_loads(_core.Plan("round-6", "", (100, 60), [a_pass]), find_brush("round-6"), cell)
     lines = "".join(
-        text_of(POSTS["robodk"], walked(loads, find_brush("round-6"), cell).allowed())
+        text_of(POSTS["robodk"], make_checked_program(loads, find_brush("round-6"), cell).allowed())
     ).splitlines()
     (at,) = (k for k, line in enumerate(lines) if line.startswith("circle"))
     speeds = [line for line in lines[:at] if line.startswith("speed")]
@@ -68,7 +68,9 @@ def test_a_tilted_brush_is_written_pose_by_pose():
     poses = [[20, 20, 0], [40, 20, -2], [60, 20, -2]]
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("s", poses, 20.0, tool_axes=leans)])
     cell = replace(cell_with(POST), arm=None)
-    made = walked(in_loads(plan, find_brush("round-6"), cell), find_brush("round-6"), cell).allowed()
+    made = make_checked_program(
+        split_into_loads(plan, find_brush("round-6"), cell), find_brush("round-6"), cell
+    ).allowed()
     lines = "".join(text_of(POSTS["robodk"], made)).splitlines()
     for pose, axis in zip(poses, leans, strict=True):
         place = " ".join(f"{each:.3f}" for each in pose)

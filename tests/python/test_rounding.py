@@ -44,9 +44,9 @@ def found_by_check(poses, arcs, cell):
     made = unchecked_program(whole(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass])), BRUSH, cell)
     text = "".join(text_of(POSTS[cell.language], made))
     read = read_program(text, LANGUAGES[cell.name], cell)
-    ran = simulate_program.run(read, BRUSH, cell, SHEET_MM)
+    ran = simulate_program.simulate_program(read, BRUSH, cell, SHEET_MM)
     return text, against_regenerated.differing_line(
-        text, read, against_regenerated.again(ran, BRUSH, cell, 0.0), cell
+        text, read, against_regenerated.regenerate_program(ran, BRUSH, cell, 0.0), cell
     )
 
 
@@ -256,7 +256,7 @@ def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees,
     reported, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
     text, said = found_by_check(poses, [reported], cell)
     assert said is None
-    read = simulate_program.run(read_program(text, LANGUAGES[name], cell), BRUSH, cell, SHEET_MM)
+    read = simulate_program.simulate_program(read_program(text, LANGUAGES[name], cell), BRUSH, cell, SHEET_MM)
     x, y = np.transpose([pose[:2] for pose in read.plan.passes[0].poses_mm if pose[2] < -1.99])
     turned = np.diff(np.unwrap(np.arctan2(y - 40, x - 50))[:-1]).sum()
     assert np.degrees(turned) == pytest.approx(turn * degrees, abs=0.1)

@@ -212,7 +212,7 @@ def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
     cell = find_cell(name)
     text = text_of(("a", steep, 20.0), cell=name)
     read = read_program(text, suffix, cell)
-    ran = simulate_program.run(read, find_brush("round-6"), cell, (100.0, 60.0))
+    ran = simulate_program.simulate_program(read, find_brush("round-6"), cell, (100.0, 60.0))
     assert ran.problems == []
     [path] = [np.asarray(each.poses_mm) for each in ran.plan.passes]
     assert path[:, 2].min() == pytest.approx(-4, abs=0.15)
@@ -264,7 +264,7 @@ def test_a_steep_way_of_rounded_parts_is_no_jump(width_mm):
     steep = [(21.522, 28.978, 0), (21.522, 28.978, -2.785), (21.522 + width_mm, 28.978, -0.105)]
     text = text_of(("a", [*steep, (21.522 + width_mm, 28.978, 0)], 15.0), cell="grbl-servo")
     read = read_program(text, ".nc", cell)
-    assert simulate_program.run(read, find_brush("round-6"), cell, (100.0, 60.0)).problems == []
+    assert simulate_program.simulate_program(read, find_brush("round-6"), cell, (100.0, 60.0)).problems == []
 
 
 def test_a_lift_before_any_feed_has_a_speed():

@@ -38,16 +38,16 @@ def test_too_large_a_drawing_is_advised_to_shrink():
     found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
     assert found.best == 0.5
-    advice = size_advice.advice(found)
+    advice = size_advice.advise_on_size(found)
     assert gives(advice, "0.97", "0.5", "0.00", "--scale 0.5"), advice
-    assert "--scale 1)" in size_advice.advice(found, 2.0)
-    assert "--scale" not in size_advice.advice(found, None)
+    assert "--scale 1)" in size_advice.advise_on_size(found, 2.0)
+    assert "--scale" not in size_advice.advise_on_size(found, None)
 
 
 def test_a_drawing_of_the_right_size_is_left_alone():
     found = size_advice.best_size([line(150, 1.5)] * 40, BRUSH, painted)
     assert (found.best, found.tried, found.strokes) == (1.0, size_advice.MAX_FIRST_STROKES, 40)
-    advice = size_advice.advice(found)
+    advice = size_advice.advise_on_size(found)
     assert gives(advice, "0.35", "2.8", "6", "40")
 
 
@@ -71,7 +71,7 @@ def test_what_looks_better_is_tried_as_it_is_made():
 
 
 def test_nothing_is_advised_where_no_size_can_be_painted():
-    assert size_advice.advice(size_advice.best_size([line(200, 40.0)], BRUSH, painted)) == ""
+    assert size_advice.advise_on_size(size_advice.best_size([line(200, 40.0)], BRUSH, painted)) == ""
 
 
 def said(tmp_path, text, **options):

@@ -112,7 +112,7 @@ def test_check_reads_back_what_was_planned(desk, capsys, name, machine):
 
 def test_the_mark_comes_back(desk):
     work, cell = preparation.prepare("two.svg"), cell_with(BOTH)
-    back = simulate_program.run(
+    back = simulate_program.simulate_program(
         read_program(text_of(work, cell), ".ngc", cell), work.brush, cell, work.plan.sheet_mm
     )
     assert back.problems == []

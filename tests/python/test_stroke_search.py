@@ -9,7 +9,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.read.svg import read_svg
-from brushsvg.strokes.skeleton import filled
+from brushsvg.strokes.skeleton import filled_rings
 from brushsvg.strokes.swept_areas import region
 
 FLAG = "M10 5H25V50H17V10H10Z"
@@ -35,7 +35,7 @@ def painted(tmp_path, d, **options):
     )
     work = prepare(file, Options(brush=find_brush("round-6"), **options))
     return (
-        region(filled(read_svg(file.read_bytes()).elements[0])),
+        region(filled_rings(read_svg(file.read_bytes()).elements[0])),
         region(predict(work).outline_mm),
         work.plan,
     )

@@ -2,7 +2,7 @@ from diagnostics import gives
 
 from brushsvg.errors import Notice
 from brushsvg.text_summary import MOST_ALIKE
-from brushsvg.text_summary import summarized as summarized_notices
+from brushsvg.text_summary import summarize_notices as summarized_notices
 
 
 def notice(where, sentence, code="", **more):

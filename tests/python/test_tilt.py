@@ -14,10 +14,10 @@ from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.marks.from_marks import expected_marks
 from brushsvg.calibration.marks.mark_input import read_painted
-from brushsvg.comparison.corrections import Correction, corrected
+from brushsvg.comparison.corrections import Correction, apply_corrections
 from brushsvg.comparison.job_page import job_page
 from brushsvg.machine.cells.cell import Machine
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.realised.passes import as_run
 from brushsvg.machine.realised.retimed import on_way
 from brushsvg.show.evaluation.uncertainty import uncertainty
@@ -142,14 +142,14 @@ CORRECTION = Correction("tilted", (20.0, 20.0), (40.0, 20.0), (1.0, 0.0), 0.0)
 READERS = {
     "thin_out": lambda of: _core.thin_out(of.passes[1], BRUSH, 0.5),
     "interrupted": lambda of: _core.interrupted(of.passes[1], BRUSH, 20, 20),
-    "in_loads": lambda of: in_loads(of, BRUSH, brushsvg.find_cell("linuxcnc-3axis")),
+    "in_loads": lambda of: split_into_loads(of, BRUSH, brushsvg.find_cell("linuxcnc-3axis")),
     "on_way": lambda of: on_way(of.passes[1], POSES, ()),
     "as_run": lambda of: as_run(of.passes, Machine()),
     "expected_marks": lambda of: expected_marks(of, BRUSH),
     "read_painted": lambda of: read_painted(json.loads(_core.write_plan(of)), [], None),
     "read_chart": read_chart_of,
     "job_page": lambda of: job_page(of),
-    "corrected": lambda of: corrected(of, (CORRECTION,), BRUSH),
+    "corrected": lambda of: apply_corrections(of, (CORRECTION,), BRUSH),
     "uncertainty": lambda of: uncertainty(of, BRUSH, brushsvg.simulate(plan(np.zeros((0, 3))), BRUSH)),
 }
 
@@ -175,7 +175,7 @@ def test_cells_that_cannot_tilt_the_brush_write_no_program(tmp_path):
         if cell.tool:
             continue
         with refused(f"tilt-unsupported {name} 12", "tilted"):
-            in_loads(plan(), BRUSH, cell)
+            split_into_loads(plan(), BRUSH, cell)
     with refused("tilt-unsupported", "tilted"):
         brushsvg.write_program(tmp_path / "a.ngc", plan(), BRUSH)
     assert not list(tmp_path.iterdir())

@@ -23,16 +23,16 @@ from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
 from brushsvg.machine.motion import program_in_robot_frame
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS, ros2
-from brushsvg.machine.preflight import look
-from brushsvg.machine.program import out_of_arm, walked
+from brushsvg.machine.preflight import check_job
+from brushsvg.machine.program import make_checked_program, out_of_arm
 from brushsvg.machine.realised.tilt import check_tilt_limits, split_turning_moves
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.against_regenerated import _ActComparison
 from brushsvg.verify.readback import Act, read_program
-from brushsvg.verify.simulate_program import run as played
+from brushsvg.verify.simulate_program import simulate_program as played
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [75, 35, -1], [75, 35, 0]]
@@ -70,7 +70,7 @@ def anyhow(name="ur5e"):
 
 
 def text_for(of, cell):
-    made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).allowed()
+    made = make_checked_program(split_into_loads(of, BRUSH, cell), BRUSH, cell).allowed()
     return "".join(text_of(POSTS[cell.language], made))
 
 
@@ -539,7 +539,7 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
 
 def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     cell = brushsvg.find_cell("fr3")
-    made = walked(in_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
+    made = make_checked_program(split_into_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
     table, message = (made_of(program_in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
     rows = [line.split(",") for line in "".join(table).splitlines() if line[0].isdigit()]
     data = b"".join(message)
@@ -606,7 +606,7 @@ def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, t
     poses = [[20, 20, 0], [22, 21, -2], [25, 20, -2.5], [29, 20.5, -1.5], [33, 20, 0]]
     of = plan(axes(0, 12, 20, 30, 30, towards_deg=np.array([0, 10, 50, 60, 90])), poses=poses, speed=10.0)
     cell = replace(brushsvg.find_cell(name), arm=None)
-    (a_pass,) = in_loads(of, BRUSH, cell).loads
+    (a_pass,) = split_into_loads(of, BRUSH, cell).loads
     least, most = 1.0, 360.0
     for _ in range(40):
         middle = (least + most) / 2
@@ -652,10 +652,10 @@ def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
     wide = replace(cell, blending=replace(cell.blending, tolerance_mm=5.0, radius_mm=20.0))
     poses = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [60, 50, -2], [60, 50, 0]]
     of = plan(axes(*[20] * 5), poses=poses)
-    loads = in_loads(of, BRUSH, wide)
-    found = look(loads, BRUSH, brushsvg.simulate(of, BRUSH), wide, 0.05).problems
+    loads = split_into_loads(of, BRUSH, wide)
+    found = check_job(loads, BRUSH, brushsvg.simulate(of, BRUSH), wide, 0.05).problems
     assert any(agrees(each, "shifted-by-blends", "s0") for each in found)
-    assert not look(loads, BRUSH, brushsvg.simulate(of, BRUSH), cell, 0.05).problems
+    assert not check_job(loads, BRUSH, brushsvg.simulate(of, BRUSH), cell, 0.05).problems
 
 
 @pytest.mark.parametrize(
@@ -674,14 +674,16 @@ def test_what_is_no_tilt_is_refused_before_anything_is_made_of_it(poses, held, e
             tmp_path / "a.script", plan(held, poses=poses), BRUSH, cell=brushsvg.find_cell("ur5e")
         )
     with np.errstate(all="ignore"):
-        in_loads(plan(held, poses=poses), BRUSH, brushsvg.find_cell("ur5e"))  # and this is no place to fail
+        split_into_loads(
+            plan(held, poses=poses), BRUSH, brushsvg.find_cell("ur5e")
+        )  # and this is no place to fail
 
 
 # Joints of an arm -------------------------------------------------------------------------------------------
 
 
 def arm_problems(of, cell):
-    made = walked(in_loads(of, BRUSH, cell), BRUSH, cell).made
+    made = make_checked_program(split_into_loads(of, BRUSH, cell), BRUSH, cell).made
     return out_of_arm(made, (100, 60))
 
 

@@ -15,7 +15,7 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.motion import Wait, distances, duration_s
-from brushsvg.machine.paint_reload import in_loads
+from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.writer import whole_program
 from brushsvg.model import library
 from brushsvg.show.timeline import HAND_PAUSE_S, timeline
@@ -132,7 +132,7 @@ def test_a_wait_for_a_person_is_a_short_pause_with_its_message(works):
 def test_a_servo_is_waited_for(works, name):
     work, _ = works()
     cell = find_cell(name)
-    loads = in_loads(work.plan, work.brush, cell)
+    loads = split_into_loads(work.plan, work.brush, cell)
     program = whole_program(loads, work.brush, cell)
     assert timeline(program, simulate(loads.as_plan(), work.brush)).time_s[-1] == pytest.approx(
         duration_s(program)

@@ -14,7 +14,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.show.evaluation import report
-from brushsvg.strokes.uncovered_areas import UncoveredArea, notices, uncovered_areas
+from brushsvg.strokes.uncovered_areas import UncoveredArea, notices_of_areas, uncovered_areas
 from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (
@@ -53,7 +53,7 @@ def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
     assert {round(piece.at_mm[0] / 4) * 4 for piece in found} == {20, 32}
     assert all(abs(piece.at_mm[1] - 43.5) < 1.5 for piece in found)
     assert all(piece.share == pytest.approx(12 / 344, rel=0.3) for piece in found)
-    (notice,) = notices(found)
+    (notice,) = notices_of_areas(found)
     assert agrees(notice, "unreached 2", "p")
     assert unreached(drawn, drawn, find_brush("round-6")) == []
 
@@ -95,7 +95,7 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
     assert is_reported(work.notices, "unreached", "p")
     assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
     rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
-    assert agrees(*notices(rim.unreached), "unreached", "p")
+    assert agrees(*notices_of_areas(rim.unreached), "unreached", "p")
     (row, *_), _ = report.measure(
         report.PaintedPlan(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
     )
@@ -120,7 +120,7 @@ def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_s
     (notice,) = [each for each in work.notices if each.code == "mark-misses"]
     assert notice.where == "p"
     assert f"{work.missed[0].at_mm[1]:.1f} mm" in notice.sentence
-    assert b'class="blank"' in outputs.picture(".svg", work, predict(work))
+    assert b'class="blank"' in outputs.make_picture(".svg", work, predict(work))
     assert not prepared(tmp_path, THIN).missed
 
 
@@ -129,12 +129,12 @@ def test_it_is_outlined_in_every_picture(tmp_path):
 
     work = prepared(tmp_path, WIDE, wide="clamp")
     marks = predict(work)
-    assert b'class="blank"' in outputs.picture(".svg", work, marks)
-    picture = outputs.picture(".png", work, marks)
+    assert b'class="blank"' in outputs.make_picture(".svg", work, marks)
+    picture = outputs.make_picture(".png", work, marks)
     image = cv2.imdecode(np.frombuffer(picture, np.uint8), cv2.IMREAD_COLOR)
     assert (np.abs(image.astype(int) - (0x1F, 0x43, 0xD1)).sum(axis=2) < 60).any()
     small = prepared(tmp_path, THIN)
-    assert b'class="blank"' not in outputs.picture(".svg", small, predict(small))
+    assert b'class="blank"' not in outputs.make_picture(".svg", small, predict(small))
 
 
 def test_the_report_gives_it_as_the_reason(tmp_path):

@@ -16,7 +16,7 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell import Contact, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.frames import moved
+from brushsvg.machine.frames import transform_points
 from brushsvg.machine.motion import Move
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.urscript import _move_lines
@@ -64,7 +64,7 @@ def rows_of(robot, cell):
             continue
         poses, speed, blend = rest
         for pose in poses:
-            point = moved(paper_from_robot, 1e3 * np.array([pose[:3]]))[0]
+            point = transform_points(paper_from_robot, 1e3 * np.array([pose[:3]]))[0]
             rows.append((name, point, 1e3 * speed, 1e3 * blend))
     return rows
 
@@ -210,7 +210,7 @@ def pressed(height_mm, newtons):
     paper_from_robot = np.linalg.inv(robot_from_paper(CELL))
 
     def force(pose):
-        z = moved(paper_from_robot, 1e3 * np.array([pose[:3]]))[0, 2]
+        z = transform_points(paper_from_robot, 1e3 * np.array([pose[:3]]))[0, 2]
         return 3.0 + newtons * (z < height_mm)
 
     return force

@@ -14,9 +14,9 @@ from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine import workspace_limits as limits
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.move_extents import ways
+from brushsvg.machine.move_extents import make_paths
 from brushsvg.machine.setup_programs import border, paper_height
-from brushsvg.machine.workspace_limits import astray, astray_between
+from brushsvg.machine.workspace_limits import find_broken_limits, find_limits_broken_between
 from brushsvg.model.library import find_brush
 
 BRUSH = find_brush("round-6")
@@ -249,26 +249,28 @@ def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk,
 
 def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
     near = robot(keep_out_mm=(((-10.0, 0.015, 0.0), (10.0, 50.0, 100.0)),))
-    path = ways([[(-100, 0, 50), (100, 0, 50)]])
+    path = make_paths([[(-100, 0, 50), (100, 0, 50)]])
     assert near.blending.tolerance_mm == 0.01
-    assert len(astray(path, np.eye(4), near)) == 1
+    assert len(find_broken_limits(path, np.eye(4), near)) == 1
     exact = replace(near, blending=replace(near.blending, tolerance_mm=0.005))
-    assert astray(path, np.eye(4), exact) == []
-    path = ways([[(-200, 150.015, 0), (200, 150.015, 0)]])
-    assert len(astray(path, np.eye(4), robot(**RING))) == 1
-    assert astray(path, np.eye(4), replace(robot(**RING), blending=exact.blending)) == []
+    assert find_broken_limits(path, np.eye(4), exact) == []
+    path = make_paths([[(-200, 150.015, 0), (200, 150.015, 0)]])
+    assert len(find_broken_limits(path, np.eye(4), robot(**RING))) == 1
+    assert find_broken_limits(path, np.eye(4), replace(robot(**RING), blending=exact.blending)) == []
 
 
 def test_a_way_between_two_places_says_only_what_they_do_not():
     cell = robot(**RING)
-    (said,) = astray_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
+    (said,) = find_limits_broken_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
     assert agrees(said, "out-of-reach way 0.0")
-    assert astray_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
+    assert find_limits_broken_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], (
+        "it begins too far away"
+    )
 
 
 def test_a_number_shows_that_it_is_outside():
     cell = robot(reach_mm=(150.0, 850.0))
-    (said,) = astray(ways([[(850.0004, 0, 0)]]), np.eye(4), cell)
+    (said,) = find_broken_limits(make_paths([[(850.0004, 0, 0)]]), np.eye(4), cell)
     assert agrees(said, "out-of-reach 850.0004")
 
 

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need, need_one_of
+from ..errors import Error, need_one_of, require_type
 from ..files import read_bytes
 from .marks.from_marks import MarkCalibration, calibrate_marks, options_for
 from .marks.machine_found import ask_for, refuse_unknown_parts
@@ -43,8 +43,8 @@ def fit_measurements(
     measured: a path, or the contents of a measurement .json. Raises Error for a file that cannot be read, for
     measurements that leave a law undetermined, and for measurements that no brush can have.
     """
-    need(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
-    need(name, str, "the name of a brush")
+    require_type(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
+    require_type(name, str, "the name of a brush")
     need_one_of(aim, AIMS, "aim")
     refuse_unknown_parts(machine)
     if isinstance(measured, dict):

@@ -88,7 +88,7 @@ def _run_with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
 def _run_command(argv: list[str] | None, interrupts: _Interrupts) -> int:
     from dataclasses import replace
 
-    from ..errors import unexpected
+    from ..errors import describe_unexpected
     from .arguments.parser import parse
     from .console import RefusedError, say_notice, use_json_messages
 
@@ -115,6 +115,6 @@ def _run_command(argv: list[str] | None, interrupts: _Interrupts) -> int:
     except Exception as bug:
         if interrupts.seen:
             raise
-        say_notice(file, replace(unexpected(bug).notice(), refused=True))
+        say_notice(file, replace(describe_unexpected(bug).notice(), refused=True))
         return 1
     return 0

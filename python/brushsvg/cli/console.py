@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from contextlib import contextmanager
 
 from ..errors import Error, Notice
-from ..text_summary import summarized
+from ..text_summary import summarize_notices
 
 
 class RefusedError(Exception):
@@ -73,7 +73,7 @@ def print_text(text: str) -> None:
 
 def warn(file: str, warnings: Iterable[Notice]) -> None:
     """Print warnings, with many warnings of one kind in one line."""
-    for notice in summarized(warnings):
+    for notice in summarize_notices(warnings):
         say_notice(file, notice)
 
 

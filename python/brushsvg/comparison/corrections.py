@@ -111,7 +111,7 @@ def select_for_machine(
     return found
 
 
-def corrected(plan, corrections: tuple[Correction, ...], brush):
+def apply_corrections(plan, corrections: tuple[Correction, ...], brush):
     """Return the plan with its strokes corrected, for this brush.
 
     The plan must be made for this brush. The corrections are recorded in it. Corrections that the plan already has are
@@ -120,7 +120,7 @@ def corrected(plan, corrections: tuple[Correction, ...], brush):
     """
     if not corrections:
         return plan
-    plan, _ = uncorrected(plan)
+    plan, _ = remove_corrections(plan)
     _core.refuse_tilted(plan.passes, "strokes are corrected for a brush held upright")
     of_brush_sha256 = corrections[0].brush_sha256
     if of_brush_sha256 and brush.sha256 and of_brush_sha256 != brush.sha256:
@@ -156,7 +156,7 @@ def is_corrected(plan) -> bool:
     return CORRECTIONS_KEY in json.loads(plan.extra or "{}")
 
 
-def uncorrected(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
+def remove_corrections(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
     """Return the plan without its corrections, and the corrections.
 
     Raises Error for a plan of an earlier version, which states only how many strokes were corrected.

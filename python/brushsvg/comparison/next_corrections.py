@@ -87,7 +87,7 @@ def displacement_mm(row: Compared, found: Comparison) -> np.ndarray:
     return (beyond @ rotation(-sheet.turn_rad))[0]
 
 
-def farther(found: Comparison, before: dict[str, float]) -> list[Notice]:
+def find_growing_displacements(found: Comparison, before: dict[str, float]) -> list[Notice]:
     """Report strokes that are displaced further than on the previous sheet.
 
     before: displacement [mm] on the previous sheet, by stroke.

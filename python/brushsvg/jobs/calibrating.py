@@ -34,7 +34,7 @@ from ..calibration.prior import update_report
 from ..calibration.prior.from_prior import other_brush, refuse_learned, with_lineage
 from ..comparison.learning import learn
 from ..comparison.repeats import read_displacement_mm
-from ..errors import Error, Notice, need, need_number, need_one_of, need_truth
+from ..errors import Error, Notice, need_number, need_one_of, need_truth, require_type
 from ..files import read_bytes
 from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
@@ -205,20 +205,20 @@ def calibrate(
     a law undetermined, or that no brush can have, also raise Error.
     """
     if isinstance(source, (tuple, list)):
-        need(source, (tuple, list), "a list of paths")
+        require_type(source, (tuple, list), "a list of paths")
         for each in source:
-            need(each, (str, os.PathLike), "the path of a photograph")
+            require_type(each, (str, os.PathLike), "the path of a photograph")
         if not source:
             raise Error("there is no photograph", "source", code="wrong-type")
         given = [os.fspath(each) for each in source]
     else:
-        need(source, (str, os.PathLike, dict), "a path, a list of paths, or a dict of measurements")
+        require_type(source, (str, os.PathLike, dict), "a path, a list of paths, or a dict of measurements")
         given = source if isinstance(source, dict) else os.fspath(source)
-    need(name, str, "the name of a brush")
+    require_type(name, str, "the name of a brush")
     if progress is not None and not callable(progress):
-        need(progress, Callable, "a callable, which progress is")
+        require_type(progress, Callable, "a callable, which progress is")
     notices: list[Notice] = []
-    calibration = calibrated(
+    calibration = run_calibration(
         given,
         name,
         make_checked_options(options),
@@ -254,13 +254,13 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
             options[name] = need_number(options[name], name, minimum, maximum)
     for name in ("chart", "spread", "plan"):
         if name in options:
-            need(options[name], (str, os.PathLike), f"a path, which {name} is")
+            require_type(options[name], (str, os.PathLike), f"a path, which {name} is")
             options[name] = os.fspath(options[name])
     need_one_of(options.get("aim", "edges"), AIMS, "aim")
     return CalibrationOptions(**options)
 
 
-def calibrated(
+def run_calibration(
     source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Warn
 ) -> BrushCalibration:
     """Return a brush with its report; see calibrate.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from concurrent.futures import CancelledError
 from typing import Protocol
 
-from ..errors import need
+from ..errors import require_type
 
 POLL_INTERVAL_S = 0.05
 # How long to wait for code that holds the interpreter, such as an encoder of pictures, in seconds.
@@ -44,11 +44,11 @@ def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=
     and loops in C++ also run lines of Python (bindings.hpp). Both callables are called in the thread of the caller.
     """
     if progress is not None and not callable(progress):
-        need(progress, Callable, "a callable, which progress is")
+        require_type(progress, Callable, "a callable, which progress is")
     if cancel is None:
         return work(progress or (lambda text: None))
     is_cancelled = getattr(cancel, "is_set", cancel)
-    need(is_cancelled, Callable, "a callable or an event, which cancel is")
+    require_type(is_cancelled, Callable, "a callable or an event, which cancel is")
     messages, outcome = deque(maxlen=1), []
 
     def run_work() -> None:

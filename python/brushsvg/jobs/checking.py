@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
 from ..comparison.corrections import is_corrected
-from ..errors import Error, Notice, need
+from ..errors import Error, Notice, require_type
 from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
 from ..machine.motion import duration_s
-from ..machine.paint_reload import in_loads
+from ..machine.paint_reload import split_into_loads
 from ..machine.posts import GCODE
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
@@ -33,7 +33,7 @@ from ..show.evaluation.report import Report
 from ..verify import against_plan, against_regenerated, pace, setup_programs, simulate_program
 from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
-from ..verify.readback.header import made as read_header
+from ..verify.readback.header import read_header as read_header
 from ..verify.readback.ros2 import as_table
 from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
@@ -127,7 +127,7 @@ def check(
     program that cannot be read or followed. Such a program may press deeper than the laws of the brush reach. All
     other reasons not to run the program are in `problems`.
     """
-    need(program, (str, os.PathLike), "a path, which program is")
+    require_type(program, (str, os.PathLike), "a path, which program is")
     chosen = make_choices(drawing, choices)
     chosen = drop_from_project(chosen, SET_BY_PROGRAM)
     for name in SET_BY_PROGRAM:
@@ -257,15 +257,15 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
                 "its header does not say how large the sheet is: give --sheet or the drawing",
                 code="sheet-unknown",
             )
-        simulated = simulate_program.run(read, brush, cell, sheet_mm, z_offset_mm)
+        simulated = simulate_program.simulate_program(read, brush, cell, sheet_mm, z_offset_mm)
     warn(program.path, _report_offset(z_offset_mm))
     with name_file_in_errors(program.path):
-        problems = simulated.problems + simulate_program.misnumbered(
+        problems = simulated.problems + simulate_program.check_stroke_numbers(
             read, header.first_stroke, header.strokes
         )
         strokes, drawn, speeds = None, None, None
         if work:
-            loads = in_loads(work.plan, brush, cell)
+            loads = split_into_loads(work.plan, brush, cell)
             stroke_rows, differences = against_plan.with_plan(simulated, loads, cell, header.first_stroke)
             if header.is_of_plan and work.strokes is not None:
                 differences = _merge_style_differences(differences)
@@ -284,7 +284,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered in the program
             seconds = as_run_s
-        figures = outputs.reported(
+        figures = outputs.make_report(
             painted_work,
             simulated.marks,
             cell,
@@ -344,7 +344,7 @@ def _compare_with_rewritten(
     """
     header, cell, brush = program.header, program.cell, program.brush
     header_notes = against_regenerated.HeaderNotes(*_make_expected_header(header, work))
-    rewritten = against_regenerated.again(
+    rewritten = against_regenerated.regenerate_program(
         simulated, brush, cell, z_offset_mm, header.first_stroke, header_notes, speeds
     )
     if not rewritten:
@@ -353,7 +353,7 @@ def _compare_with_rewritten(
     if speeds is None:  # feeds may have been lowered after the time was written into the header
         usual_mm_s = min(Options.speed_mm_s, rewritten.touching_mm_s)
         fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in simulated.plan.passes]
-        fastest_program = against_regenerated.again(
+        fastest_program = against_regenerated.regenerate_program(
             simulated, brush, cell, z_offset_mm, header.first_stroke, None, fastest
         )
         least_s = duration_s(fastest_program)
@@ -380,7 +380,7 @@ def _make_expected_header(header, work: Work | None) -> tuple[str, tuple[str, ..
     ):
         return header.title, header.notes
     order = [note for note in header.notes if note.startswith("order")]
-    return work.title or "untitled", (*outputs.notes(work), *order)
+    return work.title or "untitled", (*outputs.header_lines(work), *order)
 
 
 def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
@@ -401,7 +401,7 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
     foreign = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     warn(path, foreign.warnings)
     painted_work = Work("", brush, foreign.plan, None, (), Options(cell=cell), ())
-    figures = outputs.reported(painted_work, foreign.marks, cell, forbidden=foreign.problems)
+    figures = outputs.make_report(painted_work, foreign.marks, cell, forbidden=foreign.problems)
     return Check(
         "painting", foreign.problems, is_foreign=True, work=painted_work, marks=foreign.marks, figures=figures
     )

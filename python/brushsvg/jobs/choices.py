@@ -13,7 +13,7 @@ from typing import TypedDict
 
 from .. import _core
 from ..comparison.corrections import SheetBefore, read_sheet_before
-from ..errors import Error, Notice, as_listed, need, need_number, need_one_of, need_truth
+from ..errors import Error, Notice, as_listed, need_number, need_one_of, need_truth, require_type
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..machine.posts import GCODE
@@ -173,7 +173,7 @@ def check_choices(chosen: Choices) -> Choices:
 
     Raises Error for a value that the flag of the command line would refuse as well.
     """
-    need(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
+    require_type(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
     for name in chosen.from_project:
         need_one_of(name, CHOICES, "a name of from_project")
     chosen = drop_overruled(chosen)
@@ -186,7 +186,7 @@ def check_choices(chosen: Choices) -> Choices:
     for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
         pair = as_listed(getattr(chosen, name))
         if pair is not None:
-            need(pair, (tuple, list), f"two numbers, which {name} is")
+            require_type(pair, (tuple, list), f"two numbers, which {name} is")
             if len(pair) != 2:
                 raise Error(f"{name} has {len(pair)} numbers, not two", name, code="wrong-type")
             chosen = replace(
@@ -194,13 +194,13 @@ def check_choices(chosen: Choices) -> Choices:
                 **{name: tuple(need_number(number, f"a number of {name}", *limits) for number in pair)},
             )
     if chosen.skip_region is not None:
-        need(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
+        require_type(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
         for region in chosen.skip_region:
-            need(region, (tuple, list), "a region, (x0, y0, x1, y1) in mm")
+            require_type(region, (tuple, list), "a region, (x0, y0, x1, y1) in mm")
             for side in region:
                 need_number(side, "a number of skip_region", -1e6, 1e6)
     if chosen.colour is not None:
-        need(chosen.colour, str, "a colour, as #1a237e")
+        require_type(chosen.colour, str, "a colour, as #1a237e")
         chosen = replace(chosen, colour=read_colour(chosen.colour))
     if chosen.join is not None:
         need_truth(chosen.join, "join")
@@ -208,13 +208,13 @@ def check_choices(chosen: Choices) -> Choices:
         given = getattr(chosen, name)
         is_list = name != "select"
         if is_list and given is not None:
-            need(given, (tuple, list), f"a list of texts, which {name} is")
+            require_type(given, (tuple, list), f"a list of texts, which {name} is")
         for text in () if given is None else given if is_list else [given]:
-            need(text, str, f"a text, which {name} is")
+            require_type(text, str, f"a text, which {name} is")
     for name in ("brush", "cell", "corrections"):
         kinds = {"brush": (_core.Brush,), "cell": (Cell,)}.get(name, ())
         if getattr(chosen, name) is not None:
-            need(getattr(chosen, name), (str, os.PathLike, *kinds), f"the name or the path of {name}")
+            require_type(getattr(chosen, name), (str, os.PathLike, *kinds), f"the name or the path of {name}")
     if isinstance(chosen.brush, _core.Brush):
         _core.check(chosen.brush)
     if isinstance(chosen.cell, Cell):  # a cell made in Python must also be valid as a file
@@ -274,7 +274,7 @@ def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
         raise
 
 
-def settled(chosen: Choices, drawing, alone: bool = False) -> Choices:
+def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:
     """Fill choices that nobody made with the settings in the drawing.
 
     A drawing can only name shipped brushes and cells, because its settings read no other file.

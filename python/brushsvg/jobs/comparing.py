@@ -15,26 +15,26 @@ from typing import TYPE_CHECKING, TypeVar, Unpack
 from .. import _core
 from ..calibration.prior.from_prior import has_learned
 from ..comparison import report
-from ..comparison.attribution.corrected_cell import certain_of, corrected_machine, key_of, sure
+from ..comparison.attribution.corrected_cell import certain_of, corrected_machine, key_of, significant_part
 from ..comparison.attribution.faults import Faults, attribute_errors
 from ..comparison.attribution.model import BRUSH
 from ..comparison.attribution.residual import subtract_faults
 from ..comparison.corrections import (
     Correction,
     SheetBefore,
-    corrected,
+    apply_corrections,
     is_corrected,
     machine_sha256,
+    remove_corrections,
     select_for_machine,
-    uncorrected,
 )
 from ..comparison.ends import Ends, ends_of
 from ..comparison.job_marks import job_marks
 from ..comparison.job_page import JobPage, job_page
-from ..comparison.next_corrections import farther, next_corrections
+from ..comparison.next_corrections import find_growing_displacements, next_corrections
 from ..comparison.photographs import Compared, Comparison, TargetStroke, compare_photos, of_drawing
 from ..comparison.picture import comparison_png
-from ..errors import Error, Notice, need
+from ..errors import Error, Notice, require_type
 from ..files import read_bytes
 from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cells.cell_file import own_name, parse_cell, write_cell
@@ -47,12 +47,12 @@ from .choices import (
     ChoiceKeywords,
     Choices,
     choose_margin_strokes,
+    fill_from_drawing,
     load_sheet_before,
     make_options,
     name_file_in_errors,
     path_of,
     report_ineffective_flags,
-    settled,
 )
 from .conversion import make_choices
 from .preparation import preparation
@@ -157,12 +157,12 @@ def compare(
     another job.
     """
     single = isinstance(photos, (str, os.PathLike))
-    need(photos, (str, os.PathLike, tuple, list), "a path or a list of paths, which photos are")
+    require_type(photos, (str, os.PathLike, tuple, list), "a path or a list of paths, which photos are")
     paths = [photos] if single else list(photos)
     if not paths:
         raise Error("there is no photograph", "photos", code="wrong-type")
     for path in paths:
-        need(path, (str, os.PathLike), "a path, which each of photos is")
+        require_type(path, (str, os.PathLike), "a path, which each of photos is")
     chosen, notices = make_choices(drawing, choices), []
 
     def work(stage) -> PaintedJob:
@@ -188,7 +188,7 @@ def prepare_painted_sheet(chosen: Choices, stage: Callable[[str], object], warn:
 def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], object], warn: Warn) -> Sheet:
     name = path_of(given.input)
     with name_file_in_errors(name):
-        chosen = settled(given, given.input)
+        chosen = fill_from_drawing(given, given.input)
         warn(name, report_ineffective_flags(chosen))
         chosen = choose_margin_strokes(chosen)
         work = preparation.prepare(chosen.input, make_options(chosen), stage)
@@ -197,11 +197,11 @@ def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], o
         if is_corrected(work.plan):  # a plan.json with corrections says which corrections it was painted with
             _refuse_second_corrections(before)
             corrected_plan = work.plan
-            uncorrected_plan, known_corrections = uncorrected(corrected_plan)
+            uncorrected_plan, known_corrections = remove_corrections(corrected_plan)
             work, before = replace(work, plan=uncorrected_plan), SheetBefore(known_corrections)
         marks = prediction.predict(work, True, stage)
         before = replace(before, corrections=select_for_machine(before.corrections, _get_cell_machine(work)))
-        plan = corrected_plan or corrected(work.plan, before.corrections, work.brush)
+        plan = corrected_plan or apply_corrections(work.plan, before.corrections, work.brush)
         target = (
             {} if work.strokes is None else {stroke.id: target_rings([stroke]) for stroke in work.strokes}
         )
@@ -266,7 +266,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
     faults = attribute_errors(sheet.plan, brush, strokes, comparison, learned)
     before = sheet.before.corrections
     corrections, too_far = next_corrections(comparison, work.plan, before, brush)
-    displacement_notices = farther(comparison, sheet.before.displacement_mm)
+    displacement_notices = find_growing_displacements(comparison, sheet.before.displacement_mm)
     warn(paths[0], [*comparison.notices, *too_far, *displacement_notices])
     cell, machine, residual = work.options.cell, None, None
     if cell and faults:
@@ -274,7 +274,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
         machine, left_out = _find_correctable_machine(faults, comparison.middle_mm, cell, axes)
         warn(paths[0], _report_uncorrectable(faults, cell, left_out))
         if machine:
-            certain = sure(faults, cell.machine, axes, left_out)
+            certain = significant_part(faults, cell.machine, axes, left_out)
             remaining = subtract_faults(comparison, certain, sheet.plan, brush, strokes)
             residual = machine_sha256(machine), next_corrections(remaining, work.plan, before, brush)[0]
     ends = ends_of(comparison, strokes, work.strokes or ())

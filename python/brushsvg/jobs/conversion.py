@@ -13,19 +13,26 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
-from ..errors import Error, Notice, lacking, need, need_number, need_one_of, need_truth
+from ..errors import Error, Notice, missing_packages_error, need_number, need_one_of, need_truth, require_type
 from ..files import write_files
 from ..machine import preflight, writer
 from ..machine.arm.joints import is_installed
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_check import OF_EXAMPLE
 from ..machine.motion import duration_s
-from ..machine.paint_reload import PlanInLoads, fetched_mm, in_loads, too_long, with_one_pen, without_paint
+from ..machine.paint_reload import (
+    PlanInLoads,
+    fetched_mm,
+    report_long_strokes,
+    report_missing_paint,
+    split_into_loads,
+    with_one_pen,
+)
 from ..machine.posts import POSTS
-from ..machine.program import WHOLE_JOB, Job, Walked, beyond_part
+from ..machine.program import WHOLE_JOB, CheckedProgram, Job, beyond_part
 from ..machine.realised.smooth_field import beyond_field
 from ..show.evaluation import report as reports
-from ..text_summary import summarized
+from ..text_summary import summarize_notices
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
@@ -33,11 +40,11 @@ from .choices import (
     Choices,
     check_choices,
     choose_margin_strokes,
+    fill_from_drawing,
     make_options,
     name_file_in_errors,
     path_of,
     report_ineffective_flags,
-    settled,
     suffix_of,
 )
 from .preparation import preparation
@@ -154,13 +161,13 @@ def convert(
         if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
             sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
             raise Error(sentence, name, code="program-format")
-    need(formats, (tuple, list), "a list of extensions, which formats is")
+    require_type(formats, (tuple, list), "a list of extensions, which formats is")
     for extension in formats:
-        need(extension, str, "an extension, such as '.ngc'")
+        require_type(extension, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
     need_truth(lenient, "lenient")
     need_truth(figures, "figures")
-    need(from_stroke, Integral, "a whole number, which from_stroke is")
+    require_type(from_stroke, Integral, "a whole number, which from_stroke is")
     first_stroke = int(need_number(from_stroke, "from_stroke", 1, 1e8))
     job = Job(chosen.z_offset or 0.0, first_stroke)
 
@@ -189,7 +196,7 @@ def make_choices(drawing, choices: Mapping) -> Choices:
 
 def _is_path_given(path, name: str) -> bool:
     if path is not None:
-        need(path, (str, os.PathLike), f"a path, which {name} is")
+        require_type(path, (str, os.PathLike), f"a path, which {name} is")
     return path is not None
 
 
@@ -206,7 +213,7 @@ def _make_conversion(
 ) -> tuple[Conversion, dict]:
     source = chosen.input
     with name_file_in_errors(path_of(source)):
-        chosen = settled(chosen, source)
+        chosen = fill_from_drawing(chosen, source)
         ignored = report_ineffective_flags(chosen)
         chosen = choose_margin_strokes(chosen) if "page" in paths else chosen
         work = preparation.prepare(source, make_options(chosen), stage)
@@ -214,7 +221,9 @@ def _make_conversion(
         if out is not None:
             formats = tuple(dict.fromkeys([suffix_of(out), *formats]))
         formats = formats or (default_suffix(cell),)
-        files = {paths["page"]: outputs.page(suffix_of(paths["page"]), work)} if "page" in paths else {}
+        files = (
+            {paths["page"]: outputs.make_job_page(suffix_of(paths["page"]), work)} if "page" in paths else {}
+        )
         simulations = {}
         for suffix in formats:
             with_outlines = suffix_of(paths.get("picture")) == ".svg"
@@ -234,13 +243,13 @@ def _make_conversion(
                     files[writer.path_next_to(out, name)] = text
         if "picture" in paths:
             stage("drawing")
-            files[paths["picture"]] = outputs.picture(
+            files[paths["picture"]] = outputs.make_picture(
                 suffix_of(paths["picture"]), first_simulation.work, first_simulation.marks
             )
         measured_figures = None
         if figures or "report" in paths:
             stage("measuring")
-            measured_figures = outputs.reported(first_simulation.work, first_simulation.marks, cell)
+            measured_figures = outputs.make_report(first_simulation.work, first_simulation.marks, cell)
         if "report" in paths:
             files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured_figures)
     cell_notices = list_cell_notices(cell) if first_simulation.is_program else []
@@ -287,7 +296,7 @@ class SimulatedWork:
     notes: tuple[str, ...]
     marks: object
     loads: PlanInLoads
-    walk: Walked
+    walk: CheckedProgram
     problems: list[Notice]
     order: str
 
@@ -301,7 +310,7 @@ class SimulatedWork:
         Raises Error if something forbids writing it.
         """
         work = self.work
-        encoded_program = writer.encoded(
+        encoded_program = writer.encode_checked(
             self.suffix, work.plan, self.walk, work.brush, work.title, self.notes
         )
         return writer.in_parts(self.suffix, encoded_program)
@@ -316,9 +325,9 @@ class SimulatedWork:
         part_notices = beyond_part(self.loads, self.cell) if self.is_program else []
         lowering_notices = _check_lowering(self.walk.job.z_offset_mm) if self.is_program else []
         return [
-            *without_paint(brush, cell),
+            *report_missing_paint(brush, cell),
             *order_notices,
-            *too_long(self.loads, brush, cell),
+            *report_long_strokes(self.loads, brush, cell),
             *pen_notices,
             *field_notices,
             *part_notices,
@@ -385,7 +394,7 @@ def simulate_and_check(
     path: the path of the program, for errors about its format.
     """
     cell, brush, tolerance_mm = work.options.cell, work.brush, work.options.tolerance_mm
-    notes = outputs.notes(work)
+    notes = outputs.header_lines(work)
     if order == "nearest":
         work, notes = order_nearest_first(work), (*notes, "order: nearest first")
     if suffix != ".json":
@@ -394,11 +403,11 @@ def simulate_and_check(
         preflight.check_rounding(cell, tolerance_mm)
     if marks is None:
         marks = prediction.predict(work, rings, stage)
-    loads = in_loads(work.plan, brush, cell)
+    loads = split_into_loads(work.plan, brush, cell)
     known_walk, is_drawing = work.walk(cell, job), work.strokes is not None
-    walk = preflight.look(loads, brush, marks, cell, tolerance_mm, job, known_walk, is_drawing)
+    walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, job, known_walk, is_drawing)
     damaged = [] if lenient else [notice for notice in work.notices if notice.damaged]
-    problems = summarized([*walk.problems, *damaged])
+    problems = summarize_notices([*walk.problems, *damaged])
     if damaged:
         problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
     return SimulatedWork(suffix, work, cell, notes, marks, loads, walk, problems, order)
@@ -414,11 +423,11 @@ def estimate_time_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:
     return None
 
 
-def estimate_output_time_s(suffix: str, plan, walk: Walked, brush, cell: Cell) -> float | None:
+def estimate_output_time_s(suffix: str, plan, walk: CheckedProgram, brush, cell: Cell) -> float | None:
     """Return how long the machine takes for a program, or for one of a plan.json."""
     if suffix != ".json":
         return duration_s(walk.made)
-    return estimate_time_s(in_loads(plan, brush, cell), brush, cell)
+    return estimate_time_s(split_into_loads(plan, brush, cell), brush, cell)
 
 
 def list_cell_notices(cell: Cell) -> list[Notice]:
@@ -433,5 +442,5 @@ def list_arm_notices(cell: Cell) -> list[Notice]:
     if not cell.arm or is_installed():
         return []
     sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"
-    advice = lacking("its joints need", "ssik").sentence
+    advice = missing_packages_error("its joints need", "ssik").sentence
     return [Notice("arm", sentence, code="arm-not-followed", advice=advice)]

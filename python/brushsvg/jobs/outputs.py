@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..machine.cells.cell import Cell
-from ..machine.paint_reload import PlanInLoads, in_loads
+from ..machine.paint_reload import PlanInLoads, split_into_loads
 from ..machine.realised.arc_chords import with_chords
 from ..machine.tool_axes import is_tilted
 from ..machine.writer import time_s, whole_program
@@ -27,7 +27,7 @@ from .work import Work
 TARGET_TOLERANCE_MM = 0.02  # how exactly an HTML page shows the target; smaller errors are not visible
 
 
-def notes(work: Work) -> tuple[str, ...]:
+def header_lines(work: Work) -> tuple[str, ...]:
     """Return lines for the header of a program.
 
     They say how the program was made, and how many warnings there were.
@@ -56,7 +56,7 @@ def notes(work: Work) -> tuple[str, ...]:
     return lines
 
 
-def picture(
+def make_picture(
     suffix: str, work: Work, marks: _core.Marks, band: Band | None = None, with_toolpath: bool = False
 ) -> bytes:
     """Return a picture of the marks as the bytes of a .png or .svg, or a marks.json.
@@ -92,7 +92,7 @@ def picture(
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, unpainted, toolpath_mm)
 
 
-def page(suffix: str, work: Work) -> bytes:
+def make_job_page(suffix: str, work: Work) -> bytes:
     """Return the page to print for a job (.pdf, .svg).
 
     The strokes are in the order in which they were drawn.
@@ -143,7 +143,9 @@ def overlap_picture(
     return overlap_png(target, painted, long_side_px is None, at_px)
 
 
-def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
+def make_animation(
+    work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0
+) -> bytes:
     """Return an HTML page that plays tool and paint over time.
 
     loads: the plan of the work in loads.
@@ -158,7 +160,7 @@ def played(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed
     return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
 
 
-def reported(
+def make_report(
     work: Work,
     marks: _core.Marks,
     cell: Cell,
@@ -180,7 +182,7 @@ def reported(
     """
     known_warnings = warnings if warnings is not None else work.notices
     if seconds is None:
-        seconds = time_s(in_loads(work.plan, work.brush, cell), work.brush, cell)
+        seconds = time_s(split_into_loads(work.plan, work.brush, cell), work.brush, cell)
     work, marks, as_run = remove_margin_strokes(work, marks, as_run)
     is_tilted_plan = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None

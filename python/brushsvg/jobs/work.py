@@ -8,7 +8,7 @@ from .. import _core
 from ..errors import Error
 from ..machine.cells.cell import Cell
 from ..machine.paint_reload import PlanInLoads, is_later_part
-from ..machine.program import WHOLE_JOB, Job, Walked
+from ..machine.program import WHOLE_JOB, CheckedProgram, Job
 from ..planning import travel_order
 from ..read.design import Notice
 from .options import Options
@@ -25,7 +25,7 @@ class KnownSimulation:
 
     plan: _core.Plan
     marks: _core.Marks
-    walk: Walked
+    walk: CheckedProgram
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Work:
         """Return the marks of the plan if they are known. Do not change them."""
         return self.known.marks if self._is_known() else None
 
-    def walk(self, cell: Cell, job: Job = WHOLE_JOB) -> Walked | None:
+    def walk(self, cell: Cell, job: Job = WHOLE_JOB) -> CheckedProgram | None:
         """Return the program of the plan with the limits it breaks, if known.
 
         It is known only for the cell of the options and for the job that was simulated.

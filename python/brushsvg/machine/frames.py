@@ -115,7 +115,7 @@ def normal_tilt_deg(frame: np.ndarray) -> float:
     return float(np.degrees(np.arctan2(np.hypot(frame[0, 2], frame[1, 2]), frame[2, 2])))
 
 
-def moved(frame: np.ndarray, points: np.ndarray) -> np.ndarray:
+def transform_points(frame: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Transform points (n, 3) of a frame into the frame in which it is given."""
     return points @ frame[:3, :3].T + frame[:3, 3]
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..geometry import polylines
 from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
-from .frames import moved
+from .frames import transform_points
 from .realised.distortion import commanded_heights_mm
 
 MEANINGS_AT_SAFE_HEIGHT = ("travel", "retract")  # at or above the safe height, where speed is not limited
@@ -127,7 +127,7 @@ def rise_height_mm(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
     x, y = (-margin, sheet_mm[0] + margin), (-margin, sheet_mm[1] + margin)
     corners = np.array([(a, b) for a in x for b in y])
     heights = commanded_heights_mm(corners, cell.heights.safe_mm, cell.machine)
-    return float(moved(frame, np.column_stack([corners, heights]))[:, 2].max())
+    return float(transform_points(frame, np.column_stack([corners, heights]))[:, 2].max())
 
 
 def program_in_robot_frame(program: Program) -> Program:
@@ -151,10 +151,10 @@ def _move_step_to_frame(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
         return step
     arc = step.arc
     if arc is not None:
-        centre = moved(frame, np.array([[*arc.centre_mm, 0.0]]))[0]
+        centre = transform_points(frame, np.array([[*arc.centre_mm, 0.0]]))[0]
         arc = Arc((float(centre[0]), float(centre[1])), arc.turn)
     axes = step.axes if step.axes is None else step.axes @ frame[:3, :3].T
-    return replace(step, points_mm=moved(frame, step.points_mm), arc=arc, axes=axes)
+    return replace(step, points_mm=transform_points(frame, step.points_mm), arc=arc, axes=axes)
 
 
 def set_programmed_speeds(section: Section, cell: Cell) -> Section:

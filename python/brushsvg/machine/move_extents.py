@@ -27,7 +27,7 @@ class Ways:
     sweep_rad: np.ndarray
 
 
-def ways(paths, circles=()) -> Ways:
+def make_paths(paths, circles=()) -> Ways:
     """Make Ways from paths and circles.
 
     paths: arrays (n, 3) of points [mm] that straight lines connect.

@@ -53,7 +53,7 @@ class PlanInLoads:
         return _core.Plan(sheet_mm=self.sheet_mm, passes=list(self.loads))
 
 
-def in_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
+def split_into_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanInLoads:
     """Split strokes into parts that one load of paint can paint.
 
     The parts are named stroke, stroke+2, ... A stroke stays whole if the cell does not count the length, or if its
@@ -128,7 +128,7 @@ def load_length_mm(brush: _core.Brush, cell: Cell) -> float:
     return min(limits_mm)
 
 
-def without_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
+def report_missing_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
     """Report that a limit of narrowing has no effect.
 
     The cell has the limit, but the brush does not say how its marks narrow.
@@ -173,7 +173,7 @@ def _start_and_end_on_paper(a_pass):
     return on_way(a_pass, np.vstack([before, poses, after]), arcs, axes)
 
 
-def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:
+def report_long_strokes(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:
     """Report strokes with parts that are longer than a load of paint lasts.
 
     Strokes that must not be split are not reported.
@@ -194,7 +194,7 @@ def too_long(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]
     ]
 
 
-def visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
+def station_visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
     """Return for each load the stations to visit before it.
 
     Loads before first_stroke are not run and have no visits. For a cell without paint, the visits are changes of the
@@ -248,7 +248,7 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
     """
     if not cell.reload:
         return dips_without_cell(passes)
-    visits_of_loads, dips_of_passes, load_index = visits(loads, cell), [], 0
+    visits_of_loads, dips_of_passes, load_index = station_visits(loads, cell), [], 0
     for a_pass in passes:
         dips = [0.0] if visits_of_loads[load_index] else []
         load_index += 1
@@ -263,7 +263,7 @@ def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[
     """Return dips_mm for the passes of a plan, with or without a cell."""
     if cell:
         with suppress(Error):  # the error is reported when the program is made
-            return dips_mm(plan.passes, in_loads(plan, brush, cell), cell)
+            return dips_mm(plan.passes, split_into_loads(plan, brush, cell), cell)
     return dips_without_cell(plan.passes)
 
 

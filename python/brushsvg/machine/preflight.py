@@ -11,27 +11,35 @@ from .. import _core
 from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
 from .paint_reload import PlanInLoads
-from .program import MAX_POSES_AT_ONCE, WHOLE_JOB, Job, Walked, out_of_arm, walked, written_of
+from .program import (
+    MAX_POSES_AT_ONCE,
+    WHOLE_JOB,
+    CheckedProgram,
+    Job,
+    make_checked_program,
+    make_written_form,
+    out_of_arm,
+)
 from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, cut_corners
 from .realised.distortion import true_pass
 from .realised.rounding import Written
-from .tool_axes import mixed
+from .tool_axes import interpolate_axes
 from .workspace_limits import distances_beyond_edges
 
 DEFAULT_TOLERANCE_MM = 0.05
 
 
-def look(
+def check_job(
     loads: PlanInLoads,
     brush: _core.Brush,
     marks: _core.Marks,
     cell: Cell,
     tolerance_mm: float,
     job: Job = WHOLE_JOB,
-    walk: Walked | None = None,
+    walk: CheckedProgram | None = None,
     of_drawing: bool = True,
-) -> Walked:
+) -> CheckedProgram:
     """Check a job and return it with every reason not to run it on the robot.
 
     marks: marks of the plan or of its loads. Of a resumed job, only the rest is checked.
@@ -45,7 +53,7 @@ def look(
     limit_problems = walk.problems or out_of_arm(walk.made, left_loads.sheet_mm)
     # In this case, the program was checked for the paper's place in the cell.
     is_paper_unchanged = walk.made.cell is cell and not job.z_offset_mm
-    written = walk.written if is_paper_unchanged else written_of(loads, cell, WHOLE_JOB)
+    written = walk.written if is_paper_unchanged else make_written_form(loads, cell, WHOLE_JOB)
     return replace(
         walk,
         problems=limit_problems
@@ -60,9 +68,9 @@ def within_limits(
     cell: Cell,
     job: Job = WHOLE_JOB,
     of_drawing: bool = True,
-) -> Walked:
+) -> CheckedProgram:
     """Check a job for broken limits and marks that cross the sheet's edges."""
-    walk = walked(loads, brush, cell, job)
+    walk = make_checked_program(loads, brush, cell, job)
     if job.first_stroke > 1:
         loads = loads.left(job.first_stroke)
         if not loads.loads:
@@ -272,7 +280,7 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
         ]
         rows_at, axes = at[first:last] - start, np.asarray(a_pass.tool_axes)
         if len(axes):  # the brush turns along the cut as it does along the moves
-            axes = mixed(axes, rows_at)
+            axes = interpolate_axes(axes, rows_at)
         run = _core.Pass(a_pass.stroke, path[first:last], a_pass.speed_mm_s, arcs=arcs, tool_axes=axes)
         runs.append((run, rows_at))
     return runs

@@ -21,9 +21,9 @@ from .cells.cell import (
     shorten_visit,
     value_mm,
 )
-from .frames import moved
+from .frames import transform_points
 from .motion import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
-from .paint_reload import PlanInLoads, visits
+from .paint_reload import PlanInLoads, station_visits
 from .posts import POSTS
 from .posts.text import make_unique_names
 from .realised.corner_blending import MAX_BLEND_TURN_RAD, blend_radii_and_angles, find_vertical_steps
@@ -31,7 +31,7 @@ from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import limit_turning_speed
 from .tool_axes import axes_of, tilts_deg
-from .workspace_limits import broken_limits, find_astray_sections, rise_astray, touching_mm_s
+from .workspace_limits import broken_limits, check_first_rise, find_astray_sections, touching_mm_s
 
 STRAIGHT_SEGMENT, VERTICAL_SEGMENT = -1, -2  # kinds of segments that are not part of an arc
 
@@ -59,7 +59,7 @@ MAX_POSES_AT_ONCE = 100_000
 
 
 @dataclass(frozen=True)
-class Walked:
+class CheckedProgram:
     """A job with its program and its problems, as found before it is run.
 
     job: the job with its visits.
@@ -84,7 +84,7 @@ class Walked:
         return self.made
 
 
-def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walked:
+def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> CheckedProgram:
     """Make the moves of a job, with the visits to the paint, and check their limits.
 
     Every move is checked over its whole length, and so are the visits to all stations.
@@ -93,15 +93,15 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
     """
     problems = []
     try:
-        job = replace(job, visits=visits(loads, cell, job.first_stroke))
+        job = replace(job, visits=station_visits(loads, cell, job.first_stroke))
     except Error as error:
         problems.append(error.notice())
-    written = written_of(loads, cell, job)
+    written = make_written_form(loads, cell, job)
     made = unchecked_program(loads, brush, cell, job, written)
     first_stroke, count = job.first_stroke, len(loads.loads)
     if count and not 1 <= first_stroke <= count:
         sentence = f"stroke {first_stroke} is outside the range [1, {count}] of this job"
-        return Walked(loads, job, made, written, [Notice("", sentence, code="stroke-unknown")])
+        return CheckedProgram(loads, job, made, written, [Notice("", sentence, code="stroke-unknown")])
     left_loads = loads.left(first_stroke).loads
     if cell.pen and job.z_offset_mm:
         sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be set"
@@ -125,14 +125,14 @@ def walked(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE_JOB) -> Walke
         if (count := len(a_pass.poses_mm) + POSES_AROUND_STROKE) > MAX_PROGRAM_POINTS[cell.language]
     ]
     if all(np.isfinite(a_pass.poses_mm).all() for a_pass in left_loads):
-        problems += astray_in(made, loads.sheet_mm)
-        problems += stations_astray(brush, cell, made.robot_from_frame, loads.sheet_mm)
+        problems += find_moves_out_of_limits(made, loads.sheet_mm)
+        problems += find_stations_out_of_limits(brush, cell, made.robot_from_frame, loads.sheet_mm)
     if problems and cell.reload:  # name the stroke as it was drawn, once for all its parts
         stroke_of_load = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
         problems = [
             replace(notice, where=stroke_of_load.get(notice.where, notice.where)) for notice in problems
         ]
-    return Walked(loads, job, made, written, list(dict.fromkeys(problems)))
+    return CheckedProgram(loads, job, made, written, list(dict.fromkeys(problems)))
 
 
 def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
@@ -165,7 +165,7 @@ def _pass_at_servo_places(a_pass, program: Program):
     return _core.Pass(a_pass.stroke, poses, a_pass.speed_mm_s)  # a servo cannot tilt the brush
 
 
-def astray_in(program: Program, sheet_mm) -> list[Notice]:
+def find_moves_out_of_limits(program: Program, sheet_mm) -> list[Notice]:
     """Report moves of a program that leave the workspace.
 
     The rise before the first move is included.
@@ -185,9 +185,9 @@ def astray_in(program: Program, sheet_mm) -> list[Notice]:
     notices = find_astray_sections(sections(), frame, program.cell, sheet_mm)
     post = POSTS.get(program.cell.language)
     if post and post.in_robot_frame:  # other programs rise to the safe height over the paper
-        ends = list(moved(frame, np.reshape(ends, (-1, 3))))
+        ends = list(transform_points(frame, np.reshape(ends, (-1, 3))))
         frame, height_mm = np.eye(4), program.rise_in_robot_mm
-    return notices + rise_astray(height_mm, ends, frame, program.cell)
+    return notices + check_first_rise(height_mm, ends, frame, program.cell)
 
 
 def _home_sections(program: Program) -> tuple[Section, ...]:
@@ -197,7 +197,7 @@ def _home_sections(program: Program) -> tuple[Section, ...]:
     """
     if program.cell.motors is None:
         return ()
-    place_mm = moved(
+    place_mm = transform_points(
         np.linalg.inv(program.robot_from_frame), np.array([[0.0, 0.0, program.cell.heights.safe_mm]])
     )
     travel = Move("travel", place_mm, program.cell.speeds.travel_mm_s)
@@ -212,7 +212,7 @@ def out_of_arm(program: Program, sheet_mm) -> list[Notice]:
     """
     if program.cell.arm is None or not is_installed():
         return []
-    return find_unreachable(program, lambda there: not astray_in(there, sheet_mm))
+    return find_unreachable(program, lambda there: not find_moves_out_of_limits(there, sheet_mm))
 
 
 def _fits_in_cache(loads: PlanInLoads, job: Job) -> bool:
@@ -220,7 +220,9 @@ def _fits_in_cache(loads: PlanInLoads, job: Job) -> bool:
     return sum(len(a_pass.poses_mm) for a_pass in left_loads) <= POSES_KEPT
 
 
-def written_of(loads: PlanInLoads, cell: Cell, job: Job, was_read: bool = False) -> Callable[[int], Written]:
+def make_written_form(
+    loads: PlanInLoads, cell: Cell, job: Job, was_read: bool = False
+) -> Callable[[int], Written]:
     """Return a function that gives the written form of a load by its number.
 
     Loads are numbered from 1. The results are kept for a small plan.
@@ -249,7 +251,7 @@ def unchecked_program(
     """
     frame, count = robot_from_paper(cell, job.z_offset_mm), len(loads.loads)
     numbered_loads = list(enumerate(loads.loads, 1))[max(job.first_stroke - 1, 0) :]
-    written = written or written_of(loads, cell, job)
+    written = written or make_written_form(loads, cell, job)
 
     def sections() -> Iterator[Section]:
         for number, a_pass in numbered_loads:
@@ -295,7 +297,7 @@ def names_of_stations(cell: Cell) -> dict[Station, str]:
     return dict(zip(stations, names, strict=True))
 
 
-def stations_astray(brush, cell: Cell, frame: np.ndarray, sheet_mm=None) -> list[Notice]:
+def find_stations_out_of_limits(brush, cell: Cell, frame: np.ndarray, sheet_mm=None) -> list[Notice]:
     """Report visits to stations that leave the workspace.
 
     Dips, stirring and wiping are included.

@@ -11,10 +11,10 @@ import numpy as np
 from ..errors import Error
 from .cells.cell import LEAST_SPEED_MM_S, Cell, reason_for_no_waiting, robot_from_paper
 from .motion import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
-from .move_extents import ways
-from .program import approach_mm_s, astray_in, out_of_arm, point_above, safe_point_above
+from .move_extents import make_paths
+from .program import approach_mm_s, find_moves_out_of_limits, out_of_arm, point_above, safe_point_above
 from .realised.distortion import commanded_mm, in_lines_mm
-from .workspace_limits import astray, touching_mm_s
+from .workspace_limits import find_broken_limits, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to see where the tip is
 TEST_SPEED_MM_S = 15.0
@@ -128,7 +128,7 @@ def _air_run_height_mm(cell: Cell, sheet_mm) -> float:
             commanded_mm(point_above(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
             for corner in corners
         ]
-        if not astray(ways([np.array(corner_poses)]), frame, cell, sheet_mm):
+        if not find_broken_limits(make_paths([np.array(corner_poses)]), frame, cell, sheet_mm):
             return safe_mm + more_mm
     return safe_mm
 
@@ -333,6 +333,6 @@ def _checked_program(
         return (set_programmed_speeds(section, cell) for section in sections())
 
     program = Program((), cell, frame, sections_at_programmed_speeds, *rises_mm, touching_mm_s(brush, cell))
-    for notice in astray_in(program, sheet_mm) or out_of_arm(program, sheet_mm):
+    for notice in find_moves_out_of_limits(program, sheet_mm) or out_of_arm(program, sheet_mm):
         raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return program

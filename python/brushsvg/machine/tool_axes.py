@@ -87,7 +87,7 @@ def tilts_deg(axes: np.ndarray) -> np.ndarray:
     return np.degrees(np.arctan2(np.hypot(axes[..., 0], axes[..., 1]), axes[..., 2]))
 
 
-def mixed(axes: np.ndarray, row_positions: np.ndarray) -> np.ndarray:
+def interpolate_axes(axes: np.ndarray, row_positions: np.ndarray) -> np.ndarray:
     """Interpolate axes (n, 3) at fractional rows (m,).
 
     The lean for each mm upwards is interpolated, as in predictions.

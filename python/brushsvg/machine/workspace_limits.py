@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Notice
 from .cells.cell import LEAST_SPEED_MM_S, Cell
 from .motion import Move, Section
-from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, paths_in_frame, ways
+from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
 from .realised.tilt import check_tilt_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6  # slack for the rounding of numbers
@@ -67,10 +67,12 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         (x, y), r = station.place_mm, station.stir_mm
         stir_points = [(x - r, y, 0.0), (x + r, y, 0.0), (x, y - r, 0.0), (x, y + r, 0.0)]
-        if any(find_place_inside(ways([[point]]), *on_sheet) is not None for point in (*path, *stir_points)):
+        if any(
+            find_place_inside(make_paths([[point]]), *on_sheet) is not None for point in (*path, *stir_points)
+        ):
             sentence = f"its place is on the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
-        elif find_place_inside(ways([path]), *on_sheet) is not None:
+        elif find_place_inside(make_paths([path]), *on_sheet) is not None:
             sentence = f"its wipe goes over the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
     return problems
@@ -91,7 +93,7 @@ def find_astray_sections(
     for group in _group_sections(section for section in sections if section.moves):
         # Most sections keep every limit, so the whole group is checked first, including the moves between sections.
         moves = [move for section in group for move in section.moves]
-        if astray(_paths_of_moves(moves, here), frame, cell, sheet_mm):
+        if find_broken_limits(_paths_of_moves(moves, here), frame, cell, sheet_mm):
             problems += _find_in_each_section(group, here, frame, cell, sheet_mm)
         here = moves[-1].points_mm[-1]
     return list(dict.fromkeys(problems))
@@ -115,8 +117,8 @@ def _group_sections(sections: Iterable[Section]) -> Iterator[list[Section]]:
 def _find_in_each_section(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iterator[Notice]:
     for section in sections:
         moves = section.moves
-        notices = [] if here is None else astray_between(here, moves[0].points_mm[0], frame, cell)
-        notices += astray(_paths_of_moves(moves, None), frame, cell, sheet_mm)
+        notices = [] if here is None else find_limits_broken_between(here, moves[0].points_mm[0], frame, cell)
+        notices += find_broken_limits(_paths_of_moves(moves, None), frame, cell, sheet_mm)
         yield from (replace(notice, where=section.name) for notice in notices)
         here = moves[-1].points_mm[-1]
 
@@ -134,20 +136,22 @@ def _paths_of_moves(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
         for move, last in zip(moves, ends.tolist(), strict=True)
         if move.arc is not None and last > len(move.points_mm)
     ]
-    return ways([points], circles)
+    return make_paths([points], circles)
 
 
-def astray_between(here, there, frame: np.ndarray, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[Notice]:
+def find_limits_broken_between(
+    here, there, frame: np.ndarray, cell: Cell, slack_mm: float = ROUNDING_MM
+) -> list[Notice]:
     """Report each limit of place that a straight move between two places breaks.
 
     Reports nothing if one of the two places breaks a limit itself.
     """
-    ends = astray(ways([[here], [there]]), frame, cell, None, slack_mm)
-    notices = [] if ends else astray(ways([[here, there]]), frame, cell, None, slack_mm)
+    ends = find_broken_limits(make_paths([[here], [there]]), frame, cell, None, slack_mm)
+    notices = [] if ends else find_broken_limits(make_paths([[here, there]]), frame, cell, None, slack_mm)
     return [replace(notice, sentence=f"on the way there {notice.sentence}") for notice in notices]
 
 
-def astray(
+def find_broken_limits(
     moves: Ways, frame: np.ndarray, cell: Cell, sheet_mm=None, slack_mm: float = ROUNDING_MM
 ) -> list[Notice]:
     """Report each limit of place that moves break anywhere on their path.
@@ -171,7 +175,7 @@ def astray(
     return [*notices, *_check_keep_out(moves, cell, cut_mm)]
 
 
-def rise_astray(
+def check_first_rise(
     height_mm: float, places, frame: np.ndarray, cell: Cell, slack_mm: float = ROUNDING_MM
 ) -> list[Notice]:
     """Report each limit of place that the straight rise before the first move breaks.
@@ -185,8 +189,12 @@ def rise_astray(
     places = [place for place in np.asarray(places, dtype=float).reshape(-1, 3) if np.isfinite(place).all()]
     notices: list[Notice] = []
     for place in places:
-        if not astray(ways([[place]]), frame, cell, None, slack_mm):  # otherwise the place itself is reported
-            notices += astray(ways([[place, (*place[:2], float(height_mm))]]), frame, cell, None, slack_mm)
+        if not find_broken_limits(
+            make_paths([[place]]), frame, cell, None, slack_mm
+        ):  # otherwise the place itself is reported
+            notices += find_broken_limits(
+                make_paths([[place, (*place[:2], float(height_mm))]]), frame, cell, None, slack_mm
+            )
     notices_of_rise = [
         replace(notice, sentence=f"on the rise before the first move {notice.sentence}") for notice in notices
     ]

@@ -8,16 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, require_type
 from ..files import write_files
 from .cells.cell import Cell
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
 from .motion import Program, duration_s, program_in_robot_frame
-from .paint_reload import PlanInLoads, in_loads, visits
+from .paint_reload import PlanInLoads, split_into_loads, station_visits
 from .posts import POSTS, Post
-from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, look
-from .program import WHOLE_JOB, Job, Walked, out_of_arm, unchecked_program, walked
+from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job
+from .program import WHOLE_JOB, CheckedProgram, Job, make_checked_program, out_of_arm, unchecked_program
 from .realised.backlash import compensate_backlash
 
 
@@ -75,14 +75,19 @@ def encode(
     if suffix == ".json":
         return _core.write_plan(plan).encode()
     post_for(suffix, cell)
-    walk = walked(in_loads(plan, brush, cell), brush, cell, job)
+    walk = make_checked_program(split_into_loads(plan, brush, cell), brush, cell, job)
     if not walk.problems:
         walk = replace(walk, problems=out_of_arm(walk.made, plan.sheet_mm))
-    return encoded(suffix, plan, walk, brush, title, notes)
+    return encode_checked(suffix, plan, walk, brush, title, notes)
 
 
-def encoded(
-    suffix: str, plan: _core.Plan, walk: Walked, brush: _core.Brush, title: str, notes: Iterable[str] = ()
+def encode_checked(
+    suffix: str,
+    plan: _core.Plan,
+    walk: CheckedProgram,
+    brush: _core.Brush,
+    title: str,
+    notes: Iterable[str] = (),
 ) -> bytes | Iterator[str]:
     """Encode a plan whose loads have been checked already, like encode.
 
@@ -159,7 +164,7 @@ def text_of(post: Post, program: Program, suffix: str = "") -> Iterator[str]:
 
 def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """Make the whole program, including paint, for a picture. Limits are not checked."""
-    job = replace(job, visits=visits(loads, cell, job.first_stroke))
+    job = replace(job, visits=station_visits(loads, cell, job.first_stroke))
     return unchecked_program(loads, brush, cell, job)
 
 
@@ -183,13 +188,13 @@ def write_program(
     """
     if not isinstance(cell, Cell | None):
         raise TypeError(f"cell must be a brushsvg.Cell or None, not {type(cell).__name__}")
-    need(plan, _core.Plan, "a plan")
-    need(brush, _core.Brush, "a brush")
-    need(title, str, "a title")
+    require_type(plan, _core.Plan, "a plan")
+    require_type(brush, _core.Brush, "a brush")
+    require_type(title, str, "a title")
     # a cell that was made in Python must be valid as a file: each key within its range
     cell = parse_cell(write_cell(cell)) if cell else find_cell()
     suffix = Path(path).suffix.lower()
     cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
-    marks, loads = _core.simulate(plan, brush), in_loads(plan, brush, cell)
-    walk = look(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
-    write_files(in_files(path, encoded(suffix, plan, walk, brush, title)))
+    marks, loads = _core.simulate(plan, brush), split_into_loads(plan, brush, cell)
+    walk = check_job(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
+    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title)))

@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error, Notice, need
+from ..errors import Error, Notice, require_type
 from ..files import find_file, names_in, read_bytes, write_files
 from ..suggestions import nearest_name
 
@@ -130,8 +130,8 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
     All laws and outlines are marked as assumed: nobody measured this brush, and the confidence in the other one's
     numbers does not apply to it. like: a Brush [mm], which stays as it is. Raises Error where it is refused.
     """
-    need(name, str, "the name of a brush")
-    need(like, _core.Brush, "a brush")
+    require_type(name, str, "the name of a brush")
+    require_type(like, _core.Brush, "a brush")
     _core.check(like)
     brush = copy.copy(like)
     brush.name, brush.sha256, brush.covariance = name, "", []
@@ -170,8 +170,8 @@ def save_brush(brush: _core.Brush, path: str | os.PathLike[str]) -> None:
 
     path: ends in .json. Raises Error when the brush is refused or the place cannot be written.
     """
-    need(brush, _core.Brush, "a brush")
-    need(path, (str, os.PathLike), "a path")
+    require_type(brush, _core.Brush, "a brush")
+    require_type(path, (str, os.PathLike), "a path")
     if Path(path).suffix.lower() != ".json":
         raise Error(f"{str(path)[:80]!r} does not end in .json, as brush files do", code="brush-format")
     _core.check(brush)

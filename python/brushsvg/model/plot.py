@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from .. import _core
-from ..errors import lacking
+from ..errors import missing_packages_error
 from ..reporting.label_space import LabelSpace
 from .confidence import law_band, paint_interval_per_m
 from .describe import LAWS
@@ -149,7 +149,7 @@ def new_figure(size_in: tuple[float, float]):
         import matplotlib
         from matplotlib.figure import Figure
     except ImportError:
-        raise lacking("pictures of laws need", "matplotlib") from None
+        raise missing_packages_error("pictures of laws need", "matplotlib") from None
     matplotlib.rcParams["svg.hashsalt"] = "brushsvg"  # the same input gives the same bytes
     matplotlib.rcParams["svg.fonttype"] = "none"
     return Figure(figsize=size_in, layout="constrained", facecolor="white")

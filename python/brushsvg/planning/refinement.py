@@ -53,7 +53,7 @@ FORBIDDEN = "a refined way would break a limit of the cell or the sheet"
 WORSE = "a refined way would paint the letter worse"
 
 
-def refined(painted: list, targets: list, brush, closed, compensated, forbidden=None) -> Refined:
+def refine_where_better(painted: list, targets: list, brush, closed, compensated, forbidden=None) -> Refined:
     """Return refined passes where they are allowed and paint no letter worse.
 
     Other strokes keep their passes in closed form. painted: strokes that the brush can paint; targets: what they

@@ -107,7 +107,7 @@ def _half_width(unit) -> float:
     return max(half for stroke in unit for _, half in stroke.half_width)
 
 
-def advice(size: SizeAdvice, scale: float | None = 1.0) -> str:
+def advise_on_size(size: SizeAdvice, scale: float | None = 1.0) -> str:
     """Return a sentence of advice, or "" where no size can be painted.
 
     scale: the value of --scale; None where the size is given in another way.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 from xml.etree import ElementTree
 
-from ..errors import Error, need, need_number, need_one_of, need_truth
+from ..errors import Error, need_number, need_one_of, need_truth, require_type
 from ..files import read_bytes
 from .damage import refuse_damage
 
@@ -54,9 +54,9 @@ PENS = ("z", "servo")  # the axes that can move the pen of a program
 
 def refuse_invalid_options(options: ReadOptions) -> None:
     """Raise Error if the options are of a wrong type or out of range."""
-    need(options, ReadOptions, "options to read a drawing with, as ReadOptions are")
+    require_type(options, ReadOptions, "options to read a drawing with, as ReadOptions are")
     if options.sheet_mm is not None:
-        need(options.sheet_mm, (tuple, list), "a sheet's width and height [mm]")
+        require_type(options.sheet_mm, (tuple, list), "a sheet's width and height [mm]")
         if len(options.sheet_mm) != 2:
             raise Error(
                 f"sheet_mm has {len(options.sheet_mm)} numbers, not two", "sheet_mm", code="wrong-type"
@@ -71,14 +71,14 @@ def refuse_invalid_options(options: ReadOptions) -> None:
     if options.paper_z_mm is not None:
         need_number(options.paper_z_mm, "the height at which a program draws [mm]", -1e4, 1e4)
     for region in options.skip_regions_mm:
-        need(region, (tuple, list), "a region, four numbers [mm]")
+        require_type(region, (tuple, list), "a region, four numbers [mm]")
         if len(region) != 4:
             raise Error(f"a region has {len(region)} numbers, not four", "skip_regions_mm", code="wrong-type")
     for text in options.skip_comments:
-        need(text, str, "a text of comments")
+        require_type(text, str, "a text of comments")
     need_truth(options.lenient, "lenient")
     if options.select is not None:
-        need(options.select, str, "a text, which select is")
+        require_type(options.select, str, "a text, which select is")
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ..geometry.cubics import at
 from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
 from ..reporting.label_space import LabelSpace
-from ..text_summary import summarized
+from ..text_summary import summarize_notices
 from .stroke_labels import LABEL_CELL_PX, Run, group_runs, mark_cells, start_direction, width_text
 
 PAPER, SHEET, SHEET_EDGE, TEXT, MUTED_TEXT, SHAPE_FILL = (
@@ -214,7 +214,7 @@ def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
     listed = [
         (colour, notice)
         for is_damage, colour in ((True, WARNING), (False, TEXT))
-        for notice in summarized(notice for notice in notices if notice.damaged == is_damage)
+        for notice in summarize_notices(notice for notice in notices if notice.damaged == is_damage)
     ]
     for colour, notice in listed[:MAX_LISTED]:
         for line in textwrap.wrap(

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, require_type
 from .marks_svg import BAND, LINE_WIDTH_SHARE, TOOLPATH, Band, check_picture, known_colour, travels
 from .overlap_svg import MISSING
 from .png_canvas import (
@@ -39,7 +39,7 @@ def marks_png(
     paint, thinner where the tool travels in the air. Raises Error where there is nothing to draw.
     """
     check_picture(marks, sheet_mm, colours)
-    need(brush, _core.Brush, "a brush")
+    require_type(brush, _core.Brush, "a brush")
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)
     image = None

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, require_type
 from .overlap_svg import MISSING
 from .svg_text import path_data, printable, quoted
 
@@ -87,10 +87,10 @@ def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: li
 
     The sheet must have a size, and each pass a colour.
     """
-    need(marks, _core.Marks, "marks, as simulate returns them")
-    need(sheet_mm, (tuple, list), "a sheet's width and height")
+    require_type(marks, _core.Marks, "marks, as simulate returns them")
+    require_type(sheet_mm, (tuple, list), "a sheet's width and height")
     for side in sheet_mm:
-        need(side, Real, "the side of a sheet")
+        require_type(side, Real, "the side of a sheet")
     if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
         raise Error(
             f"a sheet of {sheet_mm} mm cannot be drawn: both sides must be within (0, 1e6] mm",

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..machine.arm.place import LIMITED, REACHED, SINGULAR, UNREACHED, Table
 from ..machine.cells.cell import Cell
-from ..machine.frames import moved
+from ..machine.frames import transform_points
 from .png_canvas import TEXT, bgr, blank_canvas, encode_png, write_text
 from .svg_text import printable
 
@@ -35,9 +35,9 @@ def table_picture(suffix: str, table: Table, cell: Cell, sheet_mm, frame, found)
     low = np.minimum(low, -40.0)
     high = np.maximum(np.array([table.x_mm[-1], table.y_mm[-1]]) + step_mm / 2, 40.0)
     corners = np.array([(0, 0, 0), (sheet_mm[0], 0, 0), (*sheet_mm, 0), (0, sheet_mm[1], 0)], dtype=float)
-    sheets = [(moved(frame, corners)[:, :2], SHEET, "paper")]
+    sheets = [(transform_points(frame, corners)[:, :2], SHEET, "paper")]
     if found is not None:
-        sheets.append((moved(found, corners)[:, :2], ALTERNATIVE_SHEET, "would do here"))
+        sheets.append((transform_points(found, corners)[:, :2], ALTERNATIVE_SHEET, "would do here"))
     for ring, _, _ in sheets:
         low, high = np.minimum(low, ring.min(axis=0) - 10), np.maximum(high, ring.max(axis=0) + 10)
     drawn = _draw_png if suffix == ".png" else _draw_svg

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields
 
 import numpy as np
 
-from ..errors import Error, shown
+from ..errors import Error, format_value
 from ..files import toml_document
 
 FORMAT, VERSION = "brushsvg/studio", 1
@@ -176,7 +176,7 @@ def _value(limits, value, where: str):
         raise Error(f"{where} must be a finite number, not {str(value)[:40]}", where, code="wrong-type")
     least, greatest = limits["range"]
     if not least <= value <= greatest:
-        sentence = f"{where} {shown(value)} is outside the range [{least:g}, {greatest:g}]"
+        sentence = f"{where} {format_value(value)} is outside the range [{least:g}, {greatest:g}]"
         number = float(value) if abs(value) < 1e300 else None
         raise Error(sentence, where, number, (least, greatest), code="out-of-range")
     return value

@@ -12,7 +12,7 @@ import shapely
 
 from .. import _core
 from .contour_rings import Line, cut_rings, offset_along, offset_inward
-from .swept_areas import GRID_MM, QUARTER_EDGES, unpainted
+from .swept_areas import GRID_MM, QUARTER_EDGES, unpainted_area
 
 # Radius of a disc in the shape, in half widths of the brush. In a narrower shape, opposite sides of a ring paint
 # the same place.
@@ -65,7 +65,7 @@ def _fill_with_dot_and_ring(shape, least: float, half: float) -> list[Line]:
     centre = np.array(circle.coords[0])
     lines = [Line(np.tile(centre, 4).reshape(1, 8), [(0.0, half)]), *cut_rings([rings], width)]
     dot = shapely.Point(centre).buffer((1 - _DOT_OVERLAP / 2) * half, quad_segs=QUARTER_EDGES)
-    gap = shapely.difference(unpainted(shape.buffer(-width), lines[1:]), dot, grid_size=GRID_MM)
+    gap = shapely.difference(unpainted_area(shape.buffer(-width), lines[1:]), dot, grid_size=GRID_MM)
     return lines if gap.area < _MAX_GAP_AREA * half**2 else []
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, require_type
 from ..geometry.arc_length import knots, parameters_at
 from ..geometry.cubics import split
 
@@ -105,9 +105,9 @@ def lifted_at_corners(strokes: list[_core.Stroke], brush: _core.Brush) -> list[_
     """
     from .. import _core
 
-    need(brush, _core.Brush, "a brush")
+    require_type(brush, _core.Brush, "a brush")
     for stroke in strokes:
-        need(stroke, _core.Stroke, "a stroke")
+        require_type(stroke, _core.Stroke, "a stroke")
     return [part for stroke in strokes for part in _cut_at_corners(stroke, brush)]
 
 

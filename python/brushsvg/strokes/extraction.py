@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ..errors import Error, need, need_one_of
+from ..errors import Error, need_one_of, require_type
 from ..read import SCRIPTS
 from ..read.design import Design, Element, Notice, SubPath
 from .corners import begin_amid_side
@@ -58,7 +58,7 @@ def strokes(
 
     Raises Error if nothing is left to paint.
     """
-    need(design, Design, "a drawing, as read_drawing returns it")
+    require_type(design, Design, "a drawing, as read_drawing returns it")
     need_one_of(paths_as, ("stroke", "outline", None), "what paths are painted as")
     need_one_of(script, SCRIPTS, "script")
     painted_elements, empty, notices = [], [], []
@@ -125,9 +125,9 @@ def _find_lines(element: Element, paths_as: str | None, script: str) -> list[_Li
 
 def _find_shape_lines(element: Element, grown: bool, script: str) -> list[_Line] | None:
     """Return the lines of a filled shape, or None where only its stroke shows."""
-    from .skeleton import filled, outline_strokes
+    from .skeleton import filled_rings, outline_strokes
 
-    rings = _grow_by_stroke(element) if grown and element.is_stroked else filled(element)
+    rings = _grow_by_stroke(element) if grown and element.is_stroked else filled_rings(element)
     if rings is None:
         return None
     return [
@@ -142,7 +142,7 @@ def _grow_by_stroke(element: Element) -> list | None:
     Returns None where only the stroke shows.
     """
     from .. import _core
-    from .skeleton import filled
+    from .skeleton import filled_rings
 
     drawn = [_make_line(element, subpath) for subpath in element.subpaths]
     marks = [
@@ -152,7 +152,7 @@ def _grow_by_stroke(element: Element) -> list | None:
         for line in drawn
     ]
     stroke_rings = _core.unite([ring for mark in marks for ring in mark])
-    both = _core.unite([*stroke_rings, *filled(element)])
+    both = _core.unite([*stroke_rings, *filled_rings(element)])
     shows = _core.area(both) - _core.area(stroke_rings) > _MIN_FILL_SHARE * _core.area(stroke_rings)
     return both if shows else None
 

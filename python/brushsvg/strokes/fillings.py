@@ -10,7 +10,7 @@ import shapely
 from .. import _core
 from .contour_fill import find_contour_passes
 from .contour_rings import Line
-from .swept_areas import painted, region, rings_of, unpainted
+from .swept_areas import painted_area, region, rings_of, unpainted_area
 
 _MAX_STROKES = 500
 _MAX_HALF_SLIT_MM = 0.01  # half the greatest width of slits between parts
@@ -36,7 +36,7 @@ class WideShape:
         It is the line's own discs, and the area that all lines leave.
         """
         whole = region(self.part)
-        share = shapely.union(shapely.intersection(painted(first), whole), unpainted(whole, lines))
+        share = shapely.union(shapely.intersection(painted_area(first), whole), unpainted_area(whole, lines))
         return rings_of(share)
 
 

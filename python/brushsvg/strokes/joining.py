@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..errors import need
+from ..errors import require_type
 from ..read.design import Notice
 from .corners import begin_amid_side
 
@@ -18,7 +18,7 @@ _MAX_TURN_RAD = np.radians(100)
 _MAX_WIDTH_DIFFERENCE = 0.02
 
 
-def joined(strokes: list) -> tuple[list, list[Notice]]:
+def join_lines(strokes: list) -> tuple[list, list[Notice]]:
     """Join drawn lines that meet within 0.01 mm.
 
     Lines are joined where they have the same layer, colour and settings, and the same width within 2 %, and where
@@ -27,7 +27,7 @@ def joined(strokes: list) -> tuple[list, list[Notice]]:
     do. Returns the strokes, and notices of what was joined.
     """
     for stroke in strokes:
-        need(stroke, _core.Stroke, "a stroke")
+        require_type(stroke, _core.Stroke, "a stroke")
     lines = {k: stroke for k, stroke in enumerate(strokes) if _is_open_line(stroke)}
     near: dict[tuple, list[int]] = {}
     for k, stroke in lines.items():

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..errors import Error, need
+from ..errors import Error, require_type
 from ..read.svg.paths.path_data import MOST_COMMANDS, parse_path, snippet
 from ..read.svg.paths.path_to_cubics import trace
 
@@ -36,8 +36,8 @@ def stroke_from_path(
     Raises Error if the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not
     positive.
     """
-    need(width_mm, (int, float, np.number), "a width in mm")
-    need(id, str, "a stroke's id")
+    require_type(width_mm, (int, float, np.number), "a width in mm")
+    require_type(id, str, "a stroke's id")
     if not (np.isfinite(width_mm) and width_mm > 0):
         raise Error(
             f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range"
@@ -70,7 +70,7 @@ def path_from_stroke(stroke: _core.Stroke, page_height_mm: float | None = None) 
     """
     from svgpathtools import CubicBezier, Path
 
-    need(stroke, _core.Stroke, "a stroke")
+    require_type(stroke, _core.Stroke, "a stroke")
     points = _as_complex(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), page_height_mm)
     return Path(*(CubicBezier(*each) for each in points.tolist()))
 
@@ -83,7 +83,7 @@ def path_from_pass(a_pass: _core.Pass, page_height_mm: float | None = None) -> s
     """
     from svgpathtools import Line, Path
 
-    need(a_pass, _core.Pass, "a pass of a plan")
+    require_type(a_pass, _core.Pass, "a pass of a plan")
     points = _as_complex(np.asarray(a_pass.poses_mm)[:, :2], page_height_mm).tolist()
     return Path(*(Line(here, there) for here, there in itertools.pairwise(points) if here != there))
 
@@ -95,7 +95,7 @@ def _as_complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
 
 
 def _need_height(page_height_mm) -> None:
-    need(page_height_mm, (int, float, np.number, type(None)), "a page's height in mm, or None")
+    require_type(page_height_mm, (int, float, np.number, type(None)), "a page's height in mm, or None")
     if page_height_mm is not None and not abs(page_height_mm) <= 1e6:
         raise Error("the page's height is outside the range [-1e6, 1e6] mm", code="out-of-range")
 

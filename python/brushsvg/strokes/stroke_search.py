@@ -47,7 +47,7 @@ class Searched:
     added: frozenset[str] = frozenset()
 
 
-def searched(
+def search_strokes(
     drawn: list,
     painted: list,
     targets: list,

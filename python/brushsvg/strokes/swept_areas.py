@@ -30,7 +30,7 @@ def rings_of(shape) -> list[np.ndarray]:
     )
 
 
-def painted(strokes: list):
+def painted_area(strokes: list):
     """Return the area that discs of their widths paint along lines or strokes."""
     return shapely.union_all([part for each in strokes for part in sweep_disc(each)])
 
@@ -49,9 +49,9 @@ def sweep_disc(stroke) -> list:
     return [shapely.convex_hull(shapely.union(a, b)) for a, b in itertools.pairwise(discs)] or [discs[0]]
 
 
-def unpainted(shape, strokes: list):
+def unpainted_area(shape, strokes: list):
     """Return the polygons that discs of their widths leave of a shape."""
-    return keep_polygons(shapely.difference(shape, painted(strokes), grid_size=GRID_MM))
+    return keep_polygons(shapely.difference(shape, painted_area(strokes), grid_size=GRID_MM))
 
 
 def keep_polygons(left):

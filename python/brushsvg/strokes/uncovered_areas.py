@@ -69,7 +69,7 @@ def _find_element_areas(element: str, left: list, whole_mm2: float, found: list,
     if not left:
         return
     by_strokes, by_found = swept_discs(painted), swept_discs(found)
-    dab_mm2 = np.pi * finest(brush) ** 2
+    dab_mm2 = np.pi * finest_half_width_mm(brush) ** 2
     for rings, at_mm, mm2 in left:
         rings = [np.asarray(ring) for ring in rings]
         is_reached = is_mostly_within(rings, by_strokes)
@@ -90,7 +90,7 @@ def is_mostly_within(rings: list[np.ndarray], within: list[np.ndarray]) -> bool:
     return _core.area(_core.intersect(rings, within)) > 0.5 * _core.area(rings)
 
 
-def notices(found: list[UncoveredArea]) -> list[Notice]:
+def notices_of_areas(found: list[UncoveredArea]) -> list[Notice]:
     """Return a notice for each element and kind of area.
 
     It names the place of the largest area, and the share of all of them.
@@ -115,7 +115,7 @@ def notices(found: list[UncoveredArea]) -> list[Notice]:
     return reports
 
 
-def finest(brush) -> float:
+def finest_half_width_mm(brush) -> float:
     """Return half the width of the finest line that the brush paints.
 
     Lines that are finer than the measured ones do not count. Returns 0 for a brush that begins to paint with no

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need, need_one_of
+from ..errors import Error, need_one_of, require_type
 from ..read.design import Notice
 from .trial_mark import trial_overlap
 
@@ -34,10 +34,10 @@ def within_reach(
     is_searched: whether a search paints the sides that strokes at the nearest width leave. Raises Error if nothing
     is left to paint.
     """
-    need(brush, _core.Brush, "a brush")
+    require_type(brush, _core.Brush, "a brush")
     need_one_of(wide, WIDE, "what becomes of wide shapes")
     for stroke in strokes:
-        need(stroke, _core.Stroke, "a stroke")
+        require_type(stroke, _core.Stroke, "a stroke")
     if not brush.width_follows_depth() and wide != "passes":
         return strokes, strokes, []
     least, greatest = brush.half_width_range_mm()

@@ -17,10 +17,10 @@ from ..machine.cells.cell import (
     unit_mm,
     value_mm,
 )
-from ..machine.paint_reload import PlanInLoads, visits
+from ..machine.paint_reload import PlanInLoads, station_visits
 from ..machine.posts.text import spelled
 from ..machine.realised.rounding import steep_ways_lifted
-from ..machine.tool_axes import axes_of, between_deg, mixed, tilts_deg
+from ..machine.tool_axes import axes_of, between_deg, interpolate_axes, tilts_deg
 from .simulate_program import Problems, SimulatedProgram, arc_points, slack_mm
 
 MAX_PATH_DEVIATION_MM = 0.02  # deviation of a path by rounding and by chords of circles: invisible in paint
@@ -49,7 +49,7 @@ def with_plan(
     if not problems and len(ran.visits) == len(
         due
     ):  # otherwise a stroke is not one touch, which is reported elsewhere
-        planned_visits = visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
+        planned_visits = station_visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
         problems += _check_station_visits(ran, due, planned_visits)
     return [None if k is None else first - 1 + k for k in partners], problems
 
@@ -169,7 +169,7 @@ def _check_tool_axes(a_pass, lines: np.ndarray, planned) -> Problems:
     found, reference = (_tool_axes(each) for each in (a_pass, planned))
     if len(found) != len(reference):
         along, on = (_path_shares(np.asarray(each.poses_mm)) for each in (a_pass, planned))
-        reference = mixed(reference, np.interp(along, on, np.arange(len(on))))
+        reference = interpolate_axes(reference, np.interp(along, on, np.arange(len(on))))
     off_deg = between_deg(found, reference)
     worst = int(off_deg.argmax())
     if off_deg[worst] <= MAX_TILT_DEVIATION_DEG:

@@ -17,15 +17,15 @@ from ..machine.motion import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
 from ..machine.posts.fanuc import cnt_mm
-from ..machine.posts.script import down
-from ..machine.program import Job, unchecked_program, written_of
+from ..machine.posts.script import upright_tool_rotation
+from ..machine.program import Job, make_written_form, unchecked_program
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
 from .servo_lifts import drop_rounding_lifts, join_lifts, join_paths, projected_length_mm, remove_servo_steps
 from .simulate_program import SimulatedProgram
 
 
-def again(
+def regenerate_program(
     ran: SimulatedProgram,
     brush,
     cell: Cell,
@@ -53,7 +53,7 @@ def again(
         ]
     loads = PlanInLoads(tuple(ran.plan.sheet_mm), (None,) * before + tuple(passes))
     job = Job(z_offset_mm, first_stroke, ((),) * before + ran.visits)
-    program = unchecked_program(loads, brush, cell, job, written_of(loads, cell, job, was_read=True))
+    program = unchecked_program(loads, brush, cell, job, make_written_form(loads, cell, job, was_read=True))
     if header_notes is None:
         return program
     return replace(
@@ -87,7 +87,7 @@ def differing_line(
     if lost := sorted((regenerated.modes or set()) - (read.modes or set()) - optional_modes):
         return f"{lost[0]} is missing before the first move"
     ours, theirs = _sort_header(read.acts), _sort_header(regenerated.acts)
-    upright = down(cell.tool.spin_deg) if cell.tool else None
+    upright = upright_tool_rotation(cell.tool.spin_deg) if cell.tool else None
     if upright is not None and not read.in_paper_frame:
         upright = program.robot_from_frame[:3, :3] @ upright
     rules = _ActComparison(cell, _header_ranges(program, least_time_s), upright)

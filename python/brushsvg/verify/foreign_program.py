@@ -14,10 +14,10 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cells.cell import Cell, robot_from_paper
 from ..machine.cells.cell_file import find_cell
-from ..machine.move_extents import ways as straight_extents
+from ..machine.move_extents import make_paths as straight_extents
 from ..machine.posts.gcode_servo import height_at
 from ..machine.preflight import off_sheet
-from ..machine.workspace_limits import ROUNDING_MM, astray, broken_limits
+from ..machine.workspace_limits import ROUNDING_MM, broken_limits, find_broken_limits
 from ..read.gcode.pen import pen_kind, read_pen
 from ..read.gcode.toolpaths import CHORD_MM, Way, ways_and_end
 
@@ -112,12 +112,12 @@ def _check_workspace_limits(ways: list[Way], cell: Cell, sheet_mm) -> list[Notic
             lines.append(way.line)
             paths.append(points)
     frame, slack_mm = robot_from_paper(cell), ROUNDING_MM + CHORD_MM
-    if not paths or not astray(straight_extents(paths), frame, cell, sheet_mm, slack_mm):
+    if not paths or not find_broken_limits(straight_extents(paths), frame, cell, sheet_mm, slack_mm):
         return []
     return [
         replace(notice, where=f"line {line}")
         for line, path in zip(lines, paths, strict=True)
-        for notice in astray(straight_extents([path]), frame, cell, sheet_mm, slack_mm)
+        for notice in find_broken_limits(straight_extents([path]), frame, cell, sheet_mm, slack_mm)
     ]
 
 

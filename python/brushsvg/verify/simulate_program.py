@@ -15,8 +15,8 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
-from ..machine.frames import is_upright, moved
-from ..machine.move_extents import ways
+from ..machine.frames import is_upright, transform_points
+from ..machine.move_extents import make_paths
 from ..machine.paint_reload import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
@@ -26,7 +26,13 @@ from ..machine.realised.corner_blending import blend_radii
 from ..machine.realised.distortion import commanded_pass, is_similar, true_mm, true_pass
 from ..machine.setup_programs import slow_below_mm
 from ..machine.tool_axes import tilts_deg
-from ..machine.workspace_limits import astray, astray_between, broken_limits, rise_astray, touching_mm_s
+from ..machine.workspace_limits import (
+    broken_limits,
+    check_first_rise,
+    find_broken_limits,
+    find_limits_broken_between,
+    touching_mm_s,
+)
 from .readback import Readback, ReadSection, Step
 
 MAX_ROUNDING_LIFT_MM = 2e-3  # height by which the rounding of a program may lift a pose off the paper
@@ -65,7 +71,9 @@ def slack_mm(cell: Cell) -> float:
     return max(MAX_ROUNDING_LIFT_MM, 1.1 * unit_mm(cell)) + (value_mm(cell) / 2 if cell.servo else 0.0)
 
 
-def run(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> SimulatedProgram:
+def simulate_program(
+    read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0
+) -> SimulatedProgram:
     """Simulate the program as a machine of this cell runs it.
 
     Raises Error for poses deeper than the brush allows.
@@ -145,7 +153,7 @@ def _servo_rests_after(step: Step, cell: Cell) -> bool:
     return bool(cell.servo) and step.waits > 1 and step.wait_s >= cell.servo.settle_s
 
 
-def misnumbered(read: Readback, first_stroke: int, count: int) -> Problems:
+def check_stroke_numbers(read: Readback, first_stroke: int, count: int) -> Problems:
     """Report the first stroke that is missing, superfluous or out of order.
 
     The program must contain all strokes from first_stroke to count, in order.
@@ -199,11 +207,11 @@ def _check_rises(
     frame of the program.
     """
     robot_from_program = robot_from_paper(cell, z_offset_mm) @ np.linalg.inv(frame)
-    places = moved(frame, ends)
+    places = transform_points(frame, ends)
     return [
         each
         for height_mm in dict.fromkeys(read.rises_mm)
-        for each in rise_astray(height_mm, places, robot_from_program, cell, slack_mm(cell))
+        for each in check_first_rise(height_mm, places, robot_from_program, cell, slack_mm(cell))
     ]
 
 
@@ -228,13 +236,13 @@ def _check_workspace_limits(
     notices: Problems = []
     frame = robot_from_paper(cell, z_offset_mm)
     if here is not None:
-        notices += astray_between(here, points[0], frame, cell, slack)
+        notices += find_limits_broken_between(here, points[0], frame, cell, slack)
     circles = []
     for number in [k for k, centre in enumerate(track.centres) if centre is not None]:
         on = np.flatnonzero(track.step == number)
         start = points[on[0] - 1] if on[0] else here
         circles.append((start, points[on[-1]], track.centres[number]))
-    return notices + astray(ways([points], circles), frame, cell, sheet_mm, slack)
+    return notices + find_broken_limits(make_paths([points], circles), frame, cell, sheet_mm, slack)
 
 
 def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
@@ -311,7 +319,9 @@ def _section_name(section: ReadSection) -> str:
 
 def _track_of_section(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:
     steps, back = section.steps, np.linalg.inv(frame)
-    ends = moved(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
+    ends = transform_points(
+        back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3)
+    )
     known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the other steps go straight up, from any place
     stays = (np.diff(ends[known], axis=0) == 0).all(
         axis=1
@@ -333,9 +343,9 @@ def _track_of_section(section: ReadSection, frame: np.ndarray, here: np.ndarray 
         last = ends[known[at - 1]] if at else here
         if step.centre is None or last is None:
             continue
-        middle = moved(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
+        middle = transform_points(back, np.array([[*step.centre[:2], step.z]]))[0, :2]
         centres[number] = (*middle.tolist(), step.centre[2])
-        named = moved(back, np.reshape(step.via, (-1, 3)))
+        named = transform_points(back, np.reshape(step.via, (-1, 3)))
         halves = ((last, named[0]), (named[0], ends[number])) if len(named) else ()
         if not halves:
             between = arc_points(last, ends[number], centres[number])
@@ -554,7 +564,7 @@ def _check_backlash(
     """
     top_mm, limit = paper_mm + slack_mm(cell), touching_mm_s(brush, cell)
     places = np.array([(step.x, step.y, step.z) for step in section.taking_up]).reshape(-1, 3)
-    places = moved(np.linalg.inv(frame), places)
+    places = transform_points(np.linalg.inv(frame), places)
     heights = (true_mm(places, cell.machine) if _match_stroke_title(section) else places)[:, 2]
     for step, height_mm in zip(section.taking_up, heights, strict=True):
         if height_mm <= top_mm and step.rapid:

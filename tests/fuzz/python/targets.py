@@ -535,13 +535,13 @@ def _read_back(name: str) -> Callable[[bytes], None]:
         from brushsvg.machine.posts import POSTS
         from brushsvg.model.library import find_brush
         from brushsvg.verify.readback import read_program, text_of_file
-        from brushsvg.verify.readback.header import made
-        from brushsvg.verify.simulate_program import run
+        from brushsvg.verify.readback.header import read_header
+        from brushsvg.verify.simulate_program import simulate_program
 
         cell = find_cell(name)
         text = text_of_file(data)
         with contextlib.suppress(Error):  # a program without our header is read all the same
-            made(text)
+            read_header(text)
         found = read_program(text, POSTS[cell.language].extensions[0], cell)
         for section in found.sections:
             for step in section.steps:
@@ -550,7 +550,7 @@ def _read_back(name: str) -> Callable[[bytes], None]:
                 require(
                     step.speed_mm_s > 0 or np.isnan(step.speed_mm_s), f"line {step.line} at {step.speed_mm_s}"
                 )
-        run(found, find_brush("round-6"), cell, (297.0, 210.0))
+        simulate_program(found, find_brush("round-6"), cell, (297.0, 210.0))
 
     return read
 

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from ... import _core
-from ...errors import Error, as_listed, need, need_number, need_one_of
+from ...errors import Error, as_listed, need_number, need_one_of, require_type
 from ...model.perturbed import with_lag
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
 from .painting_order import early_and_late, shallow_to_deep
@@ -178,7 +178,7 @@ def chart(
 
     Raises Error for a pen, and for a sheet that is too small. The message names a sufficient size.
     """
-    need(brush, _core.Brush, "a brush")
+    require_type(brush, _core.Brush, "a brush")
     _core.check(brush)
     if dabs and one_load:
         raise Error("dabs do not show how marks narrow: one load is for strokes", code="options-contradict")

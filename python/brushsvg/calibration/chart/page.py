@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 
 from ... import _core
-from ...errors import lacking
+from ...errors import missing_packages_error
 from ...model.plot import new_figure
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
@@ -60,7 +60,7 @@ def chart_pdf(chart: Chart, more=()) -> bytes:
         from matplotlib.patches import PathPatch
         from matplotlib.path import Path
     except ImportError:
-        raise lacking("pages as PDF need", "matplotlib") from None
+        raise missing_packages_error("pages as PDF need", "matplotlib") from None
     width, height = chart.plan.sheet_mm
     figure = new_figure((width / INCH_MM, height / INCH_MM))
     figure.set_layout_engine("none")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _core
-from ...errors import Error, Notice, need
+from ...errors import Error, Notice, require_type
 
 # Prior standard deviation of each number. A tool on a long thin arm bends by half of its depth. The length of a printed
 # or scanned page is right to 1 %. A table is 1 mm off level over a sheet. Worn screws and loose belts lose some tenths
@@ -63,7 +63,7 @@ def refuse_unknown_parts(machine) -> None:
             "machine",
             code="wrong-type",
         )
-    need(machine, (tuple, list, set, frozenset), f"a tuple of names (known: {known})")
+    require_type(machine, (tuple, list, set, frozenset), f"a tuple of names (known: {known})")
     for part in machine:
         if not (isinstance(part, str) and part in PARTS):
             raise Error(

@@ -10,7 +10,7 @@ import math
 from numbers import Real
 
 from ... import _core
-from ...errors import Error, as_listed, need, need_number
+from ...errors import Error, as_listed, need_number, require_type
 from ...model import footprint_shapes
 from ...model.laws.fitted import need_fits
 from . import plausibility
@@ -50,7 +50,7 @@ def new_brush(
     Raises Error for numbers that no brush can have.
     """
     need_fits()
-    need(name, str, "the name of a brush")
+    require_type(name, str, "the name of a brush")
     lag_mm, widths_mm = as_listed(lag_mm), as_listed(widths_mm)
     lags = sorted(_check_lags(lag_mm)) if isinstance(lag_mm, (list, tuple)) else []
     is_pen = not lags and need_number(lag_mm, "the lag [mm]", -MAX_NUMBER, MAX_NUMBER) == 0
@@ -110,7 +110,7 @@ def outlines_assumed(source: str) -> str:
 
 
 def _sorted_widths(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    need(widths_mm, (list, tuple), "a list of (depth, width)")
+    require_type(widths_mm, (list, tuple), "a list of (depth, width)")
     _need_pairs(widths_mm, "width")
     if not widths_mm:
         raise Error(
@@ -141,7 +141,7 @@ def _need_pairs(pairs, what: str) -> None:
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             raise Error(f"{str(pair)[:40]} is no (depth, {what}) in mm", what, code="wrong-type")
         for number in pair:
-            need(number, Real, f"a depth or a {what} in mm")
+            require_type(number, Real, f"a depth or a {what} in mm")
 
 
 def _check_lags(pairs) -> list[tuple[float, float]]:

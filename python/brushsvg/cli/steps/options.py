@@ -25,7 +25,7 @@ def make_choices(args, **instead) -> Choices:
 
 def apply_drawing_settings(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
     with refuse_errors(drawing):
-        return choices.settled(chosen, drawing, alone)
+        return choices.fill_from_drawing(chosen, drawing, alone)
 
 
 def load_brush(name: str | None):

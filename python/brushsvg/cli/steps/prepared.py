@@ -13,8 +13,8 @@ from ...jobs.work import Work
 from ...machine import preflight
 from ...machine.cells.cell import Cell
 from ...machine.motion import duration_s
-from ...machine.paint_reload import PlanInLoads, in_loads, too_long, visits
-from ...machine.program import Walked
+from ...machine.paint_reload import PlanInLoads, report_long_strokes, split_into_loads, station_visits
+from ...machine.program import CheckedProgram
 from ..console import refuse_errors, stage, warn
 from .options import make_options
 
@@ -42,7 +42,7 @@ class PreparedPaint:
     work: Work
     loads: PlanInLoads
     marks: object
-    walk: Walked | None
+    walk: CheckedProgram | None
     warnings: list[Notice]
     forbidden: list[Notice]
 
@@ -53,7 +53,7 @@ class PreparedPaint:
         """
         with suppress(Error):
             # Raises Error for a colour that no station serves: the program then lacks the visits to paint stations.
-            visits(self.loads, self.work.options.cell)
+            station_visits(self.loads, self.work.options.cell)
             return duration_s(self.walk.made) if self.walk else None
         return None
 
@@ -78,7 +78,7 @@ def prepare_and_simulate(
     with refuse_errors(chosen.input):
         tilt_notices = []
         try:
-            loads = in_loads(work.plan, brush, cell)
+            loads = split_into_loads(work.plan, brush, cell)
         except Error as refusal:
             if not tilted or refusal.code != "tilt-unsupported":
                 raise
@@ -94,13 +94,13 @@ def prepare_and_simulate(
         if not tilt_notices and (work.plan.passes or not work.refused):
             known_walk = None if at_loads else work.walk(cell)
             tolerance_mm = work.options.tolerance_mm
-            walk = preflight.look(
+            walk = preflight.check_job(
                 loads, brush, marks, cell, tolerance_mm, walk=known_walk, of_drawing=is_drawing
             )
         forbidden = [replace(problem, refused=True) for problem in walk.problems] if walk else []
         sheet_mm = work.plan.sheet_mm
         off_sheet_notices = preflight.off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []
         warnings = [*work.notices, *forbidden, *off_sheet_notices, *tilt_notices]
-        warnings += too_long(loads, brush, cell) if at_loads else []
+        warnings += report_long_strokes(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)
     return PreparedPaint(work, loads, marks, walk, warnings, forbidden)

@@ -45,7 +45,7 @@ def certain_of(faults: Faults) -> dict[str, float]:
     }
 
 
-def sure(
+def significant_part(
     faults: Faults, before: Machine | None, along: AxesAlongPaper, left_out: Container[str] = ()
 ) -> dict[str, float]:
     """Return the part of each number that goes into a cell, by its name.
@@ -72,7 +72,7 @@ def corrected_machine(
     Returns None where nothing is certain. before: machine errors that the cell of the painted job compensated; the
     certain faults are added to them.
     """
-    certain = sure(faults, before, along, left_out)
+    certain = significant_part(faults, before, along, left_out)
     if not any(certain.values()):
         return None
     before = before or Machine()

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 
-from ...errors import Error, lacking
+from ...errors import Error, missing_packages_error
 
 MAX_SCHEDULER_WAIT_S = 10  # how long to wait for an answer of the scheduler, in seconds
 
@@ -60,7 +60,7 @@ def connect_cluster(address: str) -> Iterator[Executor]:
     try:
         from dask.distributed import Client
     except ImportError:
-        raise lacking("a cluster needs", "distributed") from None
+        raise missing_packages_error("a cluster needs", "distributed") from None
     try:
         client = Client(address, timeout=MAX_SCHEDULER_WAIT_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as problem:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import Error, need
+from ...errors import Error, require_type
 from ...files import read_bytes
 from ...read import READERS, InMemory
 from ...read.text import text_svg
@@ -202,7 +202,7 @@ def make_items(items: Iterable) -> list[Item]:
         elif isinstance(each, str | os.PathLike):
             result += list_drawings([each])
         else:
-            need(each, tuple, "a path, or a pair of a name and an SVG document")
+            require_type(each, tuple, "a path, or a pair of a name and an SVG document")
             if len(each) != 2 or not isinstance(each[0], str) or not isinstance(each[1], str | bytes):
                 raise Error("a pair is a name and an SVG document as text or bytes", code="wrong-type")
             result.append(_make_memory_item(*each))

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from ...errors import Error, Notice
-from ...files import read_bytes, reason, write_files
+from ...files import read_bytes, system_reason, write_files
 from .items import Item, file_name_key
 from .one import Figures, sha256
 
@@ -89,7 +89,7 @@ class Manifest:
             folder.mkdir(parents=True, exist_ok=True)
             self._file = open(self.path, "ab")  # noqa: SIM115
         except (OSError, ValueError) as problem:
-            sentence = f"the folder cannot be written to: {reason(problem)}"
+            sentence = f"the folder cannot be written to: {system_reason(problem)}"
             raise Error(sentence, file=str(folder), code="file-unwritable") from None
         if fcntl:
             try:
@@ -212,7 +212,7 @@ class Manifest:
                 try:
                     (self.folder / file[0]).unlink()
                 except OSError as problem:
-                    sentence = f"an outdated file cannot be removed: {reason(problem)}"
+                    sentence = f"an outdated file cannot be removed: {system_reason(problem)}"
                     raise Error(sentence, file=str(self.folder / file[0]), code="file-unwritable") from None
                 removed.append(file[0])
         return removed
@@ -250,6 +250,6 @@ def make_path_below(folder: Path, name: str) -> str:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
-        sentence = f"the folder cannot be made: {reason(problem)}"
+        sentence = f"the folder cannot be made: {system_reason(problem)}"
         raise Error(sentence, file=str(path.parent), code="file-unwritable") from None
     return os.fspath(path)

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 from importlib import metadata
 
 from ... import _core
-from ...errors import Error, Notice, unexpected
+from ...errors import Error, Notice, describe_unexpected
 from ...machine.program import Job
 from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation import report
 from .. import conversion, outputs
-from ..choices import Choices, check_choices, make_options, settled
+from ..choices import Choices, check_choices, fill_from_drawing, make_options
 from ..preparation import preparation
 
 PICTURE_LONG_SIDE_PX = 480
@@ -109,7 +109,7 @@ def convert_task(task: Task) -> TaskResult:
     except Error as refusal:
         result = TaskResult(None, {}, b"", refusal.where, str(refusal), refusal.code, refusal.notices)
     except Exception as bug:  # a bug of brushsvg: the other drawings are converted nevertheless
-        error = unexpected(bug)
+        error = describe_unexpected(bug)
         result = TaskResult(None, {}, b"", sentence=str(error), code=error.code)
     return replace(result, version=installed_version)
 
@@ -118,7 +118,7 @@ def _convert(task: Task) -> TaskResult:
     chosen = replace(task.chosen, input=task.drawing, brush=task.brush.brush() if task.brush else None)
     if task.drawing.extension in (".svg", ".svgz"):
         chosen = replace(chosen, units=None)  # units are for the drawings of a batch that do not define them
-    chosen = settled(check_choices(chosen), task.drawing)
+    chosen = fill_from_drawing(check_choices(chosen), task.drawing)
     work = preparation.prepare(task.drawing, make_options(chosen))
     suffix = task.suffix or conversion.default_suffix(work.options.cell)
     simulated = conversion.simulate_and_check(

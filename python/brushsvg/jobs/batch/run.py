@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Unpack
 
 from ... import _core
-from ...errors import Error, need, need_number, need_one_of, need_truth
+from ...errors import Error, need_number, need_one_of, need_truth, require_type
 from ...files import find_file, read_bytes, write_files
 from ...machine.cells import cell_file
 from ...machine.cells.cell_file import write_cell
@@ -102,8 +102,8 @@ def batch(
         made of another drawing with that name, a brush or a cell. Raises CancelledError when `cancel` is set;
         finished drawings are kept.
     """
-    need(out, (str, os.PathLike), "a path, which out is")
-    need(format, str, "an extension, such as '.ngc'")
+    require_type(out, (str, os.PathLike), "a path, which out is")
+    require_type(format, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
     extensions = {".json", *(extension for post in POSTS.values() for extension in post.extensions)}
     if format and format not in extensions:
@@ -111,13 +111,13 @@ def batch(
     if (executor is not None) + (jobs is not None) + (cluster is not None) > 1:
         raise Error("executor, jobs and cluster exclude each other", code="options-contradict")
     if executor is not None:
-        need(executor, Executor, "an executor of concurrent.futures")
+        require_type(executor, Executor, "an executor of concurrent.futures")
     if cluster is not None:
-        need(cluster, str, "the address of a scheduler")
+        require_type(cluster, str, "the address of a scheduler")
     if progress is not None:
-        need(progress, Callable, "a callable, which progress is")
+        require_type(progress, Callable, "a callable, which progress is")
     is_cancelled = getattr(cancel, "is_set", cancel) or (lambda: False)
-    need(is_cancelled, Callable, "a callable or an event, which cancel is")
+    require_type(is_cancelled, Callable, "a callable or an event, which cancel is")
     if "corrections" in choices:
         raise Error(
             "corrections are of one drawing, not of a batch", "corrections", code="options-contradict"
@@ -125,8 +125,8 @@ def batch(
     count = int(need_number(os.cpu_count() if jobs is None else jobs, "jobs", 1, 1000))
     if parquet:
         tables.need_parquet()
-    need(items, Iterable, "an iterable of drawings")
-    need(items, object if not isinstance(items, str | bytes) else tuple, "a list of drawings")
+    require_type(items, Iterable, "an iterable of drawings")
+    require_type(items, object if not isinstance(items, str | bytes) else tuple, "a list of drawings")
     drawings = make_items(items)
     need_truth(lenient, "lenient")
     need_truth(parquet, "parquet")

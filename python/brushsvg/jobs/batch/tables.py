@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable
 from dataclasses import asdict, fields
 
-from ...errors import lacking
+from ...errors import missing_packages_error
 from .manifest import Row
 from .one import Figures
 
@@ -43,7 +43,7 @@ def need_parquet() -> None:
     try:
         import pyarrow  # noqa: F401
     except ImportError:
-        raise lacking("Parquet needs", "pyarrow") from None
+        raise missing_packages_error("Parquet needs", "pyarrow") from None
 
 
 def format_parquet(rows: Iterable[Row]) -> bytes:

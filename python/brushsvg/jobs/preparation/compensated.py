@@ -5,7 +5,7 @@ from __future__ import annotations
 from copy import copy
 
 from ... import _core
-from ...machine.paint_reload import in_loads
+from ...machine.paint_reload import split_into_loads
 from ...machine.preflight import within_limits
 from ...machine.program import POSES_KEPT, Job
 from ..options import Options
@@ -53,7 +53,7 @@ def fit_ends_to_machine(
     """
 
     def simulate(a_plan) -> KnownSimulation:
-        loads = in_loads(a_plan, brush, options.cell)
+        loads = split_into_loads(a_plan, brush, options.cell)
         marks = _core.simulate(
             a_plan, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
         )

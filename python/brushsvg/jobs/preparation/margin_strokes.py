@@ -13,8 +13,8 @@ import numpy as np
 
 from ... import _core
 from ...errors import Notice
-from ...machine.paint_reload import in_loads
-from ...machine.preflight import look
+from ...machine.paint_reload import split_into_loads
+from ...machine.preflight import check_job
 from ...machine.program import Job
 from ...model.confidence import fitted_down_to_mm, law_band
 from ...model.describe import LAWS
@@ -179,8 +179,8 @@ def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, flo
 def _find_problems(plan, work: Work) -> list[Notice]:
     if not (cell := work.options.cell):
         return []
-    loads, marks = in_loads(plan, work.brush, cell), _core.simulate(plan, work.brush)
-    return look(
+    loads, marks = split_into_loads(plan, work.brush, cell), _core.simulate(plan, work.brush)
+    return check_job(
         loads, work.brush, marks, cell, work.options.tolerance_mm, Job(work.options.z_offset_mm)
     ).problems
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from ... import _core
 from ...planning import size_advice
-from ...planning.refinement import refined
-from ...strokes.stroke_search import Searched, searched
+from ...planning.refinement import refine_where_better
+from ...strokes.stroke_search import Searched, search_strokes
 from ...strokes.wide_shapes import within_reach
 from ..options import Options
 from ..work import Work
@@ -33,7 +33,7 @@ def advise_on_size(work: Work) -> str:
     else:
         size = size_advice.best_size(work.drawn, work.brush, trial, _make_quick_trial(work.brush, options))
     scale = (options.layout.scale or 1.0) if options.layout.fit_mm is None else None
-    return size_advice.advice(size, scale)
+    return size_advice.advise_on_size(size, scale)
 
 
 def _make_trial(brush, options: Options):
@@ -47,7 +47,9 @@ def _make_trial(brush, options: Options):
         search = _search_strokes(strokes, brush, options, compensated)
         plan = search.done.plan
         if options.compensation == "refined":
-            plan.passes = refined(search.painted, search.targets, brush, search.done, compensated).passes
+            plan.passes = refine_where_better(
+                search.painted, search.targets, brush, search.done, compensated
+            ).passes
         return _core.simulate(plan, brush).passes, search.targets
 
     return run_trial
@@ -86,4 +88,4 @@ def _search_strokes(strokes: list, brush, options: Options, compensated) -> Sear
         return Searched(strokes, painted, targets, compensated(painted))
     corners = (options.start, options.end, options.corners) == ("auto", "auto", "auto")
     sides = options.wide != "clamp"
-    return searched(strokes, painted, targets, compensated, brush, options.detail, corners, sides)
+    return search_strokes(strokes, painted, targets, compensated, brush, options.detail, corners, sides)

@@ -11,23 +11,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ... import _core, read
-from ...comparison.corrections import corrected
+from ...comparison.corrections import apply_corrections
 from ...errors import Error
 from ...machine.cells.cell import LEAST_SPEED_MM_S
-from ...machine.paint_reload import fetched_mm, in_loads
-from ...machine.preflight import look
+from ...machine.paint_reload import fetched_mm, split_into_loads
+from ...machine.preflight import check_job
 from ...machine.program import Job
 from ...model.library import find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper
-from ...planning.refinement import refined
+from ...planning.refinement import refine_where_better
 from ...read import layout
 from ...read.design import Design, Notice
 from ...strokes.corners import lifted_at_corners
 from ...strokes.extraction import strokes as strokes_of
-from ...strokes.joining import joined
-from ...strokes.stroke_search import searched
-from ...strokes.uncovered_areas import notices as blank_notices
-from ...strokes.uncovered_areas import uncovered_areas
+from ...strokes.joining import join_lines
+from ...strokes.stroke_search import search_strokes
+from ...strokes.uncovered_areas import notices_of_areas, uncovered_areas
 from ...strokes.wide_shapes import is_within_reach, within_reach
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
@@ -105,8 +104,8 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
         *planned.notices,
         *add_width_advice(planned.painted, planned.done, brush, tried_compensation),
         *_report_other_brushes(strokes.targets, brush),
-        *blank_notices(unreached),
-        *blank_notices(missed),
+        *notices_of_areas(unreached),
+        *notices_of_areas(missed),
         *(outside if _leads_paint(options) else []),
     )
     work = Work(
@@ -126,7 +125,7 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
         planned.known,
     )
     work = add_margin_strokes(work)
-    return replace(work, plan=corrected(work.plan, options.corrections, brush))
+    return replace(work, plan=apply_corrections(work.plan, options.corrections, brush))
 
 
 def _leads_paint(options: Options) -> bool:
@@ -185,7 +184,7 @@ def _find_strokes(design: Design, brush, options: Options) -> tuple[list, list[N
     strokes, notices = strokes_of(design, options.paths_as, options.script)
     notices += outline_notices
     if options.join:
-        strokes, joint_notices = joined(strokes)
+        strokes, joint_notices = join_lines(strokes)
         notices += joint_notices
     if options.corners == "auto" and _leads_paint(options):
         strokes = lifted_at_corners(strokes, brush)
@@ -212,7 +211,7 @@ def _search_strokes(
     lines: _StrokeSet, compensation, brush, compensated, options: Options
 ) -> tuple[_StrokeSet, _core.Compensated]:
     """Improve the strokes by a search, which also adds strokes."""
-    search = searched(
+    search = search_strokes(
         lines.drawn,
         lines.painted,
         lines.targets,
@@ -296,7 +295,9 @@ def _refine(planned: _PlannedStrokes, brush, compensated, options: Options) -> _
     if options.compensation != "refined":
         return planned
     forbidden = _make_limit_check(brush, options)
-    refinement = refined(planned.painted, planned.targets, brush, planned.done, compensated, forbidden)
+    refinement = refine_where_better(
+        planned.painted, planned.targets, brush, planned.done, compensated, forbidden
+    )
     planned.plan.passes = refinement.passes
     unmoved = refinement.nothing_moved()
     return replace(
@@ -353,8 +354,8 @@ def _make_limit_check(brush, options: Options):
     cell, job = options.cell, Job(options.z_offset_mm)
 
     def sentences(plan) -> list:
-        loads, marks = in_loads(plan, brush, cell), _core.simulate(plan, brush)
-        return look(loads, brush, marks, cell, options.tolerance_mm, job).problems
+        loads, marks = split_into_loads(plan, brush, cell), _core.simulate(plan, brush)
+        return check_job(loads, brush, marks, cell, options.tolerance_mm, job).problems
 
     return sentences
 
@@ -467,4 +468,6 @@ def _prepare_plan(plan, options: Options) -> Work:
         )
     _check_speed(brush, options)
     plan = _set_requested_speed(plan, options)
-    return Work("", brush, corrected(plan, options.corrections, brush), None, (), options, tuple(notices))
+    return Work(
+        "", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices)
+    )

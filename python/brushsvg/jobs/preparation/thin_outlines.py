@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...read.design import Design, Element, Notice
-from ...strokes.uncovered_areas import finest
+from ...strokes.uncovered_areas import finest_half_width_mm
 
 
 def remove_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:
@@ -17,7 +17,7 @@ def remove_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:
     Only outlines in another colour than their fill are removed, each with a notice. If they were painted, they
     would be wider and would hide the shape that they go around.
     """
-    least_mm = 2 * finest(brush)
+    least_mm = 2 * finest_half_width_mm(brush)
     elements, notices = [], []
     for element in design.elements:
         if element.fill_colour and 0 < element.stroke_width_mm < least_mm:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from ...errors import Error, need
+from ...errors import Error, require_type
 from ...files import read_bytes, toml_document
 from ...suggestions import did_you_mean
 from .values import name_or_path, read_value
@@ -68,7 +68,7 @@ def find_project(drawing: str | os.PathLike[str]) -> Project | None:
 
 def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
     """Find the path of the project file of a drawing, or None; see find_project."""
-    need(drawing, (str, os.PathLike), "a path, which the drawing of a project is")
+    require_type(drawing, (str, os.PathLike), "a path, which the drawing of a project is")
     try:
         folder = os.path.abspath(drawing)
     except OSError:  # the current folder was removed
@@ -93,7 +93,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
     value that the same option of the command line refuses, and a brush or cell that does not exist, also raise
     Error.
     """
-    need(path, (str, os.PathLike), "the path of a project file")
+    require_type(path, (str, os.PathLike), "the path of a project file")
     path = os.fspath(path)
     data = read_bytes(path)
     try:

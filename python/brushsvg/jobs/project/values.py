@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 
-from ...errors import Error, need, need_number
+from ...errors import Error, need_number, require_type
 from ...suggestions import did_you_mean
 from ...units import length_mm, number, paper_mm, size_mm
 
@@ -19,10 +19,10 @@ def read_value(choice: str, value: object, key: str) -> object:
 
     try:
         if choice == "join":
-            need(value, bool, f"true or false, which {key} is")
+            require_type(value, bool, f"true or false, which {key} is")
             return value
         if choice in ("layer", "skip_region", "skip_comment"):
-            need(value, list, f"a list of texts, which {key} is")
+            require_type(value, list, f"a list of texts, which {key} is")
             return [_read_typed(choice, _format_as_typed(each, key), key) for each in value]
         text = _format_as_typed(value, key)
         if choice in CHOICE_VALUES and text not in CHOICE_VALUES[choice]:
@@ -41,7 +41,7 @@ def _format_as_typed(value: object, key: str) -> str:
     """Return the text that a user would type for a value of TOML."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return str(value)[:400]
-    need(value, str, f"a text or a number, which {key} is")
+    require_type(value, str, f"a text or a number, which {key} is")
     return str(value)
 
 

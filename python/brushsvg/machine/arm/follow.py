@@ -19,9 +19,9 @@ import numpy as np
 
 from ...errors import Notice
 from ..cells.cell import Arm, Cell, joint_number
-from ..frames import frame_of_pose, moved
+from ..frames import frame_of_pose, transform_points
 from ..motion import Program
-from ..posts.script import down
+from ..posts.script import upright_tool_rotation
 from ..tool_axes import between_deg, normalize, rotation_axes, turned_to
 from .joints import JointSolver, flange_rates, flange_rates_at, joint_frames_of, refine_angles
 
@@ -112,7 +112,7 @@ def flange_at(cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> np.ndarray
     robot_mm: (3,) place of the tip in the robot's frame.
     """
     tip = np.eye(4)
-    tip[:3, :3] = frame[:3, :3] @ down(cell.tool.spin_deg)
+    tip[:3, :3] = frame[:3, :3] @ upright_tool_rotation(cell.tool.spin_deg)
     tip[:3, 3] = robot_mm
     return tip @ np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
 
@@ -125,7 +125,7 @@ def follow(program: Program, joints: JointSolver, to_the_end: bool = True) -> Fo
     """
     cell, arm, frame = program.cell, joints.arm, program.robot_from_frame
     flange_from_tip = np.linalg.inv(frame_of_pose(cell.tool.tcp_mm, cell.tool.rotation_deg))
-    upright = frame[:3, :3] @ down(cell.tool.spin_deg)
+    upright = frame[:3, :3] @ upright_tool_rotation(cell.tool.spin_deg)
 
     def flange(place: Place) -> np.ndarray:
         tip = np.eye(4)
@@ -260,7 +260,7 @@ UPRIGHT_AXIS = np.array([0.0, 0.0, 1.0])
 
 
 def _places_along(name, points, axes, speeds, ends, frame, is_first: bool) -> Iterator[Place]:
-    robot = moved(frame, points)
+    robot = transform_points(frame, points)
     steps = np.diff(robot, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     along = np.r_[0.0, np.cumsum(lengths)]

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...errors import Error, lacking
+from ...errors import Error, missing_packages_error
 from ..cells.cell import Arm
 from ..frames import frame_of_pose
 
@@ -49,7 +49,7 @@ def joints_of(arm: Arm) -> JointSolver:
     try:
         import ssik
     except ImportError:
-        raise lacking("the joints of an arm need", "ssik") from None
+        raise missing_packages_error("the joints of an arm need", "ssik") from None
     return JointSolver(arm, _solver_of_prebuilt(arm, ssik) if arm.prebuilt else _solver_of_links(arm, ssik))
 
 

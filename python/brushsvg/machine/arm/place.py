@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import Notice
 from ..cells.cell import Arm, Cell
-from ..frames import frame_of_pose, moved, rotation, rotation_deg
+from ..frames import frame_of_pose, rotation, rotation_deg, transform_points
 from ..motion import Program
 from .follow import far_from_singular, flange_at, follow, lowest_joint_mm, outermost_places, within_limits
 from .joints import JointSolver, joint_frames_of, joints_of
@@ -74,7 +74,7 @@ def nearest(program: Program, joints: JointSolver, allowed: Callable[[Program], 
     outermost_mm, followed_count = outermost_places(program), 0
     for place in _tried_places(program, outermost_mm):
         moved_program = at(program, place.frame)
-        robot_points_mm = moved(place.frame, outermost_mm)
+        robot_points_mm = transform_points(place.frame, outermost_mm)
         if not all(
             _can_reach(joints, moved_program.cell, place.frame, point) for point in robot_points_mm
         ) or not allowed(moved_program):

@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from ...errors import Error, Notice
-from ..frames import moved, normal_tilt_deg
-from ..move_extents import distances_from_origin, ways
+from ..frames import normal_tilt_deg, transform_points
+from ..move_extents import distances_from_origin, make_paths
 from ..realised.smooth_field import max_field_slope
-from ..workspace_limits import astray
+from ..workspace_limits import find_broken_limits
 from .cell import (
     ARCS_IN_SEGMENTS,
     CONTACT_KEYS,
@@ -264,7 +264,7 @@ def _sheet_out_of_reach(cell: Cell, height_mm: float) -> list[Notice]:
     box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
     ends = (-cell.workspace.margin_mm, LARGEST_SHEET_MM)
     sheet = np.array([(ends[a], ends[b], height_mm) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))])
-    reachable = moved(robot_from_paper(cell), sheet)
+    reachable = transform_points(robot_from_paper(cell), sheet)
     at = f"at height {height_mm:g} mm the whole sheet"
     for axis, name in enumerate("xyz" if box_mm else ""):
         low, high = box_mm[0][axis], box_mm[1][axis]
@@ -307,7 +307,7 @@ def _distances_from_origin_mm(corners: np.ndarray) -> tuple[float, float]:
 
     corners: (n, 3) corners of the polygon [mm].
     """
-    nearest, farthest = distances_from_origin(ways([[*corners, corners[0]]]))
+    nearest, farthest = distances_from_origin(make_paths([[*corners, corners[0]]]))
     sides = np.roll(corners, -1, axis=0) - corners
     normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
     if size := np.linalg.norm(normal):
@@ -633,8 +633,8 @@ def _check_sheet_corner(cell: Cell) -> list[Notice]:
 
     Such a cell is not refused: perhaps nothing is painted near the corner.
     """
-    corner = ways([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
+    corner = make_paths([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
     return [
         replace(notice, where="workspace", sentence=f"over the sheet's lower left corner {notice.sentence}")
-        for notice in astray(corner, robot_from_paper(cell), replace(cell, servo=None))
+        for notice in find_broken_limits(corner, robot_from_paper(cell), replace(cell, servo=None))
     ]

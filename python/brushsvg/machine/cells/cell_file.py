@@ -9,7 +9,7 @@ import textwrap
 from dataclasses import fields
 from pathlib import Path
 
-from ...errors import Error, need, shown
+from ...errors import Error, format_value, require_type
 from ...files import find_file, names_in, read_bytes, toml_document
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries_of, required_keys_of, tables_of
 from .cell_check import check
@@ -95,7 +95,7 @@ def parse_cell(text: str) -> Cell:
 
 def write_cell(cell: Cell) -> str:
     """Return the cell as TOML for parse_cell, each key with an explanation."""
-    need(cell, Cell, "a cell")
+    require_type(cell, Cell, "a cell")
     lines = [f"format = {json.dumps(FORMAT)}", f"version = {VERSION}", "", *_table_lines(cell)]
     for name, table in tables_of(cell).items():
         lines += ["", *_comment_lines(type(table).__doc__), f"[{name}]", *_table_lines(table)]
@@ -158,7 +158,7 @@ def _read_number(entry: Entry, value, where: str):
         raise Error(f"{where} must be {expected}, not {str(value)[:40]}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
         raise Error(
-            f"{where} {shown(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]",
+            f"{where} {format_value(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]",
             where=where,
             code="out-of-range",
         )

@@ -15,9 +15,9 @@ from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
     blends_mm,
-    down,
     join_numbers,
     tool_rotations_at,
+    upright_tool_rotation,
     write_sections,
 )
 from .text import format_number, format_rows, plain_text
@@ -42,7 +42,7 @@ def dobot(program: Program) -> Iterator[str]:
     tool = _pose_text(cell.tool.tcp_mm, cell.tool.rotation_deg, decimals)
     yield "".join(map(comment, program.header))
     yield f"SetUser({INDEX}, {paper})\nSetTool({INDEX}, {tool})\nUser({INDEX})\nTool({INDEX})\nCP(0)\n"
-    upright_rotation = down(cell.tool.spin_deg)
+    upright_rotation = upright_tool_rotation(cell.tool.spin_deg)
     upright = join_numbers(rotation_deg(upright_rotation), DEGREE_DECIMALS)
     yield f"\nfunction on_paper(x, y, z)\n  return {{pose = {{x, y, z, {upright}}}}}\nend\n"
     if program.tilts:

@@ -15,10 +15,10 @@ from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
     blends_mm,
-    down,
     format_rounded_down,
     join_numbers,
     tool_rotations_at,
+    upright_tool_rotation,
     write_sections,
 )
 from .text import format_number, format_rows, plain_text
@@ -56,7 +56,7 @@ def doosan(program: Program) -> Iterator[str]:
     yield f"if abs(tip_mm - {format_number(np.linalg.norm(cell.tool.tcp_mm), decimals)}) > 1.0:\n{STOPS}"
     yield f"set_accx({format_rounded_down(cell.speeds.acceleration_mm_s2, SPEED_DECIMALS)}, {TURN_SPEED_LIMITS})\n"
     yield f"paper = set_user_cart_coord(posx({paper}), ref=DR_BASE)\nset_ref_coord(paper)\n"
-    upright_rotation = down(cell.tool.spin_deg)
+    upright_rotation = upright_tool_rotation(cell.tool.spin_deg)
     upright = join_numbers(zyz_deg(upright_rotation), DEGREE_DECIMALS)
     yield f"\n\ndef on_paper(x, y, z):\n    return posx(x, y, z, {upright})\n\n"
     if program.tilts:

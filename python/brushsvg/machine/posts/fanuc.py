@@ -16,7 +16,14 @@ from ..cells.cell import MAX_PROGRAM_POINTS, Cell
 from ..frames import rotation_deg
 from ..motion import Move, Program, Section, Wait, via_point
 from .dobot import round_down_speed_mm_s
-from .script import LanguageWords, blends_mm, down, name_part, tool_rotations_at, write_section
+from .script import (
+    LanguageWords,
+    blends_mm,
+    name_part,
+    tool_rotations_at,
+    upright_tool_rotation,
+    write_section,
+)
 from .text import STATEMENT_ENDS, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100  # letters of a remark, which may need several lines
@@ -102,7 +109,7 @@ class _ProgramPoints:
     def __init__(self, cell: Cell):
         self.decimals, self.count = cell.decimals, 0
         self.held: list[tuple[np.ndarray, tuple[str, str, str]]] = []
-        self.upright_rotation = down(cell.tool.spin_deg)
+        self.upright_rotation = upright_tool_rotation(cell.tool.spin_deg)
         self.upright = _wpr_angles(self.upright_rotation)
         x, y, z = (f"{axis} = %.{cell.decimals}f  mm" for axis in "XYZ")
         self.place = (

@@ -17,12 +17,12 @@ from ..motion import Move, Program, Wait, via_point
 from .script import (
     LanguageWords,
     blends_mm,
-    down,
     format_rounded_down,
     join_numbers,
     name_part,
     split_into_parts,
     tool_rotations_at,
+    upright_tool_rotation,
 )
 from .text import format_number, format_rows, plain_text
 
@@ -56,7 +56,7 @@ def krl(program: Program) -> Iterator[str]:
             "$ORI_TYPE = #VAR\n"  # #CONSTANT, set by an earlier program, would keep the tool's orientation
         )
     setup += f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
-    upright = down(cell.tool.spin_deg)
+    upright = upright_tool_rotation(cell.tool.spin_deg)
     turned = _abc_text(rotation_deg(upright))
     words = LanguageWords(
         comment,

@@ -15,10 +15,10 @@ from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
     blends_mm,
-    down,
     format_rounded_down,
     join_numbers,
     tool_rotations_at,
+    upright_tool_rotation,
     write_sections,
 )
 from .text import format_number, format_rows, plain_text
@@ -55,7 +55,7 @@ def rapid(program: Program) -> Iterator[str]:
     acceleration = format_rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, SPEED_DECIMALS)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     load = f"[{BRUSH_KG}, [0, 0, 50], [1, 0, 0, 0], 0, 0, 0]"
-    upright_rotation = down(cell.tool.spin_deg)
+    upright_rotation = upright_tool_rotation(cell.tool.spin_deg)
     upright = _quaternion_text(upright_rotation)
     paper = _pose_text(program.robot_from_frame, decimals)
     yield "MODULE brushsvg\n"

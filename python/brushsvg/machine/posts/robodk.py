@@ -21,7 +21,7 @@ from ...errors import Error
 from ..cells.cell import Cell
 from ..frames import frame_of_pose
 from ..motion import Move, Program, Wait, via_point
-from .script import blends_mm, down, tool_rotations_at
+from .script import blends_mm, tool_rotations_at, upright_tool_rotation
 from .text import plain_text
 
 LINE_LIMIT = 100
@@ -116,7 +116,7 @@ def _load_post(where: str) -> ModuleType:
 
 
 def _call_post(post, mat, program: Program) -> None:
-    cell, upright = program.cell, down(program.cell.tool.spin_deg)
+    cell, upright = program.cell, upright_tool_rotation(program.cell.tool.spin_deg)
 
     def pose(frame: np.ndarray):
         rows = (np.round(frame, 12) + 0.0).tolist()

@@ -117,7 +117,7 @@ def blends_mm(move: Move, decimals: int, part: float = 1.0) -> np.ndarray:
     return np.floor(blends * part * 10.0**decimals) / 10.0**decimals
 
 
-def down(spin_deg: float) -> np.ndarray:
+def upright_tool_rotation(spin_deg: float) -> np.ndarray:
     """Return the rotation (3, 3) of an upright tool in the paper's frame.
 
     The tool's z axis points into the paper.
@@ -145,4 +145,4 @@ def upright_deg(cell: Cell) -> np.ndarray:
 
     The angles are about the fixed x, then y, then z axis. The brush is upright on the paper.
     """
-    return rotation_deg(robot_from_paper(cell)[:3, :3] @ down(cell.tool.spin_deg))
+    return rotation_deg(robot_from_paper(cell)[:3, :3] @ upright_tool_rotation(cell.tool.spin_deg))

@@ -12,7 +12,13 @@ import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
 from ..motion import Move, Program, Wait, via_point
-from .script import QUOTE_REPLACEMENTS, LanguageWords, down, split_into_parts, tool_rotations_at
+from .script import (
+    QUOTE_REPLACEMENTS,
+    LanguageWords,
+    split_into_parts,
+    tool_rotations_at,
+    upright_tool_rotation,
+)
 from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
@@ -35,7 +41,7 @@ def urscript(program: Program) -> Iterator[str]:
     acceleration = format_number(program.cell.speeds.acceleration_mm_s2 * M_PER_MM, 4)
     header = "".join(f"  # {plain_text(line, LINE_LIMIT - 4)}\n" for line in program.header)
     setup = f"  set_tcp({_pose_text(tcp, decimals)})\n  paper = {_pose_text(program.robot_from_frame, decimals)}\n"
-    upright = down(tool.spin_deg)
+    upright = upright_tool_rotation(tool.spin_deg)
     setup += "  def on_paper(x, y, z):\n"
     setup += f"    return pose_trans(paper, p[x, y, z, {_rotation_text(upright, decimals)}])\n  end\n"
     if program.tilts:

@@ -22,7 +22,7 @@ from ..cells.cell import (
     round_points,
     unit_mm,
 )
-from ..frames import is_upright, moved
+from ..frames import is_upright, transform_points
 from ..motion import via_point
 from ..posts import POSTS, circles_by
 from ..tool_axes import axes_of
@@ -76,7 +76,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
 
     def on_grid(poses: np.ndarray) -> np.ndarray:
         if in_robot:
-            return moved(np.linalg.inv(frame), round_points(moved(frame, poses), cell))
+            return transform_points(np.linalg.inv(frame), round_points(transform_points(frame, poses), cell))
         return round_points(poses, cell)
 
     poses, arcs = on_grid(exact), []

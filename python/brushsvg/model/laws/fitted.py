@@ -7,7 +7,7 @@ import math
 from numpy.typing import ArrayLike
 
 from ... import _core
-from ...errors import Error, need
+from ...errors import Error, require_type
 from .numbers import DEEPEST_MM, FARTHEST_MM, numbers
 
 
@@ -37,7 +37,7 @@ def fit_law(
     value = numbers(value_mm, "the value [mm]", -FARTHEST_MM, FARTHEST_MM)
     if depth.ndim != 1 or value.ndim != 1:
         raise Error("depths and values are lists of numbers", code="wrong-type")
-    need(degree, int, "a degree")
+    require_type(degree, int, "a degree")
     shape = _core.LawShape(
         (float(depth.min(initial=0.0)), float(depth.max(initial=1.0))),
         max(-1, min(degree, 99)),

@@ -16,7 +16,7 @@ from ..design import Design, Element, Notice, SubPath
 from ..empty_drawing import empty_drawing_error
 from .dips import find_dips, read_comments
 from .pen import MAX_HOP_MM, read_pen
-from .toolpaths import Way, ways
+from .toolpaths import Way, read_moves
 
 MARGIN_MM = 20.0
 LINE_WIDTH_MM = 1.0
@@ -39,7 +39,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
             "brushsvg wrote this program: its ways lead a brush and are no drawing; convert the drawing",
             code="program-ours",
         )
-    all_ways = ways(text)
+    all_ways = read_moves(text)
     pen = read_pen(all_ways, options.pen, options.paper_z_mm) if all_ways else None
     if pen and pen.share < MIN_READ_SHARE and options.pen is None and options.paper_z_mm is None:
         sentence = f"only {100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}"

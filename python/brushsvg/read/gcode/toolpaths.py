@@ -60,7 +60,7 @@ class Way:
     by_laser: bool = False
 
 
-def ways(text: str) -> list[Way]:
+def read_moves(text: str) -> list[Way]:
     """Return all moves of a program, in order.
 
     A way without length is a dot: the pen goes down and up again there. Raises Error with the number of a line that

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import unicodedata
 
-from ...errors import Error, lacking, need, need_one_of
+from ...errors import Error, missing_packages_error, need_one_of, require_type
 from .. import SCRIPTS
 from ..design import Notice
 from . import svg_font
@@ -41,8 +41,8 @@ def text_svg(
 
     Raises Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
     """
-    need(text, str, "a text")
-    need(font, bytes, "what a font file holds, as bytes")
+    require_type(text, str, "a text")
+    require_type(font, bytes, "what a font file holds, as bytes")
     need_one_of(script, SCRIPTS, "script")
     _check_range("size", size_mm, 1000, " mm")
     _check_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
@@ -159,7 +159,7 @@ def _find_font_module(font: bytes):
         try:
             from . import outline_font
         except ImportError:
-            raise lacking("outline fonts need", "fonttools", "uharfbuzz") from None
+            raise missing_packages_error("outline fonts need", "fonttools", "uharfbuzz") from None
         return outline_font
     if font.lstrip(b"\xef\xbb\xbf\xff\xfe\0 \t\r\n").startswith(b"<"):
         return svg_font

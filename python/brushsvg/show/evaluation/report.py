@@ -16,7 +16,7 @@ from ...errors import Notice
 from ...geometry.polylines import length
 from ...reporting import report_text
 from ...reporting.report_text import percent, plural, table
-from ...text_summary import summarized
+from ...text_summary import summarize_notices
 from ...units import clock
 from .error_causes import Cause, cause
 from .places import Place, find_places
@@ -459,7 +459,7 @@ def _first_notice(notices: Iterable[Notice]) -> str:
 
     "..." stands for others, which are all in the details.
     """
-    first, *others = summarized(notices)
+    first, *others = summarize_notices(notices)
     return ": ".join(filter(None, (first.where, first.text))) + (" ..." if others else "")
 
 

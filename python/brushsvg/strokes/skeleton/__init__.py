@@ -1,6 +1,6 @@
 """Strokes with which a brush would paint filled outlines."""
 
-from .fill_rule import filled
+from .fill_rule import filled_rings
 from .shape_to_strokes import OutlineStroke, outline_strokes
 
-__all__ = ["OutlineStroke", "filled", "outline_strokes"]
+__all__ = ["OutlineStroke", "filled_rings", "outline_strokes"]

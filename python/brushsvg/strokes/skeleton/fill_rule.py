@@ -18,7 +18,7 @@ _MAX_EDGES, _MAX_CROSSINGS, _MAX_PAIRS = 200_000, 10_000, 30_000_000
 _SKIPPED_PAIR_COST = 0.04  # cost of a pair that is skipped, relative to one that is examined
 
 
-def filled(element: Element) -> list[np.ndarray]:
+def filled_rings(element: Element) -> list[np.ndarray]:
     """Return the rings [mm] of the shape that an element fills.
 
     Outer rings are counter-clockwise, holes clockwise. Open sub-paths are closed by a straight line. Raises Error

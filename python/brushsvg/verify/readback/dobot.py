@@ -8,7 +8,7 @@ from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.dobot import DOBOT_END, INDEX
-from ...machine.posts.script import down
+from ...machine.posts.script import upright_tool_rotation
 from . import Act, Readback
 from .script import Script, read_script
 
@@ -58,7 +58,7 @@ def read_dobot(text: str, cell: Cell) -> Readback:
         again=re.compile(r"Set|User|Tool|CP|here"),
         last=(f"-- {DOBOT_END}",),
         units_mm={"seconds": 1e-3},
-        turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg)).tolist()),
+        turned_deg=tuple(rotation_deg(upright_tool_rotation(cell.tool.spin_deg)).tolist()),
         rotation=rotation,
     )
     out = read_script(text, script, Readback(in_paper_frame=True, blends_by_radius=True))

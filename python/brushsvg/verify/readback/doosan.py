@@ -13,7 +13,7 @@ from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, zyz_deg
 from ...machine.posts.doosan import CHECKS, DOOSAN_END, STOPS
-from ...machine.posts.script import down
+from ...machine.posts.script import upright_tool_rotation
 from ...machine.posts.xarm import NAMES_LETTERS
 from . import Act, Readback
 from .script import N, Script, read_script
@@ -87,7 +87,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
         again=re.compile(r"set_|paper|tip|flange|here|    (?:here|exit)"),
         last=(f"# {DOOSAN_END}",),
         units_mm={},
-        turned_deg=tuple(zyz_deg(down(cell.tool.spin_deg)).tolist()),
+        turned_deg=tuple(zyz_deg(upright_tool_rotation(cell.tool.spin_deg)).tolist()),
         is_indented=True,
         rotation=_rotation_from_zyz_deg,
     )

@@ -11,7 +11,7 @@ from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.fanuc import FANUC_END, INDEX, MAIN, POINT_DECIMALS, cnt_mm
-from ...machine.posts.script import down
+from ...machine.posts.script import upright_tool_rotation
 from . import Readback
 from .script import N, NumberedLines, Script, place, read_script
 
@@ -63,7 +63,9 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
         again=re.compile(r"PR\[2\]|R\[1\]"),
         last=(f"!{FANUC_END}",),
         units_mm={},
-        turned_deg=tuple(np.round(rotation_deg(down(cell.tool.spin_deg)), POINT_DECIMALS).tolist()),
+        turned_deg=tuple(
+            np.round(rotation_deg(upright_tool_rotation(cell.tool.spin_deg)), POINT_DECIMALS).tolist()
+        ),
         rotation=rotation,
     )
     out = Readback(in_paper_frame=True, blends_by_radius=True)

@@ -40,7 +40,7 @@ class ProgramHeader:
     is_of_plan: bool = False  # made from a plan.json, which does not say how it was planned
 
 
-def made(text: str) -> ProgramHeader:
+def read_header(text: str) -> ProgramHeader:
     """Read how a program was made from its header.
 
     Raises Error when brushsvg did not write the header, or when one of its numbers is damaged.

@@ -8,7 +8,7 @@ from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.krl import KRL_END, RISES
-from ...machine.posts.script import down
+from ...machine.posts.script import upright_tool_rotation
 from . import Readback
 from .script import N, NumberedLines, Script, read_script
 
@@ -59,7 +59,7 @@ def read_krl(text: str, cell: Cell) -> Readback:
         last=(f"; {KRL_END}", "END"),
         units_mm={"speed": 1e3, "acceleration": 1e3},
         sets_after=_INITIALISATION,
-        turned_deg=tuple(rotation_deg(down(cell.tool.spin_deg))[::-1].tolist()),
+        turned_deg=tuple(rotation_deg(upright_tool_rotation(cell.tool.spin_deg))[::-1].tolist()),
         any_case=True,
         rotation=lambda abc: rotation(abc[::-1]),
     )

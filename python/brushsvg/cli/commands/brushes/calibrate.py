@@ -10,13 +10,13 @@ from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 
 def calibrate_file(args) -> None:
-    from ....jobs.calibrating import calibrated
+    from ....jobs.calibrating import run_calibration
 
     check_outputs(args, args.output, args.picture, args.marks_picture, sources=[args.output])
     name = os.path.splitext(os.path.basename(args.output))[0]
     source = args.photos or args.input
     with refuse_errors(""):  # errors name their file themselves
-        calibration = calibrated(source, name, args.options, stage, warn)
+        calibration = run_calibration(source, name, args.options, stage, warn)
         files = {args.output: write_brush(calibration.brush)}
         if args.picture:
             files[args.picture] = calibration.plot(suffix_of(args.picture))

@@ -9,10 +9,10 @@ from ....errors import Notice
 from ....jobs.conversion import estimate_output_time_s
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine import preflight, writer
-from ....machine.paint_reload import in_loads
+from ....machine.paint_reload import split_into_loads
 from ....machine.program import Job
 from ....model.library import find_brush
-from ....text_summary import summarized
+from ....text_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM
 from ...console import RefusedError, print_text, refuse_errors, stage
 from ...steps.options import (
@@ -48,15 +48,15 @@ def chart_file(args) -> None:
             writer.post_for(suffix, cell)
         stage("laying out the chart")
         laid_out = chart(brush, args.sheet, args.strokes, -cell.heights.lowest_mm, args.dabs, args.paint)
-        loads, marks = in_loads(laid_out.plan, brush, cell), _core.simulate(laid_out.plan, brush)
+        loads, marks = split_into_loads(laid_out.plan, brush, cell), _core.simulate(laid_out.plan, brush)
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
-        walk = preflight.look(loads, brush, marks, cell, tolerance_mm, Job(args.z_offset))
+        walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, Job(args.z_offset))
         if walk.problems:
             raise RefusedError(
-                args.output, summarized([_advise_smaller_sheet(each) for each in walk.problems])
+                args.output, summarize_notices([_advise_smaller_sheet(each) for each in walk.problems])
             )
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
-        files = writer.in_files(args.output, writer.encoded(suffix, laid_out.plan, walk, brush, title))
+        files = writer.in_files(args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title))
     if args.page:
         is_pdf = suffix_of(args.page) == ".pdf"
         with refuse_errors(args.page):

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from ....errors import Notice
 from ....jobs.choices import CHOICES
-from ....text_summary import summarized
+from ....text_summary import summarize_notices
 from ....units import clock
 from ...console import RefusedError, clear_stage, refuse_errors, say, stage, warn
 from ...steps.options import make_choices
@@ -52,7 +52,7 @@ def batch_files(args) -> None:
         say(args.output, _summarize(result))
     if result.refused:
         why = [Notice(_format_place(row, row.where), row.sentence, code=row.code) for row in result.refused]
-        raise RefusedError(args.output, summarized(why))
+        raise RefusedError(args.output, summarize_notices(why))
 
 
 def _format_place(row, element: str) -> str:

@@ -9,7 +9,7 @@ from ....jobs import outputs, prediction
 from ....jobs.checking import Check, check_program
 from ....reporting.report_text import AGAINST
 from ....show.evaluation import report
-from ....text_summary import summarized
+from ....text_summary import summarize_notices
 from ....units import clock
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.options import make_choices
@@ -30,7 +30,7 @@ def check_file(args) -> None:
             raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
         if args.picture:
             outlined = prediction.trace_mark_outlines(result.marks, result.work.brush, stage)
-            picture = outputs.picture(suffix_of(args.picture), result.work, outlined)
+            picture = outputs.make_picture(suffix_of(args.picture), result.work, outlined)
             overlap = None if result.is_foreign else result.figures.total.overlap
             write_outputs(args, {args.picture: picture}, len(result.plan.passes), result.time_s, overlap)
     if result.job == "painting":
@@ -40,7 +40,7 @@ def check_file(args) -> None:
     else:
         print_text(f"{args.program}: {_describe_setup_job(result)}; takes about {clock(result.time_s)}\n")
     if result.problems:
-        raise RefusedError(args.program, summarized(list(result.problems)))
+        raise RefusedError(args.program, summarize_notices(list(result.problems)))
     if not args.json:
         print_text(f"{args.program}: {_describe_outcome(result)}\n")
 

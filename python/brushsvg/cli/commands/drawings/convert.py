@@ -37,7 +37,7 @@ def convert_file(args) -> None:
     files, figures = {}, None
     if args.page:
         with refuse_errors(args.page):
-            files[args.page] = outputs.page(suffix_of(args.page), work)
+            files[args.page] = outputs.make_job_page(suffix_of(args.page), work)
     with refuse_errors(args.input):
         simulations = [_simulate_or_refuse(args, path, part) for path, part in parts]
         for (path, _), simulated in reversed([*zip(parts, simulations, strict=True)]):
@@ -49,9 +49,9 @@ def convert_file(args) -> None:
             )
             whole_work = single.work if single else work
         if args.picture:
-            files[args.picture] = outputs.picture(suffix_of(args.picture), whole_work, marks)
+            files[args.picture] = outputs.make_picture(suffix_of(args.picture), whole_work, marks)
         if args.report:
-            figures = outputs.reported(whole_work, marks, work.options.cell)
+            figures = outputs.make_report(whole_work, marks, work.options.cell)
             files[args.report] = report.as_text(suffix_of(args.report), figures)
     warn(args.input, dict.fromkeys(notice for simulated in simulations for notice in simulated.remarks()))
     warn_about_cell(args, simulations[0].cell)

@@ -19,9 +19,9 @@ from ....machine.cells.cell_file import (
     write_cell,
 )
 from ....machine.cells.describe_cell import cell_page
-from ....machine.paint_reload import in_loads
+from ....machine.paint_reload import split_into_loads
 from ....machine.posts import POSTS
-from ....machine.program import stations_astray
+from ....machine.program import find_stations_out_of_limits
 from ....machine.writer import whole_program
 from ....model.library import find_brush
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
@@ -47,7 +47,9 @@ def cell_check(args) -> None:
         sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known_languages}"
         warn(args.input, [Notice("language", sentence, code="language-unknown")])
     frame = robot_from_paper(cell)
-    if problems := cell_checks.out_of_reach(cell) or stations_astray(find_brush(DEFAULT_BRUSH), cell, frame):
+    if problems := cell_checks.out_of_reach(cell) or find_stations_out_of_limits(
+        find_brush(DEFAULT_BRUSH), cell, frame
+    ):
         raise RefusedError(args.input, problems)
     warn(args.input, cell_checks.remarks(cell))
     print_text(f"{args.input}: cell {cell.name} can be used\n")
@@ -57,7 +59,7 @@ def cell_place(args) -> None:
     from ....machine.arm import place
     from ....machine.arm.follow import follow
     from ....machine.arm.joints import joints_of
-    from ....machine.program import astray_in
+    from ....machine.program import find_moves_out_of_limits
     from ....machine.setup_programs import over_sheet
     from ....show.table_picture import table_picture
 
@@ -73,15 +75,17 @@ def cell_place(args) -> None:
     if args.drawing:
         work = prepare(make_choices(args, input=args.drawing, cell=args.input), cell)
         sheet_mm = work.plan.sheet_mm
-        program = whole_program(in_loads(work.plan, work.brush, cell), work.brush, cell)
+        program = whole_program(split_into_loads(work.plan, work.brush, cell), work.brush, cell)
     else:
         sheet_mm = args.sheet or DEFAULT_SHEET_MM
         program = over_sheet(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
     stage("following the joints")
     followed = follow(program, joints)
-    problems = [*followed.problems, *astray_in(program, sheet_mm)]
+    problems = [*followed.problems, *find_moves_out_of_limits(program, sheet_mm)]
     nearest_place = (
-        place.nearest(program, joints, lambda moved: not astray_in(moved, sheet_mm)) if problems else None
+        place.nearest(program, joints, lambda moved: not find_moves_out_of_limits(moved, sheet_mm))
+        if problems
+        else None
     )
     followed_there = (
         followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)

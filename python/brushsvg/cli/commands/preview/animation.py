@@ -16,5 +16,5 @@ def preview_animation(args) -> None:
     )
     work, loads, cell = prepared.work, prepared.loads, prepared.work.options.cell
     with refuse_errors(args.input):
-        page = outputs.played(work, loads, prepared.marks, cell, args.playback or 1.0)
+        page = outputs.make_animation(work, loads, prepared.marks, cell, args.playback or 1.0)
     write_outputs(args, {args.output: page}, len(loads.loads), prepared.seconds())

@@ -29,5 +29,5 @@ def preview_paint(args) -> None:
             band = band_of(work.plan, work.brush, marks)
             if not any(band.rings):
                 say(work.brush.name, band.words)
-        picture = outputs.picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")
+        picture = outputs.make_picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")
     write_outputs(args, {args.output: picture}, len(work.plan.passes), prepared.seconds())

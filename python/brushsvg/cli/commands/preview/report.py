@@ -13,7 +13,7 @@ from ....model.library import brush_names, find_brush
 from ....read import read_drawing
 from ....read.layout import arrange
 from ....show.evaluation import report
-from ....text_summary import summarized
+from ....text_summary import summarize_notices
 from ...console import RefusedError, print_text, refuse_errors, stage
 from ...steps.options import apply_drawing_settings, make_choices, make_options
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
@@ -30,7 +30,7 @@ def preview_report(args) -> None:
     with refuse_errors(args.input):
         stage("trying other sizes")
         advice = other_sizes.advise_on_size(work)
-        figures = outputs.reported(
+        figures = outputs.make_report(
             work,
             marks,
             work.options.cell,
@@ -50,7 +50,7 @@ def preview_report(args) -> None:
     elif advice:
         print_text(advice + "\n")
     if work.refused:
-        raise RefusedError(args.input, summarized(work.refused))
+        raise RefusedError(args.input, summarize_notices(work.refused))
 
 
 def _report_all_brushes(args) -> None:

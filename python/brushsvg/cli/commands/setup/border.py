@@ -31,7 +31,14 @@ def border_file(args) -> None:
         title, count = f"border of {work.title or 'untitled'}", len(work.plan.passes)
         job = Job(args.z_offset)
         header = header_lines.border_header(
-            title, work.brush.name, count, work.plan.sheet_mm, outputs.notes(work), around_mm, program, job
+            title,
+            work.brush.name,
+            count,
+            work.plan.sheet_mm,
+            outputs.header_lines(work),
+            around_mm,
+            program,
+            job,
         )
         text = writer.text_of(post, replace(program, header=header), suffix_of(args.output))
     warn_about_cell(args, cell)
