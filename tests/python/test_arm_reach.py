@@ -156,6 +156,8 @@ def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, m
     joints.joints_of.cache_clear()
     status, _, reported = in_json(capsys, "convert", drawing, "-o", tmp_path / "a.script", "--cell", far)
     assert status == 0 and is_reported(reported, "arm-not-followed ssik UR5e")
+    _, _, reported = in_json(capsys, "check", tmp_path / "a.script", "--cell", far)
+    assert is_reported(reported, "arm-not-followed ssik UR5e")
     status, _, reported = in_json(capsys, "cell", "place", far)
     assert status == 1 and is_reported(reported, "package-missing ssik")
 

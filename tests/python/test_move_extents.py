@@ -164,3 +164,13 @@ def test_a_circle_that_only_grazes_a_box_is_found_in_it():
     flat = make_paths([], [((10, 0, 0), (10, 0, 0), (0, 0, 1))])
     place = find_place_inside(flat, (-0.5, 9.9, -1), (0.5, 11, 1))
     assert place == pytest.approx((0, 10, 0))
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_move_along_the_face_of_a_box_is_not_inside(axis):
+    """Only the interior of a box that the tool must not enter is refused."""
+    ends = np.full((2, 3), 5.0)
+    ends[:, axis], ends[1, (axis + 1) % 3] = 0.0, 8.0
+    assert find_place_inside(make_paths([ends]), (0, 0, 0), (10, 10, 10)) is None
+    ends[:, axis] = 1e-6
+    assert find_place_inside(make_paths([ends]), (0, 0, 0), (10, 10, 10)) is not None

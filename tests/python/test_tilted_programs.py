@@ -27,7 +27,7 @@ from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import check_job
 from brushsvg.machine.program import make_checked_program, out_of_arm
-from brushsvg.machine.realised.tilt import check_tilt_limits, split_turning_moves
+from brushsvg.machine.realised.tilt import check_tilt_limits, limit_turning_speed, split_turning_moves
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.against_regenerated import _ActComparison
@@ -257,6 +257,20 @@ def test_the_plan_s_own_poses_are_among_those_of_a_robot():
     for pose, axis in zip(of.passes[0].poses_mm, of.passes[0].tool_axes, strict=True):
         away = np.linalg.norm(steps.poses_mm - pose, axis=1) + np.linalg.norm(steps.tool_axes - axis, axis=1)
         assert away.min() < 1e-9
+
+
+def test_the_tip_stays_in_place_while_the_tool_leans_and_goes_down_on_the_spot():
+    poses = [(20.0, 30.0, 0.0), (20.0, 30.0, -4.0), (40.0, 30.0, -4.0)]
+    steps = split_turning_moves(_core.Pass("s", poses, 5.0, tool_axes=axes(0, 20, 20)))
+    down = np.asarray(steps.poses_mm)[np.asarray(steps.poses_mm)[:, 0] < 20.1]
+    assert len(down) > 8 and np.abs(down[:, :2] - (20.0, 30.0)).max() < 1e-9
+
+
+def test_a_turn_of_less_than_a_degree_is_slowed_too():
+    cell = brushsvg.find_cell("ur5e")
+    speed_mm_s = limit_turning_speed(20.0, 0.05, 0.5, cell)
+    assert speed_mm_s == pytest.approx(0.05 * cell.tool.turn_deg_s / 0.5)
+    assert speed_mm_s < 20.0
 
 
 @pytest.mark.parametrize("seed", range(5))
