@@ -17,7 +17,7 @@ area_mm2: area of the missing or excess paint.)");
                    ") mm: " + in_digits(w.area_mm2) + " mm^2 too " + (w.is_missing ? "little>" : "much>");
         });
     as_fixed_value(place);
-    py::class_<StrokeScore> type(m, "Verdict",
+    py::class_<StrokeScore> type(m, "StrokeScore",
                                  R"(A score of how well a pass paints its stroke.
 
 overlap: area of the intersection over area of the union.
@@ -30,11 +30,11 @@ worst: a WorstPlace.)");
         .def_readonly("worst", &StrokeScore::worst)
         .def("__repr__", [](const StrokeScore& s) {
             const std::string width = s.width_error_mm ? in_digits(*s.width_error_mm) + " mm off in width" : "no width";
-            return "<Verdict: overlap " + in_digits(s.overlap) + ", " + width + ">";
+            return "<StrokeScore: overlap " + in_digits(s.overlap) + ", " + width + ">";
         });
     as_fixed_value(type);
     m.def(
-        "verdicts",
+        "score_strokes",
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
             if (painted.size() != wanted.size())
                 throw Error("sizes-differ", "a stroke is needed for each pass of marks");
@@ -46,5 +46,5 @@ worst: a WorstPlace.)");
         py::arg("painted"), py::arg("wanted"), py::arg("brush"),
         R"(Score how well each pass of marks paints its stroke.
 
-Returns a Verdict for each pass, computed on all processors.)");
+Returns a StrokeScore for each pass, computed on all processors.)");
 }

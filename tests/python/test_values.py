@@ -69,7 +69,7 @@ def branch(width=9.0):
 
 def scores(shift=0.0):
     painted = brushsvg.simulate(compensated().plan, BRUSH)
-    return _core.verdicts(painted.passes, [with_(STROKE, middle_mm=np.array(LINE) + shift)], BRUSH)[0]
+    return _core.score_strokes(painted.passes, [with_(STROKE, middle_mm=np.array(LINE) + shift)], BRUSH)[0]
 
 
 def design(width=3.0, last_mm=NAN):
@@ -242,7 +242,7 @@ VALUES_OF = {
     ],
     _core.AxisBranch: lambda _: [branch(), branch(8.0)],
     _core.CommonArea: lambda _: [_core.CommonArea(1, 2), _core.CommonArea(1, 3), _core.CommonArea(2, 2)],
-    _core.Verdict: lambda _: [scores(), scores(1.0)],
+    _core.StrokeScore: lambda _: [scores(), scores(1.0)],
     _core.WorstPlace: lambda _: [scores().worst, scores(1.0).worst],
     _core.LawShape: lambda _: [
         _core.LawShape(**SHAPE),

@@ -42,8 +42,8 @@ __all__: list[str] = [
     "Settings",
     "Stroke",
     "StrokeId",
+    "StrokeScore",
     "TrackingError",
-    "Verdict",
     "WorstPlace",
     "area",
     "as_normal",
@@ -79,6 +79,7 @@ __all__: list[str] = [
     "read_plan",
     "refuse_tilted",
     "remarks",
+    "score_strokes",
     "search_strokes",
     "simulate",
     "thin_out",
@@ -89,7 +90,6 @@ __all__: list[str] = [
     "tracking_errors_of",
     "uncovered_areas",
     "unite",
-    "verdicts",
     "wanted_coverage",
     "wanted_outline",
     "widest_points",
@@ -913,7 +913,7 @@ class WorstPlace:
     @property
     def is_missing(self) -> bool: ...
 
-class Verdict:
+class StrokeScore:
     """
     A score of how well a pass paints its stroke.
 
@@ -922,8 +922,8 @@ class Verdict:
     excess_turning: excess turning of the mark's outline, in full turns.
     worst: a WorstPlace.
     """
-    def __copy__(self) -> Verdict: ...
-    def __deepcopy__(self, memo: dict) -> Verdict: ...
+    def __copy__(self) -> StrokeScore: ...
+    def __deepcopy__(self, memo: dict) -> StrokeScore: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
@@ -1840,6 +1840,17 @@ def remarks(brush: Brush) -> list[Notice]:
     Return notices about unusual laws of a brush that check() accepts.
     """
 
+def score_strokes(
+    painted: collections.abc.Sequence[PassMarks],
+    wanted: collections.abc.Sequence[Stroke],
+    brush: Brush,
+) -> list[StrokeScore]:
+    """
+    Score how well each pass of marks paints its stroke.
+
+    Returns a StrokeScore for each pass, computed on all processors.
+    """
+
 def search_strokes(
     shapes: collections.abc.Sequence[
         tuple[
@@ -1990,17 +2001,6 @@ def unite(
     Each counter-clockwise ring is filled. The clockwise rings after it are its holes.
 
     Raises Error if the clockwise rings outweigh the others.
-    """
-
-def verdicts(
-    painted: collections.abc.Sequence[PassMarks],
-    wanted: collections.abc.Sequence[Stroke],
-    brush: Brush,
-) -> list[Verdict]:
-    """
-    Score how well each pass of marks paints its stroke.
-
-    Returns a Verdict for each pass, computed on all processors.
     """
 
 def wanted_coverage(

@@ -159,11 +159,11 @@ def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
     passes, traces = plan.passes, painted.marks.passes
     known_passes = [k for k, stroke in enumerate(strokes) if stroke is not None]
     known_strokes = [strokes[k] for k in known_passes]
-    verdicts = _core.verdicts([traces[k] for k in known_passes], known_strokes, brush)
+    stroke_scores = _core.score_strokes([traces[k] for k in known_passes], known_strokes, brush)
     tracking_errors = _core.tracking_errors_of(
         [passes[k] for k in known_passes], known_strokes, brush, painted.tolerance_mm
     )
-    measured = iter(zip(verdicts, tracking_errors, strict=True))
+    measured = iter(zip(stroke_scores, tracking_errors, strict=True))
     rows = tuple(
         _path_figures(a_pass) if stroke is None else _stroke_figures(painted, a_pass, stroke, *next(measured))
         for a_pass, stroke in zip(passes, strokes, strict=True)
