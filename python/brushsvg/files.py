@@ -115,8 +115,8 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
 
     Raises Error, with the path in `file`, if a path cannot be written; every path is then as it was before.
     There is one exception: a rename can fail after other renames succeeded, for example if a file is a mount
-    point. Devices and pipes are written directly, after all other files are ready. The next run that writes to
-    a path removes the files that a killed run left next to it.
+    point. Devices and pipes are written directly, after all other files are ready. The next run that writes
+    to a path removes the files that a killed run left next to it.
     """
     path: str | os.PathLike[str] = ""
     targets: dict[str | os.PathLike[str], str] = {}
