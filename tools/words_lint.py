@@ -22,7 +22,7 @@ from pathlib import Path
 from docs_lint import BANNED_WORDS, ROOT, banned_words
 
 FOLDERS = ("python", "cpp", "tests", "examples", "benchmarks", "tools", "plugins")
-NOT_YET = (  # files and folders that still hold such words
+NOT_YET = (  # files and folders that still contain banned words
     "python/brushsvg/_core",  # has the names of the C++ core
 )
 BANNED_IN_CODE = BANNED_WORDS.with_name("banned_words_in_code.txt")
@@ -49,7 +49,7 @@ def python_text(source: str) -> Iterator[tuple[int, str]]:
         if token.type == tokenize.COMMENT:
             yield token.start[0], QUOTATION.sub("", token.string)
         elif token.type == tokenize.NAME and token.string not in KEPT_NAMES:
-            yield token.start[0], token.string.replace("_", "  ")  # no phrases
+            yield token.start[0], token.string.replace("_", "  ")  # two spaces match no phrase
         elif token.type == tokenize.STRING and " " in token.string:
             delimiter = PREFIX.match(token.string)
             inside = token.string[delimiter.end() : -len(delimiter[1])] if delimiter else token.string

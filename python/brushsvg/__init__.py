@@ -11,7 +11,7 @@ import sys
 import types
 
 TYPE_CHECKING = False  # True for editors and type checkers; the module typing is slow to import
-if TYPE_CHECKING:  # the names that the table below loads
+if TYPE_CHECKING:  # the names that the table below imports at run time
     from ._core import (
         Arc,
         Brush,
