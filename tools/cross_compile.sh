@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Compiles the C++ library and its examples for other systems with zig's clang, to check that they compile there.
-# The parts are the core, the readers of our files and the posts. An example also runs if qemu-user has the
-# processor.
-#   cross_compile.sh [TARGET ...]     FOLDER: for results; PYTHON: an interpreter with venv; JOBS: most compilers
+# Compiles the C++ library and its examples for other systems with zig's clang, to check that this works. The
+# parts are the core, the readers of our files and the posts. An example also runs if qemu-user
+# has the processor.
+#   cross_compile.sh [TARGET ...]
+# FOLDER: for the results; PYTHON: an interpreter with venv; JOBS: at most so many compilers at once
 set -euo pipefail
 tree=$(cd "$(dirname "$0")/.." && pwd)
 targets=("$@")

@@ -21,9 +21,8 @@ DOCS = ROOT / "docs"
 BANNED_WORDS = Path(__file__).with_name("banned_words.txt")
 FOLDERS = ("start", "howto", "machines", "reference", "explanation", "evidence")
 SINGLE_PAGES = ("index.md", "glossary.md", "troubleshooting.md")
-GENERATED = tuple(
-    f"reference/{name}.md" for name in ("commands", "python", "cells", "wheels")
-)  # tools write them
+# pages that tools write
+GENERATED = tuple(f"reference/{name}.md" for name in ("commands", "python", "cells", "wheels"))
 MAX_MEDIAN_WORDS = 16
 MAX_WORDS = 30
 READER = re.compile(
