@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Compiles the C++ library and its examples for other systems with zig's clang, to see that they compile there: the core,
-# the readers of our files and the posts. What was compiled runs where qemu-user has the processor.
-#   cross_compile.sh [TARGET ...]     FOLDER: where to; PYTHON: an interpreter with venv; JOBS: at most so many compilers
+# Compiles the C++ library and its examples for other systems with zig's clang, to check that this works. The
+# parts are the core, the readers of our files and the posts. An example also runs if qemu-user
+# has the processor.
+#   cross_compile.sh [TARGET ...]
+# FOLDER: for the results; PYTHON: an interpreter with venv; JOBS: at most so many compilers at once
 set -euo pipefail
 tree=$(cd "$(dirname "$0")/.." && pwd)
 targets=("$@")
@@ -13,7 +15,7 @@ if [ ! -x venv/bin/python ]; then
 fi
 zig=$(venv/bin/python -c 'import ziglang; print(ziglang.__path__[0] + "/zig")')
 export ZIG_GLOBAL_CACHE_DIR=$PWD/zig-cache
-# headers without those of this system's C library next to them
+# Only these headers are visible, not the headers of this system's C library next to them.
 mkdir -p include
 ln -sfn /usr/include/boost include/boost
 ln -sfn /usr/include/nlohmann include/nlohmann

@@ -1,8 +1,9 @@
-"""The picture of docs/explanation/calibration.md: dabs of a lopsided brush, photographed, with what was read from them.
+"""Make the picture of dabs in docs/explanation/calibration.md.
 
-    dab_pictures.py [FOLDER]    keeps in FOLDER what the commands wrote
+    dab_pictures.py [FOLDER]    keeps the files of the commands in FOLDER
 
-Paint is that of the slow simulator of tests/laws, and so is the camera: no real dabs were at hand.
+The picture shows a photograph of dabs of a lopsided brush, next to the readings from the photograph. The slow
+simulator of tests/laws makes the paint and the photograph, because no real dabs were available.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from brushsvg.model.library import save_brush
 
 ROOT = Path(__file__).parents[1]
 TALL_PX = 900
-DETAIL_MM = (70.0, 45.0)  # of read.png, its upper left, at the picture's own size
+DETAIL_MM = (70.0, 45.0)  # size of the upper left part of read.png that is shown
 
 
 def side_by_side(names: list[Path], tall: int) -> np.ndarray:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian package in a system that has nothing of brushsvg, and compiles and runs programs against it there.
+# Installs the Debian package in a system without brushsvg, and compiles and runs programs against it there.
 # Needs root, mmdebstrap and chroot.
 #   deb_bare_root.sh PACKAGE.deb     FOLDER: where the system is kept
 set -euo pipefail

@@ -1,4 +1,6 @@
-"""Check the language of the documentation: short sentences, modern words, and a first sentence that says who it is for.
+"""Check the language of the documentation.
+
+Sentences have to be short and words modern. The first sentence of a page has to say who the page is for.
 
     python tools/docs_lint.py              # all pages: see FOLDERS and SINGLE_PAGES
     python tools/docs_lint.py docs/index.md
@@ -19,7 +21,8 @@ DOCS = ROOT / "docs"
 BANNED_WORDS = Path(__file__).with_name("banned_words.txt")
 FOLDERS = ("start", "howto", "machines", "reference", "explanation", "evidence")
 SINGLE_PAGES = ("index.md", "glossary.md", "troubleshooting.md")
-GENERATED = tuple(f"reference/{name}.md" for name in ("commands", "python", "cells", "wheels"))  # by tools
+# pages that tools write
+GENERATED = tuple(f"reference/{name}.md" for name in ("commands", "python", "cells", "wheels"))
 MAX_MEDIAN_WORDS = 16
 MAX_WORDS = 30
 READER = re.compile(
@@ -28,7 +31,7 @@ READER = re.compile(
 
 
 def pages() -> list[Path]:
-    """Return the pages that this lint holds to the rules."""
+    """Return the pages that this lint checks."""
     found = [DOCS / name for name in SINGLE_PAGES]
     for folder in FOLDERS:
         found += sorted((DOCS / folder).rglob("*.md"))
@@ -36,7 +39,7 @@ def pages() -> list[Path]:
 
 
 def banned_words(file: Path = BANNED_WORDS) -> list[tuple[re.Pattern[str], str]]:
-    """Return a pattern for each banned word or phrase, with the words to write instead."""
+    """Return a pattern for each banned word or phrase, with its replacement."""
     rows = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
     pairs = [row.partition("->") for row in rows if row and not row.startswith("#")]
     return [
@@ -46,7 +49,7 @@ def banned_words(file: Path = BANNED_WORDS) -> list[tuple[re.Pattern[str], str]]
 
 
 def without_code(text: str) -> str:
-    """Return a page with blocks of code and quotations blanked, so that line numbers stay."""
+    """Return a page with code and quotations blanked; line numbers stay."""
 
     def blank(match: re.Match[str]) -> str:
         return "\n" * match[0].count("\n")
@@ -61,7 +64,7 @@ def without_code(text: str) -> str:
 
 
 def sentences(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the line and the words of each sentence outside code, tables and headings."""
+    """Yield the line and the text of each sentence outside code, tables, headings."""
     block: list[str] = []
     start = 0
     for number, line in enumerate([*text.splitlines(), ""], 1):
@@ -78,12 +81,15 @@ def sentences(text: str) -> Iterator[tuple[int, str]]:
 
 
 def count_words(sentence: str) -> int:
-    """Count the words of a sentence; numbers and pieces of code count, bare punctuation does not."""
+    """Count the words of a sentence.
+
+    Numbers and pieces of code count, bare punctuation does not.
+    """
     return len([word for word in sentence.split() if re.search(r"\w", word)])
 
 
 def findings(page: Path) -> Iterator[str]:
-    """Yield what breaks the rules on a page."""
+    """Yield a message for each place on a page that breaks a rule."""
     text = without_code(page.read_text(encoding="utf-8"))
     name = page.relative_to(ROOT) if page.is_relative_to(ROOT) else page
     said = list(sentences(text))

@@ -1,7 +1,10 @@
-"""Draw the pictures of docs/explanation/letters.md: four alphabets by `brushsvg preview --show strokes`.
+"""Draw the four alphabets of docs/explanation/letters.md.
 
-Needs the folder into which npm has put the fonts: npm install --prefix FOLDER --no-save @fontsource/open-sans
-@fontsource/lora @fontsource/kaushan-script @fontsource/caveat-brush
+    draw_alphabets.py FOLDER
+
+`brushsvg preview --show strokes` draws them. FOLDER is the folder into which npm has put the fonts:
+npm install --prefix FOLDER --no-save @fontsource/open-sans @fontsource/lora @fontsource/kaushan-script
+@fontsource/caveat-brush
 """
 
 from __future__ import annotations
@@ -19,7 +22,10 @@ TEXT = r"ABCDEFGHI\nJKLMNOPQR\nSTUVWXYZ\nabcdefghi\njklmnopqr\nstuvwxyz"
 
 
 def without_list(image: np.ndarray) -> np.ndarray:
-    """The sheet alone, in few colours: the list of a hundred strokes below it is longer than the alphabet."""
+    """Return the sheet alone, in few colours.
+
+    The list of a hundred strokes below the sheet is longer than the alphabet.
+    """
     on_sheet = (image == 255).all(axis=2).mean(axis=1) > 0.3
     low, high = np.flatnonzero(on_sheet)[[0, -1]]
     return (image[low:high] // 8 * 8 + 7).astype(np.uint8)

@@ -1,7 +1,8 @@
-"""Draws docs/explanation/ends.png: how strokes begin (pointed, round, butt), and below how they end.
+"""Draw docs/explanation/ends.png: how strokes begin and end.
 
-Grey is painted target, red is unpainted target, blue is paint outside of it; the tool's path on the paper is
-green. Needs nothing but the package.
+The upper rows show beginnings (pointed, round, butt), the lower rows show ends. Grey is painted target, red
+is unpainted target, and blue is paint outside of the target. The tool's path on the paper is green. The
+script needs only the package.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from brushsvg.machine.realised.arc_chords import with_chords
 
 PX_PER_MM = 24.0
 SIZE_MM = (26.0, 13.0)
-AT_MM = (7.5, 6.5)  # of the ends that are looked at, from the lower left of a cell
+AT_MM = (7.5, 6.5)  # place of the shown beginning or end, from the lower left of a cell
 COLOURS = {"both": (0xB8, 0xB4, 0xB0), "wanted": (0x3C, 0x46, 0xD0), "painted": (0xD0, 0x80, 0x40)}  # BGR
 PATH = (0x50, 0x90, 0x30)
 ROWS = (
@@ -30,13 +31,16 @@ ROWS = (
 
 
 def bar(half_mm: float, slant: float = 0.0) -> np.ndarray:
-    """A bar cut straight, or slanted, half a width before the path's first point."""
+    """Return a bar that is cut, straight or slanted, half a width before the path."""
     x, y = np.array([-half_mm - slant * half_mm, 40, 40, -half_mm + slant * half_mm]), half_mm
     return np.column_stack([x, [-y, -y, y, y]])
 
 
 def strokes(ending: bool) -> list:
-    """The path with its round caps, cut straight, cut slanted, and bent; it ends or begins where it is looked at."""
+    """Return strokes with round caps, cut straight, cut slanted, and bent.
+
+    They end at the shown place if ending is True, else they begin there.
+    """
     straight = np.array([[0.0, 0, 10, 0, 20, 0, 34, 0]])
     bent = np.array([[0.0, -4, 5, -4, 12, -2, 14, 12]])
     made = [(straight, None), (straight, bar(2.0)), (straight, bar(2.0, 0.5)), (bent, None)]

@@ -1,7 +1,10 @@
-"""Draws docs/evidence/words.png: a word in each of the fonts given, as the font has it, as round-6 paints it when
-strokes simply begin, end and turn (--start pointed --end round --corners turn), and as it paints it by default.
+"""Draw docs/evidence/words.png: words in fonts, and as round-6 paints them.
 
-FONT WORD, in pairs; each is painted as large as benchmarks/letters.py has it.
+    draw_words.py FONT WORD [FONT WORD ...]
+
+Each row first shows the word in its font. Next is the paint of round-6 when strokes simply begin, end and
+turn (--start pointed --end round --corners turn), and last the paint by default. Words have the size that
+benchmarks/letters.py gives them.
 """
 
 from __future__ import annotations

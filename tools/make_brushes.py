@@ -1,6 +1,8 @@
-"""Writes the brush files that come with brushsvg: python tools/make_brushes.py [FOLDER].
+"""Write the brush files that come with brushsvg.
 
-The same numbers give the same bytes; a test holds the shipped files against what this makes.
+    python tools/make_brushes.py [FOLDER]
+
+Equal numbers give equal bytes. A test compares the shipped files with the files that this script makes.
 """
 
 from __future__ import annotations
@@ -18,8 +20,9 @@ SHIPPED = Path(__file__).parents[1] / "python" / "brushsvg" / "data" / "brushes"
 
 ARTICLE = '"Physically Motivated Model of a Painting Brush for Robotic Painting and Calligraphy"'
 
-# Of round-6, ascending powers of depth. The floor of the widest section, 0.3 h, keeps outlines of small
-# depths from turning into half ellipses whose base is at the tip.
+# Values of round-6; coefficients are in ascending powers of the depth. The floor of the widest section is 0.3
+# times the half width. It keeps outlines at small depths from turning into half ellipses with their base at
+# the tip.
 ROUND_WIDEST = [-2.35, 2.75, -0.42, 0.024]
 ROUND_HALF_WIDTH_PER_DEPTH = 0.42
 ROUND_FLOOR_PER_DEPTH = 0.126
@@ -27,22 +30,25 @@ ROUND_DIP_MM = 7.0
 
 PEN_HALF_WIDTH_MM = 0.5
 
-# Of liner-1: nobody measured it. Long bristles of little width trail far; a quarter of their length is as deep as one
-# presses such a brush.
+# Values of liner-1, which nobody has measured. Long, narrow bristles trail far. People press a liner down by
+# a quarter of the length of its bristles at most.
 LINER_DEEPEST_MM = 5
 LINER_HALF_WIDTH_MM = (0.5, 1.0)
 LINER_LAG_MM = [10.0, 1.0]
 
 
 def round_outline(depth: float) -> list[list[float]]:
-    """Drop at a depth [mm], as long in all as the paint where the widest section leaves room for that."""
+    """Return the outline at a depth [mm], a drop.
+
+    The drop is at most as long as the dip into the paint, where the widest section leaves room for this.
+    """
     half = ROUND_HALF_WIDTH_PER_DEPTH * depth
     widest = max(sum(c * depth**i for i, c in enumerate(ROUND_WIDEST)), ROUND_FLOOR_PER_DEPTH * depth)
     return drop(half, widest, min(half, max(ROUND_DIP_MM - widest, 0.25 * half)))
 
 
 def round_6() -> dict:
-    """The round synthetic brush of 6 mm that the article measured."""
+    """Return round-6, the round synthetic brush of 6 mm that the article measured."""
     return {
         "format": "brushsvg/brush",
         "version": 1,
@@ -99,7 +105,7 @@ def round_6() -> dict:
 
 
 def round_6_angles() -> dict:
-    """The same brush by the laws that the article reads from angles of its bristles, section 3.3."""
+    """Return round-6 with the article's laws from angles of bristles (section 3.3)."""
     brush = round_6()
     brush["name"] = "round-6-angles"
     brush["about"] = "round-6 by the article's laws from angles, whose scatter is larger: to compare with."
@@ -124,7 +130,10 @@ def round_6_angles() -> dict:
 
 
 def liner_1() -> dict:
-    """A liner like the one of the article's section 3.5, of which only the size is printed: all laws are assumed."""
+    """Return a liner like the one in section 3.5 of the article.
+
+    The article prints only the size of the liner, so all laws are assumed.
+    """
     depths = [0.5 * k for k in range(1, 2 * LINER_DEEPEST_MM + 1)]
     printed = f"{ARTICLE}, section 3.5, prints marks 1 to 2 mm wide and bristles of 20 mm, and no law."
     half = [LINER_HALF_WIDTH_MM[0], (LINER_HALF_WIDTH_MM[1] - LINER_HALF_WIDTH_MM[0]) / LINER_DEEPEST_MM]
@@ -161,7 +170,7 @@ def liner_1() -> dict:
         "footprints": {
             "dragged": [
                 {"depth_mm": d, "outline_mm": drop(h, WIDEST_PER_HALF * h, h)}
-                for d in (0.01, *depths)  # below the least depth outlines shrink
+                for d in (0.01, *depths)  # outlines shrink below the least depth
                 for h in [half[0] + half[1] * d]
             ],
             "pressed": [],
@@ -172,7 +181,7 @@ def liner_1() -> dict:
 
 
 def rigid() -> dict:
-    """A felt pen of 1 mm: no lag, the contact is the disc under the TCP."""
+    """Return a felt pen of 1 mm, without lag; the contact is the disc under the TCP."""
     to_centre = {"coefficients": [PEN_HALF_WIDTH_MM], "source": "Radius of the nib.", "assumed": False}
     outline = disc(PEN_HALF_WIDTH_MM)
     return {
@@ -188,8 +197,8 @@ def rigid() -> dict:
         "tip_gap": to_centre,
         "tip_to_widest": to_centre,
         "half_width": to_centre,
-        # A pen draws at full width as soon as it touches: the least depth, below which outlines shrink, is
-        # tiny.
+        # A pen draws at full width as soon as it touches the paper. Outlines shrink below the least depth, so
+        # the least depth is tiny.
         "footprints": {
             "dragged": [{"depth_mm": d, "outline_mm": outline} for d in (0.01, 1)],
             "pressed": [],
@@ -198,13 +207,13 @@ def rigid() -> dict:
 
 
 def brush_files() -> dict[str, str]:
-    """File name -> text of every shipped brush."""
+    """Return the text of every shipped brush by file name."""
     brushes = [round_6(), round_6_angles(), liner_1(), rigid()]
     return {f"{b['name']}.json": _core.write_brush(_core.read_brush(json.dumps(b))) for b in brushes}
 
 
 def main() -> None:
-    """Write the files into the folder given, or where they are shipped from."""
+    """Write the files to the given folder, or to the folder of the shipped brushes."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else SHIPPED
     write_files({folder / name: text for name, text in brush_files().items()})
 

@@ -1,7 +1,9 @@
-"""Writes what editors and type checkers know of the C++ module: python tools/make_stubs.py [FOLDER].
+"""Write the stubs of the C++ module for editors and type checkers.
 
-pybind11-stubgen reads it off the module that is built; what pybind11 cannot say is put in here. A test holds the
-files in the tree against what this makes.
+    python tools/make_stubs.py [FOLDER]
+
+pybind11-stubgen derives them from the built module. This script adds the types that pybind11 cannot express.
+A test compares the files in the tree with the files that this script makes.
 """
 
 from __future__ import annotations
@@ -14,8 +16,8 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "python" / "brushsvg"
 
-# What a signature of pybind11 does not show: a name is taken for a StrokeId, any value may be compared, a number gives
-# a number and an array an array.
+# Signatures of pybind11 do not show that a name can stand for a StrokeId, and that any value can be compared.
+# They also do not show that a number gives a number and an array gives an array.
 REPLACEMENTS = (
     (r"def __eq__\(self, arg0: \w+\) -> bool", "def __eq__(self, other: object, /) -> bool"),
     (r"\b(id|stroke): StrokeId = ''", r"\1: StrokeId | str = ''"),
@@ -49,7 +51,7 @@ REPLACEMENTS = (
 
 
 def stub_files() -> dict[str, str]:
-    """File name -> text of the stubs, below the package."""
+    """Return the text of each stub by its file name below the package."""
     with tempfile.TemporaryDirectory() as folder:
         words = ["-m", "pybind11_stubgen", "brushsvg._core", "--output-dir", folder]
         enums = [f"--enum-class-locations={name}:brushsvg._core" for name in ("Norm", "Lines")]
@@ -68,7 +70,7 @@ def stub_files() -> dict[str, str]:
 
 
 def main() -> None:
-    """Write the files into the folder given, or where the package has them."""
+    """Write the files to the given folder, or to the folder in the package."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PACKAGE / "_core"
     folder.mkdir(exist_ok=True)
     for name, text in stub_files().items():

@@ -1,7 +1,7 @@
 """Show which tests, fixtures and builds take longest.
 
-    python tools/test_times.py run python long integration    # run these suites with the costs recorded, then show them
-    python tools/test_times.py show build/test-times/python   # show what an earlier run recorded
+    python tools/test_times.py run python long integration    # run these suites, record and show the costs
+    python tools/test_times.py show build/test-times/python   # show the costs of an earlier run
 
 Processor times include subprocesses; they hardly change when the machine is busy, unlike times on the clock.
 """
@@ -19,7 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 RECORDS = ROOT / "build" / "test-times"
-SUITES = {  # name: what pytest is given
+SUITES = {  # name: arguments of pytest
     "python": ["-m", "not long and not thorough", "tests/python", "tests/laws", "tests/journeys"],
     "long": ["-m", "long and not thorough", "tests/laws"],
     "integration": ["-m", "not long and not thorough", "tests/integration"],
@@ -81,7 +81,7 @@ def show_suite(folder: Path, rows: int) -> None:
 
 
 def show_builds(rows: int) -> None:
-    """Compilations by their time on the clock, from ninja's own log."""
+    """Show the build steps by their time on the clock, from ninja's own log."""
     for log in sorted(ROOT.glob("build/*/.ninja_log")):
         costs = {}
         for line in log.read_text().splitlines()[1:]:

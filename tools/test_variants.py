@@ -1,8 +1,9 @@
-"""Run the tests under other arithmetic and list what changes: `make test-variants`.
+"""Run the tests with other arithmetic and list the changes: `make test-variants`.
 
-Processors differ in the last bits of sums and functions: fused multiply-adds, other kernels of OpenBLAS, numpy and
-glibc. No test may depend on them. Each variant here is a processor: everything that calculates takes the way that
-it would take there. What fails under one is tried again under each of its parts, which are variants as well.
+Processors differ in the last bits of sums and functions. The reasons are fused multiply-adds and other
+kernels of OpenBLAS, numpy and glibc. No test may depend on these bits. A variant imitates a processor: all
+code calculates as it would calculate there. If a test fails with a variant, run it with each part of the
+variant. Parts are variants as well.
 
     tools/test_variants.py --variant haswell --variant glibc-no-fma --suite python --tests 'test_fit*'
 """
@@ -25,7 +26,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SITE = ROOT / "tools/variant_site"
 BUILDS = ROOT / "build/variants"
 OPENBLAS_CORES = ("Nehalem", "Haswell", "Zen", "SkylakeX")
-# of the parts of find_variants: what these processors are made of. The first has no FMA, the second no AVX-512.
+# The parts from find_variants that imitate these processors. The first has no FMA, the second no AVX-512.
 PROCESSORS = {
     "nehalem": ("glibc-no-fma", "numpy-baseline", "openblas-nehalem"),
     "haswell": ("v3-fma", "numpy-no-avx512", "openblas-haswell"),
@@ -37,17 +38,20 @@ PYTEST_SUITES = {
     "laws": ["tests/laws", "-m", "long"],
 }
 SUITES = ("cpp", *PYTEST_SUITES)
-# of the environment: only variants set these
+# environment variables that only variants set
 SWITCHES = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "GLIBC_TUNABLES")
 
 
 @dataclass(frozen=True)
 class Variant:
-    """What is different from the plain build. `changes` names the entries of the fingerprint that show it."""
+    """The differences from the plain build.
+
+    `changes` names the entries of the fingerprint that show the differences.
+    """
 
     name: str
     changes: tuple[str, ...] = ()
-    flags: str = ""  # of the compiler
+    flags: str = ""  # flags of the compiler
     environment: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -60,11 +64,14 @@ class Variant:
 
 
 def find_variants(plain: dict) -> list[Variant]:
-    """List the parts that can be changed on a processor on which the plain build calculates like this."""
+    """List the parts that can be changed on this processor.
+
+    plain: the fingerprint of the plain build on this processor.
+    """
     of_512 = [name for name in plain["numpy"] if name.startswith(("X86_V4", "AVX512"))]
     out = [
         Variant("no-contract", ("core",), "-ffp-contract=off"),
-        # tables of Eigen go to the distribution's Ceres, which aligns them by 16
+        # Tables of Eigen are passed to the distribution's Ceres, which aligns them by 16 bytes.
         Variant("v3-fma", ("core",), "-march=x86-64-v3 -ffp-contract=fast -DEIGEN_MAX_ALIGN_BYTES=16"),
     ]
     for name, changes, switch, value in (
@@ -127,7 +134,10 @@ def fingerprint(variant: Variant) -> dict:
 
 
 def why_skipped(variant: Variant, found: dict, known: dict[str, dict]) -> str:
-    """Say which variant already calculates like this one, or nothing. Another build is always run."""
+    """Return why a variant is skipped, or "" if it has to run.
+
+    A variant is skipped if an earlier one calculates like it. A variant with its own build always runs.
+    """
     if variant.flags:
         return ""
     alike = [
@@ -139,7 +149,7 @@ def why_skipped(variant: Variant, found: dict, known: dict[str, dict]) -> str:
 
 
 def read_junit(path: Path) -> dict[str, bool]:
-    """Which tests passed; skipped ones are left out."""
+    """Return whether each test passed; skipped tests are left out."""
     out = {}
     for case in ElementTree.parse(path).iter("testcase"):
         if case.find("skipped") is None:
@@ -158,7 +168,7 @@ def read_doctest(path: Path) -> dict[str, bool]:
 
 
 def run_suite(variant: Variant, suite: str, patterns: list[str], processes: str) -> dict[str, bool]:
-    """Run the tests in files whose names match a pattern. Returns which of them passed."""
+    """Run the tests in files that match a pattern; return whether each test passed."""
     variant.results.mkdir(parents=True, exist_ok=True)
     report = variant.results / f"{suite}.xml"
     report.unlink(missing_ok=True)
@@ -195,7 +205,7 @@ def matching(folders: list[str], patterns: list[str]) -> Iterator[Path]:
 
 
 def differences(now: dict[str, bool], plain: dict[str, bool]) -> list[str]:
-    """Tests that pass in one of two runs and fail in the other."""
+    """Return the tests that pass in one of two runs and fail in the other."""
     words = {True: "passes", False: "fails"}
     return [f"{name} {words[now[name]]}" for name in now if name in plain and now[name] != plain[name]]
 

@@ -22,8 +22,8 @@ from pathlib import Path
 from docs_lint import BANNED_WORDS, ROOT, banned_words
 
 FOLDERS = ("python", "cpp", "tests", "examples", "benchmarks", "tools", "plugins")
-NOT_YET = (  # files and folders that still hold such words
-    "python/brushsvg/_core",  # its names are those of the core
+NOT_YET = (  # files and folders that still contain banned words
+    "python/brushsvg/_core",  # has the names of the C++ core
 )
 BANNED_IN_CODE = BANNED_WORDS.with_name("banned_words_in_code.txt")
 PYTHON = (".py", ".pyi")
@@ -32,7 +32,7 @@ QUOTATION = re.compile(r"(?<![\w\\])\"[^\"\n]*\"(?!\w)|`[^`\n]*`")
 CPP_TEXT = re.compile(
     r"//(?P<line>.*)|/\*(?P<block>[\s\S]*?)\*/|\bR\"(?P<mark>\w*)\((?P<raw>[\s\S]*?)\)(?P=mark)\"|\"(?P<string>(?:\\.|[^\"\\\n])*)\"|'(?:\\.|[^'\\\n])+'"
 )
-KEPT_NAMES = (  # of the core's interface, and `tell` of files
+KEPT_NAMES = (  # names of the core's interface, and `tell` of file objects
     *("wanted_mm", "wanted_outline", "wanted_coverage", "wanted_pieces", "left_aside", "thin_out", "tell"),
 )
 QUOTING = (
@@ -49,7 +49,7 @@ def python_text(source: str) -> Iterator[tuple[int, str]]:
         if token.type == tokenize.COMMENT:
             yield token.start[0], QUOTATION.sub("", token.string)
         elif token.type == tokenize.NAME and token.string not in KEPT_NAMES:
-            yield token.start[0], token.string.replace("_", "  ")  # no phrases
+            yield token.start[0], token.string.replace("_", "  ")  # two spaces match no phrase
         elif token.type == tokenize.STRING and " " in token.string:
             delimiter = PREFIX.match(token.string)
             inside = token.string[delimiter.end() : -len(delimiter[1])] if delimiter else token.string
@@ -76,7 +76,7 @@ def findings(path: Path, banned: list[tuple[re.Pattern[str], str]]) -> Iterator[
 
 
 def sources(folders: list[Path]) -> list[Path]:
-    """Return the source files of these folders and files, without those that quote the words."""
+    """Return the source files of these paths, without files that quote the words."""
     found = [
         path for folder in folders for path in ([folder] if folder.is_file() else sorted(folder.rglob("*")))
     ]

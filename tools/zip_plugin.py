@@ -1,4 +1,9 @@
-"""The Inkscape extension as a zip for the extension manager: zip_plugin.py FOLDER OUT. Same files, same bytes."""
+"""Zip the Inkscape extension for the extension manager.
+
+    zip_plugin.py FOLDER OUT
+
+Equal files give equal bytes.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Calibration sheet: the page that a brush is calibrated on, next to the document, and the program that paints it.
+"""Add a calibration sheet next to the document, and save the program for it.
 
-Its marks are in a locked layer, which no command paints. Run again, it replaces its page.
+The marks of the sheet are in a locked layer, which no command paints. A second run replaces the page of the
+first.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ def main() -> None:
     args = arguments(
         brush="document", brush_file="", cell="document", cell_file="", sheet="a4", strokes="all", output=""
     )
-    wished = "" if os.path.isdir(args.output) else args.output  # Inkscape makes a folder of an empty choice
+    wished = "" if os.path.isdir(args.output) else args.output  # Inkscape turns an empty choice into a folder
     suffix = os.path.splitext(wished)[1].lower() or ".json"
     if suffix not in PROGRAMS:
         raise StopError(
@@ -34,7 +35,7 @@ def main() -> None:
     words += ["--sheet", args.sheet, *choices(args)]
     words += ["--strokes", args.strokes] if args.strokes != "all" else []
     with Run(args.executable, args.input_file, "chart", *words) as run:
-        import inkex  # while brushsvg runs
+        import inkex  # imported while brushsvg runs, to save time
         from lxml import etree
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))

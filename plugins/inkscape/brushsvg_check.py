@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brush check: marks what the brush or the machine cannot paint, in place and with the reason, in a locked layer."""
+"""Mark the objects that the brush or the machine cannot paint, with the reason.
+
+The marks are at the places of the objects, in a locked layer.
+"""
 
 from __future__ import annotations
 
@@ -15,20 +18,19 @@ REFUSED, WARNED = "#d4351c", "#e08700"
 SHAPES = {f"{SVG}{name}" for name in ("path", "rect", "circle", "ellipse", "line", "polyline", "polygon")}
 OWN_TO_A_SHAPE = (f"{INKSCAPE}path-effect", f"{INKSCAPE}original-d", "class", "id", "transform")
 TEXT_MM = 3
-LETTERS = 50  # of a line of text
-HALO = "paint-order:stroke;stroke:#ffffff"  # letters can be read on top of a drawing
+LETTERS = 50  # characters in a line of text
+HALO = "paint-order:stroke;stroke:#ffffff"  # keeps letters readable on top of a drawing
 
 
 def main() -> None:
     args = arguments(brush="document", brush_file="", cell="document", cell_file="", compensation="document")
     with Run(args.executable, args.input_file, "preview", DRAWING, "--json", *choices(args)) as run:
-        import inkex  # while brushsvg runs: it knows where things are
+        import inkex  # imported while brushsvg runs; it finds the places of objects
         from lxml import etree
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
-        measured = inkex.load_svg(
-            args.input_file
-        )  # not the one to be written: inkex rewrites what it looks at
+        # A second copy, which is not written: inkex rewrites the elements that it reads.
+        measured = inkex.load_svg(args.input_file)
         report = run.report()
     remove_layer(document.getroot(), LAYER_ID)
     layer = locked_layer(etree, LAYER_ID, _label(report))
@@ -50,7 +52,7 @@ def _label(report: dict) -> str:
 
 
 def _mark_all(etree, svg, layer, report: dict) -> list[str]:
-    """Sentences about what cannot be shown in place."""
+    """Mark the objects, and return the sentences that have no object in the drawing."""
     unplaced = []
     by_id = {node.get("id"): node for node in svg.iterdescendants() if node.get("id")}
     per_element: dict[str, list[tuple[str, str]]] = {}
@@ -69,7 +71,7 @@ def _mark_all(etree, svg, layer, report: dict) -> list[str]:
 
 def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
     colour = said[0][0]
-    sentence = "; ".join(dict.fromkeys(sentence for _, sentence in said))  # each copy says it
+    sentence = "; ".join(dict.fromkeys(sentence for _, sentence in said))  # each copy repeats the sentence
     place = element.composed_transform()
     unit = svg.unittouu("1mm")
     if element.tag in SHAPES:
@@ -77,16 +79,15 @@ def _mark(etree, svg, layer, element, said: list[tuple[str, str]]) -> None:
     at = place.apply_to_point((_number(element, "x"), _number(element, "y")))
     if element.tag in SHAPES and (box := element.bounding_box(element.getparent().composed_transform())):
         drawn = element.specified_style().get("stroke-width", "1")
-        width = (
-            svg.unittouu(drawn) if drawn[-1:].isalpha() else _float(drawn)
-        )  # plain numbers are the element's units
+        # A number without a unit is in the units of the element.
+        width = svg.unittouu(drawn) if drawn[-1:].isalpha() else _float(drawn)
         half_width = width * abs(place.a * place.d - place.b * place.c) ** 0.5 / 2
         at = (box.left, box.top - half_width - unit)
     _write(etree, layer, sentence, at, TEXT_MM * unit, colour)
 
 
 def _write(etree, layer, sentence: str, at, size: float, colour: str) -> None:
-    """Lines of text that end above a point."""
+    """Write lines of text that end above a point."""
     text = etree.SubElement(layer, f"{SVG}text")
     text.set(
         "style",

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Messages for people: in the words of Inkscape's dialogs, and without a dialog where nobody can close it."""
+"""Show messages in the words of Inkscape's dialogs.
+
+No dialog is opened if nobody can close it.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ import os
 import re
 import sys
 
-UNATTENDED = (b"--batch-process", b"--export-", b"-o")  # with these Inkscape opens no window that stays
-IN_DIALOGS = {  # by the code of the notice: what to do in Inkscape in place of its advice for those who type
+UNATTENDED = (b"--batch-process", b"--export-", b"-o")  # with these, Inkscape opens no window that stays open
+IN_DIALOGS = {  # code of a notice: advice for Inkscape, in place of the advice for people who type commands
     "background": "raise it above another object to paint it",
     "brush-unknown": "choose another one in Brush settings, or a brush file in this dialog",
     "cell-unknown": "choose another one in Brush settings",
@@ -23,25 +26,25 @@ IN_DIALOGS = {  # by the code of the notice: what to do in Inkscape in place of 
     "to strokes",
 }
 FLAG = re.compile(r"(?:^|[\s(`])(?:brushsvg [a-z]+ [^;]*)?--[a-z]")
-REPAIR = "repair or delete it, or draw it again"  # for damage of any code
+REPAIR = "repair or delete it, or draw it again"  # advice for damage with any code
 
 
 def in_dialogs(notice: dict) -> str:
-    """The text of a notice, with its advice worded for who has dialogs and no flags."""
+    """Return the text of a notice, with advice for people who have no command line."""
     sentence, advice = notice["sentence"], notice["advice"]
     done = IN_DIALOGS.get(notice["code"], REPAIR if notice["damaged"] else "") if advice else ""
     if done:
         sentence = sentence[: len(sentence) - len(advice)].removesuffix("; ")
-    # what is left may name flags: who has dialogs cannot type them
+    # The rest of the sentence may name flags, which nobody can type in a dialog.
     clauses = [clause for clause in sentence.split("; ") if not FLAG.search(clause)]
     first = re.match(r"(.*?)(?:[:,] [^:,]*)?$", FLAG.split(sentence)[0].rstrip(" ,:("), re.DOTALL)[1]
     return "; ".join([*(clauses or [first]), *([done] if done else [])])
 
 
 def show_message(text: str) -> None:
-    """Show sentences in Inkscape's dialog, which it makes of stderr and which waits for somebody to close it.
+    """Show sentences in a dialog, or on the stderr of an unattended Inkscape.
 
-    Where nobody will, they go where Inkscape's own warnings go.
+    Inkscape shows the stderr of an extension in a dialog that waits until somebody closes it.
     """
     sys.stdout.flush()
     inkscape = _unattended_inkscape()
@@ -54,8 +57,12 @@ def show_message(text: str) -> None:
 
 
 def _unattended_inkscape() -> str | None:
-    """The process, in /proc, of the Inkscape that reads our stderr, if it was called to do something and to end. (It is
-    not our parent: it lets go of what it starts.) Other systems than Linux do not say."""
+    """Return the /proc folder of the unattended Inkscape that reads our stderr.
+
+    Inkscape is unattended if it was started to do something and to end; else the result is None. Inkscape is
+    not the parent process, because it detaches the programs that it starts. Systems other than Linux do not
+    show the process.
+    """
     with contextlib.suppress(OSError):
         pipe = os.readlink("/proc/self/fd/2")
         return next(
@@ -65,13 +72,14 @@ def _unattended_inkscape() -> str | None:
 
 
 def _is_unattended(process: str) -> bool:
-    with contextlib.suppress(OSError), open(f"{process}/cmdline", "rb") as file:  # it may end just now
+    # The process may end at any time.
+    with contextlib.suppress(OSError), open(f"{process}/cmdline", "rb") as file:
         program, *words = file.read().split(b"\0")
         return b"inkscape" in os.path.basename(program) and any(word.startswith(UNATTENDED) for word in words)
     return False
 
 
 def _has(process: str, pipe: str) -> bool:
-    with contextlib.suppress(OSError):  # somebody else's
+    with contextlib.suppress(OSError):  # a process of another user
         return pipe in (os.readlink(f"{process}/fd/{each}") for each in os.listdir(f"{process}/fd"))
     return False

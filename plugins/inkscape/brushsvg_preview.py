@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brush preview: what the brush will paint, in a locked layer of its own. Nothing else in the drawing is touched.
+"""Show the marks that the brush will paint, in a locked layer of their own.
 
-Live preview runs this at each change of the dialog, so brushsvg is started before anything else is loaded, and of
-inkex nothing is: lxml, which it stands on, is enough.
+Nothing else in the drawing changes. Live preview runs this script at each change in the dialog, so it has to
+be fast. It starts brushsvg before it loads any other module, and it uses lxml instead of inkex, which is
+built on lxml.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from xml.etree import ElementTree
 
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, selection
 
-# Two colours each, so far apart that one of them can be seen on any ink. The drawing shows through.
+# Each pair of colours differs so much that one of the two is visible on any ink. The drawing shows through.
 PAINTED, MISSED = ("#1c8fd4", "#d98200"), ("#d4351c", "#7000b0")
 OPACITY = 0.6
 SVG = "{http://www.w3.org/2000/svg}"
@@ -23,7 +24,7 @@ INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 SODIPODI = "{http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd}"
 SKIPPED = "data-brushsvg-skip"
 MOVED = "svg: the whole drawing has a transform, which Inkscape 1.2 does not show; it is painted with it"
-OUTLINE = "outline"  # label of what holds a converted letter as it was
+OUTLINE = "outline"  # label of the group that holds the original of a converted letter
 LAYER_ID = "brushsvg-preview"
 PX_PER_MM = 96 / 25.4
 
@@ -32,7 +33,7 @@ def main() -> None:
     args = arguments(brush="document", brush_file="", compensation="document")
     words = [*choices(args), *selection(own_ids(args.input_file, args.ids))]
     with Run(args.executable, args.input_file, "preview", DRAWING, "-o", "marks.svg", *words) as run:
-        from lxml import etree  # while brushsvg runs
+        from lxml import etree  # imported while brushsvg runs, to save time
 
         document = etree.parse(args.input_file, etree.XMLParser(huge_tree=True))
         _, warnings = run.finish()
@@ -44,7 +45,11 @@ def main() -> None:
 
 
 def own_ids(drawing: str, ids: list[str]) -> list[str]:
-    """Of what is selected: a letter that was converted stands for its strokes, a layer of ours for nothing."""
+    """Return the ids that stand for the selected ids.
+
+    The hidden original of a converted letter stands for the group of its strokes. Objects in layers of this
+    extension are left out.
+    """
     with open(drawing, "rb") as file:
         if not ids or SKIPPED.encode() not in file.read():
             return ids
@@ -64,7 +69,10 @@ def own_ids(drawing: str, ids: list[str]) -> list[str]:
 
 
 def remove_layer(root, name: str) -> None:
-    """A layer or a page of ours. What else has its name is somebody's own and stays."""
+    """Remove a layer or a page that this extension made.
+
+    Any other element with this id belongs to the user and stays.
+    """
     for node in [node for node in root.iter() if node.get("id") == name]:
         if node.get(SKIPPED) or node.tag == f"{INKSCAPE}page":
             node.getparent().remove(node)
@@ -91,7 +99,7 @@ def _layer(etree, marks, root, warnings: list[str], save_refuses: list[str]):
 
 
 def seen_on(ink: str, colours: tuple[str, str]) -> str:
-    """The colour that differs most from the ink; both #rrggbb."""
+    """Return the colour that differs most from the ink; all are #rrggbb."""
     return max(colours, key=lambda colour: math.dist(rgb(colour), rgb(ink)))
 
 
@@ -100,7 +108,7 @@ def rgb(colour: str) -> tuple[int, ...]:
 
 
 def locked_layer(etree, name: str, label: str):
-    """An empty layer that can neither be edited by mistake nor painted."""
+    """Return an empty layer that is never painted and is safe from accidental edits."""
     layer = etree.Element(f"{SVG}g")
     layer.set("id", name)
     layer.set(f"{INKSCAPE}groupmode", "layer")
@@ -129,11 +137,14 @@ def _label(paths, missed: int, marks, warnings: int, save_refuses: list[str]) ->
 
 
 def own_undone(root) -> str:
-    """The inverse of the root's own transform, for layers of ours: they cover their objects where it is applied,
-    as SVG and brushsvg do, and where it is not, as in Inkscape 1.2."""
+    """Return the inverse of the root's own transform, for layers of this extension.
+
+    With the inverse, the layers cover their objects in any program: SVG and brushsvg apply the root's
+    transform, Inkscape 1.2 does not.
+    """
     if not root.get("transform"):
         return ""
-    from inkex import Transform  # takes too long for every preview
+    from inkex import Transform  # loading inkex takes too long for every preview
 
     return str(-Transform(root.get("transform")))
 
@@ -143,7 +154,7 @@ def _mm(length: str) -> float:
 
 
 def user_from_mm(root, width_mm: float, height_mm: float) -> str:
-    """A transform from millimetres of the sheet, y down, to the units in which the drawing's root counts."""
+    """Return the transform from mm of the sheet, y down, to the units of the root."""
     box = root.get("viewBox")
     numbers = [float(part) for part in re.split(r"[\s,]+", box.strip())] if box and box.strip() else []
     if len(numbers) != 4 or numbers[2] <= 0 or numbers[3] <= 0:

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Finds and runs the program brushsvg. Nothing but the standard library: a live preview has no time to import more."""
+"""Find and run the program brushsvg.
+
+This module imports only the standard library: a live preview has no time for other imports.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +22,12 @@ NEEDED = (0, 1, 0)
 INSTALL = "pipx install brushsvg"
 DRAWING = "drawing.svg"
 EXECUTABLE_NOTE = "brushsvg-executable.txt"  # written by `brushsvg setup inkscape`
-LONGEST = 30_000 if sys.platform == "win32" else 120_000  # bytes: systems allow 32 768 and 131 072 in a word
-# What Inkscape's Python has to have next to its own modules, and the packages of Debian and Ubuntu that bring it.
+# bytes of an argument: systems allow 32 768 and 131 072
+LONGEST = 30_000 if sys.platform == "win32" else 120_000
+# Modules that Inkscape's Python needs in addition to its own, and their packages in Debian and Ubuntu.
 PACKAGES = {name: f"python3-{name}" for name in ("lxml", "cssselect", "numpy", "packaging", "tinycss2")}
-# Where pipx, uv, pip and Homebrew put programs, and where pipx and uv keep them: a desktop's PATH may lack all of them.
-# Folders whose variable is not set are left out.
+# Folders in which pipx, uv, pip and Homebrew put programs, and in which pipx and uv keep environments. The
+# PATH of a desktop may contain none of them. Folders with a variable that is not set are left out.
 USUAL = (
     "$PIPX_BIN_DIR",
     "$UV_TOOL_BIN_DIR",
@@ -37,7 +41,7 @@ USUAL = (
     "$UV_TOOL_DIR/brushsvg/bin",
     "$XDG_DATA_HOME/uv/tools/brushsvg/bin",
     "~/.local/share/uv/tools/brushsvg/bin",
-    "~/pipx/venvs/brushsvg/Scripts",  # from here on: Windows
+    "~/pipx/venvs/brushsvg/Scripts",  # this and the following: Windows
     "$LOCALAPPDATA/pipx/pipx/venvs/brushsvg/Scripts",
     "$APPDATA/uv/tools/brushsvg/Scripts",
     "$APPDATA/uv/data/tools/brushsvg/Scripts",
@@ -45,11 +49,14 @@ USUAL = (
 
 
 class StopError(Exception):
-    """A message for the person at the drawing program, in sentences."""
+    """A message in sentences for the user of the drawing program."""
 
 
 def arguments(**choices: str) -> argparse.Namespace:
-    """What Inkscape hands over: parameters with their defaults, ids of what is selected, the drawing's file."""
+    """Return the arguments from Inkscape.
+
+    They are the parameters with their defaults, the ids of the selected objects and the drawing's file.
+    """
     parser = argparse.ArgumentParser(allow_abbrev=False)
     parser.add_argument("--id", action="append", dest="ids", default=[])
     for name, default in {"executable": "", **choices}.items():
@@ -59,7 +66,7 @@ def arguments(**choices: str) -> argparse.Namespace:
 
 
 def guarded(main) -> None:
-    """Run main; any failure is a sentence in Inkscape's dialog, which shows stderr, and status 1."""
+    """Run main; after a failure, show a sentence in a dialog and exit with 1."""
     try:
         main()
     except StopError as stop:
@@ -79,7 +86,10 @@ def guarded(main) -> None:
 
 
 def _lacking(module: str) -> str:
-    """How to get what the Python lacks that runs us: Inkscape's packages only recommend what its extensions need."""
+    """Return how to install a module that the running Python lacks.
+
+    Inkscape's packages only recommend the modules that its extensions need.
+    """
     lacks = f"{sys.executable}, which Inkscape runs extensions with, lacks {module}"
     if module == "inkex":
         return f"{lacks}, which comes with Inkscape: call this from Inkscape's menu Extensions."
@@ -90,9 +100,12 @@ def _lacking(module: str) -> str:
 
 
 def executable(chosen: str) -> str:
-    """Find brushsvg: as chosen in the dialog, on PATH, as noted when the extension was installed, or in the usual
-    places."""
-    if chosen and not os.path.isdir(chosen):  # Inkscape makes a folder of an empty choice of a file
+    """Find the program brushsvg.
+
+    A program chosen in the dialog comes first. Then follow PATH, the program noted when the extension was
+    installed, and the usual folders.
+    """
+    if chosen and not os.path.isdir(chosen):  # Inkscape turns an empty choice of a file into a folder
         if shutil.which(chosen):
             return chosen
         raise StopError(f"{chosen} is not a program that can be run: choose another one under Program.")
@@ -114,7 +127,7 @@ def executable(chosen: str) -> str:
 
 
 def described() -> str:
-    """The program that is used, with its version, or why there is none."""
+    """Return the path of brushsvg with its version, or the reason why there is none."""
     try:
         program = executable("")
     except StopError as stop:
@@ -123,14 +136,17 @@ def described() -> str:
 
 
 def _sandbox() -> str:
-    """The kind of package that hides other programs from this Inkscape, empty for any other."""
+    """Return the kind of package that hides other programs from this Inkscape, or ""."""
     if os.environ.get("FLATPAK_ID") or os.path.exists("/.flatpak-info"):
         return "a Flatpak"
     return "a Snap" if os.environ.get("SNAP") else ""
 
 
 def _version(program: str) -> str:
-    """What the program says of its version, such as "brushsvg 0.1.0", empty if it is another program."""
+    """Return the program's version, such as "brushsvg 0.1.0".
+
+    The result is "" if it is another program.
+    """
     try:
         answer = subprocess.run(
             [program, "--version"],
@@ -155,8 +171,11 @@ def _noted() -> str:
 
 
 class Run:
-    """One brushsvg command next to a copy of the drawing, called DRAWING, started at once. In a `with`, so that its
-    folder goes away."""
+    """One brushsvg command, started at once in a temporary folder.
+
+    The folder holds a copy of the drawing, called DRAWING. Use Run in a `with` statement, which removes the
+    folder.
+    """
 
     def __init__(self, chosen: str, drawing: str, *words: str):
         self.program, self.words = executable(chosen), words
@@ -187,9 +206,10 @@ class Run:
         self.folder.cleanup()
 
     def finish(self, may_refuse: bool = False) -> tuple[str, list[str]]:
-        """What it printed, and its lines of warning. StopError where it refused: may_refuse and printed is fine.
+        """Wait for the end; return the printed text and the lines of warnings.
 
-        `save_refuses` holds the warnings for which it would write no program.
+        Raises StopError if brushsvg refused. With may_refuse, a refusal that printed some text is accepted.
+        `save_refuses` holds the warnings for which brushsvg would write no program.
         """
         out, err = self.process.communicate()
         notices = [(line, _notice(line)) for line in err.splitlines()]
@@ -204,15 +224,14 @@ class Run:
             return out, lines
         if status != 1:
             self._stop_if_too_old()
-        if not any(
-            notice or line.startswith("brushsvg: ") for line, notice in notices
-        ):  # its Python broke down before it could say anything
+        # If there is no message, the program's Python failed before brushsvg could print one.
+        if not any(notice or line.startswith("brushsvg: ") for line, notice in notices):
             reason = f": {lines[-1]}" if lines else f" ({status})"
             raise StopError(f"{self.program} does not run{reason}\nInstall it anew:  {INSTALL} --force")
         raise StopError("\n".join(["brushsvg refuses:", *lines]))
 
     def _in_words(self, notice: dict) -> str:
-        """A line for the dialog. Files of ours, which the person never sees, are not named."""
+        """Return a line for the dialog, without names of temporary files."""
         ours = notice["file"] in self.words and os.path.basename(notice["file"]) == notice["file"]
         return ": ".join(filter(None, ("" if ours else notice["file"], notice["where"], in_dialogs(notice))))
 
@@ -231,7 +250,7 @@ class Run:
             return file.read()
 
     def report(self) -> dict:
-        """The report that it printed, of what can be painted and of what is refused."""
+        """Return the printed report of paintable and refused objects."""
         out, _ = self.finish(may_refuse=True)
         try:
             report = json.loads(out)
@@ -244,7 +263,10 @@ class Run:
         return report
 
     def _stop_if_too_old(self) -> None:
-        """Run only when something went wrong: it would cost each preview a tenth of a second."""
+        """Stop if the program is not brushsvg or is too old.
+
+        Call this only after a failure: it would cost each preview a tenth of a second.
+        """
         found = _version(self.program)
         if not found:
             raise StopError(f"{self.program} is not the program brushsvg: choose another one under Program.")
@@ -257,7 +279,7 @@ class Run:
 
 
 def _notice(line: str) -> dict | None:
-    """A warning or refusal of brushsvg, None for any other line."""
+    """Return the warning or refusal in a line of brushsvg, None for any other line."""
     try:
         notice = json.loads(line)
         return (
@@ -270,17 +292,20 @@ def _notice(line: str) -> dict | None:
 
 
 def root_of(drawing: str) -> dict[str, str]:
-    """Attributes of the drawing's root element."""
+    """Return the attributes of the drawing's root element."""
     return dict(next(ElementTree.iterparse(drawing, events=("start",)))[1].attrib)
 
 
 def _environment() -> dict[str, str]:
-    """Without what an Inkscape that brings its own Python sets for that one."""
+    """Return the environment without PYTHONPATH and PYTHONHOME.
+
+    An Inkscape that brings its own Python sets them for that Python.
+    """
     return {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "PYTHONHOME")}
 
 
 def choices(args: argparse.Namespace) -> list[str]:
-    """Flags for what was chosen; what was left as the document says is not named."""
+    """Return the flags for the choices; a choice of "document" needs no flag."""
     words = []
     for flag in ("brush", "cell", "compensation"):
         said = getattr(args, flag, "document")
@@ -293,7 +318,7 @@ def choices(args: argparse.Namespace) -> list[str]:
 
 
 def selection(ids: list[str]) -> list[str]:
-    """Flags for what is selected, if anything is."""
+    """Return the flags for the selected objects, if there are any."""
     chosen = [re.sub(r'(["\\])', r"\\\1", each) for each in ids]
     words = ", ".join(f'[id="{each}"]' for each in chosen)
     if len(words.encode()) > LONGEST:
@@ -305,7 +330,10 @@ def selection(ids: list[str]) -> list[str]:
 
 
 def element_of(by_id: dict, where: str):
-    """The element of a stroke, None if unknown: id, id/2 for a part of it, id#2 for a pass, use/id for a copy."""
+    """Return the element of a stroke, None if it is unknown.
+
+    where: the id, id/2 for a part of the element, id#2 for a pass, use/id for a copy.
+    """
     for name in (where, where.rpartition("#")[0], where.rpartition("/")[0], where.partition("/")[0]):
         if name in by_id:
             return by_id[name]

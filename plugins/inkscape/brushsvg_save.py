@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Save as robot program, plan, marks or animation: the bytes that `brushsvg convert` and `preview` write."""
+"""Save a drawing as a robot program, plan, marks or animation.
+
+The file is byte for byte the output of `brushsvg convert` or `brushsvg preview`.
+"""
 
 from __future__ import annotations
 

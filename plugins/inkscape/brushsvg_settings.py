@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Brush settings: what the document says of the whole job, to brushsvg on the command line, too.
+"""Store the settings of the whole job in the document.
 
-Inkscape cannot show in a dialog what a document says: fields start with "leave as it is", and stored values are
-reported.
+brushsvg on the command line reads these settings as well. Inkscape cannot show the stored values in a dialog.
+So the fields start with "leave as it is", and a message shows the stored values.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from brushsvg_dialogs import show_message
 from brushsvg_program import StopError, arguments, described, guarded
 
 PREFIX = "data-brushsvg-"
-OWN = {  # what brushsvg does where the document says nothing
+OWN = {  # brushsvg's defaults, for settings that the document does not have
     "brush": "round-6",
     "compensation": "closed",
     "start": "auto",
@@ -24,12 +24,12 @@ OWN = {  # what brushsvg does where the document says nothing
     "wide": "auto",
     "tolerance": "0.05mm",
 }
-NAMES = {
+NAMES = {  # names of settings in the dialog
     "start": "beginnings",
     "end": "ends",
     "cell": "machine",
     "wide": "letters wider than the brush",
-}  # in the dialog
+}
 KEEP, TAKE_BACK = ("", "keep"), "default"
 TOLERANCE_MM = (1e-5, 10.0)
 
@@ -67,7 +67,10 @@ def _tolerance(typed: str) -> str:
 
 
 def _said(root) -> dict[str, str]:
-    """What the document says of the whole job: also what the dialog does not have, as a speed."""
+    """Return the document's settings of the whole job.
+
+    Settings that the dialog does not have are included, for example a speed.
+    """
     return {key.removeprefix(PREFIX): value for key, value in root.items() if key.startswith(PREFIX)}
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Convert to strokes: filled letters and text become single lines with a width, PowerStrokes where it varies.
+"""Convert filled letters and text to single lines with a width.
 
-Each shape gives way to a group of its strokes, in which it stays, hidden, as it was.
+Lines with a varying width become PowerStrokes. A group of strokes replaces each shape. The group also holds
+the unchanged shape, hidden.
 """
 
 from __future__ import annotations
@@ -22,9 +23,8 @@ STROKES = "strokes.svg"
 EFFECT, ORIGINAL = f"{INKSCAPE}path-effect", f"{INKSCAPE}original-d"
 WIDTH = re.compile("(stroke-width:)([0-9.e+-]+)")
 UNEVEN = 1e-4
-HOLDERS = {
-    f"{SVG}{name}" for name in ("g", "a", "switch")
-}  # whose transforms are all that moves what they hold
+# These elements move their contents by their transforms only.
+HOLDERS = {f"{SVG}{name}" for name in ("g", "a", "switch")}
 HIDDEN = "display:none"
 
 
@@ -65,19 +65,25 @@ def _mm(length: str) -> float:
 
 
 def _of_shapes(by_id: dict, drawn) -> list:
-    """Shapes of the document, each with the paths that are its strokes; lines that were drawn as such are none."""
+    """Return the shapes of the document, each with the paths of its strokes.
+
+    Shapes that were drawn as lines are left out.
+    """
     found: dict = {}
     for path in drawn.iter(f"{SVG}path"):
         name = path.get("data-stroke")
         shape = element_of(by_id, name) if path.get("data-outline") == "yes" else None
-        drawn_as = element_of(by_id, name.split("/")[-1])  # of copies, what they are copies of
+        drawn_as = element_of(by_id, name.split("/")[-1])  # for a copy, its original
         if shape is not None and not _is_line(by_id, drawn_as):
             found.setdefault(shape.get("id"), (shape, []))[1].append(path)
     return list(found.values())
 
 
 def _is_line(by_id: dict, shape) -> bool:
-    """A PowerStroke: where Inkscape draws text as paths it draws these as outlines, too."""
+    """Return whether a shape is a PowerStroke.
+
+    When Inkscape converts text to paths, it converts PowerStrokes to outlines as well.
+    """
     names = shape.get(EFFECT, "").split(";") if shape is not None else []
     effects = (by_id.get(name.strip()[1:]) for name in names)
     return any(effect is not None and effect.get("effect") == "powerstroke" for effect in effects)
@@ -94,11 +100,14 @@ class _Writer:
         self.taken = {node.get("id") for node in svg.iter() if node.get("id")}
 
     def replace(self, shape, paths: list) -> None:
-        """A group of the strokes where the shape was; in it the shape, hidden and never painted."""
+        """Replace a shape by a group of its strokes.
+
+        The group also holds the shape, hidden and never painted.
+        """
         parent = shape.getparent()
         group = self.etree.Element(f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
         group.set(f"{INKSCAPE}label", f"{name_of(shape)}, strokes")
-        parent.replace(shape, group)  # what follows it in the file goes with it, which is white space
+        parent.replace(shape, group)  # removes the white space after the shape, too
         kept = self.etree.SubElement(group, f"{SVG}g", style=HIDDEN)
         kept.set("id", self._free(f"{shape.get('id')}-outline"))
         kept.set(f"{INKSCAPE}label", OUTLINE)
@@ -106,7 +115,7 @@ class _Writer:
         kept.append(shape)
         is_plain = self._is_plain(parent)
         place = -self._place(parent if is_plain else self.svg) @ self.user_from_mm
-        if not is_plain:  # in a drawing within the drawing: its strokes come on top of all
+        if not is_plain:  # in a nested drawing: its strokes go on top of all objects
             strokes = self.etree.SubElement(self.svg, f"{SVG}g", id=self._free(f"{shape.get('id')}-strokes"))
             strokes.set(f"{INKSCAPE}label", group.get(f"{INKSCAPE}label"))
             group = strokes
@@ -121,8 +130,10 @@ class _Writer:
         return node is not None
 
     def _place(self, node):
-        """The transform of the groups around the contents of a node. (That of inkex writes anew what nobody
-        touched.)"""
+        """Return the transform of the groups around the contents of a node.
+
+        The function of inkex is not used, because it rewrites elements that nobody changed.
+        """
         place = self.inkex.Transform()
         while node is not None:
             place = self.inkex.Transform(node.get("transform")) @ place
@@ -130,12 +141,16 @@ class _Writer:
         return place
 
     def _add(self, group, path, place) -> None:
-        """The path in the group's own coordinates: Inkscape moves a path's data and leaves the widths of its effect."""
+        """Add a path in the group's own coordinates.
+
+        When Inkscape moves a path, it changes the data of the path but not the widths of its effect.
+        """
         line = self.etree.SubElement(group, f"{SVG}path", id=self._free(path.get("id")))
         scale = math.hypot(place.a, place.b)
         if abs(place.a * place.c + place.b * place.d) > UNEVEN * scale**2 or (
             abs(math.hypot(place.c, place.d) - scale) > UNEVEN * scale
-        ):  # a width that is another one along and across: nothing but a transform says so
+        ):
+            # The width differs along and across the path: only a transform can express this.
             line.set("transform", str(place))
             place, scale = self.inkex.Transform(), 1.0
         for name, value in path.attrib.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Text as the letters that Inkscape draws it with, made into paths by Inkscape itself."""
+"""Let Inkscape convert text to paths of the letters that it draws."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ LETTERS = "letters.svg"
 
 
 def with_letters(etree, root, drawing: str, folder: str) -> tuple[str, dict]:
-    """A drawing without text, and which element of root each id in it means. Where Inkscape cannot be run, the
-    drawing stays as it is: brushsvg says then that it does not read text."""
+    """Return a drawing without text, and the element of root for each of its ids.
+
+    If Inkscape cannot run, the drawing is returned unchanged. brushsvg then warns that it does not read text.
+    """
     by_id = {node.get("id"): node for node in root.iter() if node.get("id")}
     if not any(_may_be_painted(text) for text in root.iter(*TEXT)):
         return drawing, by_id
@@ -44,6 +46,6 @@ def _may_be_painted(text) -> bool:
 
 
 def name_of(shape) -> str:
-    """As it is called among the objects of the drawing: a text by its words."""
+    """Return the name of a shape among the drawing's objects: for text, its words."""
     words = " ".join("".join(shape.itertext()).split()) if shape.tag in TEXT else ""
     return shape.get(f"{INKSCAPE}label") or words or shape.get("id")

@@ -1,4 +1,8 @@
-"""vpype commands: `brush`, the marks that a brush will paint; `brushwrite`, the robot program for them."""
+"""Define the vpype commands `brush` and `brushwrite`.
+
+`brush` replaces lines by the marks that a brush will paint. `brushwrite` writes the robot program for the
+marks.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +18,15 @@ import brushsvg
 from brushsvg.read import InMemory
 
 MM_PER_PX = 25.4 / 96
-CORNER_RAD = np.radians(
-    40
-)  # vpype flattens curves to 0.1 mm: a circle of 1 mm then turns by 50, one of 2 mm by 36
-MARGIN_MM = 20.0  # round the lines, where there is no page
+# A polyline has a corner where it turns by more. vpype flattens curves to 0.1 mm: a circle of 1 mm then turns
+# by 50 degrees, one of 2 mm by 36 degrees.
+CORNER_RAD = np.radians(40)
+MARGIN_MM = 20.0  # around the lines if there is no page
 _ID = re.compile(r"layer(\d+)-")
 
 
 def choices(command):
-    """Options that both commands have."""
+    """Add the options that both commands have."""
     for option in (
         click.option(
             "--brush", "brush_name", default="round-6", metavar="NAME|FILE", help="default: round-6"
@@ -93,7 +97,7 @@ def brushwrite(document, output, cell, brush_name, compensation, tolerance, star
 
 
 def _convert(document, width_px, **choices) -> brushsvg.Conversion:
-    """What `brushsvg convert` makes of the document's lines. Warnings go to stderr."""
+    """Convert the document's lines like `brushsvg convert`, with warnings on stderr."""
     drawing = InMemory(".svg", _svg(document, width_px).encode())
     try:
         done = brushsvg.convert(drawing, **choices)
@@ -150,7 +154,7 @@ def _layer(number: int, lines, width_px: float | None) -> list[str]:
 
 
 def _path_data(line: np.ndarray) -> str:
-    """Cubics through the points of a polyline, smooth except at its corners."""
+    """Return cubics through the points of a polyline, smooth except at its corners."""
     points = line[np.append(True, np.abs(np.diff(line)) > 0)]
     text = f"M{points[0].real:.12g} {points[0].imag:.12g}"
     if len(points) < 2:
@@ -159,7 +163,7 @@ def _path_data(line: np.ndarray) -> str:
     leaving, arriving = steps.copy(), steps.copy()  # tangents at the first and last point of each segment
     lengths = np.abs(steps)
     smooth = np.flatnonzero(np.abs(np.angle(steps[1:] / steps[:-1])) < CORNER_RAD)
-    for k in smooth:  # the circle through three points: the longer segment turns less per length
+    for k in smooth:  # as in the circle through three points: the longer segment turns less per length
         unit = steps[k] / lengths[k] * lengths[k + 1] + steps[k + 1] / lengths[k + 1] * lengths[k]
         unit /= abs(unit)
         arriving[k], leaving[k + 1] = unit * lengths[k], unit * lengths[k + 1]

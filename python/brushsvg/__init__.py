@@ -1,7 +1,7 @@
-"""brushsvg: vector lettering to brush strokes that a robot can paint.
+"""Turn vector lettering into brush strokes that a robot can paint.
 
-The public names are those of __all__. Each is imported when it is first used: importing the package costs
-nothing, and only the parts in use are loaded.
+__all__ lists the public names. Each name is imported when it is first used. Importing the package therefore
+costs nothing, and only the parts in use are loaded.
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ import importlib
 import sys
 import types
 
-TYPE_CHECKING = False  # True to editors and type checkers; typing itself is slow to import
-if TYPE_CHECKING:  # what the table below resolves to
+TYPE_CHECKING = False  # True for editors and type checkers; the module typing is slow to import
+if TYPE_CHECKING:  # the names that the table below imports at run time
     from ._core import (
         Arc,
         Brush,
@@ -204,7 +204,7 @@ __all__ = [
 
 class _Package(types.ModuleType):
     def __setattr__(self, name: str, value) -> None:
-        # Importing the module brushsvg.strokes must not hide the function of the same name.
+        # Importing the module brushsvg.strokes must not hide the function with that name.
         if name in _HOME and isinstance(value, types.ModuleType):
             return
         super().__setattr__(name, value)

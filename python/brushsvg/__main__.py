@@ -1,4 +1,4 @@
-"""The command line as `python -m brushsvg`."""
+"""Run the command line with `python -m brushsvg`."""
 
 import sys
 

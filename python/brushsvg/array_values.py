@@ -1,4 +1,4 @@
-"""Dataclasses that hold arrays: when two are equal, and what one shows of itself."""
+"""Compare and show dataclasses that hold arrays."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ import numpy as np
 
 
 class ArrayValue:
-    """Base of frozen dataclasses with eq=False, repr=False. Equal are two of one class with the same entries, not a
-    number being one; repr shows shapes in place of numbers."""
+    """Base class of frozen dataclasses with arrays, eq=False and repr=False.
+
+    Two values are equal if they have one class and equal entries; in arrays, NaN equals NaN. repr shows the
+    shapes of arrays in place of their numbers.
+    """
 
     def __eq__(self, other) -> bool:
         if type(other) is not type(self):

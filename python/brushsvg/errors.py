@@ -1,8 +1,8 @@
-"""Report problems: Error, the one exception that a user can cause (all others are bugs), and Notice, which stops
-nothing.
+"""Report problems to users: an Error refuses, a Notice warns and stops nothing.
 
-Both have a code for their kind, listed in docs/reference/diagnostics.md. Decisions ask for the code, never for words
-of a sentence.
+Error is the only exception that a user can cause; any other exception is a bug. Errors and notices have a
+code for the kind of problem; docs/reference/diagnostics.md lists the codes. Decisions depend on the code,
+never on the words of a sentence.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from numbers import Real
 class Error(ValueError):
     """A refusal in one full sentence.
 
-    sentence: what is wrong, with the number and the admissible range; str(error) is this sentence with the advice.
-    where: the element, stroke or key it concerns, "" if none.
-    value, range: the offending number and (least, greatest), None where there are none.
-    file: the file it is about, None where only the caller knows.
-    code: of what kind it is.
-    advice: what helps who types commands, "" where the sentence says it all: other programs word it their own way.
-    notices: warnings of the same drawing that were found before it was refused.
+    sentence: the problem, with the number and the allowed range; str(error) is the sentence with the advice.
+    where: the element, stroke or key with the problem, "" if there is none.
+    value, range: the offending number and its allowed (least, greatest), None if there are none.
+    file: the file with the problem, None if only the caller knows the file.
+    code: the kind of problem.
+    advice: what a user who types commands should do, "" if the sentence is enough. Other programs use
+    their own words for the advice.
+    notices: warnings about the same drawing that were found before the refusal.
     """
 
     notices: tuple[Notice, ...] = ()
@@ -51,7 +52,10 @@ class Error(ValueError):
             self.add_note(f"in {name}")  # shown in a traceback
 
     def notice(self, where: str | None = None) -> Notice:
-        """The same as something that stops nothing; where: its element, where that is known better."""
+        """Return a notice with this sentence, which stops nothing.
+
+        where: the element of the notice, None for the element of this error.
+        """
         return Notice(
             self.where if where is None else where, self.sentence, code=self.code, advice=self.advice
         )
@@ -59,12 +63,15 @@ class Error(ValueError):
 
 @dataclass(frozen=True)
 class Notice:
-    """A warning about one element, or the reason why it was left out or may not be run.
+    """A warning about one element, or the reason why it was left out or must not run.
 
-    where: the element, stroke or key, "" if none. damaged: the geometry itself is broken and was read up to the error;
-    code: its kind. about: a CSS property or a kind of element; notices of one kind are alike only if this is the same.
-    advice: what to type, see Error. refused: `convert`
-    writes no program because of it.
+    where: the element, stroke or key, "" if there is none.
+    damaged: the geometry itself is broken and was read up to the error.
+    code: the kind of problem.
+    about: the subject, for example a CSS property or a kind of element. Notices with one code are alike only
+    if they have equal subjects.
+    advice: what the user should type, see Error.
+    refused: `convert` writes no program because of this notice.
     """
 
     where: str
@@ -77,7 +84,7 @@ class Notice:
     refused: bool = False
 
     def __iter__(self):
-        """For `where, sentence = notice`."""
+        """Yield the element and the text, for `where, sentence = notice`."""
         return iter((self.where, self.text))
 
     @property
@@ -86,13 +93,13 @@ class Notice:
         return join_advice(self.sentence, self.advice)
 
     def as_json(self) -> dict[str, str | bool]:
-        """For programs that read us: the sentence ends in the advice."""
+        """Return the notice for other programs; the sentence ends with the advice."""
         made = {"where": self.where, "sentence": self.text, "code": self.code}
         return made | {"advice": self.advice, "damaged": self.damaged, "refused": self.refused}
 
     @property
     def kind(self) -> tuple[str, str, bool]:
-        """The part that alike notices share: they are reported as one."""
+        """The key that alike notices share, so that they can be reported as one."""
         return (self.code, self.about, self.damaged) if self.code else ("", self.sentence, self.damaged)
 
 
@@ -101,19 +108,25 @@ def join_advice(sentence: str, advice: str) -> str:
 
 
 def format_value(number: float) -> str:
-    """A number of a file in a sentence: whole numbers of TOML have no end."""
+    """Format a number from a file for a sentence.
+
+    Whole numbers in TOML may have any number of digits, so only 40 characters are shown.
+    """
     return str(number)[:40] if isinstance(number, int) else f"{number:g}"
 
 
 def require_type(value, kind: type | tuple[type, ...], what: str) -> None:
-    """Error for a value of another Python type than what it should be, in words. True is no number."""
+    """Raise Error if a value does not have the expected Python type.
+
+    what: the expected type in words. True and False count as numbers only if kind contains bool.
+    """
     kinds = kind if isinstance(kind, tuple) else (kind,)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
 
 
 def need_number(value, what: str, least: float, greatest: float) -> float:
-    """The number itself. Error for what is none, and outside of [least, greatest]."""
+    """Return a value as a float; raise Error unless it is a number in the range."""
     require_type(value, Real, f"a number, which {what} is")
     try:
         number = float(value)
@@ -129,7 +142,10 @@ def need_number(value, what: str, least: float, greatest: float) -> float:
 
 
 def need_truth(value, what: str) -> None:
-    """Error for what is neither True nor False: the text "no" would count as yes."""
+    """Raise Error if a value is neither True nor False.
+
+    Without this check, the text "no" would count as True.
+    """
     if not isinstance(value, bool) and getattr(getattr(value, "dtype", None), "kind", "") != "b":
         raise Error(
             f"{type(value).__name__} {str(value)[:40]!r} is not True or False, which {what} is",
@@ -138,38 +154,47 @@ def need_truth(value, what: str) -> None:
 
 
 def as_listed(value):
-    """An array of numpy as nested lists, all else as it is: arrays may stand for lists."""
+    """Return a numpy array as nested lists, and any other value unchanged.
+
+    Callers can pass arrays where lists are expected.
+    """
     return value.tolist() if type(value).__module__ == "numpy" and hasattr(value, "tolist") else value
 
 
 def need_one_of(value, choices: tuple, what: str) -> None:
-    """Error for what is none of the choices there are."""
+    """Raise Error if a value is none of the choices."""
     if not any(value is choice or (type(value) is str and value == choice) for choice in choices):
         known = ", ".join(map(str, choices[:-1]))
         raise Error(f"{what} is {known} or {choices[-1]}, not {str(value)[:40]!r}", code="choice-unknown")
 
 
 def missing_packages_error(what: str, *packages: str) -> Error:
-    """Return a refusal because packages of an extra are missing, with the command that installs them."""
+    """Return an Error for missing packages, with the command that installs them."""
     return Error(
         f"{what} {' and '.join(packages)}: install with  {command_to_add(*packages)}", code="package-missing"
     )
 
 
 def command_to_add(*packages: str) -> str:
-    """The command that adds packages to the Python that runs this, by the program that installed it."""
+    """Return the command that adds packages to the running Python.
+
+    The command uses the program that installed brushsvg: pipx, uv or pip.
+    """
     names = " ".join(packages)
     if os.path.exists(os.path.join(sys.prefix, "pipx_metadata.json")):
         return f"pipx inject brushsvg {names}"
     if os.path.exists(os.path.join(sys.prefix, "uv-receipt.toml")):
         return f"uv tool install brushsvg {' '.join(f'--with {name}' for name in packages)}"
-    if importlib.util.find_spec("pip") is None:  # as in the environments of uv
+    if importlib.util.find_spec("pip") is None:  # uv makes environments without pip
         return f"uv pip install --python {sys.executable} {names}"
     return f"{sys.executable} -m pip install {names}"
 
 
 def describe_unexpected(mistake: Exception) -> Error:
-    """What a user is shown of an exception that is no refusal: there was no memory, or the mistake is ours."""
+    """Return the Error that a user sees in place of an unexpected exception.
+
+    Either the memory was not enough, or the exception is a bug of brushsvg.
+    """
     text = str(mistake)
     is_unloaded = isinstance(mistake, ImportError) and "failed to map segment" in text
     if isinstance(mistake, MemoryError) or is_unloaded or "cannot allocate memory" in text.lower():

@@ -1,4 +1,7 @@
-"""Files: read with a refusal in one sentence, written so that nobody finds half of one or some of several."""
+"""Read and write files.
+
+Reading refuses in one sentence. Writing never leaves half of a file, or only some of several files.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +19,23 @@ from .suggestions import did_you_mean
 
 try:
     import fcntl
-except ImportError:  # Windows: there what a killed run left stays
+except ImportError:  # on Windows, the files that a killed run left behind are not removed
     fcntl = None
 
-MOST_PARTS = 20  # of a TOML key, a.b.c; many of them take minutes to read
-LARGEST_BYTES = 500 * 2**20  # no drawing is; a device may have no end
-READ_AT_ONCE = 4 * 2**20  # memory is allocated as it is needed
+MOST_PARTS = 20  # parts of a TOML key such as a.b.c; a key with many parts takes minutes to read
+LARGEST_BYTES = 500 * 2**20  # no drawing is larger, and a device may be endless
+READ_AT_ONCE = 4 * 2**20  # bytes of one read, so that memory is allocated only as needed
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
-    """What a file holds. Error, with the path in `file`, when it cannot be read."""
-    path = os.fspath(path)  # a number would be taken for an open file, and closed
+    """Return the content of a file.
+
+    Raises Error, with the path in `file`, if the file cannot be read.
+    """
+    path = os.fspath(path)  # refuses a number, which open() would use as an open file and close
     try:
         with open(path, "rb") as file:
-            size, parts = os.fstat(file.fileno()).st_size, []  # 0 of a pipe or a device
+            size, parts = os.fstat(file.fileno()).st_size, []  # a pipe or a device has size 0
             while size <= LARGEST_BYTES and (part := file.read(READ_AT_ONCE)):
                 parts.append(part)
                 size = max(size, sum(map(len, parts)))
@@ -51,23 +57,27 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 
 
 def toml_document(text: str, kind: str) -> dict:
-    """What the text of a TOML file says. Error for what is none, kind: as a sentence calls the file."""
-    # possessive, and only from the beginning of a word: a long word is read once, not once from each of its letters
+    """Parse the text of a TOML file, and raise Error if it is invalid.
+
+    kind: the word before "file" in messages. A key of more than MOST_PARTS parts is refused as well.
+    """
+    # The quantifiers are possessive and a match begins only at the beginning of a word. So a long word is
+    # read once, and not again from each of its letters.
     if found := re.search(rf"(?<![\w-])(?:[\w-]++\s*+\.\s*+){{{MOST_PARTS}}}", text):
         sentence = f"a key of more than {MOST_PARTS} parts: {found[0][:20]!r} ..."
         raise Error(f"the {kind} file is not TOML of ours: {sentence}", code="not-toml")
     try:
         return tomllib.loads(text)
-    except ValueError as problem:  # also a whole number of thousands of digits
+    except ValueError as problem:  # also raised for a whole number with thousands of digits
         raise Error(f"the {kind} file is not TOML: {str(problem)[:200]}", code="not-toml") from None
     except RecursionError:
         raise Error(f"the {kind} file is not TOML: its lists nest too deep", code="not-toml") from None
 
 
 def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike[str]) -> Path:
-    """Return the path of a brush or cell: a shipped one with this name, or a user's own file.
+    """Return the path of a shipped brush or cell, or of a user's own file.
 
-    Error, naming the kind and the shipped ones, for a name that is neither.
+    Raises Error, with the kind and the shipped names, if the name is neither.
     """
     if isinstance(name_or_path, os.PathLike):
         return Path(name_or_path)
@@ -94,18 +104,19 @@ def _is_file(path: str) -> bool:
 
 
 def names_in(folder: Path, suffix: str) -> list[str]:
-    """Names of the files of a kind in a folder, without their suffix, in alphabetical order."""
+    """Return the sorted names of the files with a suffix, without the suffix."""
     return sorted(path.stem for path in folder.glob(f"*{suffix}"))
 
 
 def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[str]]) -> None:
-    """Put data at each path, at all of them or at none: written next to them, then renamed. Text, whole or in
-    pieces, becomes UTF-8.
+    """Write data to all of the paths or to none of them.
 
-    Error, with the path in `file`, when a place cannot be written; every path is then as it was before. The
-    one gap: a rename that fails after others were made, as where a file is a mount point of its own.
-    Devices and pipes are written through, once all other files are ready. Files that a killed run left next to a path
-    are cleared by the next one that writes there.
+    Each file is written next to its path and then renamed. Text, whole or in pieces, is encoded as UTF-8.
+
+    Raises Error, with the path in `file`, if a path cannot be written; every path is then as it was before.
+    There is one exception: a rename can fail after other renames succeeded, for example if a file is a mount
+    point. Devices and pipes are written directly, after all other files are ready. The next run that writes
+    to a path removes the files that a killed run left next to it.
     """
     path: str | os.PathLike[str] = ""
     targets: dict[str | os.PathLike[str], str] = {}
@@ -114,7 +125,7 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
     held = ExitStack()
     try:
         for path in files:
-            targets[path] = os.path.realpath(path)  # a link stays a link
+            targets[path] = os.path.realpath(path)  # writes to the target of a link, so that the link stays
         for path, target in targets.items():
             mode = _mode(target)
             if mode is not None and not stat.S_ISREG(mode):
@@ -133,13 +144,13 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
                 os.fsync(file.fileno())
             if mode is not None:
                 os.chmod(staged[path], mode & 0o777)
-        for path in through:  # must not be renamed over; a folder refuses
+        for path in through:  # a rename would replace a device or pipe; a folder raises OSError
             with open(targets[path], "wb") as file:
                 file.writelines(_pieces(files[path]))
         for path in list(staged):
             os.replace(staged[path], targets[path])
             del staged[path]
-    except Error:  # of what is written, made while it is written
+    except Error:  # from the data, which may be produced while it is written
         raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
         raise Error(
@@ -154,15 +165,15 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
 
 
 def system_reason(problem: Exception) -> str:
-    """What the system says of a file, as the end of a sentence."""
+    """Return the system's reason for a failure, as the end of a sentence."""
     return (getattr(problem, "strerror", None) or str(problem)).lower()
 
 
 def _new_part(folder: str, prefix: str, mode: int) -> tuple[int, str]:
-    """A new file, open and locked as long as its handle or a copy of it is open: the sign that somebody writes it.
+    """Create a new file that is locked while its handle or a copy of it is open.
 
-    The system takes the umask from its mode. Python can only read the umask by setting it, which changes the files
-    that other threads make at that moment.
+    The lock shows that a run is still writing the file. The system applies the umask to the mode. Python can
+    read the umask only by setting it, which would affect files that other threads create at that moment.
     """
     flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     while True:
@@ -172,18 +183,18 @@ def _new_part(folder: str, prefix: str, mode: int) -> tuple[int, str]:
         except FileExistsError:
             continue
         if fcntl:
-            with suppress(OSError):  # a file system without locks: nothing is cleared there
+            with suppress(OSError):  # a file system without locks: _clear_left removes nothing there
                 fcntl.flock(handle, fcntl.LOCK_EX)
         if os.path.exists(path):
             return handle, path
-        os.close(handle)  # another run took it for left before it was locked
+        os.close(handle)  # another run removed it as a leftover before it was locked
 
 
 def _clear_left(folder: str, prefix: str) -> None:
-    """Remove what killed runs left of files with this prefix: nobody holds its lock any more."""
+    """Remove unlocked files with this prefix, which killed runs left behind."""
     ours = re.compile(re.escape(prefix) + r"[a-z0-9_]{8}\.part")  # as _new_part names them
     names = []
-    with suppress(OSError):  # a folder that may be written and not listed
+    with suppress(OSError):  # some folders can be written to but not listed
         names = os.listdir(folder) if fcntl else []
     for path in (os.path.join(folder, name) for name in names if ours.fullmatch(name)):
         with suppress(OSError), open(path, "r+b") as left:

@@ -1,4 +1,4 @@
-"""What stands in a JSON file of ours, field by field: each refusal names the path to the key."""
+"""Read fields of brushsvg's JSON files; each error names the path to the key."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from .errors import Error
 
 
 def document(data: str | bytes, format_: str, version: int = 1) -> dict:
-    """The object that a file of a format holds. Error where it is of another, or says a key twice."""
+    """Return the object in a JSON file of a format.
+
+    Raises Error if the file is not JSON, has another format or version, or contains a key twice.
+    """
     text = data.decode("utf-8-sig", "replace") if isinstance(data, bytes) else data
     try:
         content = json.loads(text, object_pairs_hook=_once)
@@ -35,7 +38,10 @@ def document(data: str | bytes, format_: str, version: int = 1) -> dict:
 
 
 def _once(pairs: list[tuple[str, object]]) -> dict:
-    """An object; Error for a key that stands twice, of which one would be lost."""
+    """Return an object; raise Error for a key that appears twice.
+
+    One of the two values would be lost.
+    """
     found = dict(pairs)
     if len(found) < len(pairs):
         names = [name for name, _ in pairs]
@@ -45,7 +51,10 @@ def _once(pairs: list[tuple[str, object]]) -> dict:
 
 
 def refuse_unknown(content: dict, known, where: str = "", listed=None) -> None:
-    """Raise Error for the first key that is not known. listed: the keys that the sentence names, None for all."""
+    """Raise Error for the first unknown key.
+
+    listed: the keys that the message lists, None for all known keys.
+    """
     for key in content:
         if key not in known:
             names = ", ".join(listed or known)
@@ -54,7 +63,10 @@ def refuse_unknown(content: dict, known, where: str = "", listed=None) -> None:
 
 
 def objects(values, where: str, or_else: str = "") -> list[dict]:
-    """or_else: what it may be as well, which is not for here."""
+    """Return the values if they are a list of objects, else raise Error.
+
+    or_else: words for the message about another type that the caller accepts.
+    """
     if not isinstance(values, list) or not all(isinstance(value, dict) for value in values):
         raise Error(f"this must be a list of objects{or_else}", where, code="wrong-type")
     return values
@@ -62,7 +74,7 @@ def objects(values, where: str, or_else: str = "") -> list[dict]:
 
 def number(value, where: str, least: float = -math.inf, greatest: float = math.inf) -> float:
     if not isinstance(value, bool) and isinstance(value, int | float) and abs(value) < math.inf:
-        with suppress(OverflowError):  # an integer beyond all floats
+        with suppress(OverflowError):  # an integer that is too large for a float
             found = float(value)
             if not least <= found <= greatest:
                 raise Error(
@@ -76,7 +88,10 @@ def number(value, where: str, least: float = -math.inf, greatest: float = math.i
 
 
 def numbers(values, where: str, count: int | None = None) -> tuple[float, ...]:
-    """count: None for any."""
+    """Return a list of finite numbers as a tuple, else raise Error.
+
+    count: how many numbers there must be, None for any.
+    """
     if not isinstance(values, list) or (count is not None and len(values) != count):
         expected = "a list of numbers" if count is None else f"{count} finite numbers"
         raise Error(f"this must be {expected}", where, code="wrong-type")

@@ -1,7 +1,7 @@
-"""What a notebook draws of a value: a brush's laws and footprints, a plan's ways, painted marks, a drawing as read.
+"""Draw values in notebooks: brushes, toolpaths of plans, painted marks, drawings.
 
-Importing this gives the classes their pictures; the package does so where IPython runs. None where there is nothing to
-draw: then the notebook shows repr.
+Importing this module gives the classes their pictures; the package imports it when IPython is loaded. A
+picture is None if there is nothing to draw. The notebook then shows repr.
 """
 
 from __future__ import annotations
@@ -17,12 +17,15 @@ from .show.import_picture import overview
 from .show.marks_svg import known_colour, marks_svg
 from .strokes.extraction import strokes
 
-MOST_POINTS = 300_000  # of a picture: a browser that holds more is slow
-ROOM_MM = 5.0  # round marks: they know no sheet
+MOST_POINTS = 300_000  # in one picture: more of them make the browser slow
+ROOM_MM = 5.0  # margin above and right of the marks, which do not know their sheet
 
 
 def brush_svg(brush: _core.Brush) -> str | None:
-    """Laws and footprints; None without matplotlib, and for a brush that cannot be used."""
+    """Draw the laws and footprints of a brush.
+
+    Returns None without matplotlib, and for a brush that cannot be used.
+    """
     try:
         _core.check(brush)
         return brush_picture(brush, ".svg").decode()
@@ -31,7 +34,10 @@ def brush_svg(brush: _core.Brush) -> str | None:
 
 
 def plan_svg(plan: _core.Plan) -> str | None:
-    """The TCP's way over the sheet, each pass in its colour; None without a sheet, or where there is too much."""
+    """Draw the path of the TCP over the sheet, each pass in its colour.
+
+    Returns None if the plan has no sheet, too many points, poses that are not finite, or invalid arcs.
+    """
     width, height = plan.sheet_mm
     if (
         not (0 < width <= 1e6 and 0 < height <= 1e6)
@@ -46,7 +52,7 @@ def plan_svg(plan: _core.Plan) -> str | None:
             return None
         try:
             places = with_chords(a_pass).poses_mm[:, :2]
-        except Error:  # arcs that none are
+        except Error:  # invalid arcs
             return None
         points = " ".join(f"{x:.3f},{height - y:.3f}" for x, y in places)
         colour = known_colour(a_pass.colour)
@@ -55,19 +61,25 @@ def plan_svg(plan: _core.Plan) -> str | None:
 
 
 def marks_picture(marks: _core.Marks) -> str | None:
-    """The paint, as far as trace_outlines found it; None before that, or where there is too much."""
+    """Draw the outlines of the marks.
+
+    Returns None before trace_outlines has found outlines, and if they have too many points.
+    """
     rings = [ring for one in marks.passes for ring in one.outline_mm]
     if not rings or sum(map(len, rings)) > MOST_POINTS:
         return None
     right, top = np.vstack(rings).max(axis=0) + ROOM_MM
     try:
         return marks_svg(marks, (float(right), float(top)), ["#22252b"] * len(marks.passes))
-    except Error:  # off any sheet
+    except Error:  # marks beyond any sheet
         return None
 
 
 def design_svg(design: Design) -> str | None:
-    """The drawing as understood: strokes numbered, with direction and width, and what was noticed."""
+    """Draw the strokes of a drawing as brushsvg reads them, with notices.
+
+    The strokes are numbered and show their direction and width.
+    """
     try:
         made, renamed = strokes(design)
         return overview(".svg", design, made, [*design.notices, *renamed]).decode()

@@ -1,4 +1,4 @@
-"""Many sentences of one kind as one: a person reads the first of them and how many there are."""
+"""Combine many notices of one kind: people read the first one and their number."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from dataclasses import replace
 
 from .errors import Notice
 
-MOST_ALIKE = 3  # of a kind, each on a line of its own
-MOST_NAMED = 4  # whose sentence is the very same: a brush has as many laws
+MOST_ALIKE = 3  # notices of a kind that are all kept; if there are more, they are combined
+MOST_NAMED = 4  # elements with one sentence that are all named: a brush has four laws
 
 
 def summarize_notices(notices: Iterable[Notice]) -> list[Notice]:
-    """The notices in the order in which each kind comes first; the rest of a kind is counted."""
+    """Keep a few notices of each kind and count the others.
+
+    The kinds stay in the order in which they first appear.
+    """
     kinds: dict[tuple, list[Notice]] = {}
     for notice in notices:
         kinds.setdefault(notice.kind, []).append(notice)
@@ -34,6 +37,6 @@ def summarize_notices(notices: Iterable[Notice]) -> list[Notice]:
 
 
 def _is_one(alike: list[Notice]) -> bool:
-    """Whether few elements have the very same said of them."""
+    """Return whether the notices have one sentence and few elements."""
     same = len({notice.sentence for notice in alike}) == 1 and all(notice.where for notice in alike)
     return same and len(alike) <= MOST_NAMED

@@ -1,4 +1,7 @@
-"""The only reader of lengths written by people and drawing programs: "0.5in", "10mm", "5", "25%"; times in words."""
+"""Read lengths such as "0.5in", "10mm", "5" or "25%", and write times in words.
+
+No other module reads lengths that people or drawing programs wrote.
+"""
 
 from __future__ import annotations
 
@@ -17,11 +20,12 @@ PAPERS_MM = {
     "a5": (148.0, 210.0),
     "letter": (215.9, 279.4),
 }
-FONT_PX = 16.0  # of a font whose size nobody says
+FONT_PX = 16.0  # size of a font if none is given
 _OF_FONT = {"em": 1.0, "ex": 0.5, "rem": 1.0}
 
-# Digits are spelled out, for \d and float() read other alphabets' digits too. Possessive quantifiers stand
-# behind single characters only: behind a group Python before 3.11.5 keeps what a failed attempt consumed.
+# Digits are spelled out because \d and float() also read the digits of other alphabets. Possessive
+# quantifiers follow single characters only: after a group, Python before 3.11.5 keeps the text that a failed
+# attempt consumed.
 NUMBER = r"[+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?"
 _NUMBER = re.compile(NUMBER)
 _LENGTH = re.compile(rf"({NUMBER})\s*([a-zA-Z]+|%|)")
@@ -51,7 +55,7 @@ def _parts(text: str) -> tuple[float, str]:
 
 
 def number(text: str) -> float:
-    """A finite number as SVG writes it. Error if it is none."""
+    """Read a finite number in SVG's notation; raise Error for any other text."""
     value = float(text) if _NUMBER.fullmatch(text := text.strip()) else math.nan
     if not math.isfinite(value):
         raise Error(f"{_shown(text)} is not a number", code="not-a-number")
@@ -59,7 +63,10 @@ def number(text: str) -> float:
 
 
 def length_mm(text: str, default_unit: str = "mm") -> float:
-    """A length in mm; a bare number counts in default_unit. Error if it is no length or a percentage."""
+    """Read a length in mm; a number without a unit is in default_unit.
+
+    Raises Error if the text is not a length, is a percentage, or is relative to the size of a font.
+    """
     value, unit = _parts(text)
     if unit == "%":
         raise Error(
@@ -78,9 +85,12 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
 
 
 def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
-    """A length in px (SVG user units, 96 to the inch); percentages are of percent_of px, em and ex of a font's size."""
+    """Read a length in px, the user unit of SVG (96 per inch).
+
+    percent_of: the length [px] of 100 %. em_px: the size of the font for em and ex.
+    """
     value, unit = _parts(text)
-    if unit and not text.rstrip()[-len(unit) - 1].strip():  # people write "5 mm", browsers do not read it
+    if unit and not text.rstrip()[-len(unit) - 1].strip():  # people write "5 mm", but browsers do not read it
         raise Error(f"{_shown(text)} has a blank before its unit", code="not-a-length")
     if unit in _OF_FONT:
         return value * (FONT_PX if unit == "rem" else em_px * _OF_FONT[unit])
@@ -88,7 +98,10 @@ def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
 
 
 def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
-    """Width and height in mm from "210x297", "8.5x11in" or "210mm x 297mm"; a unit at the end serves both."""
+    """Read a width and a height in mm from "210x297", "8.5x11in" or "210mm x 297mm".
+
+    A unit at the end applies to both numbers.
+    """
     found = _SIZE.fullmatch(" ".join(text.lower().split()))
     if not found:
         raise Error(
@@ -107,12 +120,15 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
 
 
 def paper_mm(text: str) -> tuple[float, float]:
-    """Read a paper's name or size as width and height in mm. Error if it is neither."""
+    """Read a paper's name or size as width and height in mm.
+
+    Raises Error if the text is neither.
+    """
     return PAPERS_MM.get(text.strip().lower()) or size_mm(text)
 
 
 def clock(seconds: float) -> str:
-    """A time for people: "1 min 19 s"."""
+    """Format a time for people, for example "1 min 19 s"."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return (

@@ -1,4 +1,7 @@
-"""Public names of the C++ module: values of a wrong type end in one sentence in Python's words; no True is a number."""
+"""Report wrong argument types of the C++ module in one sentence.
+
+The sentence is in Python's words. True and False are not accepted as numbers.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ import re
 from collections.abc import Callable, Iterator
 from types import ModuleType
 
-# what pybind11 calls the types of arguments, and what a person does
+# pybind11's names of argument types, and the words for people
 _IN_WORDS = (
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "number"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "whole number"),
@@ -18,20 +21,20 @@ _IN_WORDS = (
     (r"brushsvg\._core\.", ""),
     (r"\| None\b", "or None"),
 )
-_MARK = "incompatible"  # in what pybind11 says of types
-SHOWN = 40  # letters of a value
+_MARK = "incompatible"  # a word in pybind11's messages about types
+SHOWN = 40  # characters of a value that a message shows
 
 
 def in_words(function: Callable) -> Callable:
-    """A public function of the C++ module that refuses so."""
+    """Wrap a function of the C++ module so that it reports wrong types in words."""
     called = _in_words(function, function.__name__)
-    called.__module__, called.__qualname__ = "brushsvg", function.__name__  # as it is pickled
+    called.__module__, called.__qualname__ = "brushsvg", function.__name__  # for pickle
     return called
 
 
 @functools.cache
 def with_classes_in_words(module: ModuleType) -> None:
-    """All that the classes of the C++ module can do refuses so from now on."""
+    """Make the classes of the C++ module report wrong types in words from now on."""
     for kind in [each for each in vars(module).values() if isinstance(each, type)]:
         for name, member in list(vars(kind).items()):
             words = kind.__name__ if name.startswith("__") else f"{kind.__name__}.{name}"
@@ -80,7 +83,7 @@ def _explain(words: str, ways: list[dict[str, str]], given: tuple, named: dict) 
 
 
 def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
-    """Return the words about True or False where numbers are expected, "" where there is none."""
+    """Return the words about True or False in place of a number, "" if there is none."""
     for name, value in [*zip(way, given, strict=False), *named.items()]:
         if _takes_numbers(way.get(name, "")) and _has_truth(value):
             return (
@@ -89,7 +92,7 @@ def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
     return ""
 
 
-@functools.cache  # called by every function
+@functools.cache  # every wrapped function calls it
 def _takes_numbers(kind: str) -> bool:
     return bool(re.search("number|array|float", kind)) and "bool" not in kind
 
@@ -106,7 +109,7 @@ def _short(value: object) -> str:
 
 
 def _signatures(doc: str, is_method: bool) -> Iterator[dict[str, str]]:
-    """Return the arguments with their types in words, for each signature that pybind11 lists."""
+    """Yield arguments with their types in words, for each signature of pybind11."""
     for line in doc.splitlines():
         found = re.match(r"(?:\d+\. )?[\w.]*\((.*)\)(?: -> .*)?$", line.strip())
         if found and found[1] != "*args, **kwargs":
@@ -117,7 +120,7 @@ def _signatures(doc: str, is_method: bool) -> Iterator[dict[str, str]]:
 
 
 def _parted(text: str) -> list[str]:
-    """At commas outside of brackets and quotes."""
+    """Split a text at the commas outside of brackets and quotes."""
     bare = re.sub(r"'[^']*'|\"[^\"]*\"", lambda quoted: "_" * len(quoted[0]), text)
     depth, ends = 0, [-1]
     for place, letter in enumerate(bare):

@@ -1,4 +1,7 @@
-"""Print what this process calculates with as JSON: one entry for each part that a variant may change."""
+"""Print a fingerprint of the arithmetic of this process as JSON.
+
+The fingerprint has an entry for each part that a variant may change.
+"""
 
 import ctypes
 import hashlib
@@ -6,7 +9,7 @@ import json
 import math
 
 import numpy as np
-import scipy.linalg  # loads an OpenBLAS of its own
+import scipy.linalg  # loads its own OpenBLAS
 from numpy._core import _multiarray_umath as features
 
 import brushsvg

@@ -14,5 +14,5 @@ class CoreOfVariant(importlib.abc.MetaPathFinder):
         return importlib.util.spec_from_file_location(name, CORE) if name == "brushsvg._core" else None
 
 
-if CORE.endswith(importlib.machinery.EXTENSION_SUFFIXES[0]):  # no other Python's
+if CORE.endswith(importlib.machinery.EXTENSION_SUFFIXES[0]):  # not a core for another Python
     sys.meta_path.insert(0, CoreOfVariant())

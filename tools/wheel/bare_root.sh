@@ -12,7 +12,7 @@ own=$(. /etc/os-release && echo "$VERSION_CODENAME")
 case $python in 3.11) suite=bookworm ;; 3.13) suite=trixie ;; *) suite=$own ;; esac  # Debian's release with that Python
 mkdir -p "${FOLDER:-$tree/build/wheel/$suite}" && cd "${FOLDER:-$tree/build/wheel/$suite}"
 
-# Other packages, fetched where there is a network. The bare system has none.
+# Other packages are downloaded here, because the bare system has no network.
 if [ ! -e wheelhouse/complete ]; then
   mkdir -p wheelhouse
   "${PYTHON:-python3}" -m pip download -q --only-binary :all: --python-version "$python" -d wheelhouse "$wheel[$(IFS=,; echo "${extras[*]}")]" pytest hypothesis svgelements
@@ -33,7 +33,7 @@ if chroot bare sh -c 'command -v cc || command -v g++ || ls -d /usr/include/eige
   exit 1
 fi
 
-# The tests read the tree: all of it except the package, so that only the installed one can be imported.
+# The tests read the tree. The package is not copied, so that only the installed package can be imported.
 rm -rf bare/wheels bare/source bare/tmp/run && mkdir -p bare/wheels bare/source bare/tmp/run
 cp wheelhouse/*.whl "$wheel" bare/wheels/
 git -C "$tree" ls-files -z --cached --others --exclude-standard -- ':!python' | (cd "$tree" && xargs -0 ls -d 2>/dev/null || true) |
@@ -53,7 +53,7 @@ tests() { # ENVIRONMENT TESTS: the tests against the package that is installed t
   run sh -c "cd /source && exec /$1/bin/python -m pytest -q -p no:cacheprovider -m 'not slow and not long and not thorough' $2"
 }
 
-size() { # ENVIRONMENT: of all that is installed there, and of brushsvg alone
+size() { # ENVIRONMENT: the size of all installed packages, and of brushsvg alone
   for what in "bare/$1" bare/"$1"/lib/python3*/site-packages/brushsvg; do du -sm "$what"; done |
     awk '{ print $1 " MB " (NR == 1 ? "installed" : "of them brushsvg") }'
 }

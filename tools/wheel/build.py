@@ -1,7 +1,8 @@
 """Build the wheels for x86-64 Linux: build.py --python PROGRAM [--python PROGRAM ...] [--out FOLDER]
 
-Needs the packages of `make system`. zig compiles everything against the C library of manylinux_2_28. Ceres comes from
-Debian's source package (libraries.sh). Times, paths and order of files do not depend on the machine.
+Needs the packages of `make system`. zig compiles everything against the C library of manylinux_2_28. Ceres
+comes from Debian's source package (libraries.sh). Times, paths and order of files do not depend on the
+machine.
 """
 
 from __future__ import annotations
@@ -55,8 +56,10 @@ def build(python: str, out: Path) -> Path:
         "ZIG": zig,
         "ZIG_GLOBAL_CACHE_DIR": str(WORK / "zig-cache"),
         "SOURCE_DATE_EPOCH": _output("git", "-C", TREE, "log", "-1", "--format=%ct").strip(),
-        "CCACHE_BASEDIR": "",  # or it shortens paths, which stay in the library, before -ffile-prefix-map does
-        "CCACHE_COMPILERTYPE": "clang",  # or a file compiled by one zig would serve another
+        # Otherwise ccache shortens paths before -ffile-prefix-map does, and they stay in the library.
+        "CCACHE_BASEDIR": "",
+        # Otherwise a file compiled by one zig would be reused for another zig.
+        "CCACHE_COMPILERTYPE": "clang",
         "CCACHE_COMPILERCHECK": f"string:{_output(zig, 'version')}{(TOOLS / 'zig-c++').read_text()}",
         "PYTHONDONTWRITEBYTECODE": "1",
         "LC_ALL": "C.UTF-8",
@@ -93,11 +96,11 @@ def build(python: str, out: Path) -> Path:
 
 
 def _definitions() -> list[str]:
-    """What CMake has to know to use our compiler and our libraries, and no others."""
+    """Return the definitions that make CMake use only our compiler and our libraries."""
     prefix = WORK / "prefix"
     flags = [
         *("-isystem", prefix / "include", "-DEIGEN_MPL2_ONLY", "-DMAX_LOG_LEVEL=-3"),
-        # Boost 1.74 needs std::unary_function, and values of an enum that it does not name
+        # Boost 1.74 needs std::unary_function, and enum values that have no name.
         *("-D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION", "-Wno-enum-constexpr-conversion"),
         *(f"-ffile-prefix-map={folder}=." for folder in (WORK, TREE)),
     ]
@@ -115,7 +118,10 @@ def _definitions() -> list[str]:
 
 
 def _python_headers(python: Path) -> None:
-    """Debian keeps one header of Python next to those of its C library: make it visible without the others."""
+    """Link the Python header that Debian keeps next to the headers of its C library.
+
+    The link makes it visible without the headers of the C library.
+    """
     where = "import sysconfig as s; print(s.get_path('include'), s.get_config_var('MULTIARCH') or '')"
     include, _, multiarch = _output(python, "-c", where).strip().partition(" ")
     name = Path(include).name
@@ -126,7 +132,7 @@ def _python_headers(python: Path) -> None:
 
 
 def _clean_copy(to: Path) -> Path:
-    """The revision that is checked out and its changes, without what else is in the tree."""
+    """Copy the checked-out revision and its changes, without other files in the tree."""
     shutil.rmtree(to, ignore_errors=True)
     for name in _output(
         "git", "-C", TREE, "ls-files", "-z", "--cached", "--others", "--exclude-standard"

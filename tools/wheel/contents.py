@@ -1,4 +1,4 @@
-"""What is inside a wheel: add its licences and its bill of materials, check it, and describe it in the documentation.
+"""Add licences and a bill of materials to a wheel; check and document a wheel.
 
 contents.py check WHEEL
 contents.py page WHEEL AUDITWHEEL_REPORT PAGE
@@ -21,7 +21,8 @@ from pathlib import Path
 
 LARGEST_BYTES = 6_000_000
 BILL = "sboms/brushsvg.cdx.json"  # PEP 770
-# Of SuiteSparse and what it needs: under the GPL, or linked only together with what is.
+# Names of SuiteSparse and of the libraries that it needs. They are under the GPL, or linked only together
+# with code under the GPL.
 FORBIDDEN = (
     "cholmod",
     "spqr",
@@ -56,7 +57,10 @@ class Component:
 
 
 def components(work: Path, tools: Path) -> list[Component]:
-    """A table of all libraries in the wheel. work: the folder of libraries.sh; tools: the venv of the compiler."""
+    """Return all libraries in the wheel, sorted.
+
+    work: the folder of libraries.sh. tools: the venv of the compiler.
+    """
     (zig,) = tools.glob("lib/python*/site-packages/ziglang")
     (pybind,) = tools.glob("lib/python*/site-packages/pybind11-*.dist-info")
     clang = subprocess.run(
@@ -117,20 +121,29 @@ def _copyright(package: str) -> str:
 
 
 def _boost_package() -> str:
-    """Its name has the version: libboost1.74-dev on Debian 12, libboost1.83-dev on 13."""
+    """Return the name of Debian's package of Boost, which contains the version.
+
+    It is libboost1.74-dev on Debian 12 and libboost1.83-dev on Debian 13.
+    """
     command = ["dpkg-query", "-S", "/usr/include/boost/version.hpp"]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.partition(":")[0]
 
 
 def _boost_licence() -> str:
-    """The licence alone: Debian's file names the authors of every file of Boost, in two megabytes."""
+    """Return the licence of Boost without the list of authors.
+
+    Debian's file names the authors of every file of Boost, in two megabytes.
+    """
     paragraph = re.search(r"^License: BSL-1\.0\n((?: .*\n)+)", _copyright(_boost_package()), re.MULTILINE)[1]
     lines = [line[1:] if line != " ." else "" for line in paragraph.splitlines()]
     return "Boost.Polygon and Boost.Math, copyright of their authors\n\n" + "\n".join(lines) + "\n"
 
 
 def add_contents(raw: Path, wheel: Path, found: list[Component], epoch_s: int) -> None:
-    """Write raw to wheel with licences and bill of materials. Order and times of the files depend on nothing else."""
+    """Write the wheel raw to wheel, with licences and a bill of materials.
+
+    The order and the times of the files depend only on the arguments.
+    """
     with zipfile.ZipFile(raw) as file:
         files = {name: file.read(name) for name in file.namelist() if not name.endswith("/")}
     (info,) = {name.partition("/")[0] for name in files if name.partition("/")[0].endswith(".dist-info")}
@@ -146,7 +159,7 @@ def add_contents(raw: Path, wheel: Path, found: list[Component], epoch_s: int) -
     files = dict(sorted(files.items()))
     lines = [f"{name},sha256={_digest(data)},{len(data)}\n" for name, data in files.items()]
     files[record] = "".join([*lines, f"{record},,\n"]).encode()
-    date = time.gmtime(max(epoch_s, 315532800))[:6]  # a zip knows no time before 1980
+    date = time.gmtime(max(epoch_s, 315532800))[:6]  # a zip cannot store a time before 1980
     with zipfile.ZipFile(wheel, "w") as out:
         for name, data in files.items():
             entry = zipfile.ZipInfo(name, date)
@@ -164,7 +177,10 @@ def _digest(data: bytes) -> str:
 
 
 def _metadata(text: str, found: list[Component], licences: list[str]) -> str:
-    """The licence of all code in the wheel, not only of ours, and the files with their texts (PEP 639)."""
+    """Return METADATA with the licences of all code in the wheel, as in PEP 639.
+
+    It also lists the files with the texts of the licences.
+    """
     expression = " AND ".join(["MIT", *sorted({each.licence for each in found} - {"MIT"})])
     head, gap, body = text.partition("\n\n")
     lines = [f"License-Expression: {expression}" if line.startswith("License-Expression:") else line
@@ -173,7 +189,7 @@ def _metadata(text: str, found: list[Component], licences: list[str]) -> str:
 
 
 def _bill(version: str, found: list[Component], epoch_s: int) -> dict:
-    """A CycloneDX bill of materials."""
+    """Return a CycloneDX bill of materials."""
     own = f"pkg:pypi/brushsvg@{version}"
     return {
         "bomFormat": "CycloneDX",
@@ -208,7 +224,7 @@ def _bill(version: str, found: list[Component], epoch_s: int) -> dict:
 
 
 def problems_of(wheel: Path) -> list[str]:
-    """Why a wheel must not be handed out, a sentence each."""
+    """Return the reasons why a wheel must not be published, a sentence each."""
     problems = []
     if wheel.stat().st_size > LARGEST_BYTES:
         problems.append(f"{wheel.name}: it has {wheel.stat().st_size} bytes (at most {LARGEST_BYTES})")
@@ -237,8 +253,8 @@ def _without_licence(wheel: Path, file: zipfile.ZipFile) -> Iterator[str]:
 
 
 def problems_of_library(data: bytes) -> Iterator[str]:
-    """Why a shared library must not be in a wheel."""
-    # what Ceres says of how it was built, and its name for a way that it does not have
+    """Yield the reasons why a shared library must not be in a wheel."""
+    # Ceres contains sentences about its own build, and the name of LAPACK, without which it was built.
     said = re.sub(
         rb"Ceres was (?:not built with|compiled without) support for \w+\.|\0LAPACK(?=\0)", b"", data
     )
@@ -264,7 +280,7 @@ def _output(*words) -> str:
 
 
 def page(wheel: Path, report: str) -> str:
-    """The page of the documentation about what is inside."""
+    """Return the page of the documentation about the contents of a wheel."""
     with zipfile.ZipFile(wheel) as file:
         (bill,) = (name for name in file.namelist() if name.endswith(f".dist-info/{BILL}"))
         text = file.read(bill).decode()

@@ -6,7 +6,7 @@ tools=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$1" && cd "$1"
 ! sha256sum -c "$tools/sources.sha256" >/dev/null 2>&1 || exit 0
 
-# The same sources as the system's, read for source packages, in a list of our own.
+# A list of our own with the system's package sources, changed to source packages.
 lists=$(mktemp -d)
 trap 'rm -rf "$lists"' EXIT
 mkdir -p "$lists"/parts "$lists"/state/partial
