@@ -315,7 +315,7 @@ BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke
 
 
 def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
-    """A refusal of a damaged drawing says which part can still be drawn.
+    """A refusal of a damaged drawing says how to draw its undamaged parts.
 
     It is reported once, at the end. No message claims that anything was painted.
     """

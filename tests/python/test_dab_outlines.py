@@ -161,7 +161,7 @@ def test_dabs_that_say_no_outline_are_refused(what):
 def test_the_patch_rests_while_a_dab_is_painted():
     """The patch rests while a dab is painted.
 
-    This also holds for a lag that is short at first and then suddenly long. A straight path would drag the
+    This also holds for a lag that is short at first and then grows fast. A straight path would drag the
     patch.
     """
     late = new_brush("late", 5.0, [(4, 3.0), (8, 6.0)])

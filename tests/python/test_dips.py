@@ -10,7 +10,7 @@ from brushsvg.read.gcode import dips
 def at_pots_by_definition(begins: np.ndarray) -> list[bool]:
     """Return which strokes fetch paint, from the definition, by comparing all pairs.
 
-    A pot is a place that is visited three times, and never twice in a row.
+    A pot is a place that is visited at least three times, and never twice in a row.
     """
     near = np.hypot(*(begins[:, None] - begins[None]).transpose(2, 0, 1)) <= dips.SAME_PLACE_MM
     follows = np.array([False, *(near[k, k + 1] for k in range(len(begins) - 1))])

@@ -1,4 +1,7 @@
-"""The numbered examples run from a checkout, write what they promise, and stay short. ctest runs those in C++."""
+"""The numbered examples run from a checkout, write their files, and stay short.
+
+ctest runs the C++ examples.
+"""
 
 import ast
 import json
@@ -195,4 +198,4 @@ def test_embedding(run):
     assert re.match(r"a program of \d{3,} characters, \d+ s", line)
     assert line and wide.startswith("refused (width-out-of-reach): wave: width 40")
     assert stopped == "cancelled"
-    assert not list(Path().iterdir())  # nothing is written
+    assert not list(Path().iterdir())  # no files are written
