@@ -1,4 +1,4 @@
-"""Compare all joint angles that we find for a place with those that EAIK finds.
+"""Compare all joint angles that we find for a place with the angles of EAIK.
 
 EAIK uses another method. EAIK's forward kinematics also checks that the angles reach the place.
 

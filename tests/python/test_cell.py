@@ -1,4 +1,7 @@
-"""Cells: every key read, checked and written back; the paper's frame by pose and by taught points."""
+"""Every key of a cell is read, checked and written back.
+
+The paper's frame comes from a pose or from taught points.
+"""
 
 from dataclasses import replace
 from pathlib import Path

@@ -416,7 +416,7 @@ def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys
 def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
     """With one load, the order of strokes separates depth from distance painted.
 
-    Strokes and places stay the same. The distance painted so far hardly predicts the depth.
+    The strokes and their places do not change. The distance painted so far hardly predicts the depth.
     """
     brush = find_brush("round-6")
     usual, made = chart(brush, sheet), chart(brush, sheet, one_load=True)

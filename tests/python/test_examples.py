@@ -23,7 +23,10 @@ MAX_LINES = 40
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Return a function that runs an example in an empty folder and returns what it prints."""
+    """Return a function that runs an example in an empty folder.
+
+    The function returns the example's printed text.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(name: str) -> str:

@@ -122,7 +122,7 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
     np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
     if (
         np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
-    ):  # else the slope has a step just there
+    ):  # otherwise, the slope has a step there
         np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.01)
 
 

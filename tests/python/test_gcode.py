@@ -192,7 +192,17 @@ def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm
 def test_grbl_is_spared_what_it_does_not_know():
     text = text_of(("a" * 200, TWO[0][1], 20.0), cell="grbl-3axis")
     words = {word for line in code_lines(text) for word in re.findall(r"[GM]\d+", line)}
-    assert words == {"G0", "G1", "G17", "G21", "G40", "G80", "G90", "G94", "M2"}  # all in grbl 1.1's list
+    assert words == {
+        "G0",
+        "G1",
+        "G17",
+        "G21",
+        "G40",
+        "G80",
+        "G90",
+        "G94",
+        "M2",
+    }  # grbl 1.1 lists all of these
     assert max(map(len, text.splitlines())) <= 70
     assert "%" not in text
 

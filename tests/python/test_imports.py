@@ -19,7 +19,7 @@ HEADERS = CPP / "include" / "brushsvg"
 RULES = tomllib.loads((ROOT / "tests" / "imports.toml").read_text(encoding="utf-8"))
 MAX_FILES = 15  # in a source folder
 
-# Headers without a test of their own name, and why.
+# Headers without a test that has their name, and the reason.
 UNTESTED = {
     "error": "two value types; the tests of their users check them",
     "lag_impl": "the bodies of lag.hpp, tested with it",

@@ -48,8 +48,8 @@ def test_labels_stay_inside_and_cover_nothing_while_a_candidate_is_free(anchors,
 def covers(box, marks, placed, anchors, anchor) -> bool:
     """Return whether a label at this box would cover something.
 
-    This slow check looks for a mark, a label, a leader or an anchor within 2 of the box. It also checks
-    whether the box's own leader crosses a label.
+    This slow check looks for marks, labels and leaders under the box, and for anchors within 2 of the box.
+    It also checks whether the box's own leader crosses a label.
     """
     rows, columns = np.nonzero(marks)
     cells = [(x * CELL, y * CELL, (x + 1) * CELL, (y + 1) * CELL) for x, y in zip(columns, rows, strict=True)]

@@ -1,6 +1,6 @@
 """A small interpreter of URScript that records where the tool goes.
 
-The signatures are those of the manual.
+The signatures come from the manual.
 """
 
 import contextlib
