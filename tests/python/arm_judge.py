@@ -1,9 +1,13 @@
-"""All joint angles for a place, held against EAIK, which finds them otherwise; that they lead there, EAIK says, too.
+"""Compare all joint angles that we find for a place with the angles of EAIK.
 
-Places near a singularity (a joint turns by more than 300 degrees for each mm: about 0.1 degree from it, or 0.01 mm from
-the end of the reach) are counted apart: two solvers may see one solution or two there. EAIK knows no wrist without a
-common point: for xArm Newton's method is begun at hundreds of random angles, and at ten times as many where it has not
-come to all that were found.
+EAIK uses another method. EAIK's forward kinematics also checks that the angles reach the place.
+
+Places near a singularity are counted separately, because two solvers may see one solution or two there. A
+place is near a singularity if a joint turns by more than 300 degrees for each mm. This is about 0.1 degree
+from the singularity, or 0.01 mm from the end of the reach.
+
+EAIK cannot solve a wrist whose axes have no common point. For xArm, Newton's method starts at hundreds of
+random angles instead. It starts at ten times as many if it missed a solution that we found.
 """
 
 from __future__ import annotations
@@ -19,7 +23,10 @@ SAME_RAD, SINGULAR_RAD_MM = 1e-6, np.radians(300.0)
 
 
 class Eaik:
-    """An arm as EAIK has it. knows: how to find angles, not only where they lead."""
+    """An arm in EAIK; `knows` says whether EAIK can find its angles.
+
+    EAIK can compute the place that given angles reach for every arm.
+    """
 
     def __init__(self, arm):
         from eaik.IK_DH import DhRobot
@@ -32,13 +39,13 @@ class Eaik:
         self.behind = frame_of_pose((0.0, 0.0, 0.0), arm.flange_rotation_deg)
 
     def flange(self, joints_rad):
-        """(4, 4) [mm] where joints (6,) put it."""
+        """Return the flange frame (4, 4) [mm] for joints (6,)."""
         here = np.array(self.robot.fwdKin(joints_rad + self.theta))
         here[:3, 3] *= 1e3
         return self.base @ here @ self.behind
 
     def solutions(self, flange):
-        """All angles (k, 6) for a flange frame [mm]."""
+        """Return all joint angles (k, 6) for a flange frame [mm]."""
         target = np.linalg.inv(self.base) @ flange @ np.linalg.inv(self.behind)
         target[:3, 3] *= 1e-3
         found = self.robot.IK(target)
@@ -47,17 +54,24 @@ class Eaik:
 
 
 def judge_of(arm):
-    """From a flange frame [mm] to all angles (k, 6), by EAIK; None where it does not know the arm."""
+    """Return EAIK's solver, or None if EAIK cannot solve the arm.
+
+    The solver takes a flange frame [mm] and returns all joint angles (k, 6).
+    """
     judge = Eaik(arm)
     return judge.solutions if judge.knows else None
 
 
 STARTS, STEPS, MOST_STEP_RAD = 300, 30, 0.6
-NEAR_MM, MORE_STEPS, THERE_MM = 1e-3, 10, 1e-8  # who came near late is not there: 1e-6 mm may be 5e-6 rad
+# Angles that come near the target late are not exact yet: 1e-6 mm may be 5e-6 rad.
+NEAR_MM, MORE_STEPS, THERE_MM = 1e-3, 10, 1e-8
 
 
 def newton_of(arm):
-    """From a flange frame [mm] to angles (k, 6) that Newton's method finds from random ones: nearly always all."""
+    """Return a solver that uses Newton's method from random joint angles.
+
+    The solver takes a flange frame [mm] and returns angles (k, 6): nearly always all solutions.
+    """
     random = np.random.default_rng(0)
 
     def nearer(angles, flange):
@@ -90,13 +104,16 @@ def newton_of(arm):
 
 
 def missing(some, others) -> int:
-    """How many of some angles (k, 6) are none of the others (m, 6)."""
+    """Count the angles of `some` (k, 6) that are not among `others` (m, 6)."""
     turns = (some[:, None] - others[None] + np.pi) % (2 * np.pi) - np.pi
     return int((np.abs(turns).max(axis=-1).min(axis=-1, initial=9.0) > SAME_RAD).sum())
 
 
 def compare(name: str, count: int, seed: int = 0) -> dict:
-    """How many random places agree, differ, and are near a singularity; and how many angles each has found."""
+    """Count random places where both solvers agree or differ, and singular places.
+
+    Also count the angles that each solver has found.
+    """
     arm, random = find_cell(name).arm, np.random.default_rng(seed)
     joints, judge = joints_of(arm), Eaik(arm)
     reported = {

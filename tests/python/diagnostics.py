@@ -1,4 +1,4 @@
-"""What tests ask of warnings and refusals: the code, and the numbers and names in the sentence, but not its words."""
+"""Compare warnings and refusals by code, numbers and names, not by wording."""
 
 import json
 import re
@@ -12,8 +12,12 @@ from brushsvg.errors import Error, Notice
 
 
 def agrees(reported: Error | Notice, expected: str, where: str | None = None) -> bool:
-    """expected: a code, then numbers and names that the element or the sentence gives, each as a whole word; with
-    blanks in it, in quotes. where: the element it must be about."""
+    """Return whether a notice or an error has the expected code, numbers and names.
+
+    `expected` is a code, followed by numbers and names. The element or the sentence must contain each of them
+    as a whole word. A part that contains blanks stands in quotes. `where` is the element that the notice must
+    be about.
+    """
     code, *parts = shlex.split(expected)
     text = f"{reported.where}: {reported if isinstance(reported, Error) else reported.text}"
     return (
@@ -24,18 +28,24 @@ def agrees(reported: Error | Notice, expected: str, where: str | None = None) ->
 
 
 def is_reported(reported, expected: str, where: str | None = None) -> bool:
-    """Whether one of these agrees; reported: notices, with their files as in_json gives them or without."""
+    """Return whether one of the notices agrees.
+
+    `reported` holds notices, alone or paired with their files as `in_json` returns them.
+    """
     notices = (each[1] if isinstance(each, tuple) else each for each in reported)
     return any(agrees(each, expected, where) for each in notices)
 
 
 def are_reported(reported, *expected: str) -> bool:
-    """Whether it is these, in this order, and nothing else."""
+    """Return whether exactly the expected notices were reported, in this order."""
     return len(reported) == len(expected) and all(map(agrees, reported, expected))
 
 
 def gives(text: str, *parts: str) -> bool:
-    """Whether a text gives these numbers and names in this order, each as a whole word; its words may be any."""
+    """Return whether a text contains these numbers and names in this order.
+
+    Each part must be a whole word. The text between the parts does not matter.
+    """
     for part in parts:
         found = _found(part, text)
         if found is None:
@@ -52,7 +62,7 @@ def _found(part: str, text: str) -> re.Match | None:
 
 @contextmanager
 def refused(expected: str, where: str | None = None):
-    """For a refusal that agrees, of this element if that is given."""
+    """Expect a refusal that agrees, about the element `where` if it is given."""
     with pytest.raises(Error) as caught:
         yield caught
     reported = caught.value
@@ -60,19 +70,19 @@ def refused(expected: str, where: str | None = None):
 
 
 def in_json(capsys, *words) -> tuple[int, str, list[tuple[str, Notice]]]:
-    """Exit status, standard output, and what was reported with the file that it is about."""
+    """Return the exit status, standard output, and each notice with its file."""
     status = main(["--messages", "json", *map(str, words)])
     output, errors = capsys.readouterr()
     return status, output, heard(errors.splitlines())
 
 
 def heard(lines) -> list[tuple[str, Notice]]:
-    """What `--messages json` reported in these lines, each with the file that it is about."""
+    """Return the notices that `--messages json` printed, each with its file."""
     reported = [json.loads(line) for line in lines if line.startswith("{")]
     return [(each.pop("file"), read(each)) for each in reported]
 
 
 def read(reported: dict) -> Notice:
-    """A notice of `--messages json`, or of a report in JSON."""
+    """Return a notice from an object of `--messages json` or of a JSON report."""
     sentence = reported["sentence"].removesuffix(f"; {reported['advice']}")
     return Notice(**(reported | {"sentence": sentence}))

@@ -1,4 +1,4 @@
-"""DXF drawings made by ezdxf for the tests, and how far a curve read is from the true one."""
+"""Make DXF drawings with ezdxf and measure how far a curve is from the true one."""
 
 import io
 
@@ -11,8 +11,8 @@ from brushsvg.read import ReadOptions
 from brushsvg.read.dxf import read_dxf
 from brushsvg.read.dxf.ezdxf_import import ezdxf
 
-TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # p goes down to -200
-SHEET = (1000.0, 1000.0)  # given: the drawing's origin stays where it is
+TOPS = {"A": 700, "x": 500, "p": 500, ".notdef": 300}  # the descender of p reaches -200
+SHEET = (1000.0, 1000.0)  # With a given sheet, the drawing's origin stays where it is.
 
 
 def drawing(draw=None, units=4, version="R2010"):
@@ -31,7 +31,7 @@ def encoded(document, binary=False):
 
 
 def text_dxf(*entities, header=""):
-    """Only an ENTITIES section, of entities given as lines."""
+    """Return a DXF file that has only an ENTITIES section."""
     words = f"{header} 0 SECTION 2 ENTITIES {' '.join(entities)} 0 ENDSEC 0 EOF".split()
     return "\n".join([*words, ""]).encode()
 
@@ -41,7 +41,7 @@ def read(document, sheet_mm=SHEET, units=None, binary=False):
 
 
 def only(document, **options):
-    """The single element of a drawing without notices."""
+    """Return the single element of a drawing that has no notices."""
     design = read(document, **options)
     assert design.notices == ()
     (element,) = design.elements
@@ -56,7 +56,10 @@ def along(cubics, count=1000):
 
 
 def apart(subpath, points):
-    """Greatest distance [mm] of the curve from a fine polyline and of the polyline from the curve."""
+    """Return the greatest distance [mm] between the curve and a fine polyline.
+
+    Both directions count: from curve to polyline, and from polyline to curve.
+    """
     assert (subpath.cubics[1:, 0] == subpath.cubics[:-1, 3]).all()
     if subpath.closed:
         assert (subpath.cubics[0, 0] == subpath.cubics[-1, 3]).all()
@@ -65,7 +68,10 @@ def apart(subpath, points):
 
 
 def _some(points):
-    """One in eight, and the last: the lines that they are held against have all."""
+    """Return every eighth point and the last.
+
+    Callers compare these points with a line that keeps all its points.
+    """
     return np.vstack([points[::8], points[-1:]])
 
 
@@ -78,7 +84,10 @@ def _off(points, line):
 
 
 def circle(centre, rx, ry=None, begin=0.0, end=360.0, turn=0.0, count=6000):
-    """Points of an elliptical arc; angles in degrees, of the parameter."""
+    """Return points of an elliptical arc.
+
+    `begin` and `end` are values of the ellipse parameter in degrees.
+    """
     t, turn = np.radians(np.linspace(begin, end, count)), np.radians(turn)
     x, y = rx * np.cos(t), (rx if ry is None else ry) * np.sin(t)
     x, y = x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
@@ -86,7 +95,7 @@ def circle(centre, rx, ry=None, begin=0.0, end=360.0, turn=0.0, count=6000):
 
 
 def bulged(vertices, closed=False):
-    """Points of a polyline of (x, y, bulge): each arc about its centre."""
+    """Return points of a polyline of (x, y, bulge), with exact arcs."""
     places = [complex(x, y) for x, y, _ in vertices]
     points = []
     for k, p in enumerate(places if closed else places[:-1]):
@@ -100,7 +109,11 @@ def bulged(vertices, closed=False):
 
 
 def save_font(path, family, wide=600, slanted=False):
-    """A, x and p are boxes of that width, 1000 to the em and 100 between them, A 700 high; slanted: cut in half."""
+    """Save a font in which A, x and p are boxes of the given width.
+
+    The em has 1000 units. A is 700 high, and the gap between letters is 100. `slanted` cuts each box in half
+    along its diagonal.
+    """
     builder = FontBuilder(1000, isTTF=True)
     builder.setupGlyphOrder([".notdef", "space", "A", "x", "p"])
     builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space"})

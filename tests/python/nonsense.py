@@ -1,7 +1,7 @@
-"""Calls public names with nonsense; run by test_nonsense.py in a process of its own: python nonsense.py NAME ...
+"""Call public names with nonsense arguments: python nonsense.py NAME ...
 
-One line per call that ended in anything but a result, brushsvg.Error or, for a value of the wrong Python type,
-TypeError.
+test_nonsense.py runs this script in a separate process. It prints one line per call with a wrong outcome. A
+right outcome is a result, brushsvg.Error or, for a value of the wrong Python type, TypeError.
 """
 
 import contextlib
@@ -242,7 +242,8 @@ def some_laws():
     yield from NUMBERS
 
 
-# public name: what each of its arguments is, the first a sound one; all others are tried one at a time
+# Public name: the values to try for each argument. The first value is valid; the others are tried one at a
+# time.
 ARGUMENTS = {
     "Arc": [[1, *NUMBERS], [2, *NUMBERS], [(0, 0), (NAN, INF), (1e300, 0)], [1, *NUMBERS]],
     "Brush": [],
@@ -413,7 +414,7 @@ def sound_program():
 def sound_photo():
     photo = FOLDER / "photo.jpg"
     if not photo.exists():
-        with contextlib.redirect_stdout(io.StringIO()):  # its studio is printed
+        with contextlib.redirect_stdout(io.StringIO()):  # simulate-photo prints its studio
             assert command(["simulate-photo", str(FOLDER / "d.svg"), "-o", str(photo), "--quiet"]) == 0
     return photo
 
@@ -458,7 +459,7 @@ def painted_marks():
     yield [_core.PaintedMark("a", poses[:0], [square])]
     for rings in ([], [square[:2]], [square[::-1]], [square * 0]):
         yield [_core.PaintedMark("a", poses, rings)]
-    for value in NUMBERS[:8]:  # small ones make marks that no brush paints
+    for value in NUMBERS[:8]:  # Small values make marks that no brush paints.
         yield [_core.PaintedMark("a", np.where(poses == 12, value, poses), [square])]
         yield [_core.PaintedMark("a", poses, [np.where(square == 15, value, square)])]
 
@@ -505,7 +506,7 @@ def all_mark_options():
     yield mark_options(laws=_core.LawPrior(laws, []))
 
 
-# the same of what is no name of its own: the fits, which calibration calls, and what makes a value
+# These have no public name of their own: the fits that calibration calls, and a factory of a class.
 FITS = {
     "Stroke.from_points": [
         [
@@ -533,7 +534,11 @@ FITS = {
 
 
 def calls(name):
-    """Arguments of each call: sound ones with one of them nonsense, or of a wrong type, or all the same nonsense."""
+    """Yield the arguments of each call.
+
+    First come valid arguments, then valid ones with a single argument replaced by nonsense or a wrong type.
+    Last come arguments that all have the same wrong type.
+    """
     given = (ARGUMENTS | FITS).get(name, [])
     choices = [list(choice() if callable(choice) else choice) + WRONG_TYPES for choice in given]
     sound = [choice[0] for choice in choices]
@@ -547,7 +552,10 @@ def calls(name):
 
 
 def truths(name):
-    """Arguments of calls with True in place of one number, or of the numbers of a tuple."""
+    """Yield call arguments with True in place of one number.
+
+    In a tuple of numbers, True replaces the first number.
+    """
     given = ARGUMENTS.get(name, [])
     sound = [next(iter(choice() if callable(choice) else choice)) for choice in given]
     for index, value in enumerate(sound):
@@ -566,7 +574,7 @@ def is_refused(call) -> bool:
 
 
 def values_of(name):
-    """Values of a class, sound and not."""
+    """Return valid and invalid values of a class."""
     made = {
         "Brush": brushes,
         "Stroke": some_strokes,
@@ -578,7 +586,7 @@ def values_of(name):
 
 
 def methods(name):
-    """(words for it, callable) of the methods of a class, on values of its own."""
+    """Yield (label, value, attribute) for each public attribute of a class's values."""
     for value in values_of(name):
         for attribute in dir(value):
             if attribute.startswith("_"):
@@ -587,7 +595,7 @@ def methods(name):
 
 
 def shown_and_copied(value):
-    """What every value can do, for any contents."""
+    """Call what every value must support: repr, copy and pickle."""
     repr(value)
     for made in (copy.copy(value), pickle.loads(pickle.dumps(value))):
         if made != value:
@@ -595,13 +603,13 @@ def shown_and_copied(value):
 
 
 def outcome(call, words) -> str | None:
-    """What it ended in, if that is wrong."""
+    """Return a description of a wrong outcome, or None if the outcome is right."""
     try:
         call()
     except (brushsvg.Error, TypeError) as refusal:
         is_one_line = "\n" not in str(refusal) or words.startswith(tuple(FITS))
         return None if is_one_line else f"{words}: more than one line: {str(refusal)[:200]}"
-    except BaseException as error:  # every other kind is what is looked for
+    except BaseException as error:  # The search is for every other kind of exception.
         return f"{words}: {type(error).__name__}: {str(error)[:200]}"
     return None
 
@@ -613,9 +621,9 @@ def main(names):
             continue
         for count, arguments in enumerate(calls(name)):
             words = f"{name}({', '.join(repr(each)[:60] for each in arguments)})"
-            print(words, file=sys.stderr, flush=True)  # what was last begun, should the process end here
+            print(words, file=sys.stderr, flush=True)  # Shows the last call if the process dies here.
             if count == 0 and arguments:
-                public(*arguments)  # the sound one: what it is to be nonsense next to
+                public(*arguments)  # The valid call must succeed.
             if wrong := outcome(lambda f=public, given=arguments: f(*given), words):
                 print(wrong, flush=True)
         for arguments in truths(name):
@@ -643,7 +651,7 @@ def main(names):
                             lambda v=value, a=attribute, n=nonsense: setattr(v, a, n),
                             f"{words} = {nonsense!r}",
                         )
-                    ) and "AttributeError" not in wrong:  # what cannot be set
+                    ) and "AttributeError" not in wrong:  # Read-only attributes cannot be set.
                         print(wrong, flush=True)
                 continue
             for nonsense in [(), *((each,) for each in [*NUMBERS, *WRONG_TYPES])]:

@@ -1,4 +1,4 @@
-"""What tests of programs share: shipped cells with their extension, a call of the command, and plans gone through."""
+"""Shared parts of the program tests: cells and extensions, commands, plans."""
 
 import re
 from dataclasses import replace
@@ -30,23 +30,23 @@ LANGUAGES = {
     "axidraw-ebb": ".ebb",
 }
 SERVOS = ("grbl-servo", "axidraw-ebb")
-RUNNABLE = check.RUNNABLE  # what is said of a sound program
+RUNNABLE = check.RUNNABLE  # the text printed for a program without problems
 
 
 def call(capsys, *words):
-    """Exit status, standard output, and the lines of standard error."""
+    """Return the exit status, standard output, and the lines of standard error."""
     status = main(list(words))
     reported = capsys.readouterr()
     return status, reported.out, reported.err.splitlines()
 
 
 def whole(plan):
-    """A plan with one load for each stroke."""
+    """Return a plan with one load for each stroke."""
     return PlanInLoads(tuple(plan.sheet_mm), tuple(plan.passes))
 
 
 def program(plan, brush, cell, header=(), job=WHOLE_JOB):
-    """Its moves, or an Error where something forbids them."""
+    """Return the program of a plan; raise an Error if a check forbids it."""
     return replace(make_checked_program(whole(plan), brush, cell, job).allowed(), header=header)
 
 
@@ -59,7 +59,10 @@ def problems(plan, brush, marks, cell, tolerance_mm):
 
 
 def is_refused_when_damaged(capsys, path, old, new, reported, *words):
-    """That check allows a program, and no longer where one pattern of it is replaced; reported: codes, any of them."""
+    """Return whether check accepts a program and refuses it once it is damaged.
+
+    The damage replaces one match of a pattern. `reported` lists the codes of which one must be reported.
+    """
     text = path.read_text()
     check = ("check", path, *words)
     assert in_json(capsys, *check)[0] == 0

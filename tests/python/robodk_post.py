@@ -1,4 +1,4 @@
-"""A post of RoboDK's kind, of the tests' own: a line for each call."""
+"""A small RoboDK-style post for tests; it writes one line for each call."""
 
 
 class RobotPost:

@@ -1,4 +1,7 @@
-"""Parameters of tests of which each landing runs a sample and `make thorough` runs all."""
+"""Run a sample of a test's parameters on each landing.
+
+`make thorough` runs all of them.
+"""
 
 from zlib import crc32
 
@@ -6,10 +9,11 @@ import pytest
 
 
 def sample(names, values, keep: int, ids=None):
-    """Parametrize a test: `keep` of the values run on each landing, the others carry the marker `thorough`.
+    """Parametrize a test: each landing runs `keep` of the values.
 
-    The kept values are spread evenly over the list, and start at another place for each test function: over many tests
-    each value (a machine, say) is met by some.
+    The other values carry the marker `thorough`. The kept values are spread evenly over the list and start at
+    a different place for each test function. Over many tests, each value (a machine, for example) is
+    therefore covered by some test.
     """
     values = list(values)
     single = len(names.split(",") if isinstance(names, str) else names) == 1

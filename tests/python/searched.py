@@ -1,4 +1,4 @@
-"""Strokes as a search makes them, for tests of the ways to fill a shape."""
+"""Make strokes with the stroke search, for tests of filling a shape."""
 
 from brushsvg import _core
 from brushsvg.strokes.stroke_search import search_strokes
@@ -6,7 +6,7 @@ from brushsvg.strokes.wide_shapes import within_reach
 
 
 def passes_of(strokes, brush):
-    """The strokes that fill shapes, those that the search adds among them."""
+    """Return the strokes that fill shapes, including those that the search adds."""
     painted, target, _ = within_reach(strokes, brush, "passes")
 
     def compensated(some):
@@ -16,7 +16,7 @@ def passes_of(strokes, brush):
 
 
 def mark_of(strokes, brush):
-    """Rings of what the brush paints of them."""
+    """Return the outlines of the marks that the brush paints."""
     plan = _core.compensate(strokes, brush, None, start="auto", end="auto").plan
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)

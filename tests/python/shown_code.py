@@ -1,4 +1,4 @@
-"""The code that README, docs and notebooks show: blocks of pages with what they are, cells of notebooks."""
+"""Collect the code that README, docs and notebooks show."""
 
 import json
 import re
@@ -10,19 +10,19 @@ REPOSITORY = Path(__file__).parents[2]
 DOCS = REPOSITORY / "docs"
 GENERATED = {
     DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")
-}  # by made_pages.py
+}  # made_pages.py writes them
 FOLLOWED = [page for folder in ("start", "howto") for page in sorted((DOCS / folder).glob("*.md"))]
 PAGES = [
     REPOSITORY / "README.md",
     *sorted(page for page in DOCS.rglob("*.md") if page not in GENERATED and "_build" not in page.parts),
 ]
 NOTEBOOKS = sorted((REPOSITORY / "examples" / "notebooks").glob("*.ipynb"))
-# fenced, or indented behind an empty line: what goes on with a list has a line of it right above
+# A block is fenced, or indented after an empty line. The continuation of a list has no empty line above it.
 BLOCK = re.compile(
     r"^ *```(?P<fence>\S*)\n(?P<fenced>[\s\S]*?)^ *```$|(?<=\n\n)(?P<plain>(?:    .*\n(?:\n+(?=    ))?)+)",
     re.MULTILINE,
 )
-# what a block that is only indented is: the first that fits
+# The kind of a block that is only indented: the first match counts.
 KINDS = (
     ("commands", r"brushsvg "),
     ("make", r"make "),
@@ -37,7 +37,7 @@ KINDS = (
 )
 
 
-FOLLOWED_NOT_RUN = {  # beginnings of lines of followed pages that no test types, and why
+FOLLOWED_NOT_RUN = {  # Beginnings of lines on followed pages that no test runs, and the reason.
     "git clone ": "the address of the project",
     "make ": "sets up a machine, or takes minutes",
     ". ": "the environment of the one who installs",
@@ -52,7 +52,10 @@ FOLLOWED_NOT_RUN = {  # beginnings of lines of followed pages that no test types
 
 @dataclass(frozen=True)
 class Block:
-    """A block of code of a page: its line there, what it is ("" if nobody knows), and its text without indent."""
+    """A code block of a page: its line number there, kind, and text without indent.
+
+    The kind is "" if it is unknown.
+    """
 
     page: str  # README.md, or the path below docs/
     line: int
@@ -61,12 +64,12 @@ class Block:
 
 
 def name_of(page: Path) -> str:
-    """The name of a page below docs/, with its folder; of README.md its own."""
+    """Return the path of a page below docs/, or the file name README.md."""
     return page.relative_to(DOCS).as_posix() if page.is_relative_to(DOCS) else page.name
 
 
 def blocks(page: Path) -> list[Block]:
-    """The blocks of code of a page, from top to bottom."""
+    """Return the code blocks of a page, from top to bottom."""
     text = page.read_text(encoding="utf-8")
     found = []
     for block in BLOCK.finditer(text):
@@ -79,12 +82,12 @@ def blocks(page: Path) -> list[Block]:
 
 
 def cells(notebook: Path) -> list[str]:
-    """The cells of code of a notebook."""
+    """Return the code cells of a notebook."""
     book = json.loads(notebook.read_text(encoding="utf-8"))
     return ["".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code"]
 
 
-# Commands that no test types as they stand: (page, what the line begins with), and why.
+# Commands that no test runs as they stand: (page, beginning of the line), and the reason.
 NOT_RUN = {
     (
         "README.md",
@@ -94,5 +97,5 @@ NOT_RUN = {
 
 
 def why_not_run(page: str, line: str) -> str:
-    """Empty for a command that is run."""
+    """Return the reason why no test runs a command; empty if a test runs it."""
     return next((why for (of, begin), why in NOT_RUN.items() if of == page and line.startswith(begin)), "")

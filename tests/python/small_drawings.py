@@ -1,4 +1,7 @@
-"""Small drawings at random, of the kinds that are hardest to paint: corners, short strokes, crossing ones, curves."""
+"""Random small drawings of the kinds that are hardest to paint.
+
+They are corners, short strokes, crossing strokes and curves.
+"""
 
 import numpy as np
 
@@ -42,14 +45,14 @@ def small_drawing(random, number: int) -> list:
 
 
 def overlaps(strokes, brush, method: str) -> np.ndarray:
-    """Of single strokes, as the report has them."""
+    """Return the overlap that the report gives for each stroke painted alone."""
     plan = _core.compensate(strokes, brush, SHEET_MM, method).plan
     rows, _ = report.measure(report.PaintedPlan(plan, _core.simulate(plan, brush), brush, strokes))
     return np.array([row.overlap for row in rows])
 
 
 def gains(count: int, seed: int, brush) -> np.ndarray:
-    """What the refined plan of each stroke wins over the one in closed form."""
+    """Return how much overlap each stroke gains from `refined` over `closed`."""
     random = np.random.default_rng(seed)
     drawings = [small_drawing(random, k) for k in range(count)]
     return np.concatenate(

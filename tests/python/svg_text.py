@@ -1,4 +1,4 @@
-"""Drawings for tests: a page of 100 x 50 mm in mm, strokes red, 1 mm wide, no fill."""
+"""SVG drawings for tests: a page of 100 x 50 mm, red strokes 1 mm wide, no fill."""
 
 from brushsvg.read import ReadOptions
 from brushsvg.read.svg import read_svg
@@ -15,7 +15,7 @@ def read(body, **options):
 
 
 def lines(design):
-    """(id, start, end) of every sub-path, in SVG's own coordinates."""
+    """Return (id, start, end) of every subpath in SVG coordinates (y down)."""
     return [
         (element.id, (x0, 50 - y0), (x1, 50 - y1))
         for element in design.elements

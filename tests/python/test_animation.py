@@ -1,4 +1,4 @@
-"""The page that plays a timeline: what it holds, and that nothing in it can break out of its place."""
+"""The animation page shows the timeline, and no text in it can inject code."""
 
 import json
 import re
@@ -96,7 +96,8 @@ def test_the_page_asks_for_nothing_from_outside(tmp_path):
     page = outputs.make_animation(*played_of(tmp_path), find_cell()).decode()
     assert "default-src 'none'" in page
     assert not re.findall(r"(?:https?:|\bsrc=|\bhref=|@import|url\()", page)
-    assert "/*" not in re.sub(r"(?s)<style>.*?</style>", "", page)  # every mark of the template was filled
+    # every placeholder of the template was filled
+    assert "/*" not in re.sub(r"(?s)<style>.*?</style>", "", page)
 
 
 def test_same_input_same_bytes(tmp_path):

@@ -1,4 +1,7 @@
-"""Joints of the arms that come along, judged by chains of their own descriptions and by another library."""
+"""Check the joint angles of the shipped arms.
+
+The references are the arms' own kinematic descriptions and another library.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +19,8 @@ pytestmark = pytest.mark.arm
 
 ARMS = [name for name in cell_names() if find_cell(name).arm]
 
-# Joints as the arms' own descriptions have them: xyz [mm], roll pitch yaw [quarter turns], axis; the flange's roll
-# pitch yaw last. UR's are those of the frame that its controller calls base.
+# Joints from the manufacturers' descriptions: xyz [mm], roll pitch yaw [quarter turns], axis. The roll pitch
+# yaw of the flange comes last. UR's values are in the frame that its controller calls base.
 UR = [
     ((0, 0, "d1"), (0, 0, 0)),
     ((0, 0, 0), (1, 0, 0)),
@@ -71,7 +74,7 @@ DESCRIBED = {
         ],
         (0, 0, 0),
     ),
-    "xarm7": (  # its joint 3 is held at 0
+    "xarm7": (  # brushsvg holds its joint 3 at 0
         [
             ((0, 0, 267), (0, 0, 0), (0, 0, 1)),
             ((0, 0, 0), (-1, 0, 0), (0, 0, 1)),
@@ -109,7 +112,7 @@ DESCRIBED = {
 
 
 def about(axis, angle):
-    """(4, 4), by Rodrigues' formula."""
+    """Return the (4, 4) rotation about an axis, by Rodrigues' formula."""
     x, y, z = np.array(axis, dtype=float)
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     turned = np.eye(4)
@@ -125,7 +128,7 @@ def placed(xyz, quarters):
 
 
 def described(name, joints_rad):
-    """(4, 4) the flange [mm]."""
+    """Return the (4, 4) flange frame [mm] from the arm's own description."""
     rows, flange = DESCRIBED[name]
     here = np.eye(4)
     if len(rows) > len(joints_rad):
@@ -157,7 +160,10 @@ def test_all_found_angles_put_the_flange_at_the_requested_place(name):
 
 
 def test_near_a_singularity_angles_are_as_exact():
-    """There two steps of Newton's left 4e-6 mm, and joints 1e-6 rad off their target."""
+    """Angles near a singularity are as exact as elsewhere.
+
+    Two Newton steps there left an error of 4e-6 mm, and joints 1e-6 rad off their target.
+    """
     arm = find_cell("xarm6").arm
     target = joint_frames_of(arm, (-2.05282, -0.04117, -0.86343, 1.96439, -0.19169, 0.47531))[-1]
     there = joint_frames_of(arm, joints_of(arm).solutions(target))[:, -1]

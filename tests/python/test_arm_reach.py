@@ -1,4 +1,4 @@
-"""Jobs that an arm cannot do: refused with the reason, and the place that is advised does."""
+"""Jobs that an arm cannot do are refused with the reason and a place that works."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ pytestmark = pytest.mark.arm
 
 BRUSH = find_brush("round-6")
 ALONG, ACROSS = ((10, 20), (90, 20)), ((50, 5), (50, 55))
-UP_FRONT = (90.0, -36.0, 126.0, 0.0, 5.0, 0.0)  # a KR 6 with its elbow up, the hand hanging
+UP_FRONT = (90.0, -36.0, 126.0, 0.0, 5.0, 0.0)  # a KR 6 with its elbow up and its hand hanging down
 
-# cell, paper's corner in the robot's frame and how it leans, the stroke, the posture, speeds: why not
+# cell, the paper's corner in the robot's frame, the paper's tilt, stroke, posture, speeds, expected code
 JOBS = [
     ("ur5e", (-50, -980, 20), (), ALONG, (), {}, "arm-out-of-reach"),
     ("ur5e", (-50, -150, 20), (), ALONG, (), {}, "arm-out-of-reach"),
@@ -82,7 +82,7 @@ def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which
     moved = tuple(np.add(cell.paper.origin_mm, (dx, dy, 0)).tolist())
     there = replace(cell, paper=replace(cell.paper, origin_mm=moved))
     assert look(there, plan).problems == []
-    # the other library has the same to say of the place that is named
+    # The other library confirms the answer for the suggested place.
     frame, judge = robot_from_paper(cell), judge_of(cell.arm)
     if judge is not None and code == "arm-out-of-reach":
         for height in (0.0, cell.heights.safe_mm):
@@ -114,7 +114,11 @@ def test_joint_rates_are_those_of_two_places_close_together():
 
 
 def test_the_nearest_place_may_be_a_turn():
-    """Behind the robot, next to the place that joint 1 cannot pass: lengthwise the stroke stays clear of it."""
+    """The nearest workable place may be a turn of the paper.
+
+    The paper is behind the robot, where joint 1 cannot pass. Turned lengthwise, the stroke stays clear of
+    this limit.
+    """
     cell, plan = job("irb120", (-450, 90, 20), (), ACROSS, (), {})
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"
@@ -140,7 +144,7 @@ def test_convert_and_check_ask_the_arm(tmp_path, capsys):
     assert main(["convert", str(drawing), "-o", str(program), "--cell", str(near), "--quiet"]) == 0
     assert main(["check", str(program), "--cell", str(near)]) == 0
     text = program.read_text()
-    assert text.count("-0.5000000") == 1  # in the line that sets the paper
+    assert text.count("-0.5000000") == 1  # the line that sets the paper
     program.write_text(text.replace("-0.5000000", "-0.9800000").replace("-500.0 20.0", "-980.0 20.0"))
     capsys.readouterr()
     status, _, reported = in_json(capsys, "check", program, "--cell", far)
@@ -181,7 +185,7 @@ def test_place_shows_where_the_paper_would_do_and_draws_the_table(tmp_path, caps
 
 
 def elbow_mm(name, joints_rad):
-    """(3,) joint 3 in the robot's frame, by the arm's own description."""
+    """Return the position (3,) of joint 3 in the robot's frame, by its description."""
     here = np.eye(4)
     for (xyz, rpy, axis), angle in zip(DESCRIBED[name][0][:3], joints_rad, strict=False):
         here = here @ placed(xyz, rpy) @ about(axis, angle)
@@ -190,7 +194,10 @@ def elbow_mm(name, joints_rad):
 
 @pytest.mark.parametrize("name", ["ur10e", "ur5e", "ur3e", "irb120", "kr6-r900"])
 def test_the_posture_with_the_highest_elbow_is_suggested(name):
-    """That of ur10e had its elbow 221 mm below the paper."""
+    """brushsvg suggests the posture whose elbow is highest.
+
+    The suggested posture of ur10e once had its elbow 221 mm below the paper.
+    """
     cell = find_cell(name)
     made = over_sheet(BRUSH, cell, (200.0, 100.0))
     solved = joints.joints_of(cell.arm)
@@ -227,7 +234,7 @@ def test_joints_below_the_table_are_refused_unless_the_cell_names_the_posture():
     named = replace(arm, posture_deg=tuple(np.degrees(below[0]).tolist()))
     made = over_sheet(BRUSH, replace(cell, arm=named), (200.0, 100.0))
     assert not follow(made, joints.joints_of(named)).problems
-    # paper far below the robot's base: what is lower than the base alone is in the air
+    # The paper is far below the robot's base: a frame that is only lower than the base is in the air.
     there, low = joints.joint_frames_of(arm, below[0]), first.copy()
     low[2, 3] = -1000.0
     assert lowest_joint_mm(there, first) < 0 < lowest_joint_mm(there, low)

@@ -1,4 +1,7 @@
-"""docs/explanation/article.md is written by examples/article, whose scripts are short and use public names only."""
+"""The scripts of examples/article write docs/explanation/article.md.
+
+They are short and use only public names.
+"""
 
 import ast
 import re
@@ -15,7 +18,7 @@ DOCS = ROOT / "docs" / "explanation"
 ARTICLE = ROOT / "examples" / "article"
 SCRIPTS = sorted((ARTICLE / "figures").glob("*.py"))
 MAX_LINES = 40
-TOLERANCE = 0.01  # fits to noise differ by this much between compilers
+TOLERANCE = 0.01  # Fits to noisy data differ by this much between compilers.
 
 
 def cells(line: str) -> list[str]:

@@ -1,4 +1,7 @@
-"""A cell that undoes backlash, on a machine that has it: programs are run by a machine of this test's own."""
+"""A cell that undoes backlash paints the right lines on a machine with backlash.
+
+This module has its own simulated machine that runs the programs.
+"""
 
 import itertools
 import re
@@ -32,8 +35,11 @@ CELLS = {"linuxcnc-3axis": ".ngc", "grbl-3axis": ".gcode", "klipper-3axis": ".gc
 
 @pytest.fixture(params=CELLS)
 def desk(tmp_path, request):
-    """A folder with a drawing and two cells: one that knows nothing, one that knows the backlash; the paper is askew
-    on the machine, which has its own x and y. And the extension of programs."""
+    """A folder with a drawing and two cells, and the extension of their programs.
+
+    One cell has no backlash entry, the other one has the machine's backlash. The paper is turned relative to
+    the machine's x and y.
+    """
     (tmp_path / "a.svg").write_text(DRAWING)
     cell = replace(find_cell(request.param), paper=Paper((30.0, 20.0, 0.0), (0.0, 0.0, 25.0)))
     (tmp_path / "plain.toml").write_text(write_cell(cell))
@@ -43,7 +49,7 @@ def desk(tmp_path, request):
 
 
 def convert(capsys, folder, ending, *flags):
-    """The texts of the programs for both cells."""
+    """Return the program texts for both cells."""
     for name in ("plain", "knows"):
         words = (
             "convert",
@@ -59,7 +65,10 @@ def convert(capsys, folder, ending, *flags):
 
 
 def places_of(program):
-    """[(stroke, line, places (n, 3))]: all that a program names behind a title, circles in short chords."""
+    """Return [(stroke, line, places (n, 3))] for each move after a stroke's title.
+
+    Circles are split into short chords.
+    """
     at, name = np.array([0.0, 0.0, 50.0]), ""
     for line in program.splitlines():
         if title := re.match(r"[(;] ?stroke \d+ of \d+: ([^)]*)", line):
@@ -81,8 +90,11 @@ def places_of(program):
 
 
 def slides(program, backlash, lag=(1, -1)):
-    """[(stroke, line, place)]: the same as a machine with this backlash goes: each screw pushes its slide from one side
-    or the other; lag: from which side it was before. In steps of 0.01 mm as long as a slide is not pushed."""
+    """Yield (stroke, line, place) as a machine with this backlash moves.
+
+    Each screw pushes its slide from one side or the other. `lag` is the side from which it pushed before.
+    While a slide is not pushed, the steps are 0.01 mm.
+    """
     half = np.append(backlash, 0.0) / 2
     lag, last = half * [*lag, 0], None
     for name, line, track in places_of(program):
@@ -101,7 +113,7 @@ def slides(program, backlash, lag=(1, -1)):
 
 
 def painted(program, backlash, **how):
-    """By stroke where the tool is on the paper."""
+    """Return the tool positions on the paper for each stroke."""
     found = {}
     for name, _, place in slides(program, backlash, **how):
         if place[2] < -0.05:
@@ -110,7 +122,7 @@ def painted(program, backlash, **how):
 
 
 def apart_mm(some, others):
-    """The most that tracks of one are from those of the other, stroke by stroke."""
+    """Return the greatest distance between the two tracks of each stroke."""
     assert some.keys() == others.keys()
     pairs = [(some[name], others[name]) for name in some]
     return [
@@ -121,7 +133,10 @@ def apart_mm(some, others):
 
 @sample("side", [(1, -1), (-1, 1), (1, 1)], keep=3)
 def test_a_machine_with_backlash_goes_where_one_without_goes(desk, capsys, side):
-    """From whichever side its axes were before."""
+    """With compensation, a machine with backlash moves like one without.
+
+    The result does not depend on the side from which the axes came before.
+    """
     plain, knows = convert(capsys, *desk)
     exact = painted(plain, np.zeros(2))
     assert min(apart_mm(painted(plain, BACKLASH, lag=side), exact)) > 0.1, "else nothing is to undo"
@@ -179,7 +194,10 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
 
 
 def test_a_circle_is_cut_where_an_axis_turns_back():
-    """On paper that is askew, too: nowhere else, and once."""
+    """A circle is cut exactly once where an axis reverses, and nowhere else.
+
+    This holds on turned paper, too.
+    """
     angles = np.radians([200.0, 260.0, 330.0, 390.0, 450.0, 480.0])
     poses = np.column_stack([40 + 8 * np.cos(angles), 30 + 8 * np.sin(angles), np.full(6, -2.0)])
     arcs = [core.Arc(0, 5, (40.0, 30.0), 1)]

@@ -1,4 +1,4 @@
-"""Limbs too small to be found as strokes are painted by a stroke of their own."""
+"""A limb too small to be found as a stroke gets an extra stroke."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,10 @@ def shape_of(corners):
 
 
 def blank(corners, marks):
-    """Of the largest connected piece that the marks leave: its share, and whether the brush's finest line fits in."""
+    """Return the largest bare piece as a share of the shape, and whether a line fits.
+
+    The line is the brush's finest one.
+    """
     shape = shape_of(corners)
     painted = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in marks.outline_mm])
     left = shapely.difference(shape, painted).buffer(-0.3).buffer(0.3)
@@ -49,7 +52,8 @@ def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
     share, fits = blank(corners, predict(work))
     assert share < 0.03 or not fits
     assert not work.unreached and not work.missed
-    # a plan that is as good already is not refined, and then a notice says so: a matter of the last digits
+    # A plan that is already as good is not refined, and a notice says so. Which plan is better depends on the
+    # last digits.
     assert {notice.code for notice in work.notices} <= (
         {"flag-without-effect"} if compensation == "refined" else set()
     )
@@ -59,7 +63,11 @@ TAIL = [(20, 5), (28, 5), (28, 36), (29, 40), (32, 44.5), (25, 45), (21, 44), (2
 
 
 def test_a_corner_that_one_sees_is_painted_unless_strokes_shall_end_and_turn_plainly(tmp_path):
-    """1.3 % of the shape, the tail of a foot, as Lobster's R has it: pieces counted from 3 % on."""
+    """A visible bare corner is painted, except with plain ends or plain corners.
+
+    The corner is 1.3 % of the shape: the tail of a foot, like the R of Lobster. Bare pieces once counted only
+    from 3 % on.
+    """
     work = prepared(tmp_path, TAIL)
     assert [stroke.id for stroke in work.strokes][:2] == ["p", "p~2"]
     share, _ = blank(TAIL, predict(work))
@@ -79,7 +87,7 @@ def test_without_its_stroke_it_would_be(tmp_path):
 
 
 def knobbed(out_mm, long_mm):
-    """A thin stem with a round knob at its side."""
+    """Return a thin stem with a round knob at its side."""
     turns = np.linspace(0, np.pi, 10)
     knob = zip(24 + out_mm * np.sin(turns), 18 + long_mm / 2 * (1 - np.cos(turns)), strict=True)
     return [(20, 10), (24, 10), *((round(x, 2), round(y, 2)) for x, y in knob), (24, 50), (20, 50)]
@@ -87,7 +95,10 @@ def knobbed(out_mm, long_mm):
 
 @pytest.mark.parametrize(("out_mm", "most_turns"), [(2.5, 0.7), (3, 0.3), (4, 0.3)])
 def test_a_knob_along_its_stem_is_painted_along_its_edge_and_is_no_blob(tmp_path, out_mm, most_turns):
-    """A straight stroke into it turned the outline by a full turn more, or left a tenth of it."""
+    """A knob along its stem is painted along its edge and is no blob.
+
+    A straight stroke into the knob once added a full turn to the outline, or left a tenth of the knob bare.
+    """
     corners = knobbed(out_mm, 2 * out_mm)
     work = prepared(tmp_path, corners)
     assert not work.notices
@@ -97,7 +108,7 @@ def test_a_knob_along_its_stem_is_painted_along_its_edge_and_is_no_blob(tmp_path
 
 
 def swelling(broadest_mm):
-    """A stroke of 48 mm that swells from 5 mm."""
+    """Return a stroke of 48 mm that swells from 5 mm to the given width."""
     along = np.linspace(-24, 24, 33)
     half = 2.5 + (broadest_mm / 2 - 2.5) * np.cos(np.pi * along / 48) ** 2
     left, right = (np.round(np.column_stack([30 + side * half, 30 + along]), 3).tolist() for side in (-1, 1))
@@ -116,7 +127,10 @@ def test_what_a_brush_is_too_narrow_for_is_painted_unless_its_width_is_to_be_the
 
 
 def test_all_strokes_of_a_drawing_are_painted_wider_than_the_brush_or_none(tmp_path):
-    """Sides of 2.9 %, and stems of 9.1 mm next to them."""
+    """All wide strokes of a drawing are painted wider than the brush, or none.
+
+    The drawing has sides of 2.9 %, and stems of 9.1 mm next to them.
+    """
     broad = swelling(10.4)
     assert [stroke.id for stroke in prepared(tmp_path, broad).strokes] == ["p", "p~2", "p~3"]
     stems = "".join(f'<path id="s{x}" d="M{x} 6h9.1v48h-9.1z"/>' for x in (2, 46))
@@ -145,7 +159,11 @@ def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
 
 
 def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
-    """The target of the stem still held its flag, and that of the flag its covered beginning."""
+    """Each stroke is compared with the part of the shape that it must paint.
+
+    The target of the stem once still contained its flag. The target of the flag contained its covered
+    beginning.
+    """
     work = prepared(tmp_path, FLAG)
     rows, _ = report.measure(report.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert all(row.overlap > 0.9 for row in rows)

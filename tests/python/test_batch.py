@@ -1,4 +1,7 @@
-"""brushsvg batch: many drawings, the same rows and files in any process, and nothing done twice."""
+"""`brushsvg batch` converts many drawings and repeats no work.
+
+Any number of processes gives the same rows and files.
+"""
 
 import csv
 import json
@@ -58,7 +61,7 @@ def contents(folder="out"):
 
 
 def done_again(monkeypatch):
-    """The names of drawings that are converted from now on."""
+    """Return a list that collects the names of drawings converted from now on."""
     names = []
     kept = run._write_result
 
@@ -131,7 +134,7 @@ def test_a_cluster_makes_the_same_and_outlives_a_worker(desk, monkeypatch):
 
 
 CHANGES = {
-    "nothing": (lambda: None, {}, ["below/wide"]),  # what was refused is always tried again
+    "nothing": (lambda: None, {}, ["below/wide"]),  # A refused drawing is always tried again.
     "a drawing": (lambda: Path("in/1.svg").write_text(drawing(9)), {}, ["1", "below/wide"]),
     "a new one": (lambda: Path("in/3.svg").write_text(drawing(9)), {}, ["3", "below/wide"]),
     "a program": (lambda: Path("out/programs/2.ngc").write_text("M2"), {}, ["2", "below/wide"]),
@@ -180,7 +183,11 @@ def test_a_line_that_was_left_half_is_that_drawing_again(desk, monkeypatch):
 
 
 def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
-    """What an earlier run made of it is removed, also where that row is not done again; an edited file is kept."""
+    """A refused row leaves no outdated files behind.
+
+    The files of an earlier run are removed, even if the refused drawing is not tried again. A file that the
+    user has edited is kept.
+    """
     with threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor)
         Path("in/1.svg").write_text(drawing(1, width=30))
@@ -195,7 +202,8 @@ def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
         refused_once = Path("out/manifest.jsonl").read_bytes()
         Path("in/1.svg").write_text(drawing(1))
         brushsvg.batch(["in"], "out", executor=executor)
-        with open("out/manifest.jsonl", "ab") as file:  # as a run that was ended left it
+        # An interrupted run leaves the manifest in this state.
+        with open("out/manifest.jsonl", "ab") as file:
             file.writelines(refused_once.splitlines(keepends=True)[1:])
     Path("in/1.svg").write_text(drawing(1, width=30))
     status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
@@ -211,7 +219,7 @@ def test_a_drawing_of_the_same_name_is_not_written_over_another(desk, monkeypatc
         with refused("name-taken in/1.svg more/1.svg programs/1.ngc"):
             brushsvg.batch(["more"], "out", executor=executor)
         assert contents() == before
-        monkeypatch.chdir("in")  # typed from elsewhere it is the same drawing
+        monkeypatch.chdir("in")  # A drawing is recognized if its path is given relative to another folder.
         Path("1.svg").write_text(drawing(5))
         assert not brushsvg.batch(["1.svg"], "../out", executor=executor).refused
         Path("1.svg").unlink()
@@ -252,7 +260,11 @@ def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
 
 
 def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, monkeypatch):
-    """Its rows were lost: all was done again, and a drawing of the same name written over another."""
+    """A second batch into the same folder keeps the rows of the first batch.
+
+    These rows were once lost. All drawings were then converted again, and a drawing with the same name
+    overwrote another one.
+    """
     first, second = ["in/0.svg", "in/below/wide.svg"], ["in/1.svg", "in/2.svg"]
     brushsvg.batch(first, "out", jobs=1, wide="refuse")
     brushsvg.batch(second, "out", jobs=1, wide="refuse")
@@ -399,7 +411,11 @@ def test_a_missing_drawing_is_a_row_and_tried_again(desk, monkeypatch):
 
 
 def test_a_refused_drawing_is_tried_again_once_its_cause_is_gone(desk, monkeypatch):
-    """A worker without a package, or a mistake of ours that was fixed: the drawing itself did not change."""
+    """A refused drawing is tried again once the cause of its refusal is gone.
+
+    The cause may be a missing package of a worker, or a bug of ours that is fixed now. The drawing itself did
+    not change.
+    """
     with threads() as executor, monkeypatch.context() as broken:
         broken.setattr(one.outputs, "overlap_picture", lambda *_: 1 / 0)
         assert brushsvg.batch(["in/1.svg"], "out", executor=executor).refused
@@ -425,7 +441,10 @@ def test_an_edited_post_makes_all_programs_anew(desk, edited):
 
 @pytest.mark.parametrize("small", ["a/a.svg", "A/a.svg", "a/A.svg"])
 def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(desk, monkeypatch, small):
-    """a.svg becomes programs/a/a.ls and those that it calls, a/a.svg programs/a/a.ls."""
+    """A program in several files does not replace the program of another drawing.
+
+    a.svg becomes programs/a/a.ls and the programs that it calls; a/a.svg becomes programs/a/a.ls, too.
+    """
     Path("two", small).parent.mkdir(parents=True)
     many = "".join(LINE.format(f"s{k}", 20 + 5 * k, 90, "#203060", 3) for k in range(3))
     Path("two/a.svg").write_text(PAGE.format("", many))
@@ -478,7 +497,10 @@ def test_names_that_macos_holds_for_one_are_refused(desk):
     "way", ["../victim.txt", "below/../../victim.txt", "{}/victim.txt", "link/victim.txt"]
 )
 def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
-    """What outdated rows name is deleted: a folder from elsewhere could delete anything."""
+    """A manifest from elsewhere cannot name a file outside its folder.
+
+    The files of outdated rows are deleted, so a foreign manifest could have deleted any file.
+    """
     Path("victim.txt").write_text("mine")
     Path("out").mkdir()
     Path("out/link").symlink_to(desk)
@@ -554,7 +576,7 @@ def test_progress_shows_rate_and_time_left_and_cancel_is_heard(desk):
 def started(*words):
     return subprocess.Popen(
         [COMMAND, *words],
-        stderr=open("said.txt", "w"),  # no pipe: a worker that is left over would hold it open
+        stderr=open("said.txt", "w"),  # A worker that survives would keep a pipe open.
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
         start_new_session=True,
     )
@@ -593,13 +615,13 @@ def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
     end = time.monotonic() + 10
     while (left := processes_of(process.pid)) and time.monotonic() < end:
         time.sleep(0.05)
-    for each in left:  # of its own session
+    for each in left:  # These processes are in the session that this test started.
         os.kill(each, signal.SIGKILL)
     assert left == []
     kept = rows_there()
     assert 5 <= len(kept) < 25
     for line in kept:
-        with suppress(ValueError):  # the last one may be half
+        with suppress(ValueError):  # The last line may be incomplete.
             for name in json.loads(line)["files"]:
                 assert contents()[name] == contents("whole")[name]
     assert not Path("out/table.csv").exists()

@@ -1,4 +1,4 @@
-"""How strokes begin where nobody asks for anything."""
+"""By default, each stroke begins in the way that paints it best."""
 
 from itertools import product
 
@@ -16,8 +16,11 @@ def overlap(stroke, brush, start, end="auto"):
 
 
 def test_a_wide_stroke_that_bends_at_once_begins_round():
-    """Of the round beginning of an S, whose way back is long, too little was painted where both were looked at: the
-    pointed one was taken."""
+    """A wide stroke that bends at once begins round.
+
+    The round beginning of an S has a long way back. The comparison once looked at a part where it painted too
+    little, and chose the pointed beginning.
+    """
     middle = np.array(
         [
             [39.8, 53.7, 39.6, 54.6, 39.5, 55.5, 39.2, 56.3],
@@ -69,8 +72,12 @@ def arc(radius_mm, half_mm, from_rad, sweep_rad):
 
 @pytest.mark.thorough
 def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_requested():
-    """Wide arcs, each other one of at most 11 mm radius and all but the brush's full width: of those 18 began pointed,
-    as the judge went straight on half a width before the path along its first chord, not its tangent."""
+    """The automatic ends of arcs are as good as the best ends that you can request.
+
+    The arcs are wide. Every second one has a radius of at most 11 mm and nearly the brush's full width. Of
+    those arcs, 18 once began pointed. The judge extended the path by half a width along its first chord, not
+    along its tangent.
+    """
     brush, rng = find_brush("round-6"), np.random.default_rng(21)
     worse = []
     for k in range(100):
@@ -93,7 +100,10 @@ def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_requested():
 
 
 def ball(radius_mm, half_mm, before):
-    """A line round a bend that begins in a ball, before its middle: narrower there by that share."""
+    """Return a line round a bend that begins in a ball.
+
+    The line begins before the ball's middle; `before` is the relative width there.
+    """
     widths = [(0.0, before), (0.08, 1.0), (0.25, 0.6), (0.4, 0.4), (1.0, 0.8)]
     line = arc(radius_mm, 1.0, 0.0, 4.5)
     return line.replaced(half_width=[(at, half * half_mm) for at, half in widths])
@@ -103,19 +113,26 @@ def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going
     brush = find_brush("round-6")
     for half_mm in (2.2, 2.8):
         stroke = ball(5.0, half_mm, 1.0)
-        for start in ("auto", "round", "butt"):  # there is no cut to square
+        for start in ("auto", "round", "butt"):  # These lines have no straight cut that needs square ends.
             assert overlap(stroke, brush, start) > 0.972, "going back 0.959 and 0.962 were reached"
 
 
 def test_a_ball_is_filled_where_the_line_begins_next_to_its_middle():
-    """A disc about the line's first point, as wide as the line is there, leaves a crescent of the ball of a c."""
+    """A ball is filled if the line begins next to the ball's middle.
+
+    A disc about the line's first point, as wide as the line is there, leaves a crescent of the ball of a c
+    bare.
+    """
     brush = find_brush("round-6")
     stroke = ball(3.5, 2.8, 0.7)
     assert overlap(stroke, brush, "auto") > 0.965
 
 
 def test_a_dot_with_sides_of_its_own_has_the_depths_of_its_turns(tmp_path):
-    """Moves of such a dot may be lines, which have no turn: a depth of 185 km was read from them."""
+    """A dot that has sides keeps the depths of its turns.
+
+    The moves of such a dot may be lines, which have no turn: a depth of 185 km was once read from them.
+    """
     drawing = (
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="70mm" viewBox="0 0 100 70">'
         '<circle id="dot" cx="70" cy="40" r="1.2"/></svg>'

@@ -1,4 +1,4 @@
-"""Corners that machines cut: how far, and what it does to the mark."""
+"""Machines cut corners: by how much, and how the cuts change the mark."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -30,11 +30,12 @@ def test_a_corner_is_cut_by_the_tolerance(tolerance):
     away = np.linalg.norm(path - CORNER[1], axis=1)
     assert away.min() == pytest.approx(tolerance, rel=1e-6)
     assert at == pytest.approx([0, 1 - away[1] / 20, 1, 1 + away[3] / 30, 2])
-    centre = CORNER[1] + (-away[1], away[1], 0)  # of the circle that touches both moves
+    centre = CORNER[1] + (-away[1], away[1], 0)  # centre of the circle that touches both moves
     assert np.linalg.norm(path[1:4] - centre, axis=1) == pytest.approx([away[1]] * 3)
 
 
-QUARTER = _core.Arc(1, 3, (20.0, 5.0), 1)  # the tool turns about a place, beginning and ending across its way
+# The tool turns in place; the turn begins and ends across the stroke's direction.
+QUARTER = _core.Arc(1, 3, (20.0, 5.0), 1)
 TURN_IN_PLACE = np.array(
     [(0, 0, -2), (20, 0, -2), (20 + 5 * np.sqrt(0.5), 5 - 5 * np.sqrt(0.5), -2), (25, 5, -2), (9, 5, -2)]
 )
@@ -58,7 +59,10 @@ def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
 
 
 def test_a_circle_that_is_left_at_a_small_angle_is_not_left_far_before_its_end():
-    """The chord of what is left out would be further from it than the tolerance."""
+    """The blend at a small angle starts close to the end of the circle.
+
+    Otherwise the arc that the blend leaves out would be further from its chord than the tolerance.
+    """
     path = TURN_IN_PLACE.copy()
     path[4] = (24, 20, -2)
     radii = blend_radii(path, Blending(0.01), [QUARTER])
@@ -85,7 +89,10 @@ def test_a_robot_does_not_blend_where_it_turns_back_or_presses():
 
 
 def test_corners_in_the_air_are_cut_by_little_however_coarse_the_plan():
-    """With 2 mm the tool went sideways from 4.8 mm below the safe height on."""
+    """Corners in the air are cut by little, even with a coarse tolerance.
+
+    With 2 mm the tool moved sideways from 4.8 mm below the safe height on.
+    """
     cell = find_cell("linuxcnc-3axis")
     coarse = replace(cell, blending=replace(cell.blending, tolerance_mm=2.0))
     assert as_exact_as(coarse, 10.0).blending.tolerance_mm == pytest.approx(0.04)
@@ -113,7 +120,10 @@ def test_blends_that_move_the_mark_too_far_are_refused():
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05, 0.2, 0.5])
 def test_a_cut_moves_the_mark_by_no_more_than_itself(cut_mm):
-    """Against positions of the widest section looked up on the plan's own mark."""
+    """A cut moves the mark by no more than the cut itself.
+
+    The reference is the position of the widest section on the plan's own mark.
+    """
     brush = find_brush("round-6")
     plan, marks = marks_and_plan(brush)
     cell = replace(find_cell(), blending=Blending(cut_mm))
@@ -137,7 +147,10 @@ def with_circle(brush):
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05])
 def test_a_circle_is_no_row_of_corners(cut_mm):
-    """Its poses may be far apart; only where it ends there is something to cut."""
+    """A circle is not treated as a row of corners.
+
+    Its poses may be far apart; only its end has a corner that can be cut.
+    """
     brush = find_brush("round-6")
     plan = with_circle(brush)
     marks = _core.simulate(plan, brush)
@@ -148,7 +161,10 @@ def test_a_circle_is_no_row_of_corners(cut_mm):
 
 @pytest.mark.parametrize("tolerance", ["0.005", "0.002", "0.0005"])
 def test_a_very_fine_tolerance_is_no_reason_to_refuse(tolerance, tmp_path):
-    """Rows of marks that are straight in between were compared as if they were the mark."""
+    """A very fine tolerance does not cause a refusal.
+
+    The check once treated straight chords between rows of the mark as the mark itself.
+    """
     robot = Path(__file__).parents[2] / "examples" / "robot.svg"
     assert main(["convert", str(robot), "-o", str(tmp_path / "out.ngc"), "--tolerance", tolerance]) == 0
 
@@ -157,8 +173,11 @@ def test_a_very_fine_tolerance_is_no_reason_to_refuse(tolerance, tmp_path):
 @pytest.mark.parametrize("first_mm", [0.0, -3.0])
 @pytest.mark.parametrize("last_mm", [0.0, -4.0])
 def test_a_plan_may_begin_and_end_pressed_down(first_mm, last_mm, cell):
-    """All rows of a landing or lift on the spot have one pose: they were held against each other's places, and the
-    mark seemed to move by its own lag."""
+    """A plan may begin and end pressed down.
+
+    All rows of a landing or lift in place have one pose. They were once compared with each other's places, so
+    the mark seemed to move by its own lag.
+    """
     poses = [(40, 40, first_mm), (60, 40, -4), (100, 40, -4), (130, 40.5, -4), (131, 40.5, last_mm)]
     plan = _core.Plan("round-6", "", (200.0, 100.0), [_core.Pass("a", np.array(poses, float), 20.0)])
     brush = find_brush("round-6")
@@ -173,4 +192,4 @@ def test_without_a_tolerance_nothing_is_cut_and_a_place_that_stands_twice_is_no_
     assert np.array_equal(cut_corners(twice, np.array([0.0, 1.0, 1.0, 0.0]))[0], twice)
     once = np.array([[4, 0, -1], [5, 0, -1], [5, 1, -1.0]])
     path, _, _ = cut_corners(once, np.array([0.0, 0.3, 0.0]))
-    assert len(path) == 5  # moves of exactly 1 mm are cut as others are
+    assert len(path) == 5  # A move of exactly 1 mm is cut like any other move.

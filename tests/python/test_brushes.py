@@ -1,4 +1,4 @@
-"""Brush files: the shipped ones hold what they say, and faulty ones are refused in a sentence."""
+"""Shipped brush files contain correct values, and invalid ones are refused."""
 
 import hashlib
 import importlib.util
@@ -28,7 +28,7 @@ def shipped_json(name: str) -> dict:
 
 @pytest.fixture
 def changed(tmp_path):
-    """Writes round-6 with something changed, returns the path."""
+    """Return a function that writes a changed round-6 and returns its path."""
 
     def write(change) -> Path:
         content = shipped_json("round-6")
@@ -88,7 +88,8 @@ def test_laws_of_round_6():
     assert [tuple(getattr(brush, law).calibrated_mm or ()) for law in LAWS] == [(1, 10)] * 3 + [()]
     assert json.loads(brush.extra)["footprints"]["assumed"] is True
     assert "2.1e-4" in brush.lag.source and "2.1e-3" in brush.lag.source
-    # by hand from the printed polynomials; the tails of plain vertical lifts are r(d) - r(0)
+    # These values are calculated by hand from the printed polynomials. The tails of plain vertical lifts are
+    # r(d) - r(0).
     for depth, lag, gap, widest, half in [
         (0, 3.1, 0, 0, 0),
         (0.5, 3.60138125, 0.26, 0.063, 0.21),
@@ -136,7 +137,7 @@ def test_rigid_is_a_disc_that_does_not_trail():
     for shape in shipped_json("rigid")["footprints"]["dragged"]:
         outline = np.array(shape["outline_mm"])
         assert outline.shape == (64, 2) and outline[0].tolist() == [0, 0]
-        centre = [brush.tip_gap(shape["depth_mm"]), 0]  # the contact, which is where the TCP is
+        centre = [brush.tip_gap(shape["depth_mm"]), 0]  # the contact with the paper, where the TCP is
         np.testing.assert_allclose(np.hypot(*(outline - centre).T), 0.5, atol=1e-4)
         x, y = outline.T
         assert 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) == pytest.approx(math.pi / 4, rel=2e-3)
@@ -256,7 +257,7 @@ def test_paint_is_kept_shown_and_checked_by_its_keys(changed, capsys, tmp_path):
     assert "law-assumed" in {each.code for each in _core.remarks(brush) if each.where == "paint"}
     main(["brush", "show", str(path)])
     reported = capsys.readouterr().out
-    # 2.228 of Student's t with 10 degrees, by a table, times 0.02
+    # 2.228 comes from a table of Student's t with 10 degrees of freedom; 0.02 is the standard error.
     for part in (
         "exp(-0.4 s / 1000)",
         "dry after 600 mm",
@@ -407,7 +408,7 @@ def test_a_law_of_a_brush_refuses_depths_that_the_brush_cannot_have(law):
         with refused("depth-out-of-range 50"):
             value([1.0, 50.0])
         assert value.extrapolated(50) > 10 and value.depth_range_mm == (0.0, 10.0)
-        brush.depth_range_mm = (0.0, 60.0)  # the law that is checked is that of the brush as it is
+        brush.depth_range_mm = (0.0, 60.0)  # The law follows the brush's current depth range.
         assert getattr(brush, law)(50) == value.extrapolated(50)
         alone = brushsvg.Profile(value.coefficients)
         assert alone.depth_range_mm is None and alone(50) == pytest.approx(alone.extrapolated(50))

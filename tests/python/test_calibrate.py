@@ -1,4 +1,4 @@
-"""brushsvg calibrate: files in, a brush that can be used and a report out; nothing where it cannot be used."""
+"""`brushsvg calibrate` writes a usable brush and a report, or nothing at all."""
 
 import json
 import re
@@ -49,7 +49,7 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
         False,
     ]
     depth = np.arange(1, 8.0)
-    best = np.polyfit(depth, 5 + depth + 0.1 * (-1) ** depth, 3)  # of 7 values, two for each coefficient
+    best = np.polyfit(depth, 5 + depth + 0.1 * (-1) ** depth, 3)  # 7 values, about two for each coefficient
     np.testing.assert_allclose(brush.lag.coefficients, best[::-1], atol=1e-5)
     count = sum(
         len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -90,7 +90,10 @@ def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
 
 
 def test_a_slip_of_the_pen_gives_no_negative_lag(tmp_path):
-    """It is held above 0, or refused."""
+    """A slip of the pen does not give a negative lag.
+
+    The lag stays above 0, or the table is refused.
+    """
     (tmp_path / "m.csv").write_text(TABLE.replace("lag,7,", "lag,7,9"))
     status = main(["calibrate", str(tmp_path / "m.csv"), "-o", str(tmp_path / "b.json")])
     assert status == 1 or min(find_brush(tmp_path / "b.json").lag(d) for d in np.linspace(0, 7, 99)) > 0
@@ -216,7 +219,7 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
             "lag",
             f"law-falls {LAG[0]:.3g} {DEPTHS[0]:g} {FALLS[1]:.3g} {DEPTHS[1]:g}",
         ),
-        (  # a straight line through four values is off by more than the fall
+        (  # A straight line through the four values has larger residuals than the fall.
             {
                 "lag": values([9.1, 10.5, 9.2, 13.9], [0.5, 1, 2, 4]),
                 "width": values([0.5, 0.8, 1.2, 1.9], [0.5, 1, 2, 4]),
@@ -303,7 +306,10 @@ def test_json_that_is_none(content, where):
 
 
 def test_the_example_of_the_documents_is_read():
-    """Its angles are those of r = 7.4 and b = 1.5 mm, to the tenth of a degree that is printed."""
+    """The example in the documentation can be read and fits its brush.
+
+    Its angles belong to r = 7.4 and b = 1.5 mm, printed to a tenth of a degree.
+    """
     text = (ROOT / "docs" / "reference" / "measurements.md").read_text(encoding="utf-8")
     example = text[text.index('    {"format"') :].split("\n\n")[0].replace(", ...]", "]")
     measured = read_measurements(example.encode(), ".json")
@@ -316,7 +322,7 @@ def test_the_example_of_the_documents_is_read():
 
 
 def table(tmp_path, rows, *flags) -> tuple[int, object]:
-    """calibrate's exit code and the brush's path, of rows (kind, depth, value)."""
+    """Run calibrate on rows (kind, depth, value); return exit code and brush path."""
     lines = ["kind,depth_mm,value_mm", *(",".join(map(str, row)) for row in rows)]
     (tmp_path / "m.csv").write_text("\n".join(lines))
     out = tmp_path / "b.json"
@@ -330,7 +336,7 @@ def test_side_views_in_a_table_are_side_views(tmp_path):
     rows = [("lag", d, 3 + 0.8 * d) for d in (2, 4, 6, 8, 10)]
     rows += [
         ("side_view", d, 0.8 * d + 0.5 * d) for d in (2, 4, 6, 8, 10)
-    ]  # (18): r + b less the lag at touch
+    ]  # Equation (18): r + b minus the lag at touch.
     code, out = table(tmp_path, rows + WIDTHS)
     assert code == 0
     assert find_brush(out).tip_gap(6) == pytest.approx(3.0, abs=1e-6)
@@ -367,7 +373,10 @@ def test_few_half_widths_near_touch_do_not_contradict_widths(touch, tmp_path, ca
 
 
 def test_half_widths_and_widths_with_noise_go_together():
-    """Also where a law that bends could pass through either halved."""
+    """Noisy half-widths and widths together are not refused as a mix-up.
+
+    This holds even if a curved law could pass through either kind after halving its values.
+    """
     rng = np.random.default_rng(1)
 
     def rows(kind, depths, times):
@@ -423,7 +432,8 @@ def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys
     code, out = table(tmp_path, rows + WIDTHS)
     assert code == 0 and re.search(r"\b2 [a-z ]+ 4\b", capsys.readouterr().out)
     brush = find_brush(out)
-    assert max(abs(brush.lag(d) - 3 - 0.8 * d) for d in np.linspace(0.5, 10, 30)) < 0.6  # a quartic: 9 mm
+    # a polynomial of degree 4 was off by 9 mm
+    assert max(abs(brush.lag(d) - 3 - 0.8 * d) for d in np.linspace(0.5, 10, 30)) < 0.6
     assert len(brush.covariance)
 
 
@@ -494,8 +504,11 @@ WIDEST = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
 @pytest.mark.parametrize("floored", [1, 3])
 @pytest.mark.slow
 def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
-    """Readings where the law is on its floor say nothing of its coefficients: 15 % of such calibrations were refused
-    with advice to measure the first depth again."""
+    """Normal noise is seldom called an outlier if some readings are on the floor.
+
+    A reading on the law's floor does not determine the law's coefficients. In 15 % of such calibrations,
+    brushsvg once refused the table and advised measuring the first depth again.
+    """
     rng, depths = np.random.default_rng(3), np.linspace(1, 10, 10)
     law = np.maximum(0, WIDEST(depths - (floored - 1) * 0.8))
     sizes, named = [], 0
@@ -504,7 +517,7 @@ def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
         sizes += [size for size, _ in found.values()]
         named += any(size > plausibility.MIN_OUTLIER_SIGMAS for size, _ in found.values())
     assert len(sizes) == 3000
-    assert 0.03 <= np.mean(np.array(sizes) > 1.96) <= 0.07  # 0.05 of normal values
+    assert 0.03 <= np.mean(np.array(sizes) > 1.96) <= 0.07  # 0.05 is right for normal noise
     assert named <= 1  # six in a hundred thousand values
 
 
@@ -517,7 +530,11 @@ def test_a_slip_above_a_floor_is_named():
 
 
 def test_a_fit_stays_as_it_was_when_the_brush_is_made():
-    """The brush's outlines need a floor that rises with depth; the fit got it too, once sums had been corrected."""
+    """Making the brush does not change the fit.
+
+    The brush's outlines need a floor that rises with depth. After a correction of sums, the fit once got this
+    floor as well.
+    """
     d = np.arange(1, 11.0)
     made = calibrate(
         readings(
@@ -538,7 +555,10 @@ def test_a_fit_stays_as_it_was_when_the_brush_is_made():
     ("alpha0_deg", "is_taken"), [(90, True), (60, True), (95, True), (96, False), (120, False)]
 )
 def test_angles_that_begin_beyond_what_reading_leaves_of_90_degrees_are_refused(alpha0_deg, is_taken):
-    """The patch rests at first: from 120 degrees the lag came out 9 % short, with an RMSE of 0."""
+    """Start angles above 90 degrees plus reading error are refused.
+
+    The patch rests at first: from 120 degrees the lag came out 9 % short, with an RMSE of 0.
+    """
     s = np.linspace(2, 16, 6)
     rested = max(0.0, -2 * 8 * np.cos(np.radians(alpha0_deg)))
     begun = np.radians(min(alpha0_deg, 180 - alpha0_deg))
@@ -552,7 +572,11 @@ def test_angles_that_begin_beyond_what_reading_leaves_of_90_degrees_are_refused(
 
 
 def test_five_readings_have_a_band_that_holds_the_truth():
-    """Bands of 1.96 standard deviations held it in 83 %. The laws are numpy's, their covariance too."""
+    """The band of five readings contains the true law in 95 % of cases.
+
+    Bands of 1.96 standard deviations contained the true law in 83 % of cases. numpy fits the laws and gives
+    their covariance.
+    """
     rng, depths, at = (
         np.random.default_rng(8),
         np.array([2.0, 4, 6, 8, 10]),
@@ -578,7 +602,10 @@ def test_five_readings_have_a_band_that_holds_the_truth():
 
 
 def test_a_calibration_of_five_readings_says_one_interval_for_one_number(tmp_path, capsys):
-    """The constant coefficient is the law at depth 0: its interval and the band's there were two."""
+    """A calibration of five readings reports a single interval for one number.
+
+    The constant coefficient is the law at depth 0, but its interval once differed from the band there.
+    """
     rng, d = np.random.default_rng(2), np.array([2.0, 4, 6, 8, 10])
     made = calibrate(readings(lag=(d, 3 + 0.8 * d + rng.normal(0, 0.1, 5)), width=(d, 0.8 * d)), "b")
     law = made.brush.lag
@@ -628,7 +655,10 @@ def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
 
 @pytest.mark.parametrize("name", cell_names())
 def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
-    """16 of 21 cells refused the table that --machine printed for them."""
+    """Every cell accepts the table of the errors that `--machine` estimates with it.
+
+    16 of 21 cells once refused the table that --machine printed for them.
+    """
     cell = find_cell(name)
     parts, reported = select_correctable_parts(tuple(PARTS), cell)
     values = {

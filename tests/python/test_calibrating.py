@@ -1,4 +1,7 @@
-"""brushsvg.calibrate and `brushsvg calibrate` are one job: same brush, same report, same refusals."""
+"""brushsvg.calibrate and `brushsvg calibrate` give the same results.
+
+Both return the same brush, the same report and the same refusals.
+"""
 
 import pytest
 from diagnostics import refused

@@ -1,4 +1,7 @@
-"""Cells: every key read, checked and written back; the paper's frame by pose and by taught points."""
+"""Every key of a cell is read, checked and written back.
+
+The paper's frame comes from a pose or from taught points.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -212,7 +215,10 @@ def test_a_cell_that_reaches_no_paper_is_reported(workspace, said):
 
 @pytest.mark.slow
 def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
-    """Against points tried one by one, on papers that are anywhere."""
+    """A sheet is out of reach exactly if no point of it can be reached.
+
+    The reference tries points one by one, on papers with random poses.
+    """
     random = np.random.default_rng(5)
     found = {True: 0, False: 0}
     for _ in range(200):
@@ -237,7 +243,8 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
             inside = ((points >= low) & (points <= workspace.box_mm[1])).all(axis=1)
             is_met &= bool((inside & (away >= 100) & (away <= workspace.reach_mm[1])).any())
         said = bool(out_of_reach(cell))
-        # box and reach may be met, though not at one point: that is left to the programs' own limits
+        # The sheet may meet the box and the reach at different points; the limits of each program cover that
+        # case.
         assert not (said and is_met)
         found[said] += 1
     assert min(found.values()) > 20
@@ -308,7 +315,10 @@ TABLES = {
 @pytest.mark.parametrize("name", cell_names())
 @pytest.mark.parametrize("table", TABLES)
 def test_a_table_that_only_other_languages_use_is_refused(name, table):
-    """A cell for ROS 2 with a servo was accepted, and its programs were then refused by check."""
+    """A table that only other languages use is refused.
+
+    A cell for ROS 2 with a servo was once accepted, and check then refused its programs.
+    """
     cell = find_cell(name)
     if getattr(cell, table) is None:
         with refused(f"key-unused {cell.language}", table):
@@ -343,10 +353,13 @@ def test_paper_that_was_taught_for_a_servo_is_level_with_it():
 
 @pytest.mark.parametrize("towards", [(1, 0), (0, -1), (-0.6, 0.8)])
 def test_a_wall_that_was_taught_facing_away_is_reported(towards):
-    """Before a robot that looks that way, from left to right, and up."""
+    """A wall that was taught facing away from the robot is reported.
+
+    The wall is in front of a robot that looks towards it. It is taught from left to right, and up.
+    """
     x, y = towards
     left, right = ((600 * x - side * y, 600 * y + side * x, 300.0) for side in (150.0, -150.0))
-    up = (left[0] + 40 * x, left[1] + 40 * y, 500.0)  # it leans back
+    up = (left[0] + 40 * x, left[1] + 40 * y, 500.0)  # the wall leans back
     cell = replace(find_cell("ur5e"), workspace=replace(find_cell("ur5e").workspace, tilt_limit_deg=120.0))
     towards_it = replace(cell, paper=Paper(taught_mm=(left, right, up)))
     away = replace(cell, paper=Paper(taught_mm=(right, left, (*np.add(up, right)[:2] - left[:2], 500.0))))
@@ -419,7 +432,10 @@ def test_boxes_of_another_shape_are_reported_by_their_place_and_with_the_shape(v
 
 
 def test_a_new_cell_is_not_called_as_one_that_comes_along(tmp_path, monkeypatch, capsys):
-    """A program of it would be checked with that one, and refused by a line that helps nobody."""
+    """A new cell does not get the name of a shipped cell.
+
+    Otherwise, check would compare its program with the shipped cell and refuse it with a confusing message.
+    """
     monkeypatch.chdir(tmp_path)
     taught = [f"--taught={place}" for place in ("-150,-450,20", "150,-450,20", "-150,-250,20")]
     assert main(["cell", "new", "-o", "ur5e.toml", "--like", "ur5e", *taught]) == 0

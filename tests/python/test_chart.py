@@ -1,4 +1,4 @@
-"""The calibration chart: marks that keep apart, markers that are found, a file that is read back."""
+"""The calibration chart: separate marks, detectable markers, and a readable file."""
 
 import functools
 import itertools
@@ -36,7 +36,7 @@ PX_PER_MM = 8
 
 @functools.cache
 def small_chart():
-    """Nothing of it is changed by a test."""
+    """A small chart for tests that do not change it."""
     return chart(find_brush("round-6"), A5)
 
 
@@ -61,7 +61,10 @@ def marks_of(made, brush):
 @sample("share", [0.75, 1.0, 1.25], keep=1)
 @pytest.mark.slow
 def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
-    """Also those of a brush that trails by a quarter more or less than was thought."""
+    """Marks keep apart from each other and stay on the sheet.
+
+    This also holds for a brush whose lag is a quarter larger or smaller than assumed.
+    """
     made = chart(brush, sheet)
     marks = marks_of(made, with_lag(brush, (share - 1) * np.array(brush.lag.coefficients)))
     paper = shapely.box(0, 0, *sheet).buffer(-4)
@@ -99,11 +102,11 @@ def test_what_is_on_it():
         np.testing.assert_allclose(ways[0], -ways[1], atol=1e-9)
     straight = by_id["straight-6"].poses_mm
     assert straight[1, 2] / np.hypot(*(straight[1] - straight[0])[:2]) == pytest.approx(-0.25)
-    # the auxiliary stroke of an angular one runs as its second line does
+    # The auxiliary stroke of an angular stroke is parallel to its second line.
     second = np.diff(by_id["angular-3"].poses_mm[2:4, :2], axis=0)[0]
     near_by = np.diff(by_id["auxiliary-3"].poses_mm[1:3, :2], axis=0)[0]
     assert second @ near_by == pytest.approx(np.hypot(*second) * np.hypot(*near_by))
-    # arcs leave the brush taut
+    # After an arc, the brush is taut.
     marks = _core.simulate(made.plan, brush)
     for trace in marks.passes:
         if trace.stroke.startswith("arc"):
@@ -137,7 +140,7 @@ def all_but_the_first_slow(names):
     return [*names[:1], *(pytest.param(name, marks=pytest.mark.slow) for name in names[1:])]
 
 
-SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: checked for their joints, too
+SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for these arms, so their joints are checked, too.
 
 
 @pytest.mark.slow
@@ -146,7 +149,7 @@ SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for them: checked for 
     [
         pytest.param(name, marks=pytest.mark.arm) if name in SMALL_ARMS else name
         for name in cell_names()
-        if find_cell(name).language in POSTS and find_cell(name).pen is None  # a pen does not lag
+        if find_cell(name).language in POSTS and find_cell(name).pen is None  # A pen does not lag.
     ],
     keep=4,
 )
@@ -168,7 +171,8 @@ def test_the_markers_are_found_on_the_page(sheet, tmp_path):
     made = read_chart(file.read_bytes())
     found = detected(page.read_text(), made.plan.sheet_mm, made.dictionary)
     base = 8 * (int(made.id, 16) % 125)
-    places = {"a5": [0, 1, 2, 3, 4, 6]}.get(sheet, range(8))  # A5 has no room for the two at the sides
+    # A5 has no room for the two markers at the sides.
+    places = {"a5": [0, 1, 2, 3, 4, 6]}.get(sheet, range(8))
     assert sorted(found) == [marker.id for marker in made.markers] == [base + k for k in places]
     height = made.plan.sheet_mm[1]
     for marker in made.markers:
@@ -179,7 +183,7 @@ def test_the_markers_are_found_on_the_page(sheet, tmp_path):
 
 
 def detected(svg, sheet_mm, dictionary):
-    """Corners in mm of the page, by id, of what OpenCV sees when the page's shapes are drawn."""
+    """Draw the page's shapes and return the corners [mm] that OpenCV detects, by id."""
     size = [round(side * PX_PER_MM) for side in sheet_mm]
     image = np.full((size[1], size[0]), 255, np.uint8)
     for data in re.findall(r'<path data-[^>]* d="([^"]*)"', svg):
@@ -210,9 +214,7 @@ def test_a_pen_plots_the_markers_where_they_would_be_printed(tmp_path, monkeypat
     assert inked.difference(printed.buffer(0.03)).area < 0.02
     assert printed.difference(inked).area / printed.area < 0.03
     assert len(shapely.get_parts(inked.buffer(0.05))) >= len(made.markers) == 6
-    for (
-        marker
-    ) in made.markers:  # between its corners, which are as round as the nib, each edge is where it should be
+    for marker in made.markers:  # The edges fit between the corners, which are as round as the nib.
         corners = np.array(marker.corners_mm)
         for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             for share in np.linspace(0.1, 0.9, 17):
@@ -220,7 +222,7 @@ def test_a_pen_plots_the_markers_where_they_would_be_printed(tmp_path, monkeypat
 
 
 def svg_shapes(svg, height_mm):
-    """The page's markers as polygons on the sheet."""
+    """Return the page's markers as polygons on the sheet."""
     found = []
     for data in re.findall(r'<path data-marker[^>]* d="([^"]*)"', svg):
         rings = [
@@ -245,7 +247,8 @@ def test_the_bar_keeps_clear_and_is_as_long_as_it_says(sheet):
     bar = shapely.box(x, y - 1.1, x + length, y + 1.1)
     for marker in made.markers:
         polygon = shapely.Polygon(marker.corners_mm)
-        assert bar.distance(polygon) > polygon.length / 4 / 7, marker.id  # a module of white
+        # The white border is at least one module wide.
+        assert bar.distance(polygon) > polygon.length / 4 / 7, marker.id
     for stroke in made.strokes:
         assert bar.distance(shapely.box(*stroke.box_mm)) > 1, stroke.id
 
@@ -271,7 +274,10 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["chart -o plan.json --sheet a5", "convert a.svg -o plan.json"])
 def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
-    """It was reported as a mistake of ours."""
+    """Without matplotlib the PDF page is refused, but not the SVG page.
+
+    The missing package was once reported as an internal error of brushsvg.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50">'
@@ -285,7 +291,10 @@ def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monk
 
 
 def test_a_file_of_before_is_read():
-    """Four markers of another dictionary, no id, no bar, no labels."""
+    """A chart file from an earlier version can be read.
+
+    It has four markers of another dictionary, no id, no bar and no labels.
+    """
     content = json.loads(write_chart(small_chart()))
     content = {key: value for key, value in content.items() if key not in ("id", "bar", "labels")}
     content["markers"] = [row | {"id": k} for k, row in enumerate(content["markers"][:4])]
@@ -361,7 +370,10 @@ def test_a_damaged_file_names_the_key(change, where, said):
 
 @pytest.mark.slow
 def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
-    """A larger sheet makes surer, uneven edges less sure."""
+    """`brushsvg chart` reports how exact the calibrated brush will be.
+
+    A larger sheet makes the brush more exact; uneven edges make it less exact.
+    """
 
     def lag_bands(*flags):
         assert main(["chart", "-o", str(tmp_path / "p.json"), *flags]) == 0
@@ -402,7 +414,10 @@ def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys
 
 @pytest.mark.parametrize("sheet", [A5, A4, (420.0, 594.0)], ids=["a5", "a4", "a2"])
 def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
-    """The same strokes in the same places; how far the tool came hardly says how deep it is."""
+    """With one load, the order of strokes separates depth from distance painted.
+
+    The strokes and their places do not change. The distance painted so far hardly predicts the depth.
+    """
     brush = find_brush("round-6")
     usual, made = chart(brush, sheet), chart(brush, sheet, one_load=True)
 
@@ -410,7 +425,10 @@ def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
         return {one.stroke: np.asarray(one.poses_mm).tolist() for one in of.plan.passes}
 
     def reported(of):
-        """Of the way's variance by a parabola of depth, at points every 1 mm."""
+        """Return the share of the distance's variance that a parabola of depth explains.
+
+        The points are 1 mm apart.
+        """
         come, way, depth = 0.0, [], []
         for one, stroke in zip(of.plan.passes, of.strokes, strict=True):
             assert one.stroke == stroke.id
@@ -429,7 +447,10 @@ def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
 
 
 def test_one_load_is_fetched_once():
-    """By a cell that otherwise fetches paint before every stroke."""
+    """A chart for one load fetches paint once.
+
+    The cell otherwise fetches paint before every stroke.
+    """
     stations = (Station("any", (-20.0, 10.0), depth_mm=7.0),)
     cell = replace(find_cell(), reload=Reload("stroke"), stations=stations)
     made = chart(find_brush("round-6"), A5, one_load=True)

@@ -1,4 +1,4 @@
-"""brushsvg.check: what the command does, in one call from Python."""
+"""brushsvg.check does the same as the command, in one call from Python."""
 
 import json
 from concurrent.futures import CancelledError
@@ -30,7 +30,7 @@ def test_a_sound_program_with_its_drawing(desk):
     found = brushsvg.check("two.ngc", "two.svg")
     assert (found.job, found.problems, found.is_compared, found.is_foreign) == ("painting", (), True, False)
     assert found.time_s == pytest.approx(made.time_s, abs=0.01)
-    # LinuxCNC rounds corners by some hundredths of a millimetre, at both edges of lines of 3 and 4 mm
+    # LinuxCNC rounds corners by a few hundredths of a millimetre, at both edges of lines of 3 and 4 mm.
     assert found.figures.total.overlap == pytest.approx(made.figures.total.overlap, abs=2e-3)
     for ours, theirs in zip(found.plan.passes, made.plan.passes, strict=True):
         assert np.abs(ours.poses_mm[-1] - theirs.poses_mm[-1]).max() < 2e-3

@@ -1,4 +1,4 @@
-"""Programs read back: the plan comes back from every language, and what was broken is named with its line."""
+"""Programs are read back in every language, and a damaged line is named."""
 
 import json
 import re
@@ -44,7 +44,7 @@ def ran(text, cell, work):
 
 
 def off_circles(found, points):
-    """How far points are from the nearest of the circles that were read."""
+    """Return how far points are from the nearest circle that was read."""
     radii = [np.linalg.norm(found.poses_mm[arc.first, :2] - arc.centre_mm) for arc in found.arcs]
     spokes = [np.linalg.norm(points - arc.centre_mm, axis=1) for arc in found.arcs]
     pairs = zip(spokes, radii, strict=True)
@@ -63,7 +63,7 @@ def test_what_was_planned_comes_back(desk, name):
     ]
     for expected, found in zip(work.plan.passes, back.plan.passes, strict=True):
         away = np.linalg.norm(found.poses_mm[None] - expected.poses_mm[:, None], axis=2).min(axis=1)
-        for arc in expected.arcs:  # given by its ends, and at most a pose on its way
+        for arc in expected.arcs:  # A program gives an arc by its ends, and at most one pose in between.
             inside = slice(arc.first + 1, arc.last)
             away[inside] = np.minimum(away[inside], off_circles(found, expected.poses_mm[inside, :2]))
         assert away.max() < (0.1 if name in SERVOS else 2e-3), "every pose is passed"
@@ -241,7 +241,10 @@ def test_check_says_that_a_program_is_for_another_height_of_the_paper(desk, caps
 
 
 def test_what_a_command_is_refused_for_says_so_in_json(desk, capsys):
-    """A warning said the same: refused false."""
+    """A message that causes a refusal says so in JSON.
+
+    The message once contained `refused: false`, like a warning.
+    """
     main(["--messages", "json", "convert", "two.svg", "-o", "two.ngc", "--sheet", "10x10"])
     rows = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
     assert any(row["refused"] for row in rows) and not (desk / "two.ngc").exists()
@@ -268,7 +271,11 @@ PAINT = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\np
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
 @pytest.mark.slow
 def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
-    """A drawing's own a+2 next to an a in parts, and names that a program writes otherwise, twice the same, cut."""
+    """Any stroke name may appear next to any name of a part.
+
+    The drawing has its own a+2 next to an a that is painted in parts. It also has names that a program writes
+    differently, makes equal, or cuts.
+    """
     long = "n" * 150
     paths = "".join(
         f'<path id="{name}" d="M20 {10 + 5 * k} h{length}"/>'
@@ -344,13 +351,13 @@ def test_a_resumed_program_knows_what_it_should_have_painted(desk, capsys):
         (each.where, each.code) for _, each in reported
     }
     (desk / "two.ngc").write_text(text.replace("(stroke 2 of", "(stroke 900000 of"))
-    for drawing in (("two.svg",), ()):  # its header says so, without the drawing
+    for drawing in (("two.svg",), ()):  # The program's header shows this without the drawing, too.
         status, _, ((_, reported), *_) = in_json(capsys, "check", "two.ngc", *drawing)
         assert status == 1 and agrees(reported, "stroke-misnumbered '900000 of 3' '2 of 3'"), reported
 
 
 def sections(text: str) -> list[str]:
-    """The header with what is set first, and each stroke with what follows it."""
+    """Split a program into its header, with the first settings, and its strokes."""
     return re.split(r"(?m)^(?=\(stroke )", text)
 
 
@@ -367,7 +374,10 @@ THREE = DRAWING.replace("</g>", '<path id="third" d="M20 20 h60"/></g>')
     ],
 )
 def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, said):
-    """Its header lists them, whether the drawing is there or not."""
+    """A program that lacks a stroke is refused.
+
+    The header lists all strokes, with or without the drawing.
+    """
     (desk / "two.svg").write_text(THREE)
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     parts = sections((desk / "two.ngc").read_text())
@@ -390,13 +400,16 @@ def test_strokes_that_are_lost_at_the_end_are_counted(desk, capsys):
 
 
 def painted_otherwise(text: str, how: str) -> str:
-    """The first stroke's straight moves on the paper, from a to z, in another order."""
+    """Reorder the straight moves of the first stroke on the paper.
+
+    The moves run from landing to lift; `how` names the new order.
+    """
     lines = text.splitlines()
     first = lines.index("F1200.0") + 1
     last = next(k for k in range(first, len(lines)) if not lines[k].startswith("G1"))
     moves = lines[first:last]
     some = len(moves) // 2
-    begin, end = lines[first - 2], moves[-1]  # landed, and lifted
+    begin, end = lines[first - 2], moves[-1]  # the landed pose and the lifted pose
     moves = {
         "backwards": [*moves[-2::-1], begin],
         "to and fro": moves[:some] + moves[some - 4 : some - 1][::-1] + moves[some - 4 :],
@@ -405,16 +418,19 @@ def painted_otherwise(text: str, how: str) -> str:
         "the first half": [*moves[:some], re.sub(r"Z.*", "Z0.0000", moves[some - 1])],
     }[how]
     text = "\n".join(lines[:first] + moves + lines[last:]) + "\n"
-    if how == "backwards":  # it comes down where it was lifted
+    if how == "backwards":  # The brush lands where it was lifted before.
         return text.replace(begin[3:-7], "@").replace(end[3:-7], begin[3:-7]).replace("@", end[3:-7])
     return text
 
 
 @pytest.mark.parametrize("how", ["backwards", "to and fro", "thrice", "two lines swapped", "the first half"])
 def test_the_order_along_a_stroke_counts(desk, capsys, how):
-    """A drawing whose paint would look much the same, but that was painted otherwise: nothing is away from its line."""
+    """The order of moves along a stroke counts.
+
+    Paint in another order would look nearly the same, and no point is away from its line.
+    """
     (desk / "two.svg").write_text(DRAWING.replace('stroke-width="3"', 'stroke-width="4"'))
-    lines_only = "none"  # the closed form has arcs
+    lines_only = "none"  # The closed form writes arcs.
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--compensation", lines_only)[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(painted_otherwise(text, how))
@@ -455,7 +471,10 @@ def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
     ["a ~ b", "what?", "go!", "50 %", "a" * 80, "a\tb", "a\x18b", "a\xc3\xa4b", "a (b", "a) G0 Z-5 (b"],
 )
 def test_what_grbl_acts_on_is_refused_where_it_stands(desk, capsys, title):
-    """In the header, whose title stands nowhere else, and in a stroke's name."""
+    """Text that grbl acts on is refused, even inside a comment.
+
+    The text is in the header's title, which appears nowhere else, and in a stroke's name.
+    """
     assert call(capsys, "convert", "two.svg", "-o", "two.gcode", "--cell", "grbl-3axis")[0] == 0
     text = (desk / "two.gcode").read_text()
     for changed in (
@@ -506,7 +525,7 @@ UNWRITTEN = {
         (r"\Z", "%\n"),
         (r"\Z", "(all is well)\n"),
         (r"\Z", "M2\nG0 Z5\n"),
-        (r"(?m)^G64 P\S+", "G64 P0"),  # as much as the machine likes
+        (r"(?m)^G64 P\S+", "G64 P0"),  # LinuxCNC then blends without a limit.
         (r"(?m)^(G1 .*)$", r"\1" + " " * 240),
         (r"\Z", " " * 253),
     ],
@@ -586,10 +605,12 @@ HARMLESS = {
         (r"(?m)^(M3 S6\d+\n)", r"\1\1"),
         (r"(?m)^(G1 X\S+ Y\S+) S(\d+)\n(G1 X\S+ Y\S+) S\2\n", r"\1 S\2\n\3\n"),
         (r"(?m)^F1200\.0", "F1080.0"),
-        (r"(?m)^M3 S640\n(G4 P0\.200\n)", r"\1"),  # the lift's steps one less, and waited for all the same
+        # One step of the lift is missing, but its wait is still there.
+        (r"(?m)^M3 S640\n(G4 P0\.200\n)", r"\1"),
         (r"(?m)^(M3 S640\n)(G4 P\S+\n)", r"\2\1"),
-        (r"(?m)^M3 S600\n(G4 P0\.017\n(?:G4 P0\.150\n)?F1200)", r"M3\n\1"),  # landed on the first way
-        (r"(?m)^F1200\.0\n(M3 S640\n)", r"F0.0\n\1"),  # nothing goes sideways at it
+        # The brush lands during the first move.
+        (r"(?m)^M3 S600\n(G4 P0\.017\n(?:G4 P0\.150\n)?F1200)", r"M3\n\1"),
+        (r"(?m)^F1200\.0\n(M3 S640\n)", r"F0.0\n\1"),  # No sideways move uses this feed.
     ],
     "ur5e": [
         (r"(?m)^  movel", "movel"),
@@ -650,9 +671,12 @@ STATIONS = [
 @sample("cell", LANGUAGES, keep=3)
 @pytest.mark.slow
 def test_stations_of_any_name_are_separated(desk, capsys, cell, hand):
-    """Two that 7-bit text would write alike, at one place, are two in the program: a person has to know which."""
+    """Stations with similar names stay different in the program.
+
+    Two stations at one place may have the same name in 7-bit text. A person must know which station to use.
+    """
     if hand and cell in (*SERVOS, "fr3"):
-        return  # its brush falls while the program waits; a trajectory waits for nobody
+        return  # A servo's brush falls while the program waits, and a trajectory cannot wait for a person.
     suffix = LANGUAGES[cell]
     for names in STATIONS:
         colours = [f"#00000{k}" for k in range(len(names))]
@@ -673,7 +697,8 @@ def test_stations_of_any_name_are_separated(desk, capsys, cell, hand):
         for drawing in (("some.svg",), ()):
             status, _, err = call(capsys, "check", words[2], *drawing, "--cell", "mine.toml")
             assert (status, err) == (0, []), names
-        made = re.sub(r" ;\n : !\+", "", (desk / words[2]).read_text())  # a remark of TP goes on
+        # TP continues a long remark on the next line.
+        made = re.sub(r" ;\n : !\+", "", (desk / words[2]).read_text())
         reported = re.findall(r"(?m)^(?:\(| *(?:[#!;]|--) | : !)(paint: .*)$", made)
         assert len(set(reported)) == len(names)
 
@@ -726,7 +751,11 @@ NAMES = [
 @pytest.mark.slow
 @sample("name", LANGUAGES, keep=4)
 def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
-    """Comments of URScript and JAKA script lost blanks at their ends: check refused what convert had written."""
+    """Strokes whose names end in blanks are recognized when read back.
+
+    Comments of URScript and JAKA script lost blanks at their ends, so check refused a program that convert
+    had written.
+    """
     places = [[(20.0, 10.0 + 5 * k, -1.0), (40.0, 10.0 + 5 * k, -1.5)] for k in range(len(NAMES))]
     passes = [_core.Pass(each, np.array(way), 15.0) for each, way in zip(NAMES, places, strict=True)]
     (desk / "some.json").write_text(_core.write_plan(_core.Plan("round-6", "", (120.0, 70.0), passes)))
@@ -759,7 +788,7 @@ def test_a_stroke_in_parts_is_one_stroke_of_the_drawing(desk, capsys):
 
 
 def without_moves(text: str, first: int, last: int) -> str:
-    """The program without some of its straight moves in paint, counted from 0."""
+    """Return the program without moves `first` to `last` in paint, counted from 0."""
     lines = text.splitlines(keepends=True)
     moves = [number for number, line in enumerate(lines) if line.startswith(("G1 X", "X"))]
     return "".join(line for number, line in enumerate(lines) if number not in moves[first:last])
@@ -863,9 +892,14 @@ CHANGED = {
 @pytest.mark.parametrize("suffix", CHANGED)
 @pytest.mark.slow
 def test_any_change_is_reported(desk, capsys, suffix):
-    """Seen by comparing with the drawing's own plan, and with what would be written for the same strokes."""
+    """Any change of a program is reported.
+
+    check compares the program with the drawing's own plan, and with the text that brushsvg would write for
+    these strokes.
+    """
     cell = {".script": ("--cell", "ur5e"), ".nc": ("--cell", "grbl-servo")}.get(suffix, ())
-    drawing = DRAWING.replace("h-12", "h-12 l12 2")  # a corner too sharp for anything but a turn in place
+    # This corner is too sharp for anything but a turn in place.
+    drawing = DRAWING.replace("h-12", "h-12 l12 2")
     turn = ("--corners", "turn")
     (desk / "two.svg").write_text(drawing)
     assert call(capsys, "convert", "two.svg", "-o", f"two{suffix}", *cell, *turn)[0] == 0
@@ -896,7 +930,7 @@ rotation_deg = [0.812, -1.334, 33.3]
 
 
 def leaning(name: str, decimals: int) -> str:
-    """A shipped cell whose paper leans."""
+    """Return a shipped cell with tilted paper."""
     text = re.sub(r"(?ms)^\[paper\].*?(?=^\[)", LEANING + "\n", (SHIPPED / f"{name}.toml").read_text())
     text = re.sub(r"(?m)^tilt_limit_deg = \S+", "tilt_limit_deg = 20", text)
     return re.sub(r"(?m)^decimals = \d", f"decimals = {decimals}", text)
@@ -907,7 +941,10 @@ def leaning(name: str, decimals: int) -> str:
     "flags", [("--compensation", "none"), ("--compensation", "constant", "--tolerance", "0.2")]
 )
 def test_on_paper_that_leans_rounding_is_no_change(desk, capsys, decimals, flags):
-    """Straight down is not quite straight down there, and circles are lines from pose to pose."""
+    """On tilted paper, rounding is not reported as a change.
+
+    There, straight down is not exactly vertical, and circles are lines from pose to pose.
+    """
     (desk / "leaning.toml").write_text(leaning("linuxcnc-3axis", decimals) + PAINT.replace("= 60", "= 40"))
     for words in (
         ("convert", "two.svg", "-o", "two.ngc", *flags),
@@ -932,7 +969,10 @@ def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
 
 
 def test_a_blend_may_differ_by_what_rounded_moves_turn():
-    """It hangs on the angle between two moves: a thousandth of a millimetre turns one of a millimetre much."""
+    """A blend radius may differ by as much as rounding turns its moves.
+
+    The radius depends on the angle between two moves. A change of 0.001 mm turns a move of 1 mm considerably.
+    """
     like = _ActComparison(replace(find_cell("ur5e"), decimals=3))
 
     def blend(mm):
@@ -946,7 +986,11 @@ def test_a_blend_may_differ_by_what_rounded_moves_turn():
 
 @pytest.mark.parametrize("load_kg", ["-0.5", "0.0", "1.4"])
 def test_what_a_brush_weighs_is_not_rounded(load_kg):
-    """It has one decimal, ten of which would be another load, or one with which no ABB robot moves."""
+    """The brush's load is compared without a rounding tolerance.
+
+    The load has one decimal. Ten units of this decimal would be another load, or a load with which no ABB
+    robot moves.
+    """
     like = _ActComparison(find_cell("irb120"))
     reported = "local pers tooldata brush := [[0.000, 150.000], [{}, [0, 0, 50]]];"
     said = [Act(1, "text", reported.format(text)) for text in ("0.5", "0.500", load_kg)]
@@ -983,7 +1027,10 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_repor
 @pytest.mark.slow
 @sample("name", LANGUAGES, keep=4)
 def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
-    """Alone, too: a time may only be shorter where feeds were lowered since."""
+    """The time and length in a header match the program.
+
+    check also verifies them without the drawing. The time may be shorter only if feeds were lowered since.
+    """
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
@@ -1023,7 +1070,11 @@ def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name
     ],
 )
 def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawing, old, new, count):
-    """A lift is held against another as a whole; what is named is no line that brushsvg would write there, too."""
+    """A changed line in a servo's lift is named by its line number.
+
+    check compares a lift as a whole. The quoted line always differs from the line that brushsvg would write
+    there.
+    """
     assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     before = (desk / "two.nc").read_text()
     after = edited(old, new, count)(before)
@@ -1042,7 +1093,11 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
 @pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys, drawing):
-    """In laser mode grbl switches the output off where no G1 holds; lines of modes alone were taken for idle."""
+    """A line that drops a servo's brush or makes it too fast is reported.
+
+    In laser mode, grbl switches the output off while no G1 is active. check once treated lines that only set
+    modes as idle.
+    """
     assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     lines = (desk / "two.nc").read_text().splitlines()
     ways = [k for k, line in enumerate(lines) if line.startswith("G1 X")]
@@ -1068,7 +1123,10 @@ def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 def test_a_servos_jump_within_a_lift_is_reported(desk, capsys, drawing):
-    """Steps that are waited for are slow only as long as they are steps."""
+    """A jump of the servo within a lift is reported.
+
+    A lift with waits is slow only if each step is small.
+    """
     words = ("two.svg", "-o", "two.nc", "--cell", "grbl-servo", "--compensation", "none")
     assert call(capsys, "convert", *words)[0] == 0
     lines = (desk / "two.nc").read_text().splitlines()
@@ -1102,7 +1160,10 @@ def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(d
 
 @pytest.mark.parametrize(("name", "most"), [("linuxcnc-3axis", 252), ("grbl-3axis", 79)])
 def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, most):
-    """LinuxCNC's interpreter stops at 253 letters; grbl keeps 79, which count no blanks."""
+    """Lines may be as long as the controller can read.
+
+    LinuxCNC's interpreter stops at 253 characters. grbl keeps 79 and does not count blanks.
+    """
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
@@ -1117,7 +1178,10 @@ def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, m
 
 
 def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, capsys):
-    """Alone: nobody knows which colours were requested, but each visit takes its time."""
+    """An extra visit to the paint is reported because the header's time is wrong.
+
+    Without the drawing, check cannot know which colours were requested, but each visit takes time.
+    """
     station = '[[stations]]\nname = "ink"\nplace_mm = [-15, 10]\ndepth_mm = 5\nhold_s = 1\ndrip_s = 2\n'
     text = (SHIPPED / "linuxcnc-3axis.toml").read_text() + '[reload]\nwhen = "layer"\n' + station
     (desk / "mine.toml").write_text(text)
@@ -1163,7 +1227,7 @@ def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys,
     for flags in ((), ("--compensation", "none")):
         words = ("two.svg", "-o", "two.nc", "--cell", "servo.toml", *flags)
         status, _, err = call(capsys, "convert", *words)
-        if status == 1:  # too fast for this servo, say
+        if status == 1:  # for example, too fast for this servo
             assert not any("report" in line for line in err), err
             continue
         for drawing in (("two.svg",), ()):
@@ -1194,7 +1258,8 @@ def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, 
     off = f"{float(depth) + float(digit):.{len(digit) - 2}f}"
     (desk / program).write_text(edited(rf"(?m)^(G[23] X\S+ Y\S+ Z){depth} ", rf"\g<1>{off} ")(text))
     status, _, reported = in_json(capsys, "check", program, "two.svg", "--corners", "turn")
-    assert (status, {file for file, _ in reported}) == (0, {"two.svg"}), reported  # nothing of the program
+    # no message is about the program
+    assert (status, {file for file, _ in reported}) == (0, {"two.svg"}), reported
 
 
 def test_the_reported_time_is_that_of_the_feeds_in_the_program(desk, capsys):
@@ -1267,7 +1332,11 @@ def test_a_line_that_no_header_has_is_named(desk, capsys):
     ],
 )
 def test_a_plan_that_begins_or_ends_below_the_paper_is_set_down_and_lifted_there(desk, capsys, name, poses):
-    """Its own program was refused: it was read back with the ends that the plan does not name."""
+    """A plan may begin or end below the paper: the brush lands and lifts there.
+
+    check once refused the program of such a plan. The program was read back with ends that the plan does not
+    contain.
+    """
     plan = _core.Plan("round-6", "", (120.0, 80.0), [_core.Pass("a", np.array(poses, float), 10.0)])
     (desk / "plan.json").write_text(_core.write_plan(plan))
     program = f"two{LANGUAGES[name]}"
@@ -1276,7 +1345,11 @@ def test_a_plan_that_begins_or_ends_below_the_paper_is_set_down_and_lifted_there
 
 
 def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
-    """0.01 mm wide it was written, and rounded away: the program went over the paper, and check refused it."""
+    """A hairline that a servo cannot press is refused.
+
+    convert once wrote a line 0.01 mm wide, and rounding removed its depth. The program then moved above the
+    paper, and check refused it.
+    """
     (desk / "two.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
         '<path id="hair" fill="none" stroke="#000" stroke-width="0.01" d="M20 20h40"/></svg>'

@@ -1,4 +1,4 @@
-"""The command line: exit status, one line per problem, everything or nothing written."""
+"""The command line: exit status, one line per problem, all files or none."""
 
 import json
 import os
@@ -28,7 +28,7 @@ def drawing(*elements, size='width="120mm" height="60mm" viewBox="0 0 120 60"'):
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):
-    """One sound drawing and a plan of it."""
+    """A folder with one valid drawing and its plan."""
     folder = tmp_path_factory.mktemp("sound")
     (folder / "a.svg").write_text(drawing(LINE, DAB))
     with pytest.MonkeyPatch.context() as patch:
@@ -39,7 +39,7 @@ def sound(tmp_path_factory):
 
 @pytest.fixture
 def desk(sound, tmp_path, monkeypatch):
-    """A directory with copies of these, in which tests put faulty things to refuse."""
+    """A copy of this folder, to which tests add invalid files."""
     monkeypatch.chdir(tmp_path)
     copytree(sound, tmp_path, dirs_exist_ok=True)
     return tmp_path
@@ -77,7 +77,7 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
     assert gives(line.partition(";")[2], "2", time.removeprefix("about "), f"{overlap:.3f}")
 
 
-WRITERS = {  # what is typed, what is written, and what more is said of it
+WRITERS = {  # Command with its output file: pattern of the text that it prints about the file.
     "convert a.svg -o out.ngc": "2 [a-z]+, [a-z ]+ [0-9]+ s, [a-z ]+",
     "convert a.svg -o out.json": "2 [a-z]+, [a-z ]+ [0-9]+ s",
     "convert plan.json -o out.ngc --from-stroke 2": "1 [a-z]+, [a-z ]+ [0-9]+ s",
@@ -144,7 +144,8 @@ def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
         words.append(re.findall("[A-Z]", code))
         numbers.append([float(number) for number in re.findall(r"-?\d+\.?\d*", code)])
     assert words[0] == words[1]
-    assert numbers[0] == pytest.approx(numbers[1], abs=1.01e-4)  # a plan is rounded, and ties may fall apart
+    # A plan is rounded, and ties may round either way.
+    assert numbers[0] == pytest.approx(numbers[1], abs=1.01e-4)
     plan = json.loads((desk / "plan.json").read_text())
     assert plan["passes"][0]["poses_mm"][0][2] == 0
     assert plan["passes"][0]["poses_mm"][-1][2] == 0
@@ -203,7 +204,7 @@ def test_flags_reach_the_plan(desk, capsys):
     assert len(finer["passes"][0]["poses_mm"]) > len(default["passes"][0]["poses_mm"])
 
 
-REFUSED = {  # file, what it holds, flags, the reported code, file and element
+REFUSED = {  # name: (file, its content, flags, reported code, reported file, reported element)
     "no file": ("missing.svg", None, [], "file-unreadable", "missing.svg", ""),
     "no plan file": ("missing.json", None, [], "file-unreadable", "missing.json", ""),
     "not XML": ("x.svg", "moo", [], "not-xml", "x.svg", ""),
@@ -314,7 +315,10 @@ BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke
 
 
 def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
-    """Reported once, at the end, and nothing claims that anything was painted."""
+    """A refusal of a damaged drawing says how to draw its undamaged parts.
+
+    It is reported once, at the end. No message claims that anything was painted.
+    """
     worse = BAD.replace('"bad"', '"worse" transform="turn(3)" stroke-dasharray="2" opacity=".5"')
     off = BAD.replace('"bad" d="M30 40 L60 45 L nan 4"', '"off" d="M-3 30h20"')
     (desk / "x.svg").write_text(drawing(LINE, worse, off))
@@ -393,7 +397,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg -o out.ngc --fit 5x5 --scale 2",
         "convert a.svg -o out.ngc --scale 0",
         "convert a.svg -o out.ngc --scale big",
-        "convert a.svg -o out.ngc --scale \u0662",  # an Arabic two
+        "convert a.svg -o out.ngc --scale \u0662",  # an Arabic digit two
         "convert a.svg -o out.ngc --origin 5",
         "convert a.svg -o out.ngc --origin 5,1e9",
         "convert a.svg -o out.ngc --units mm",
@@ -486,7 +490,7 @@ def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys
     status, _, ((file, reported),) = in_json(capsys, *command.split(), "-o", out, *flags.split())
     assert (status, file, reported.advice) == (1, out, "give --cell"), "of this file, not of the drawing"
     assert agrees(reported, f"program-format {Path(out).suffix.lower()} {cells}"), reported
-    for cell in cells.split(" or "):  # which is true of each
+    for cell in cells.split(" or "):  # each of the suggested cells works
         assert run(capsys, "setup", "height", "-o", out, "--cell", cell)[0] == 0
 
 
@@ -591,7 +595,7 @@ def test_brush_commands(desk, capsys):
             "lag",
             {"coefficients": [3.1, 0.86, 0.31, -0.05, 0.00021]},
             "law-negative",
-        ),  # as the article prints them
+        ),  # coefficients as printed in the article
         ("depth_range_mm", [5, 1], "not-ascending"),
     ],
 )
@@ -624,7 +628,7 @@ def test_ctrl_c_and_mistakes_of_ours_leave_no_traceback(desk, capsys, monkeypatc
 
 
 def spawn(*words, **settings):
-    """In a process of its own, with its output buffered as it is for users."""
+    """Run the command in a separate process, with its output buffered as for users."""
     env = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
     return subprocess.run([sys.executable, "-m", "brushsvg", *words], check=False, env=env, **settings)
 
@@ -812,7 +816,10 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
 
 
 def test_a_plain_convert_imports_no_large_library(desk):
-    """They take as long as all the rest."""
+    """A plain `convert` imports no large library.
+
+    These imports take as long as everything else.
+    """
     code = "import sys; from brushsvg.cli import main; main(['convert', 'a.svg', '-o', 'a.ngc']); print(*sys.modules)"
     (desk / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'

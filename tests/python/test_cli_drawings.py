@@ -1,4 +1,7 @@
-"""The command line's choices among what a drawing holds: layers, selections, sizes, settings, and looking at it."""
+"""The command line selects parts of a drawing, scales it and previews it.
+
+It also applies layers and settings.
+"""
 
 import gzip
 import json
@@ -31,7 +34,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def plan(desk, capsys, *words, drawing="d.svg"):
-    """Its passes, and what was reported."""
+    """Return the plan's passes and the reported notices."""
     capsys.readouterr()
     status, _, reported = in_json(capsys, "convert", drawing, "-o", "plan.json", "--quiet", *words)
     assert status == 0, reported
@@ -57,7 +60,10 @@ def test_layers_and_selections(desk, capsys):
 
 
 def test_what_was_reported_of_a_drawing_stands_before_its_refusal(desk, capsys):
-    """A thick line in metres that were none: the width was refused, and nobody heard of the unit."""
+    """Warnings about a drawing are reported before its refusal.
+
+    A thick line was in metres by mistake. Its width was refused, but no message mentioned the unit.
+    """
     head = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n"
     line = "0\nLWPOLYLINE\n8\nINK\n90\n2\n70\n0\n43\n0.1\n10\n0\n20\n0\n10\n9\n20\n0\n"
     (desk / "thick.dxf").write_text(head + "0\nSECTION\n2\nENTITIES\n" + line + "0\nENDSEC\n0\nEOF\n")
@@ -276,7 +282,11 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 
 @pytest.mark.parametrize(("d", "is_marked"), [("M20 60C80 75 20 75 80 60", False), ("M30 60H60L40 62", True)])
 def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
-    """0.095 mm in place of 0.05 was red, and reported, of a brush whose lag is known to 0.58 mm."""
+    """A stroke is marked only if its error exceeds the brush's uncertainty.
+
+    An error of 0.095 mm (tolerance 0.05 mm) was once red and reported, although the brush's lag is known only
+    to 0.58 mm.
+    """
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", d))
     assert main(["preview", "d.svg", "-o", "x.svg", "--corners", "turn"]) == 0
     assert ("d.svg: b: " in capsys.readouterr().err) == is_marked
@@ -289,7 +299,10 @@ def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys,
 
 
 def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
-    """The same 0.095 mm, of a brush whose lag nobody doubts by more than 0.01 mm."""
+    """A brush that is known exactly gets warnings about smaller errors.
+
+    The error is 0.095 mm again, but this brush's lag is known to 0.01 mm.
+    """
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M20 60C80 75 20 75 80 60"))
     text = (Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text()
     (desk / "exact.json").write_text(text.replace('"rmse_mm": 0.58', '"rmse_mm": 0.01'))
@@ -299,7 +312,11 @@ def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
 
 
 def test_a_width_is_advised_only_for_lines(desk, capsys):
-    """Outlines have no single width: --width was advised, and reported to be without effect when it was taken."""
+    """A width is suggested only for lines.
+
+    An outline has no single width. --width was once suggested for outlines, and then reported as without
+    effect.
+    """
     hair = '<path id="hair" fill="none" stroke="#000" stroke-width="0.3" d="M10 10H80"/>'
     sliver = '<path id="sliver" d="M10 40H80V40.3H10Z"/>'
     size = 'width="100mm" height="60mm" viewBox="0 0 100 60"'
@@ -354,7 +371,10 @@ def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):
 
 
 def test_ends_at_less_depth_than_was_measured_are_no_warning(desk, capsys):
-    """Of 19 strokes of a word in a script 16 had a warning of their own, for 0.09 mm at the point of their foot."""
+    """Line ends at less depth than was measured cause no warning.
+
+    In a word of 19 script strokes, 16 once had a warning about 0.09 mm at the point of their foot.
+    """
     drop = '<path id="p{}" transform="translate({})" d="M10 10C18 30 16 45 10 50C8 45 8 30 10 10Z"/>'
     drops = "".join(drop.format(k, 12 * k) for k in range(5))
     hair = '<path id="hair" fill="none" stroke="#000" stroke-width="0.3" d="M10 55H80"/>'
@@ -366,7 +386,10 @@ def test_ends_at_less_depth_than_was_measured_are_no_warning(desk, capsys):
 
 
 def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
-    """It is pressed less than a line as wide: at 0.87 mm, where the line is at 1.0."""
+    """The warning about a dot depends on the depth at which the dot is turned.
+
+    A dot is pressed less than a line of the same width: 0.87 mm, where the line is at 1.0 mm.
+    """
     dots = "".join(
         f'<path d="M{x} 30h0.01" stroke-width="{w}"/>' for x, w in ((20, 1.02), (40, 1.2), (60, 3))
     )
@@ -385,7 +408,10 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
 
 
 def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypatch):
-    """Twelve letters of a metre were filled first."""
+    """A line that is too wide is refused before shapes are filled.
+
+    Twelve letters one metre high were once filled first.
+    """
     from brushsvg.jobs.preparation import preparation
 
     monkeypatch.setattr(preparation, "within_reach", lambda *_: pytest.fail("shapes were filled"))
@@ -394,7 +420,7 @@ def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypa
         with refused("width-out-of-reach 12.000", "b"):
             brushsvg.convert("wide.svg", compensation=compensation)
     monkeypatch.undo()
-    for compensation in ("none", "constant", "closed"):  # as planning has it
+    for compensation in ("none", "constant", "closed"):  # The planner refuses the width, too.
         with refused("width-out-of-reach 12.000", "b"):
             strokes = brushsvg.strokes(brushsvg.read_drawing(desk / "wide.svg"))[0]
             brushsvg.compensate(strokes, brushsvg.find_brush("round-6"), (160, 90), compensation)

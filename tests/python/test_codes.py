@@ -1,4 +1,4 @@
-"""docs/reference/diagnostics.md lists the codes of all notices, and nothing else."""
+"""docs/reference/diagnostics.md lists exactly the codes of all notices."""
 
 import ast
 import re
@@ -17,20 +17,20 @@ LIBRARY = ROOT / "cpp"
 TESTS = ROOT / "tests"
 CODE = re.compile("[a-z]+(-[a-z]+)*")
 FOUR_WORDS = re.compile(r"(?<![\w-])[A-Za-z][a-z]+(?: [a-z]+(?:'[a-z]+)?){3}(?![\w-])")
-QUOTED = {  # file: how many texts of four plain words and more its tests expect, for no code replaces them
-    "integration/command.py": 1,  # what a mistake of ours begins with
-    "python/test_checking.py": 3,  # lines of a program's header and end
+QUOTED = {  # file: number of its expected texts with four or more plain words, which no code can replace
+    "integration/command.py": 1,  # the beginning of an internal error's message
+    "python/test_checking.py": 3,  # lines from the header and the end of a program
     "python/test_jaka.py": 1,
     "python/test_ros2.py": 1,  # the end of a table
     "python/test_docs_lint.py": 2,  # sentences that the linter must find
     "python/test_words_lint.py": 1,
     "python/test_examples.py": 4,  # output of the examples
-    "python/test_imports.py": 4,  # for developers
+    "python/test_imports.py": 4,  # messages for developers
 }
 
 
 def codes_in(node: ast.AST):
-    """Texts of an expression; what an f-string leaves open is a *."""
+    """Yield the texts of an expression, with * for the variable parts of f-strings."""
     if isinstance(node, ast.JoinedStr):
         yield "".join(part.value if isinstance(part, ast.Constant) else "*" for part in node.values)
     elif isinstance(node, ast.Constant) and node.value:
@@ -42,7 +42,7 @@ def codes_in(node: ast.AST):
 
 @cache
 def in_sources() -> tuple[set[str], list[str]]:
-    """The codes, and the places of notices and refusals that have none."""
+    """Return the codes in Python, and the places of notices and errors without one."""
     found, without = set(), []
     for file in sorted(PACKAGE.rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text())):
@@ -58,7 +58,10 @@ def in_sources() -> tuple[set[str], list[str]]:
 
 
 def in_library() -> tuple[set[str], list[str]]:
-    """The codes in C++, and the places of warnings and refusals without: a code is the first that they are given."""
+    """Return the codes in C++, and the places of warnings and errors without one.
+
+    The code is the first argument.
+    """
     found, without = set(), []
     for file in sorted([*LIBRARY.rglob("*.cpp"), *LIBRARY.rglob("*.hpp")]):
         text = re.sub("//.*", "", file.read_text())
@@ -68,7 +71,7 @@ def in_library() -> tuple[set[str], list[str]]:
             first = (given[1] or "").strip('"')
             if CODE.fullmatch(first):
                 found.add(first)
-            elif first != "code,":  # handed on
+            elif first != "code,":  # a code that is passed on
                 without.append(f"{file.relative_to(LIBRARY)}:{text[: given.start()].count(chr(10)) + 1}")
     return found, without
 
@@ -106,7 +109,7 @@ def test_python_has_the_codes_of_the_library():
 
 
 def expected_by(tree: ast.AST):
-    """Assertions, match= and cases of parametrize."""
+    """Yield assertions, match= values and the cases of parametrize."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Assert):
             yield node.test
@@ -117,7 +120,10 @@ def expected_by(tree: ast.AST):
 
 
 def texts_in(node: ast.AST):
-    """But for the names of cases, which are keys."""
+    """Yield the texts of an expression without dictionary keys.
+
+    The keys are the names of cases.
+    """
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         yield node.value
     for child in node.values if isinstance(node, ast.Dict) else ast.iter_child_nodes(node):
@@ -126,7 +132,10 @@ def texts_in(node: ast.AST):
 
 @pytest.mark.slow
 def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
-    """diagnostics.py says how: sentences may be worded anew."""
+    """Tests expect codes and numbers and quote no sentences.
+
+    Sentences may be reworded. diagnostics.py has the functions for this comparison.
+    """
     found = {}
     for file in sorted(TESTS.rglob("*.py")):
         trees = expected_by(ast.parse(file.read_text(encoding="utf-8")))
@@ -136,7 +145,11 @@ def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
 
 
 def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
-    """refusal.hpp alone looks into sentences, for numbers and names; nonsense.cpp asks whether there is one."""
+    """The C++ tests check refusals by code and numbers.
+
+    Only refusal.hpp searches sentences for numbers and names. fit_nonsense.cpp only checks that there is a
+    sentence.
+    """
     requested = {
         file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")
     }

@@ -1,4 +1,4 @@
-"""Every command is fed nonsense: refused in lines of ours, with nothing written and nothing left over."""
+"""Every command refuses nonsense with its own messages and leaves no files."""
 
 from pathlib import Path
 from shutil import copytree
@@ -7,7 +7,7 @@ import pytest
 
 from brushsvg.cli import main
 
-SOUND = {  # the word that stands for a file, and what is there when it is sound
+SOUND = {  # placeholder of a file in a command: the valid file
     "IN": "a.svg",
     "BRUSH": "mine.json",
     "CELL": "mine.toml",
@@ -43,7 +43,8 @@ COMMANDS = [
     "check own.ngc IN --picture OUT.svg",
     "check own.ngc PLAN",
     "text T -o OUT.svg --font FONT",
-    "batch --words words.txt --font FONT -o new",  # words and drawings of nonsense are rows: test_batch.py
+    # Nonsense words and drawings become refused rows: see test_batch.py.
+    "batch --words words.txt --font FONT -o new",
     "chart -o OUT.ngc --drawing IN",
     "calibrate TABLE -o OUT.json",
     "calibrate MEASURED -o OUT.json",
@@ -67,7 +68,7 @@ COMMANDS = [
     "cell place ur5e IN",
     "setup inkscape ZIP",
 ]
-NONSENSE = {  # None: a folder; False: nothing
+NONSENSE = {  # None stands for a folder, False for a missing file.
     "missing": False,
     "a folder": None,
     "empty": b"",
@@ -84,7 +85,7 @@ PLACES = {"no folder": "no/out", "below a file": "a.svg/out", "a folder": "folde
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):
-    """What each test has a copy of: a folder with one file of each kind."""
+    """A folder with one valid file of each kind; each test gets a copy."""
     folder = tmp_path_factory.mktemp("sound")
     (folder / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
@@ -180,7 +181,7 @@ def test_no_command_is_forgotten():
                 found |= {f"{name} {each}".strip() for each in names(below) or {""}}
         return found
 
-    # test_demo.py has the places that demo writes to
+    # test_demo.py covers the places that demo writes to.
     reads_nothing = {"brush list", "cell list", "demo", "doctor"}
     assert names(command_parser()) - reads_nothing == {
         next(name for name in names(command_parser()) if f"{command} ".startswith(f"{name} "))

@@ -1,4 +1,4 @@
-"""How far a path that was read is from the one that was intended."""
+"""A path that was read is compared correctly with the intended path."""
 
 import itertools
 import re
@@ -14,7 +14,10 @@ from brushsvg.verify.against_plan import BOX_SIZE, _check_pass, _max_distance_mm
 
 
 def by_every_move(points, path):
-    """Each point against each move: slow, and nothing left out."""
+    """Return the greatest distance of points from a path, by trying every move.
+
+    This is slow, but leaves nothing out.
+    """
     starts, ends = (path[:-1], path[1:]) if len(path) > 1 else (path, path)
     steps = ends - starts
     squares = np.maximum((steps**2).sum(axis=1), 1e-30)
@@ -36,9 +39,7 @@ def by_every_move(points, path):
 @pytest.mark.slow
 def test_the_farthest_point_is_found_without_looking_at_every_move(seed, moves, points, away_mm, how):
     random = np.random.default_rng(seed)
-    path = np.cumsum(
-        random.choice([-1.0, 0.0, 1.0], (moves, 3)), axis=0
-    )  # on itself, too, and standing still
+    path = np.cumsum(random.choice([-1.0, 0.0, 1.0], (moves, 3)), axis=0)  # may overlap itself or stand still
     at = np.sort(random.integers(0, moves, points))
     requested = path[{"along": at, "back": at[::-1], "anywhere": random.permutation(at)}[how]]
     requested = requested + away_mm * random.choice([-1, 0, 1], (points, 3))
@@ -86,8 +87,11 @@ def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(aw
 @pytest.mark.parametrize(("chord_mm", "rise_mm"), [(61.0, 0.58), (42.0, 0.05), (5.0, 0.02), (60.0, 20.0)])
 @pytest.mark.parametrize("inner", [[3], [2, 4], [1, 2, 3, 4, 5]])
 def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_mm, inner, decimals):
-    """A robot is given three places of a circle. Rounded, those of a flat one move its centre by a millimetre, and its
-    way by no more than themselves."""
+    """A flat circle read from rounded places is the same path.
+
+    A robot gets three places of a circle. Rounding the places of a flat circle moves its centre by a
+    millimetre, but its path only by the rounding error.
+    """
     random = np.random.default_rng(1)
     radius = (chord_mm**2 / 4 + rise_mm**2) / (2 * rise_mm)
     half = np.arcsin(chord_mm / 2 / radius)
@@ -109,7 +113,7 @@ def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_
 
 
 def centre_of(places):
-    """The centre of the circle through three places."""
+    """Return the centre of the circle through three places."""
     a, b, c = places
     return np.linalg.solve(2 * np.array([b - a, c - a]), [b @ b - a @ a, c @ c - a @ a])
 
@@ -130,7 +134,7 @@ STEP_MM = 0.05
 
 
 def dense(path):
-    """Points of a path, less than STEP_MM apart."""
+    """Return points of a path that are at most STEP_MM apart."""
     parts = [path[:1]]
     for begin, end in itertools.pairwise(path):
         count = max(1, int(np.ceil(np.linalg.norm(end - begin) / STEP_MM)))
@@ -139,8 +143,11 @@ def dense(path):
 
 
 def leash_mm(one, other):
-    """How far apart two that walk from point to point have to be, at least: no less than on the paths themselves, and
-    more by a step at most."""
+    """Return the shortest leash between two walkers from point to point.
+
+    This is the discrete Frechet distance. It is at least the distance of the paths themselves, and at most
+    one step more.
+    """
     away = np.linalg.norm(one[:, None] - other[None], axis=2)
     reached = np.empty_like(away)
     for i in range(len(one)):
@@ -163,7 +170,7 @@ def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves,
     random = np.random.default_rng(seed)
     requested = np.cumsum(
         random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0
-    )  # on itself, and standing still
+    )  # may overlap itself or stand still
     some_ = int(random.integers(0, moves + 1))
     found = {
         "same": requested,
@@ -199,7 +206,11 @@ def test_the_place_where_a_path_leaves_the_other_is_reported():
 
 
 def test_long_paths_take_no_more_than_what_is_next_to_them(monkeypatch):
-    """Of the cells of two paths few are looked at: a page is compared in its own time, not in the square of it."""
+    """Comparing long paths looks only at places near each other.
+
+    The comparison examines few cells of the two paths. The time for a page grows with its length, not with
+    the square of the length.
+    """
     from brushsvg.verify import against_plan
 
     t = np.linspace(0, 60, 3000)

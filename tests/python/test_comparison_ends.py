@@ -1,4 +1,7 @@
-"""The ends of a photographed stroke explain paint near them, and nothing in the middle of the stroke."""
+"""The ends of a photographed stroke explain only the paint near them.
+
+They explain nothing in the middle of the stroke.
+"""
 
 from brushsvg.comparison.ends import UNKNOWN_ENDS, Ends
 

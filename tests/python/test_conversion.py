@@ -1,4 +1,4 @@
-"""brushsvg.convert: what the command does, in one call from Python."""
+"""brushsvg.convert does the same as the command, in one call from Python."""
 
 import copy
 import io
@@ -71,7 +71,10 @@ def test_it_does_what_the_command_does(desk, out, flags, choices):
 
 @pytest.mark.parametrize(("z_offset", "is_reported"), [(-20, True), (-2, True), (-1, False), (20, False)])
 def test_a_tool_commanded_far_below_the_paper_is_warned_of(desk, z_offset, is_reported):
-    """--z-offset -3 for -0.3: the brush is crushed, or the table, and nothing said a word."""
+    """A tool commanded far below the paper causes a warning.
+
+    With --z-offset -3 instead of -0.3, the brush or the table is crushed. There was no warning once.
+    """
     reported = [
         notice
         for notice in brushsvg.convert("two.svg", z_offset=z_offset).notices
@@ -220,7 +223,10 @@ def test_brush_and_cell_may_be_at_hand(desk):
 
 
 def test_the_page_has_a_row_for_every_choice():
-    """That its code runs is held in test_doc_code.py."""
+    """The options page has a row for every choice.
+
+    test_doc_code.py runs the page's code.
+    """
     page = (Path(__file__).parents[2] / "docs" / "reference" / "options.md").read_text(encoding="utf-8")
     assert set(re.findall("`([a-z_]+)`", page)) >= {*CHOICES} - {"input"}
 
@@ -235,7 +241,10 @@ def test_a_choice_that_there_is_not_is_a_type_error(desk):
 
 
 def test_ranges_are_those_of_the_flags():
-    """A change of one changes the other."""
+    """The Python choices have the same ranges and values as the flags.
+
+    A change of one must be a change of the other.
+    """
     flags = {
         action.dest: action
         for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions
@@ -307,7 +316,7 @@ def test_a_loop_of_the_library_is_given_up_inside(desk):
     seen = []
 
     def cancel():
-        """Once it is in the library's call for the only stroke, which takes a minute."""
+        """Return whether the library works on the only stroke, which takes a minute."""
         for thread in threading.enumerate():
             if thread.name == "brushsvg" and (frame := sys._current_frames().get(thread.ident)):
                 seen.append(frame.f_code.co_name == "compensated")

@@ -1,4 +1,4 @@
-"""The way from file to program: the best single lag, and which files are written in which language."""
+"""`convert` finds the best constant lag and writes the files of each language."""
 
 import re
 from dataclasses import replace
@@ -107,7 +107,10 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
 
 
 def test_the_loads_of_a_stroke_stay_together_even_if_others_begin_nearer():
-    """The second load counted as one of another stroke, behind which it came."""
+    """The loads of a stroke stay together even if other strokes begin nearer.
+
+    The second load once counted as a load of another stroke and was painted after that stroke.
+    """
     rows = {"a": (0, 40, 1), "a+2": (35, 80, 2), "b": (40, 20, 0)}
     passes = []
     for name, (begin, end, load) in rows.items():
@@ -145,7 +148,10 @@ depth_mm = 2
 @pytest.mark.parametrize("when", ["length", "stroke", "layer"])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
 def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypatch, name, when):
-    """Except what no plan holds, in the header: the drawing's title, and how it was planned."""
+    """A program made from a saved plan equals the program made from the drawing.
+
+    The headers may differ in lines that a plan does not contain: the drawing's title and the planning method.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "some.svg").write_text(FEW_COLOURS)
     (tmp_path / "mine.toml").write_text((SHIPPED / f"{name}.toml").read_text() + PAINT.format(when=when))

@@ -1,4 +1,4 @@
-"""Corners of drawn lines: where closed ones begin, and where the brush is lifted."""
+"""Corners of drawn lines: where closed lines begin and where the brush lifts."""
 
 import itertools
 import re
@@ -48,7 +48,7 @@ def test_a_closed_line_begins_amid_its_longest_straight_side_and_paints_no_thorn
     points = np.concatenate(marks_of([made], brush))
     box = np.concatenate(target)
     beyond = np.maximum(box.min(axis=0) - points.min(axis=0), points.max(axis=0) - box.max(axis=0))
-    assert beyond.max() < 0.3  # 1.7 before
+    assert beyond.max() < 0.3  # it was 1.7 once
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,10 @@ def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
 
 
 def test_a_zigzag_finer_than_it_is_wide_is_not_lifted_nor_tried(brush, monkeypatch):
-    """Five hundred corners took half a minute."""
+    """A zigzag finer than its width is not lifted, and no lift is tried.
+
+    Five hundred corners once took half a minute.
+    """
     zigzag = "M10 30" + "".join(f"L{10.4 + 0.4 * k:.1f} {30 + 3 * (k % 2)}" for k in range(60))
     (made,) = of(zigzag)
     monkeypatch.setattr(corners, "_is_better_lifted", None)

@@ -1,5 +1,7 @@
-"""The faults that `compare` finds, in addition to those undone, go into the next cell; how sure a brush is
-beforehand."""
+"""Faults that `compare` finds are added to the corrections of the next cell.
+
+The tests also cover how exactly a brush is known before the comparison.
+"""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -27,7 +29,7 @@ LEANING = Machine((0.06, 0.02), (1.004, 0.998), -0.002, TRUE.height_mm, TRUE.til
 
 
 def found(beyond: Machine, half=1e-6):
-    """Faults as compare has them: tilt about the middle of the marks."""
+    """Return faults as `compare` reports them: tilt about the middle of the marks."""
     height = beyond.height_mm + np.dot(beyond.tilt_mm_per_mm, MIDDLE)
     values = {
         (MACHINE, "scale in x"): beyond.scale[0] - 1,
@@ -56,7 +58,10 @@ def places(count=40):
 
 @pytest.mark.parametrize("undone", [UNDONE, LEANING])
 def test_what_was_undone_before_stays_undone(undone):
-    """Where the painted job went comes from the true machine; faults beyond the cell from least squares."""
+    """Corrections that the cell already had stay in effect.
+
+    The true machine gives the places of the painted job. Least squares give the faults beyond the cell.
+    """
     target = places(400)
     went = true_mm(commanded_mm(target, undone), TRUE)
     depth = np.maximum(-went[:, 2], 0)
@@ -90,7 +95,10 @@ def test_the_map_of_the_paper_stays():
 
 @pytest.mark.parametrize("along, target", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
 def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, target):
-    """By which of the machine's axes go along x and y of the paper."""
+    """Backlash that was found is added to the backlash that the cell undoes.
+
+    The result depends on which machine axes run along the paper's x and y.
+    """
     before = replace(UNDONE, backlash_mm=(0.1, 0.2))
     assert corrected_machine(found(TRUE), MIDDLE, before, along).backlash_mm == pytest.approx(target)
     assert corrected_machine(found(TRUE, half=10.0), MIDDLE, before, along) is None
@@ -98,7 +106,10 @@ def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, target):
 
 @pytest.mark.parametrize("name", cell_names())
 def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
-    """A servo refused lean, and the whole comparison was lost."""
+    """Every cell takes the faults that it can undo; the others are reported.
+
+    A servo cell once refused lean, and the whole comparison was lost.
+    """
     cell = find_cell(name)
     along = axes_along_paper(cell)
     machine, left_out = _find_correctable_machine(found(TRUE), MIDDLE, cell, along)
@@ -126,12 +137,15 @@ def test_a_number_that_no_cell_may_have_is_left_out():
 
 
 def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
-    """The scale went into the cell without a word, and each program after that was 3 % too small."""
+    """A page printed at 97 % does not count as a machine that is 3 % off.
+
+    The scale once went into the cell without a warning. Each program after that was 3 % too small.
+    """
     printed, cell = replace(TRUE, scale=(1 / 0.97, 1 / 0.9702)), find_cell("linuxcnc-3axis")
     machine, left_out = _find_correctable_machine(found(printed), MIDDLE, cell, (0, 1))
     assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
     assert are_reported(_report_uncorrectable(found(printed), cell, left_out), "page-scale 97.0")
-    for scale in ((1.031, 1.0), (1.012, 1.012)):  # one axis; as little as a machine may be off
+    for scale in ((1.031, 1.0), (1.012, 1.012)):  # one axis only; an error that is small enough for a machine
         machine, left_out = _find_correctable_machine(found(replace(TRUE, scale=scale)), MIDDLE, cell, (0, 1))
         assert machine.scale == scale and not left_out
 
@@ -171,7 +185,11 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
     ],
 )
 def test_of_what_may_be_chance_less_is_taken_back(displaced_mm, one_mm, share, of_one):
-    """Of all strokes by their spread (8 numbers, of which 3 are the sheet's place), of one by how far it is."""
+    """Corrections that may be due to chance are reduced.
+
+    All strokes are reduced by their spread (8 numbers, of which 3 are the sheet's place). A single stroke is
+    reduced by the size of its own displacement.
+    """
     asides = [one_mm, -displaced_mm, displaced_mm, -displaced_mm]
     rows = [
         SimpleNamespace(

@@ -1,4 +1,7 @@
-"""Corrections of a sheet that was planned for another brush: its strokes began elsewhere, by up to a lag."""
+"""Corrections from a sheet that was planned for another brush are accepted.
+
+The strokes of that sheet began elsewhere, by up to a lag.
+"""
 
 import numpy as np
 import pytest
@@ -7,7 +10,7 @@ from diagnostics import refused
 from brushsvg import _core, find_brush
 from brushsvg.comparison.corrections import Correction, apply_corrections
 
-BRUSH = find_brush("round-6")  # trails by 10.2 mm at 5 mm of depth
+BRUSH = find_brush("round-6")  # its lag is 10.2 mm at a depth of 5 mm
 POSES = [(30, 30, 0), (32, 30, -5), (70, 30, -5), (72, 30, 0)]
 
 
@@ -20,7 +23,11 @@ def correction(away_mm, replanned):
 
 
 def test_a_stroke_may_begin_twice_as_far_away_as_the_brush_trails():
-    """The guess of one lag was 6 mm short, and the second sheet's corrections were refused as those of another job."""
+    """A stroke may begin up to twice the brush's lag away.
+
+    A limit of one lag was 6 mm short. The second sheet's corrections were then refused as corrections of
+    another job.
+    """
     (made,) = apply_corrections(plan(), (correction(5.8, True),), BRUSH).passes
     assert made.poses_mm[0].tolist() == pytest.approx([30.5, 30, 0])
 

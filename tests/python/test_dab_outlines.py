@@ -1,4 +1,4 @@
-"""Dabs: how they are landed, and what is left out or refused, and named."""
+"""Dabs are landed correctly; bad dabs are named and left out or refused."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,10 @@ TURN = 2 * np.pi * np.arange(90) / 90
 
 
 def seen_from_patch(depth):
-    """An ellipse as long as twice its width, from behind where the brush was set down."""
+    """Return an ellipse that is twice as long as wide.
+
+    It begins behind the place where the brush was set down.
+    """
     half = 0.42 * depth
     return np.column_stack([half * (0.8 - 2 * np.cos(TURN)), -half * np.sin(TURN)])
 
@@ -44,7 +47,7 @@ def dabs(outline=seen_from_patch, depths=DEPTHS):
 
 
 def changed(number, change, of=None):
-    """One dab with other rings."""
+    """Return dabs in which one dab has other rings."""
     out = of or dabs()
     dab = out[number - 1]
     out[number - 1] = replace(dab, rings_mm=tuple(change(dab.rings_mm[0])))
@@ -56,7 +59,7 @@ def about(ring, share):
 
 
 def combed(ring):
-    """With gaps between hairs, from one end to the middle."""
+    """Return a ring with gaps between hairs, from one end to the middle."""
     shape = shapely.Polygon(ring)
     (x0, y0, x1, y1), wide = shape.bounds, np.ptp(ring, axis=0).max()
     gaps = [shapely.box(x0, y, (x0 + x1) / 2, y + 0.06 * wide) for y in np.arange(y0, y1, 0.12 * wide)]
@@ -113,7 +116,7 @@ def test_dabs_that_touch_are_left_out():
 
 
 def fixed_to_the_handle(headings=HEADINGS):
-    """The same skewed shape on paper for any heading."""
+    """Return dabs with the same skewed shape on paper for any heading."""
     out = dabs()
     for k, dab in enumerate(out):
         away = dab.rings_mm[0] - dab.rings_mm[0].mean(axis=0)
@@ -156,7 +159,11 @@ def test_dabs_that_say_no_outline_are_refused(what):
 
 
 def test_the_patch_rests_while_a_dab_is_painted():
-    """Also where the lag is short at first and long at once, on whose straight way it would be dragged."""
+    """The patch rests while a dab is painted.
+
+    This also holds for a lag that is short at first and then grows fast. A straight path would drag the
+    patch.
+    """
     late = new_brush("late", 5.0, [(4, 3.0), (8, 6.0)])
     late.lag = core.Profile([0.5, 0.0, 0.15])
     for brush in (BRUSH, late):
@@ -211,4 +218,4 @@ def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
     assert not is_of_dabs(chart(BRUSH, (148.0, 210.0), "few"))
     assert (
         main(["chart", "-o", files[0], "--dabs", "--noise", "0.2"]) == 2
-    )  # of intervals, which dabs do not show
+    )  # --noise is for intervals, which dabs do not show

@@ -1,4 +1,4 @@
-"""brushsvg demo and brushsvg doctor: what a person types first, and when something does not work."""
+"""`demo` and `doctor` work on a first start and when something is missing."""
 
 import os
 import re
@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture
 def opened(monkeypatch):
-    """The pictures that a viewer is started with."""
+    """Return the list of pictures for which a viewer is started."""
     shown = []
     monkeypatch.setattr(demo, "_start_viewer", lambda program, path: shown.append(path))
     monkeypatch.setattr(sys, "platform", "linux")
@@ -36,7 +36,7 @@ def test_demo_paints_the_word_and_prints_where_the_picture_is(tmp_path, monkeypa
     assert main(["demo"]) == 0
     out, err = capsys.readouterr()
     assert out == f"{tmp_path / 'brushsvg-demo.png'}\n"
-    # 0.9895, which rounds up or down as the processor adds up
+    # The overlap is 0.9895. Whether it rounds up or down depends on how the processor adds.
     assert float(re.search(r"overlap (\d\.\d+)", err)[1]) >= 0.985
     picture = cv2.imdecode(np.frombuffer(Path(out.strip()).read_bytes(), np.uint8), cv2.IMREAD_GRAYSCALE)
     assert (picture < 100).mean() > 0.02  # paint
@@ -63,7 +63,7 @@ def test_the_word_is_that_of_the_examples():
 
 
 def rows(text: str) -> dict[str, str]:
-    """The lines of doctor by their names."""
+    """Return the lines of doctor by their names."""
     split = (line.strip().partition("  ") for line in text.splitlines() if line.startswith("  "))
     return {name: what.strip() for name, _, what in split}
 
@@ -99,7 +99,7 @@ def test_doctor_names_the_command_for_a_missing_extra(capsys, without):
     assert main(["doctor"]) == 0
     found = rows(capsys.readouterr().out)
     assert found["plot"].endswith(command_to_add("matplotlib"))
-    assert found["text"].endswith(command_to_add("uharfbuzz"))  # fonttools is there
+    assert found["text"].endswith(command_to_add("uharfbuzz"))  # fonttools is installed
 
 
 @pytest.mark.parametrize("version", [None, "0.9"])
@@ -115,7 +115,7 @@ def test_the_extras_of_users_have_a_purpose():
     names = set(metadata.metadata("brushsvg").get_all("Provides-Extra"))
     assert names - {"analysis", "bench", "docs", "dev", "fuzz"} == set(
         doctor.PURPOSE
-    )  # without those of developers
+    )  # without the extras of developers
     assert all(f"\n{name} = [" in text for name in doctor.PURPOSE)
 
 
@@ -138,7 +138,8 @@ def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypat
     monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
     assert main(["doctor"]) == 0
     assert "brushsvg setup inkscape" in rows(capsys.readouterr().out)["extension"]
-    install_inkscape(source=ROOT / "plugins" / "inkscape")  # an installed package does not hold it
+    # An installed package does not contain this folder.
+    install_inkscape(source=ROOT / "plugins" / "inkscape")
     note = tmp_path / "extensions" / "brushsvg" / "brushsvg-executable.txt"
     for program, problem in ((sys.executable, False), (str(tmp_path / "gone"), True)):
         note.write_text(f"{program}\n")

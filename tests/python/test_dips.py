@@ -1,4 +1,4 @@
-"""Which strokes of another tool's program fetch paint."""
+"""Strokes of another tool's program that fetch paint are recognized."""
 
 import tracemalloc
 
@@ -8,7 +8,10 @@ from brushsvg.read.gcode import dips
 
 
 def at_pots_by_definition(begins: np.ndarray) -> list[bool]:
-    """Of each pair of strokes: at one place three times, and never twice in a row."""
+    """Return which strokes fetch paint, from the definition, by comparing all pairs.
+
+    A pot is a place that is visited at least three times, and never twice in a row.
+    """
     near = np.hypot(*(begins[:, None] - begins[None]).transpose(2, 0, 1)) <= dips.SAME_PLACE_MM
     follows = np.array([False, *(near[k, k + 1] for k in range(len(begins) - 1))])
     return ((near.sum(axis=1) >= dips.MIN_POT_VISITS) & ~(near & follows[None]).any(axis=1)).tolist()

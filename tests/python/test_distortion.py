@@ -1,4 +1,4 @@
-"""Machines that take the tool elsewhere than commanded: programs make up for it, check knows where it goes."""
+"""Programs compensate for a machine's distortion, and check accounts for it."""
 
 import re
 from dataclasses import replace
@@ -50,7 +50,10 @@ def text_of(work, cell):
 
 
 def commanded_places(text):
-    """(n, 3) where a G-code program sends the tool, read by nothing of the package; circles as their ends."""
+    """Return the places (n, 3) that a G-code program commands.
+
+    The parser uses nothing of the package. Circles count by their ends.
+    """
     at, out = [np.nan] * 3, []
     for line in text.splitlines():
         if re.match(r"G[0123] ", line):
@@ -80,7 +83,10 @@ def test_the_machine_goes_where_the_plan_asks_it_to(desk, machine):
 
 
 def paper_mm(reported, machine):
-    """(n,) how much higher the paper is at commanded places than it was taught: the map by scipy."""
+    """Return how much higher (n,) the paper is at commanded places than taught.
+
+    scipy interpolates the height map.
+    """
     xs, ys = (np.unique([row[k] for row in GRID]) for k in range(2))
     map_mm = RegularGridInterpolator((ys, xs), np.array([row[2] for row in GRID]).reshape(3, 3))
     at = np.clip(reported[:, :2], (xs[0], ys[0]), (xs[-1], ys[-1]))
@@ -252,7 +258,10 @@ def over_the_paper(reported, machine):
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
 def test_between_strokes_and_paint_nothing_goes_below_the_safe_height(desk, machine):
-    """Over paper that is 4 mm higher than it was taught, the tool came from the paint 1 mm above it."""
+    """Between strokes and paint, the tool stays at the safe height.
+
+    Over paper 4 mm higher than taught, the tool once came back from the paint only 1 mm above the paper.
+    """
     work, cell = preparation.prepare("two.svg"), with_paint(machine)
     text = "".join(writer.encode(".ngc", work.plan, work.brush, "two", (), cell))
     reported = commanded_places(text)
@@ -293,7 +302,10 @@ def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk,
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, LEANS, BUMPY])
 def test_heights_show_how_much_higher_the_paper_is_than_is_known(desk, capsys, machine):
-    """What the first stroke to paint says is what `convert --z-offset` takes, which adds it to height_mm."""
+    """The height program shows how much higher the paper is than known.
+
+    The first stroke that paints gives the value for `convert --z-offset`, which adds the value to height_mm.
+    """
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
     assert call(capsys, "setup", "height", "-o", "height.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "height.ngc").read_text()

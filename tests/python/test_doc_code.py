@@ -1,7 +1,10 @@
-"""What README and docs show as code runs as it stands, or is read by who reads it: Python page by page from top to
-bottom, in a folder that holds what the page speaks of; README's commands in their order; files of JSON, tables of cells
-and of measurements by their readers. The rest is held elsewhere: HELD says where. A block of another kind, or on a page
-that had none of its kind, is none that anybody holds."""
+"""Code that README and docs show works as it stands.
+
+Python code runs page by page from top to bottom, in a folder that has the files of the page. README's
+commands run in their order. The package's readers read JSON files and the tables of cells and of
+measurements. HELD names the tests of all other code. No test covers a block of another kind, or a block on a
+page that had no block of its kind.
+"""
 
 import json
 import re
@@ -71,12 +74,12 @@ KINDS_OF_PAGES = {
     "reference/report.md": "commands",
     "reference/wheels.md": "json",
 }
-LAWS = {"lag": 1.2, "width": 0.8}  # of a brush that was measured, per mm of depth
+LAWS = {"lag": 1.2, "width": 0.8}  # of a measured brush, per mm of depth
 BLOCKS = [block for page in PAGES for block in blocks(page)]
 NEEDS_PARTS = {
     "import sys, serial": "a port to a machine",
     "import pathlib, re, socket": "a robot",
-}  # begins of blocks that are compiled alone
+}  # beginnings of blocks that are only compiled
 OF_PYTHON = {
     page: [block.code for block in BLOCKS if (block.page, block.kind) == (page, "python")]
     for page in map(name_of, PAGES)
@@ -85,7 +88,11 @@ OF_PYTHON = {name: code for name, code in OF_PYTHON.items() if code}
 
 
 def of_kind(kind: str, page: str = "") -> list[str]:
-    """Of a page, or of all that nobody follows from top to bottom (integration/test_pages_followed.py)."""
+    """Return the code blocks of one kind.
+
+    They are from one page, or from all pages that integration/test_pages_followed.py does not follow from top
+    to bottom.
+    """
     followed = {name_of(each) for each in FOLLOWED}
     return [
         block.code
@@ -107,7 +114,7 @@ def test_every_block_is_of_a_kind_that_is_held():
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder of somebody who draws: word.svg, its painted page, letters/, measured.csv, a font."""
+    """A user's folder: word.svg, its painted page, letters/, measured.csv, a font."""
     shutil.copy(REPOSITORY / "examples" / "robot.svg", tmp_path / "word.svg")
     main(["simulate-photo", str(tmp_path / "word.svg"), "-o", str(tmp_path / "word.jpg"), "--quiet"])
     (tmp_path / "letters").mkdir()
@@ -151,7 +158,7 @@ def test_the_program_of_the_page_for_cpp_is_the_example():
 def test_a_table_of_a_cell_is_read_where_that_table_stood(code):
     tables = list(tomllib.loads(code))
     language = 'language = "robodk"' if "robodk" in tables else 'language = "urscript"'
-    name = "linuxcnc-3axis" if "backlash_mm" in code else "ur5e"  # whose joints are no axes
+    name = "linuxcnc-3axis" if "backlash_mm" in code else "ur5e"  # ur5e has joints, not axes
     name = "grbl-servo" if "servo" in tables else name
     text = re.sub('language = "urscript"', language, brushsvg.write_cell(brushsvg.find_cell(name)))
     kept = [part for part in re.split(r"\n(?=\[)", text) if not re.match(rf"\[+({'|'.join(tables)})\b", part)]
@@ -195,7 +202,7 @@ def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
 
 
 def whole(code: str):
-    """JSON of a page, without its dots, and 1 for what is called x, i or cx in it."""
+    """Parse the JSON of a page without its dots; 1 replaces names such as x, i or cx."""
     if not code.startswith("{"):
         code = f"{{{code}}}"
     code = re.sub(r"(,\s*)?\.\.\.(?=\s*[\]}])", "", code)
@@ -203,8 +210,11 @@ def whole(code: str):
 
 
 def unlike(shown, real, where: str = "") -> list[str]:
-    """Where what is shown is not as in a real file: keys that there are not, values of another kind. Of lists the
-    first entries are compared, as far as both have them."""
+    """Return where the shown data differs from a real file.
+
+    A difference is an unknown key or a value of another kind. The first entries of two lists are compared, if
+    both exist.
+    """
     if isinstance(shown, dict) and isinstance(real, dict):
         lost = [f"{where}.{key}" for key in shown if key not in real]
         return lost + [
@@ -260,5 +270,6 @@ def test_commands_of_the_readme_run_in_their_order(folder, capsys):
     for line in README:
         first, *others = line.split(" | ")
         for command in [first, *(f"{line.split()[0]} {other}" for other in others)]:
-            if command not in ("brush show", "brush plot", "brush check"):  # named there, not typed
+            # the page only names these commands
+            if command not in ("brush show", "brush plot", "brush check"):
                 assert main(shlex.split(command)) in (0, None), (command, capsys.readouterr().err)

@@ -1,4 +1,4 @@
-"""Commands that README and docs show one to type are commands that there are."""
+"""README and docs show only commands that exist."""
 
 import re
 import shlex
@@ -28,7 +28,7 @@ LINKS = [
     for page in FOLLOWED
     for link in LINK.findall(page.read_text(encoding="utf-8"))
 ]
-GENERATED = ("reference/commands.md",)  # by make docs
+GENERATED = ("reference/commands.md",)  # `make docs` writes it
 
 
 def test_pages_have_commands():
@@ -46,5 +46,5 @@ def test_links_of_followed_pages_lead_somewhere(page, link):
     docs = DOCS
     target = (page.parent / link).resolve()
     folder = docs / target.relative_to(docs).parts[0]
-    is_planned = not folder.exists()  # pages that are not there yet
+    is_planned = not folder.exists()  # the pages do not exist yet
     assert target.exists() or is_planned or target.relative_to(docs).as_posix() in GENERATED

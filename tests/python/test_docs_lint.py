@@ -1,4 +1,4 @@
-"""tools/docs_lint.py finds what it promises to find, and nothing on the pages of docs/."""
+"""tools/docs_lint.py finds each fault that it promises, and none in docs/."""
 
 import sys
 from pathlib import Path
@@ -26,9 +26,9 @@ def test_the_pages_have_no_findings():
 @pytest.mark.parametrize(
     "text",
     [
-        "brushsvg paints.",  # says nothing of the reader
+        "brushsvg paints.",  # does not mention the reader
         f"{FIRST} Short. {LONG}",
-        f"{FIRST} {' '.join(['word'] * 25)}. {' '.join(['word'] * 26)}.",  # the median
+        f"{FIRST} {' '.join(['word'] * 25)}. {' '.join(['word'] * 26)}.",  # the median is too long
         f"{FIRST} It is put beside the brush.",
         f"{FIRST}\n\n| a | as of today |\n|---|---|",
         f"{FIRST}\n\n* Told once.",

@@ -1,4 +1,7 @@
-"""What a drawing says on its outermost svg of the whole job, and commands that go by it."""
+"""Settings on a drawing's outermost svg apply to the whole job.
+
+All commands follow these settings.
+"""
 
 import gzip
 
@@ -22,7 +25,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def refusal_of(capsys, *words):
-    """All notices of the drawing."""
+    """Return all notices about the drawing of a refused command."""
     capsys.readouterr()
     status, _, reported = in_json(capsys, *words)
     assert status == 1 and {file for file, _ in reported} == {next(each for each in words if ".svg" in each)}
@@ -62,7 +65,7 @@ def test_beginnings_are_said_of_the_job_and_of_strokes(desk, capsys):
 
     pointed, rounded = poses(DRAWING, "--start", "pointed"), poses(DRAWING, "--start", "round")
     assert all(len(rounded[name]) > len(pointed[name]) for name in "ab")
-    assert poses(DRAWING) == rounded  # what suits round ends
+    assert poses(DRAWING) == rounded  # the default suits round ends
     assert poses(on_root('start="pointed"')) == pointed
     assert poses(on_root('start="pointed"'), "--start", "round") == rounded
     of_one = DRAWING.replace('id="a"', 'id="a" data-brushsvg-start="pointed"')
@@ -83,7 +86,7 @@ def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, c
     (desk / "s.svg").write_text(BAR)
     rounded, butt = poses("--start", "round"), poses("--start", "butt")
     assert all(len(butt[name]) > len(rounded[name]) for name in "ab")
-    assert poses() == butt  # what suits a straight cut
+    assert poses() == butt  # the default suits a straight cut
     (desk / "s.svg").write_text(BAR.replace('id="a"', 'id="a" data-brushsvg-start="butt"'))
     assert poses("--start", "round") == {"a": butt["a"], "b": rounded["b"]}
     assert main(["convert", "s.svg", "-o", "s.ngc", "--start", "butt"]) == 0
@@ -99,7 +102,7 @@ def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
 
     rounded, butt = poses(BAR, "--end", "round"), poses(BAR, "--end", "butt")
     assert all(len(butt[name]) > len(rounded[name]) for name in "ab")
-    assert poses(BAR) == butt  # what suits a straight cut
+    assert poses(BAR) == butt  # the default suits a straight cut
     said = BAR.replace("<svg ", '<svg data-brushsvg-end="round" ')
     assert poses(said) == rounded
     assert poses(said, "--end", "butt") == butt

@@ -1,4 +1,4 @@
-"""Nothing public is undocumented: what the package offers, what it needs and gives, and the errors it raises."""
+"""Everything public is documented: names, parameters, results and errors."""
 
 import inspect
 import re
@@ -51,7 +51,10 @@ def test_a_law_documents_shapes_errors_and_each_of_its_arguments(name):
 
 @pytest.mark.parametrize("name", ["Brush", "Profile", "Footprint", "FootprintTable"])
 def test_each_field_and_method_of_a_brush_is_described(name):
-    """In its own words, or among those of its class."""
+    """Each field and method of a brush is described.
+
+    The description is its own docstring or part of its class's docstring.
+    """
     kind = getattr(brushsvg, name)
     for field, body in vars(kind).items():
         if field.startswith("_"):

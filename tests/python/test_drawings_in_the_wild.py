@@ -1,4 +1,7 @@
-"""What drawing programs leave in their files: backgrounds, notes, copies, other pages, other pixels, clips."""
+"""Drawings can be read with all that drawing programs leave in their files.
+
+Examples are backgrounds, notes, copies, other pages, other pixel sizes and clips.
+"""
 
 import re
 
@@ -64,7 +67,10 @@ def test_other_shapes_are_no_background(shape):
 
 
 def test_a_background_is_known_by_the_page_for_any_requested_sheet():
-    """The page is at the sheet's upper left."""
+    """A background is recognized by the page, for any requested sheet.
+
+    The page is at the sheet's upper left.
+    """
     design = read('<rect width="100" height="60" fill="#fff" stroke="#000"/>' + LINE, sheet_mm=(130.0, 80.0))
     assert ids(design)[-1] == "line" and len(design.elements) == 2
     assert not any(element.fill_rule for element in design.elements)
@@ -125,7 +131,7 @@ OLD_INKSCAPE = f'{INKSCAPE} width="744.09448" height="1052.3622" inkscape:versio
 ILLUSTRATOR = 'data-name="Layer 1" width="595.28" height="841.89" viewBox="0 0 595.28 841.89"'
 
 
-# as "Save as" writes it, its comment taken away
+# Illustrator's "Save as" writes this; its comment is removed here.
 ILLUSTRATOR_STYLE = (
     'width="595.28px" height="841.89px" viewBox="0 0 595.28 841.89" '
     'style="enable-background:new 0 0 595.28 841.89;"'
@@ -139,7 +145,7 @@ def test_programs_with_other_pixels_are_named(root, per_inch):
     design = read(LINE, f'xmlns="http://www.w3.org/2000/svg" {root}')
     (notice,) = design.notices
     assert agrees(notice, f"other-pixels {per_inch} 210 297")
-    # following the advice gives that size
+    # Following the advice gives this size.
     kept = re.sub(r'(?:width|height)="[^"]*"', "", root)
     advised = read(
         LINE, f'xmlns="http://www.w3.org/2000/svg" {kept} {notice.advice.removeprefix("give its svg ")}'
@@ -243,7 +249,10 @@ def test_a_cut_line_keeps_its_widths():
 
 
 def test_a_closed_line_of_varying_width_keeps_its_widths_where_it_begins_inside():
-    """The two parts that meet at its beginning were joined without their widths, and painted 0 mm wide."""
+    """A closed line of varying width keeps its widths if it begins inside the clip.
+
+    The two parts that meet at its beginning were once joined without their widths, and painted 0 mm wide.
+    """
     from brushsvg.read.clipping import clip_element, fill_region
     from brushsvg.read.design import Element, SubPath
 
@@ -326,7 +335,10 @@ def test_weights_of_a_spline_may_all_be_negative(tmp_path):
 
 
 def pen_stroke(points, widths, element):
-    """The way that a program writes a pressure stroke: a piece with a width of its own between two samples."""
+    """Return a pressure stroke as drawing programs write it.
+
+    Each piece between two samples has a width of its own.
+    """
     pairs = zip(points[:-1], points[1:], widths, strict=True)
     return "".join(element.format(*begin, *end, width) for begin, end, width in pairs)
 

@@ -45,7 +45,10 @@ def add_nurbs_circle(msp):
 
 
 def add_edges(msp):
-    """Half a disc, half an ellipse and a side: the first and the last are drawn backwards."""
+    """Add an edge path with half a disc, half an ellipse, a spline and lines.
+
+    The first and the last edge are drawn backwards.
+    """
     path = msp.add_hatch(color=1).paths.add_edge_path()
     path.add_arc((40, 0), 20, 0, 180, ccw=False)
     path.add_line((60, 0), (60, 80))
@@ -70,7 +73,7 @@ CORNERED = [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2.0]
 SQUARE = [(0, 0), (40, 0), (40, 20), (0, 30)]
 ROUND = [(0, 0), (40, 0), (40, 20), (0, 30), (0, 0)]
 
-# What is drawn, its points, whether it is closed.
+# name: (function that draws it, its points, whether it is closed)
 SHAPES = {
     "line": (lambda m: m.add_line((3, 4), (50, 20)), [(3, 4), (50, 20)], False),
     "arc": (lambda m: m.add_arc((10, 20), 150, 30, 200), circle((10, 20), 150, begin=30, end=200), False),
@@ -155,7 +158,10 @@ def test_every_entity_is_within_a_micrometre_of_the_true_curve(name):
 @each_shape
 @pytest.mark.slow
 def test_every_entity_in_a_block_goes_where_the_block_goes(name):
-    """Scaled unevenly, turned and mirrored, in a block that is scaled and turned itself."""
+    """Every entity in a block moves with the block.
+
+    The block is scaled unevenly, turned and mirrored. It is inside another block that is scaled and turned.
+    """
     draw, points, closed = SHAPES[name]
     document = drawing()
     inner, outer = document.blocks.new("inner", base_point=(5, 7)), document.blocks.new("outer")
@@ -168,7 +174,8 @@ def test_every_entity_in_a_block_goes_where_the_block_goes(name):
     moved = turned(moved * 1.5, 70) + np.array((-40, 60))
     assert apart(subpath, moved) < 2e-4
     assert subpath.closed == closed
-    assert element.stroke_width_mm == (0 if name in FILLED else 0.25)  # a line weight does not grow
+    # a block's scale does not change a line weight
+    assert element.stroke_width_mm == (0 if name in FILLED else 0.25)
 
 
 def turned(points, degrees):
@@ -189,7 +196,7 @@ def test_a_spline_that_jumps_is_two_lines(weights):
     for subpath, part in zip(element.subpaths, (points[:4], points[4:]), strict=True):
         assert apart(subpath, BSpline([0] * 4 + [1] * 4, part, 3)(np.linspace(0, 1, 4000))) < 1e-3
     near = points.copy()
-    near[4] = near[3] + (0.004, 0)  # what few digits make of one place
+    near[4] = near[3] + (0.004, 0)  # With few digits, one place may become two.
     whole = only(drawing(lambda m: add_spline(m, 3, knots, np.column_stack((near, 0 * near[:, 0])), weights)))
     assert len(whole.subpaths) == 1
 
@@ -248,7 +255,7 @@ def test_a_helix_is_seen_from_above(pitch, turns):
     assert [notice.where for notice in design.notices] == ["z"] * (pitch > 0)
     (subpath,) = design.elements[0].subpaths
     assert apart(subpath, [point.xyz for point in helix.flattening(1e-5, 64)]) < 2e-4
-    # ezdxf's spline stands for the helix itself to 1 % of the radius
+    # ezdxf's spline approximates the helix itself to 1 % of the radius.
     assert apart(subpath, circle((0, 0), 30, end=360 * turns)) < 0.3
 
 
@@ -284,7 +291,10 @@ def test_a_drawing_without_units_asks_for_them():
 
 
 def test_a_drawing_too_large_for_its_unit_is_doubted():
-    """ezdxf and others write metres where nobody chose a unit."""
+    """A drawing that is too large for its unit causes a warning.
+
+    ezdxf and other programs write metres if nobody chose a unit.
+    """
 
     def line(unit, length, **more):
         return read(drawing(lambda m: m.add_line((0, 0), (0, length)), unit), **more).notices
@@ -310,7 +320,7 @@ def test_the_sheet_is_what_is_drawn_and_20_mm_around():
         msp.add_lwpolyline([(100, 50, 4, 4), (130, 50, 4, 4)], format="xyse")
 
     design = read(drawing(draw), sheet_mm=None)
-    # from 89 (circle, half of 2 mm) to 132 (polyline, half of 4 mm); from 39 to 61
+    # x is from 89 (circle, half of 2 mm) to 132 (polyline, half of 4 mm); y is from 39 to 61.
     assert design.sheet_mm == pytest.approx((20 + 43 + 20, 20 + 22 + 20), abs=1e-3)
     assert apart(design.elements[0].subpaths[0], circle((31, 31), 10)) < 2e-4
     given = read(drawing(draw), sheet_mm=(300.0, 200.0))
@@ -330,9 +340,9 @@ def test_widths_along_a_polyline():
         element = only(document)
         (subpath,) = element.subpaths
         at = np.cumsum([0, 30, 10 * np.pi, 30, 40]) / (100 + 10 * np.pi)
-        # The third side is drawn with the line weight: both its widths are 0.
+        # The third side has the line weight, so both its widths are 0.
         knots = [(0, 1), (at[1], 3), (at[1], 2), (at[2], 2), (at[2], 0.5), (at[3], 0.5), (at[3], 0), (1, 4)]
-        found = subpath.widths[np.r_[0:3, -5:0]]  # between them the arc's own
+        found = subpath.widths[np.r_[0:3, -5:0]]  # between them are the arc's own widths
         assert found == pytest.approx(np.array(knots), abs=1e-6)
         assert (subpath.widths[2:-5, 1] == 2).all()
         assert element.stroke_width_mm == 4

@@ -1,4 +1,4 @@
-"""DXF files that are broken or made to break: each ends in an answer or in one sentence."""
+"""Damaged or hostile DXF files end in a drawing or in one sentence."""
 
 import logging
 import random
@@ -20,7 +20,11 @@ OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
 
 @pytest.fixture(autouse=True)
 def _nothing_logged():
-    """ezdxf logs what damaged files hold, half letters among it, which pytest-xdist cannot pass on."""
+    """Switch logging off.
+
+    ezdxf logs the contents of damaged files, including incomplete characters, which pytest-xdist cannot pass
+    on.
+    """
     logging.disable()
     yield
     logging.disable(logging.NOTSET)
@@ -55,7 +59,7 @@ def test_sections_may_be_missing():
     assert read_dxf(text_dxf(LINE).replace(b"\n", b"\r\n") + b"\x1a", OPTIONS).notices == ()
 
 
-# As minimal exporters write them: no markers, the properties in any place.
+# Minimal exporters write no markers, and the properties in any order.
 BARE = {
     "LWPOLYLINE": "90 3 70 1 43 2.5 10 0 20 0 62 1 10 50 20 0 42 1 10 50 20 50 8 L",
     "SPLINE": "8 L 70 8 71 3 72 8 73 4 40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 10 0 20 0 10 10 20 0 10 10 20 10 "
@@ -83,7 +87,7 @@ def test_newer_entities_are_read_without_header_and_markers(header, kind, marker
     first, *found, last = design.elements
     assert (first.id, last.id[:6]) == ("LINE-1", "CIRCLE")
     if kind == "MTEXT":
-        return  # with or without a font
+        return  # its text needs a font, which may be missing
     assert design.notices == ()
     (element,) = found
     assert (element.layer, element.colour) == ("L", "#ff0000")
@@ -150,7 +154,10 @@ def test_a_file_cut_short_is_read_up_to_there():
 @pytest.mark.parametrize("binary", [False, True])
 @pytest.mark.slow
 def test_any_damage_ends_in_a_design_or_a_sentence(binary):
-    """Cut anywhere, bytes changed, lines taken out or doubled."""
+    """Any damage ends in a drawing or in one sentence.
+
+    The file is cut anywhere, bytes are changed, or lines are removed or doubled.
+    """
     whole, rng = encoded(some_drawing(), binary), random.Random(7)
     lines = whole.split(b"\n")
     for _ in range(60):
@@ -253,7 +260,10 @@ def test_things_of_no_size():
 
 
 def chain(count, *others):
-    """Blocks of which each inserts the next twice: by one name, or by the names of others, doubled as well."""
+    """Return a drawing in which each block inserts the next block twice.
+
+    The two inserts have one name, or alternate between the names of several chains.
+    """
     document = drawing()
     kinds = ("A", *others)
     for k in range(count):
@@ -300,7 +310,7 @@ def test_deep_blocks_and_wide_arrays_are_refused():
     insert.dxf.update({"row_count": 400, "column_count": 32767, "row_spacing": 1, "column_spacing": 1})
     with refused("drawing-too-large 400 32767 100000"):
         read(document)
-    insert.dxf.column_spacing = 0  # all columns in one place: one
+    insert.dxf.column_spacing = 0  # All columns are at one place and count as one.
     document.blocks.get("B0").add_point((0, 0))
     assert len(read(document).elements) == 400
 
@@ -378,7 +388,7 @@ def test_drawings_in_map_coordinates_are_moved_to_the_sheet_and_what_is_astray_i
     near = read_dxf(text_dxf(line(0, 0), line(30, 0), line(5e9, 4e9)), anywhere)
     assert [notice.where for notice in near.notices] == ["LINE-3"]
     assert near.sheet_mm == pytest.approx((75.25, 90.25))
-    for far in (line(5e9, 4e9), line(5e12, 0)):  # OPTIONS have a sheet
+    for far in (line(5e9, 4e9), line(5e12, 0)):  # OPTIONS sets a sheet.
         assert agrees(refusal(text_dxf(far)), "nothing-to-paint LINE-1 1e6")
     with refused("nothing-to-paint 1e6"):
         read_dxf(text_dxf("0 LINE 8 0 10 5e9 20 0 11 5.01e9 21 0"), anywhere)
@@ -398,7 +408,11 @@ LOOK = "0 LINE 8 0 10 0 20 {y} 11 50 21 {y} "
     ],
 )
 def test_what_was_repaired_is_reported_where_it_is_painted(more, words):
-    """The audit takes away what it cannot understand: another width, a solid line in place of dashes."""
+    """A repair is reported at the element that is painted.
+
+    The audit removes entries that it cannot understand. The line then has another width, or is solid instead
+    of dashed.
+    """
     lines = [LOOK.format(y=y) + more for y in range(5)]
     notices = read_dxf(text_dxf(LOOK.format(y=9), *lines), OPTIONS).notices
     reported = [notice for notice in summarize_notices(notices) if notice.code == "dxf-repaired"]

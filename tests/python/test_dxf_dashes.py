@@ -1,4 +1,7 @@
-"""Line types of a DXF, and what else of a drawing's look is cut or said to be whole."""
+"""DXF line types become dashes.
+
+Dashes and block clips that cannot be applied are reported.
+"""
 
 import numpy as np
 import pytest
@@ -33,7 +36,7 @@ def typed(draw=None, units=4):
 
 
 def spans(element):
-    """Where each dash of a line along x begins and ends."""
+    """Return where each dash of a line along x begins and ends."""
     return [(round(s.cubics[0, 0, 0], 9), round(s.cubics[-1, 3, 0], 9)) for s in element.subpaths]
 
 
@@ -66,7 +69,7 @@ def test_patterns_scale_with_the_drawing_the_entity_and_the_unit_but_not_with_bl
     block.add_line((0, 0), (3, 0), {"ltscale": 0.1, "layer": "L"})
     document.modelspace().add_blockref("b", (0, 0), {"xscale": 2})
     (element,) = read(document).elements
-    # 10 and 5 cm, times 2, times 0.1; 60 mm are drawn
+    # The dashes are 10 and 5 cm, times 2, times 0.1; the line is 60 mm long.
     assert spans(element) == [(0, 20), (30, 50)]
 
 
@@ -91,13 +94,13 @@ def test_a_line_drawn_in_parts_is_dashed_as_one():
 
     first, last = read(typed(draw)).elements
     assert spans(first) == [(0, 10), (15, 25), (30, 32)]
-    assert spans(last) == [(32, 40)]  # shorter than its pattern: unbroken
+    assert spans(last) == [(32, 40)]  # shorter than its pattern, so it is not dashed
 
 
 def test_dashes_along_a_curve():
     (element,) = read(typed(lambda m: m.add_circle((0, 0), 20, {"linetype": "DASHED"}))).elements
     true = circle((0, 0), 20)
-    assert len(element.subpaths) == 8  # the ninth, 5.7 mm long, is one with the first
+    assert len(element.subpaths) == 8  # the ninth, 5.7 mm long, is joined to the first
     for k, subpath in enumerate(element.subpaths):
         ends = subpath.cubics[[0, -1], [0, 3]]
         at = np.mod(np.arctan2(ends[:, 1], ends[:, 0]), 2 * np.pi) * 20
@@ -176,7 +179,7 @@ def test_clipped_blocks_are_named():
 
 
 def corners(element):
-    """Of each dash the points at which it begins, turns and ends."""
+    """Return the points at which each dash begins, turns and ends."""
     return [
         [tuple(float(round(x, 6)) + 0.0 for x in point) for point in (*s.cubics[:, 0], s.cubics[-1, 3])]
         for s in element.subpaths
@@ -204,7 +207,7 @@ def test_dashes_begin_anew_at_corners_unless_the_polyline_says_otherwise(kind):
     (on,) = read(typed(draw(128))).elements
     assert [ends[0] for ends in corners(on)] == [(0, 0), (15, 0), (30, 0), (32, 13), (32, 28)]
     assert corners(on)[2] == [(30, 0), (32, 0), (32, 8)]
-    (ring,) = read(typed(draw(0, close=True))).elements  # closed by a side of 45.25 mm
+    (ring,) = read(typed(draw(0, close=True))).elements  # its closing side is 45.25 mm long
     assert corners(ring)[4] == [(32, 30), (32, 32), (pytest.approx(32 - 50**0.5, abs=1e-5),) * 2]
     assert corners(ring)[0][-2:] == [(0, 0), (10, 0)] and len(corners(ring)) == 7
 

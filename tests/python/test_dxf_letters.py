@@ -1,4 +1,4 @@
-"""Text of a DXF, in fonts made here: every letter is a box whose place is known beforehand."""
+"""Text of a DXF is set in test fonts in which every letter is a known box."""
 
 import platform
 import subprocess
@@ -20,7 +20,7 @@ LIKE_SHX = "SHX"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The only place where fonts are looked for."""
+    """The only folder that is searched for fonts."""
     monkeypatch.setitem(FOLDERS, platform.system(), [str(tmp_path)])
     return tmp_path
 
@@ -41,7 +41,7 @@ def in_boxes(version="R2010"):
 
 
 def boxes(element):
-    """Lower left and upper right corner of each outline, from left to right."""
+    """Return the lower left and upper right corners of each outline, left to right."""
     found = [
         [*s.cubics.min(axis=(0, 1)).round(6) + 0.0, *s.cubics.max(axis=(0, 1)).round(6) + 0.0]
         for s in element.subpaths
@@ -99,7 +99,7 @@ def test_text_fits_between_two_points(fonts):
     text = document.modelspace().add_text("AA", height=7, dxfattribs={"style": "Boxes"})
     text.set_placement((0, 0), (28, 0), align=ALIGN.FIT)
     (element,) = read(document).elements
-    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]  # and the distance to a next letter, 2
+    assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]  # the distance to a next letter is 2
 
 
 def test_text_in_blocks_and_from_below(fonts):
@@ -217,7 +217,7 @@ def test_mtext_is_words_and_lines(fonts):
     first, tall, red, bold, last = (boxes(element)[0] for element in words)
     assert first == (10, 76, 16, 83)  # as high as the line's highest letter
     assert tall == (24, 76, 36, 90)  # after advances of 7 and 7
-    assert red == (45, 76, 51, 81)  # and of 14 and 7
+    assert red == (45, 76, 51, 81)  # and after advances of 14 and 7
     assert bold[2] - bold[0] == pytest.approx(9)
     assert (last[2] - last[0], last[3] - last[1]) == pytest.approx((6, 5))
     assert [element.colour for element in words] == ["#000000"] * 2 + ["#ff0000"] + ["#000000"] * 2
@@ -237,7 +237,11 @@ def test_mtext_breaks_its_lines_only_where_it_has_a_width(fonts):
 
 
 def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
-    """As programs write styles since 2007; it counted as damaged, for ezdxf has no fonts here to guess with."""
+    """MTEXT without a width is read if its style names a font family.
+
+    Programs have written such styles since 2007. The text once counted as damaged, because ezdxf has no fonts
+    here from which it could guess the width.
+    """
     document = in_boxes()
     style = document.styles.get("Boxes")
     style.set_extended_font_data("Boxes")
@@ -252,7 +256,11 @@ def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
     ["AAAA AAAA", r"\H14;AA AA", r"\fBoxes|b1|i0;AA A A", r"A\S1/2; A A", r"{\W2;A A}A"],
 )
 def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
-    """In a text without a width, the longest line is as wide as the text: with a margin, shorter ones are displaced."""
+    """A short line stands below the middle of the longest line.
+
+    In a text without a width, the longest line is as wide as the text. With a margin, shorter lines are
+    displaced.
+    """
     document = in_boxes()
     content = rf"\pxqc;{{{long}}}\PA"
     document.modelspace().add_mtext(content, {"char_height": 7, "style": "Boxes", "insert": (10, 90)})
@@ -273,7 +281,7 @@ def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
         ("", "Boxes", "Boxes", ""),
         ("txt", "", "Plain Sans", LIKE_SHX),
         ("romans.shx", "", "Plain Sans", LIKE_SHX),
-        ("arial.ttf", "", "Plain Sans", "arial.ttf"),  # it is broken
+        ("arial.ttf", "", "Plain Sans", "arial.ttf"),  # this font file is broken
         ("gone.ttf", "Gone", "Plain Sans", "Gone"),
     ],
 )
@@ -363,7 +371,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
 
 @pytest.mark.slow
 def test_text_leaves_nothing_at_home(tmp_path):
-    """With any fonts of this machine."""
+    """Reading text leaves no files in the home folder, with any installed fonts."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
     script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
     runs = [
@@ -386,4 +394,4 @@ def test_a_stack_with_a_caret_is_one_with_or_without_a_blank(fonts, stack):
         return [boxes(each) for each in read(document).elements]
 
     assert letters(stack) == letters(stack.replace("^", "^ "))
-    assert len(letters(stack)) == 3  # what stands before, above and below
+    assert len(letters(stack)) == 3  # the text before, above and below

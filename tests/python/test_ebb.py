@@ -1,5 +1,8 @@
-"""Commands of an EBB: places in whole steps without drift, slices that no motor and no brush is too slow for, a servo's
-heights; read by a stub that is made from the board's own documentation."""
+"""EBB commands have exact places, allowed slice times and servo heights.
+
+Places are whole steps without drift. No slice is too fast or too slow for a motor or a brush. A stub made
+from the board's documentation reads the commands.
+"""
 
 import re
 import sys
@@ -91,7 +94,10 @@ def test_the_time_is_that_of_the_commands():
 
 
 def test_a_page_does_not_drift():
-    """Steps are differences of rounded places, not rounded differences, whose errors would add up."""
+    """A page does not drift.
+
+    Steps are differences of rounded places. The errors of rounded differences would add up.
+    """
     dashes = [
         [(10 + 0.83 * k, 10, 0), (10.303 + 0.83 * k, 40.007, -1), (10.303 + 0.83 * k, 40.007, 0)]
         for k in range(90)
@@ -110,7 +116,7 @@ def test_speeds_change_by_the_cells_acceleration_in_slices():
         times = np.array([np.linalg.norm(np.subtract(leg.end, leg.start)) for leg in legs]) / speeds
         limit = 20.0 if low else CELL.speeds.travel_mm_s
         assert 0.97 * limit < speeds.max() <= limit + 1e-9
-        # a step more or less, and a millisecond, are what rounding makes of a slice
+        # Rounding a slice adds or removes a step and a millisecond.
         slack = 2 * 0.0125 / times.min()
         changes = np.abs(np.diff(np.r_[0.0, speeds, 0.0]))
         between = (np.r_[0.0, times] + np.r_[times, 0.0]) / 2
@@ -118,7 +124,10 @@ def test_speeds_change_by_the_cells_acceleration_in_slices():
 
 
 def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(monkeypatch):
-    """Without that rule 7 of 10 slices of a wave take less than 16 ms."""
+    """No slice is too short for the board; path and heights stay unchanged.
+
+    Without this rule, 7 of 10 slices of a wave are shorter than 16 ms.
+    """
     t = np.linspace(0, 1, 900)
     straight = [(10, 50, 0), (10, 50, -1), (11.3, 50, -1), (12.2, 50.4, -1), (12.2, 50.4, 0)]
     paths = [
@@ -137,7 +146,7 @@ def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(m
         leg for leg in old if leg[0][:2] == leg[1][:2]
     ]
     places, k = np.array([end for _, end in old]), 0
-    for start, end in new:  # each slice is one or some of the others, on its straight line
+    for start, end in new:  # each slice merges one or several old slices on one straight line
         first, k = k, k + 1 + int((np.abs(places[k:] - end).max(axis=1) < 1e-9).argmax())
         assert np.allclose(places[k - 1], end)
         along = np.subtract(end, start)[:2]
@@ -148,13 +157,16 @@ def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(m
 
 
 def test_no_speed_stops_a_motor_or_is_too_fast_for_one():
-    """The stub refuses less than 1.31 and more than 25,000 steps in a second."""
+    """No speed is too low or too high for a motor.
+
+    The stub refuses less than 1.31 and more than 25,000 steps per second.
+    """
     fast = replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=220.0, acceleration_mm_s2=5000.0))
     run(made(wave(), cell=fast))
     found = run(made([(10, 10, 0), (10, 10, -1), (12.003, 11.984, -1), (12.003, 11.984, 0)], speed=0.1))
     slow = [leg.speed_mm_s for leg in found.legs if leg.kind == "feed" and leg.end[2] < 0]
     assert 0.05 < max(slow) <= 0.1
-    fine = replace(fast, motors=Motors(((300.0, 0.0), (0.0, 300.0)), 5))  # which no cell file may be
+    fine = replace(fast, motors=Motors(((300.0, 0.0), (0.0, 300.0)), 5))  # no cell file may contain this
     run(made(wave(), cell=fine), fine)
     with refused("out-of-range 222 0.1 221.0"):
         parse_cell(write_cell(replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=222.0))))

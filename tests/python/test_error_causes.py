@@ -1,4 +1,4 @@
-"""Each reason from a stroke that asks for it."""
+"""Each cause of an error is found in a stroke that has this cause."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,10 @@ def test_the_reason_is_reported(target, code, says, near):
 
 @pytest.mark.parametrize(("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider", "thinner"])
 def test_a_brush_of_one_width_is_reported(half, is_missing):
-    """The middle of a line 4 mm wide was said to be 0.04 mm off, where the pen paints 1 mm."""
+    """A brush of one width is reported as the cause.
+
+    The middle of a line 4 mm wide was once reported as 0.04 mm off, where the pen paints 1 mm.
+    """
     bend = np.column_stack([np.linspace(20, 100, 60), 60 + 5 * np.sin(np.linspace(0, 6, 60))])
     worst = found(stroke(bend, half), name="rigid")
     assert worst.is_missing == is_missing
@@ -86,7 +89,10 @@ def test_a_round_nib_is_not_pointed_behind():
 
 
 def test_a_coarse_tolerance_is_the_reason():
-    """With 5 mm it was the footprint on bends, where the middle was off by more than that."""
+    """A coarse tolerance is reported as the cause.
+
+    With 5 mm, the footprint on bends was once reported, although the middle was off by more.
+    """
     worst = found(stroke(arc(15.0, 1.0, 200), 2.0, True), "closed", tolerance_mm=5.0)
     assert worst.code == "coarse-tolerance" and "5 mm" in worst.reason
     fine = found(stroke(arc(15.0, 1.0, 200), 2.0, True), "closed")
@@ -99,7 +105,10 @@ def test_without_compensation_the_lag_is_the_reason():
 
 
 def test_a_closed_line_has_a_corner_at_its_seam_too():
-    """The worst place of a square was where it begins, and bends were blamed."""
+    """A closed line also has a corner at its seam.
+
+    The worst place of a square was its beginning, and bends were once blamed.
+    """
     square = flatten(stroke([(30, 30), (70, 30), (70, 70), (30, 70), (30, 30)], 1.5, True), 0.01)
     for s in (0.0, 1.0, 159.0, 160.0):
         assert _sharpest_corner_deg(square, s, 3.0, True) == pytest.approx(90)

@@ -1,4 +1,7 @@
-"""The numbered examples run from a checkout, write what they promise, and stay short. ctest runs those in C++."""
+"""The numbered examples run from a checkout, write their files, and stay short.
+
+ctest runs the C++ examples.
+"""
 
 import ast
 import json
@@ -20,7 +23,10 @@ MAX_LINES = 40
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Return a function that runs an example in an empty folder and returns what it prints."""
+    """Return a function that runs an example in an empty folder.
+
+    The function returns the example's printed text.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(name: str) -> str:
@@ -195,4 +201,4 @@ def test_embedding(run):
     assert re.match(r"a program of \d{3,} characters, \d+ s", line)
     assert line and wide.startswith("refused (width-out-of-reach): wave: width 40")
     assert stopped == "cancelled"
-    assert not list(Path().iterdir())  # nothing is written
+    assert not list(Path().iterdir())  # no files are written

@@ -1,6 +1,6 @@
-"""Each extra of a user: it works where it is installed, and costs one sentence with a command where it is missing.
+"""Each extra works if it is installed; if not, one sentence names the command.
 
-`make wheel-test` runs this without extras and with each of them.
+The command installs the extra. `make wheel-test` runs this without extras and with each of them.
 """
 
 import importlib.util
@@ -17,7 +17,7 @@ DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
     '<path d="M20 30H90" fill="none" stroke="#203060" stroke-width="3"/></svg>'
 )
-TYPED = {  # packages of the extra: a command that needs them, and the file that it writes
+TYPED = {  # packages of the extra: (a command that needs them, the file that the command writes)
     ("fonttools", "uharfbuzz"): ("text word -o out.svg --font font.ttf", "out.svg"),
     ("matplotlib",): ("brush plot round-6 -o out.svg", "out.svg"),
     ("ssik",): ("cell place ur5e in/a.svg -o out.png", "out.png"),
@@ -32,9 +32,7 @@ def desk(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in").mkdir()
     (tmp_path / "in" / "a.svg").write_text(DRAWING)
-    (tmp_path / "font.ttf").write_bytes(
-        b"\0\1\0\0"
-    )  # the beginning of a font: enough to ask for the packages
+    (tmp_path / "font.ttf").write_bytes(b"\0\1\0\0")  # a font's first bytes: enough to need the packages
     if os.path.exists(FONT):
         (tmp_path / "font.ttf").unlink()
         (tmp_path / "font.ttf").symlink_to(FONT)
@@ -63,7 +61,7 @@ def test_an_extra_that_is_installed_works(desk, capsys, packages):
         pytest.skip("it is missing")
     if "fonttools" in packages and not os.path.exists(FONT):
         pytest.skip(f"there is no {FONT}")
-    if out is None:  # nobody answers there, which only who has the extra can know
+    if out is None:  # No host answers there, and only a user who has the extra gets that far.
         status, _, reported = in_json(capsys, *words.split())
         assert status == 1 and any(agrees(why, "cluster-unreachable") for _, why in reported)
         return

@@ -1,4 +1,7 @@
-"""TP: jobs of more points than one program may have are several programs; remarks of more letters several lines."""
+"""TP splits jobs with too many points and remarks with too many characters.
+
+A job becomes several programs, and a remark becomes several lines.
+"""
 
 from dataclasses import replace
 
@@ -30,7 +33,7 @@ def waves(strokes: int, poses: int):
 
 @pytest.fixture
 def job(tmp_path, capsys):
-    """A program in three files."""
+    """A folder with a program in three files."""
     (tmp_path / "waves.json").write_text(_core.write_plan(waves(30, 90)))
     words = str(tmp_path / "waves.json"), "-o", str(tmp_path / "waves.ls"), "--cell", "lrmate200id"
     status, _, reported = call(capsys, "convert", *words)
@@ -81,7 +84,7 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
 
 @pytest.fixture
 def small(tmp_path, capsys):
-    """How check ends for the program of a small plan with its text changed."""
+    """Return a function that changes the text of a small program and checks it."""
     (tmp_path / "small.json").write_text(_core.write_plan(waves(2, 10)))
     program = tmp_path / "small.ls"
     cell = ("--cell", "lrmate200id")
@@ -108,7 +111,10 @@ def test_a_frame_is_set_before_it_is_chosen(small):
 
 
 def test_a_speed_in_another_unit_is_read_as_that(small):
-    """20 cm/min are 3.3 mm/s: slower than requested, and nothing forbids that; 200 cm/min are 33 mm/s."""
+    """A speed in another unit is read in this unit.
+
+    20 cm/min are 3.3 mm/s, which is slower than requested and allowed. 200 cm/min are 33 mm/s.
+    """
     for speed, status in (("20cm/min", 0), ("200cm/min", 1)):
         assert small(lambda text, new=speed: text.replace(" P[5] 20mm/sec", f" P[5] {new}"))[0] == status
     cell = find_cell("lrmate200id")
@@ -144,7 +150,10 @@ def test_programs_are_distinguished_with_their_names():
 
 
 def test_corners_are_cut_by_the_time_to_speed():
-    """Twice as long a ramp: half of the percents."""
+    """The cut of a corner depends on the time to full speed.
+
+    A ramp that is twice as long halves the percentages.
+    """
     cell = on("lrmate200id", SQUARE)
     cell = replace(cell, blending=replace(cell.blending, tolerance_mm=0.04))
     slow = replace(cell, blending=replace(cell.blending, ramp_s=1.0))

@@ -1,4 +1,7 @@
-"""benchmarks/faults: a planted fault is off until it is switched on, and is then what it says."""
+"""A fault planted by benchmarks/faults has no effect until it is switched on.
+
+It then changes what it names.
+"""
 
 import ast
 import sys
@@ -54,7 +57,10 @@ def result(source: bytes, active: int):
 
 
 def test_the_examples_that_are_built_with_faults_exist():
-    """They were renamed once, and no fault could be planted after that."""
+    """The examples that are built with faults exist.
+
+    They were renamed once, and no fault could be planted after that.
+    """
     for name in fault.EXAMPLES:
         assert (EXAMPLES / f"{name}.cpp").is_file()
 
@@ -91,7 +97,7 @@ def test_the_choice_is_seeded_spread_and_without_overlaps():
     many = []
     for folder, size in (("a", 1), ("b", 3)):
         for number in range(size * 20):
-            edits = [[fault.Edit(10 * number, 10 * number + 11, "")]]  # each overlaps the next
+            edits = [[fault.Edit(10 * number, 10 * number + 11, "")]]  # each edit overlaps the next
             words = (f"kind {number % 3}", str(number), "")
             many.append(fault.Fault(f"{folder}/x.py", number, 1, "", *words, edits))
 

@@ -1,4 +1,4 @@
-"""Files are whole or not there, and so are several."""
+"""Files, and groups of files, are written completely or not at all."""
 
 import os
 import signal
@@ -33,7 +33,11 @@ def test_permissions_are_the_usual_ones_or_kept(tmp_path):
 
 
 def test_writing_never_changes_the_umask(tmp_path, monkeypatch):
-    """Python can read the umask only by setting it: other threads made files for everybody meanwhile."""
+    """Writing never changes the umask.
+
+    Python can read the umask only by setting it. Meanwhile, other threads created files that everybody could
+    write.
+    """
     monkeypatch.setattr(os, "umask", lambda mask: pytest.fail("the umask of the whole process was set"))
     (tmp_path / "mine").write_text("")
     (tmp_path / "mine").chmod(0o666)
@@ -94,7 +98,7 @@ def test_a_file_that_may_not_be_written_is_left_alone(tmp_path, monkeypatch):
     path = tmp_path / "locked"
     path.write_text("old")
     path.chmod(0o444)
-    monkeypatch.setattr(os, "access", lambda *_: False)  # as for any user but root
+    monkeypatch.setattr(os, "access", lambda *_: False)  # as for any user except root
     with refused("file-unwritable"):
         write_files({tmp_path / "new": "1", path: "2"})
     assert path.read_text() == "old"
@@ -135,7 +139,7 @@ write_files({"word.ngc": slowly()})
 
 
 def writer(folder):
-    """A process of its own that has written half of word.ngc and waits for the other half."""
+    """Start a process that has written half of word.ngc and waits for the other half."""
     pipe = subprocess.PIPE
     started = subprocess.Popen([sys.executable, "-c", WRITER], cwd=folder, stdin=pipe, stdout=pipe, text=True)
     assert started.stdout.readline() == "half\n"

@@ -1,4 +1,7 @@
-"""Shapes wider than the brush, filled in several passes: what discs and what the brush cover of them."""
+"""Shapes wider than the brush are filled in several passes.
+
+The tests compare the area that discs cover with the area that the brush covers.
+"""
 
 import numpy as np
 import pytest
@@ -19,7 +22,7 @@ from brushsvg.strokes.skeleton import shape_to_strokes
 from brushsvg.strokes.swept_areas import painted_area, region
 from brushsvg.strokes.wide_shapes import within_reach
 
-HALF_MM = 4.2  # of round-6 at its deepest
+HALF_MM = 4.2  # half the width of round-6 at its greatest depth
 SQUARE = "M5 0H50V45H5Z"
 PENTAGON = "M40 1L68.5 21.7L57.6 55.3H22.4L11.5 21.7Z"
 DIAMOND = "M40 1L60 36L40 71L20 36Z"
@@ -52,7 +55,10 @@ def of(d: str, rest: str = 'fill="red" fill-rule="nonzero" stroke="none"'):
 
 
 def intended_by(made):
-    """What discs of passes paint, and what their targets hold beyond, in the corners of square ends."""
+    """Return the area that passes are intended to paint.
+
+    This is the area of the passes' discs, and the rest of their targets in the corners of square ends.
+    """
     return shapely.union_all(
         [painted_area(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)]
     )
@@ -75,7 +81,8 @@ def test_passes_fill_a_shape_and_stay_in_it(brush, d):
     assert max(half for each in passes for _, half in each.half_width) <= HALF_MM + 1e-9
     assert [each.id for each in passes] == [each.id for each in target]
     assert len({each.id for each in passes}) == len(passes)
-    # each its own, up to the tips of corners that it ends in: `refined` would draw it to the whole shape
+    # Each target is its own mark, up to the tips of corners in which the pass ends. With the whole shape as
+    # target, `refined` would pull the pass towards that shape.
     for each in (each for each in passes if each.wanted_mm):
         beyond = HALF_MM * (1 / np.sin(np.radians(58 / 2)) - 1)
         assert region(each.wanted_mm).difference(painted_area([each]).buffer(beyond)).area < 0.01
@@ -98,7 +105,10 @@ def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
 
 @pytest.mark.parametrize("times", [1.1, 1.5, 2.0, 2.3])
 def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_what_is_left_round_it(brush, times):
-    """A ring of the full width would turn too sharply in it: 0.72 to 0.95 of such a disc was painted."""
+    """A disc hardly wider than the brush becomes a dot and a ring around it.
+
+    A ring of the full width would turn too sharply in the disc: only 0.72 to 0.95 of it was painted.
+    """
     radius = times * HALF_MM
     made = of(f"M40 {30 - radius}A{radius} {radius} 0 1 1 39.99 {30 - radius}Z")
     passes = passes_of(made, brush)
@@ -129,7 +139,7 @@ def test_rings_come_from_the_outline_inwards_cut_at_sharp_corners_alone():
     sharp = find_contour_passes(shapely.Polygon([(5, 5), (55, 5), (30, 48.3)]), 0.0, HALF_MM)[0]
     sides = [each for each in sharp if not each.closed]
     assert len(sides) == 3
-    inside = 50 - 2 * np.sqrt(3) * HALF_MM  # the side of the triangle that discs run along
+    inside = 50 - 2 * np.sqrt(3) * HALF_MM  # the side of the inner triangle along which discs run
     for each in sides:
         assert way_of(each)[-1, 2] == pytest.approx(inside - 2 * 0.4 * HALF_MM, abs=0.2)
 
@@ -139,7 +149,7 @@ def way_of(line):
 
 
 def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush):
-    turns = np.radians(40 * np.arange(9))  # too blunt for square ends
+    turns = np.radians(40 * np.arange(9))  # The corners are too blunt for square ends.
     corners = np.column_stack([30 + 25 * np.cos(turns), 25 + 25 * np.sin(turns)])
     passes, _, _ = within_reach(
         of("M" + "L".join(f"{x:.4f} {y:.4f}" for x, y in corners) + "Z"), brush, "passes"
@@ -157,7 +167,7 @@ STAR_OF_SIX = "M" + "L".join(
 
 
 def paint_of(passes, brush):
-    """What the brush paints of passes, in closed form, as shapely sees it."""
+    """Return the area that the brush paints with passes in closed form."""
     made = _core.compensate(passes, brush, (100, 60), "closed", 0.05, None, start="auto", end="auto")
     marks = _core.simulate(made.plan, brush)
     _core.trace_outlines(marks, brush)
@@ -166,7 +176,10 @@ def paint_of(passes, brush):
 
 @pytest.mark.parametrize(("wide", "high"), [(14, 20), (16, 22), (20, 28)])
 def test_a_ring_without_corners_begins_where_it_bends_least(brush, wide, high):
-    """At the top of an oval, where it bends most, the mark stuck out by 0.23 to 0.48 mm."""
+    """A ring without corners begins where it bends least.
+
+    At the top of an oval, where it bends most, the mark once stuck out by 0.23 to 0.48 mm.
+    """
     made = of(f"M30 {30 - high / 2}A{wide / 2} {high / 2} 0 1 1 29.99 {30 - high / 2}Z")
     shape = region(made[0].wanted_mm)
     paint = paint_of(passes_of(made, brush), brush)
@@ -184,8 +197,11 @@ def test_a_ring_without_corners_begins_where_it_bends_least(brush, wide, high):
     keep=1,
 )
 def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, d):
-    """A line of a ring that ended in its cusp stuck out by up to 0.8 mm, of the edge that it does not run along; a star
-    of six by 0.4 mm where a line begins square."""
+    """Marks do not bulge where a shape becomes as narrow as the brush.
+
+    A ring line that ended in its cusp once stuck out by up to 0.8 mm from the edge that it does not follow. A
+    six-pointed star stuck out by 0.4 mm where a line begins square.
+    """
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
     paint = paint_of(passes_of(made, brush), brush)
@@ -198,7 +214,10 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
 @pytest.mark.slow
 @sample("name", ["star", "arrow", "comb", "ell", "round short bar"], keep=2)
 def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
-    """Compared by the marks' outlines with shapely; discs would report the star's five square ends as the best."""
+    """No other way to fill a shape plainly paints more of it.
+
+    shapely compares the marks' outlines. By discs, the star's five square ends would seem best.
+    """
     made = of(SHAPES[name])
     wide = [k for k, each in enumerate(made) if max(half for _, half in each.half_width) > HALF_MM]
     (filling,) = find_wide_shapes(made, wide, *brush.half_width_range_mm())
@@ -223,8 +242,11 @@ def like(stroke, line):
 @pytest.mark.slow
 @sample("d", [SHAPES["bar"], SQUARE, SHAPES["ell"], SHAPES["triangle"], PENTAGON, DIAMOND], keep=2)
 def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush, d):
-    """Measured on the simulated marks by shapely: within 0.2 mm of each edge, from 2 mm from corners on, from 5 mm
-    next to one that points inwards, where the brush turns."""
+    """Marks of passes follow the shape's straight edges up to its corners.
+
+    shapely measures the simulated marks. They are within 0.2 mm of each edge from 2 mm on from a corner. Next
+    to an inward corner, where the brush turns, this holds from 5 mm on.
+    """
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm])).simplify(0.01)
     paint = paint_of(passes_of(made, brush), brush)
@@ -249,7 +271,7 @@ def test_a_stroke_with_its_sides_keeps_its_direction(brush):
     assert passes[0].middle_mm.tolist() == stroke.middle_mm.tolist()
     assert target[0].half_width == stroke.half_width
     every = passes_of([stroke], brush)
-    assert len(every) > 2  # with its sides
+    assert len(every) > 2  # the middle stroke and its sides
     assert every[0].middle_mm.tolist() == stroke.middle_mm.tolist()
 
 
@@ -273,7 +295,11 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
 
 
 def test_a_line_of_changing_width_is_as_wide_as_its_knots_say():
-    """Between the ends of a straight line, too, which was flattened to two rows: a third of the mark was lost."""
+    """A line of changing width is as wide as its knots say.
+
+    This also holds between the ends of a straight line. Flattening once reduced such a line to two rows, and
+    a third of the mark was lost.
+    """
     knots = [(0.0, 0.1), (0.4, 4.2), (1.0, 4.2)]
     stroke = _core.Stroke(middle_mm=np.array([[0, 0, 10 / 3, 0, 20 / 3, 0, 10, 0]]), half_width=knots)
     target = _core.area(_core.wanted_outline(stroke, 0.005))
@@ -293,7 +319,11 @@ def test_what_is_no_lettering_is_left_to_the_middle_lines():
 
 @pytest.mark.parametrize("names", [("icon/1", "icon/2"), ("a", "b")])
 def test_shapes_that_touch_are_filled_each_in_its_own_colour(brush, names):
-    """Names that look like parts of one element made one shape of two: all passes in the first one's red."""
+    """Touching shapes are each filled in their own colour.
+
+    Names that look like parts of one element once merged two shapes. All passes then had the red of the first
+    shape.
+    """
     body = "".join(
         f'<path id="{name}" fill="{colour}" stroke="none" d="M{x} 10h40v30h-40z"/>'
         for name, colour, x in zip(names, ("#ff0000", "#0000ff"), (10, 40), strict=True)
@@ -310,7 +340,11 @@ def test_shapes_that_touch_are_filled_each_in_its_own_colour(brush, names):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["square", "triangle", "star", "heart", "comb"])
 def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
-    """Where it is as narrow as the pen, and in corners, it stays out: its nib is never narrower."""
+    """A pen fills a shape in passes of its one width.
+
+    The nib is never narrower. The pen therefore stays out of corners and of places that are as narrow as the
+    pen.
+    """
     pen = new_brush("pen", 0.0, [(1.0, 2.4)])
     made = of(SHAPES[name])
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
@@ -320,16 +354,19 @@ def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
     inked = region(_core.unite([ring for each in marks.passes for ring in each.outline_mm]))
     assert inked.difference(shape.buffer(0.03 * 1.2 + 0.02)).area < 0.05
     assert shape.difference(inked).area / shape.area < 0.03
-    assert within_reach(made, pen, "auto") == (made, made, [])  # by default it draws middle lines
+    assert within_reach(made, pen, "auto") == (made, made, [])  # By default, the pen draws middle lines.
 
 
 def straight(name, start, end, half):
-    """A stroke from one place to another."""
+    """Return a stroke from one place to another."""
     return _core.Stroke(name, np.linspace(start, end, 4).reshape(1, 8), half_width=[(0, half), (1, half)])
 
 
 def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
-    """Rings along them, by 2 mm from an inner corner of this star."""
+    """Slits between the parts of a shape's strokes are not edges.
+
+    Rings once followed them, which were 2 mm long, from an inner corner of this star.
+    """
     made = of(SHAPES["star"])
     (filling,) = find_wide_shapes(made, list(range(len(made))), *brush.half_width_range_mm())
     parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])

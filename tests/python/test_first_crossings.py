@@ -1,4 +1,4 @@
-"""How far ahead of a place an outline is crossed, against shapely."""
+"""The distance to the first crossing of an outline agrees with shapely."""
 
 import numpy as np
 from diagnostics import refused

@@ -1,4 +1,7 @@
-"""First runs: written for every cell that comes along, accepted by check, never fast or deep near the paper."""
+"""Every shipped cell has a safe first run that check accepts.
+
+Near the paper, a first run is never fast or deep.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from brushsvg.model.library import find_brush
 pytestmark = pytest.mark.arm
 
 SHEET_MM = (200.0, 100.0)
-# xarm7 has the language of xarm6, and its angles take half a minute to prepare in a new home
+# xarm7 uses the language of xarm6. In a new home folder, its angles take half a minute to prepare.
 OTHERS = (*SERVOS, "fr3", "hpgl-plotter", "marlin-servo", "xarm7")
 WAITING = [name for name in cell_names() if name not in OTHERS]
 
@@ -49,20 +52,23 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
     assert asks == [0, 1, 2, 2, 2, 2, 1, *[0] * (len(strokes) - 1), 1]
     assert sections[-1].moves[-1].points_mm[-1, 2] == safe_mm
     for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
-        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # the paper may be 1 mm higher
+        if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # The paper may be 1 mm higher.
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
 
 
 @pytest.mark.parametrize("name", WAITING)
 def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
-    """It rose to the safe height, and went on to the height of its air run on a slant, from any place."""
+    """The first run rises to its own height, and never lowers the tool fast.
+
+    It once rose to the safe height, and then moved on a slant from any place to the height of its air run.
+    """
     cell = find_cell(name)
     made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
     moves = all_moves(made.sections())
     start = moves[0].points_mm[0]
     assert made.rise_mm == pytest.approx(start[2]) and start[2] > cell.heights.safe_mm
     assert made.rise_in_robot_mm == pytest.approx(robot_from_paper(cell)[2, 3] + start[2])
-    post, here = POSTS[cell.language], [made.rise_mm + 100.0]  # the tool may stand higher
+    post, here = POSTS[cell.language], [made.rise_mm + 100.0]  # the tool may be higher
     for move in moves:
         down_mm = max(a - b for a, b in pairwise([*here[-1:], *move.points_mm[:, 2]]))
         assert down_mm <= 0 or move.speed_mm_s <= cell.speeds.approach_mm_s
@@ -86,7 +92,10 @@ def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
     ],
 )
 def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, capsys):
-    """A servo's brush would fall, a trajectory would go on."""
+    """A machine that cannot wait has no first run.
+
+    While it waits, a servo's brush would fall, and a trajectory would go on.
+    """
     status, _, reported = in_json(capsys, "setup", "first-run", name, "-o", tmp_path / program)
     assert status == 1 and is_reported(reported, "cannot-wait") and not (tmp_path / program).exists()
 

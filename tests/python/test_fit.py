@@ -1,4 +1,4 @@
-"""Fitted laws held against numpy and scipy, which know nothing of them."""
+"""Fitted laws agree with independent fits by numpy and scipy."""
 
 import os
 import subprocess
@@ -32,7 +32,7 @@ def test_least_squares_is_numpys():
     np.testing.assert_allclose(fit.residual_mm, left, atol=1e-10)
     assert fit.law.rmse_mm == pytest.approx(np.sqrt(left @ left / 25))
     assert fit.r_squared == pytest.approx(1 - left @ left / np.sum((value - value.mean()) ** 2))
-    # 2.0595 is Student's t for 25 degrees of freedom at 97.5 %, from printed tables
+    # 2.0595 is Student's t for 25 degrees of freedom at 97.5 %, from printed tables.
     np.testing.assert_allclose(
         fit.law.half_interval_95, 2.0595 * np.sqrt(np.diag(covariance))[::-1], rtol=1e-4
     )
@@ -65,13 +65,14 @@ def test_least_absolute_residuals_is_the_linear_programme(seed):
 
 def test_a_shape_is_held_and_said():
     depth = np.array([1.0, 2, 3, 4, 5, 6, 8, 10])
-    value = np.array([0.5, 1.2, 1.8, 2.6, 2.8, 2.9, 2.7, 2.5])  # narrower again: the ruler was askew
+    # It gets narrower at the end because the ruler was tilted.
+    value = np.array([0.5, 1.2, 1.8, 2.6, 2.8, 2.9, 2.7, 2.5])
     shape = _core.LawShape(RANGE, 3, through_zero=True, rising=True)
     fit = _core.fit_law(depth, value, shape)
     assert fit.held and not _core.fit_law(depth, value, _core.LawShape(RANGE, 3, through_zero=True)).held
     at = np.linspace(0, 10, 1000)
     assert np.all(np.diff([fit.law(d) for d in at]) > -1e-9)
-    # scipy's bounded least squares over steps between Bernstein control points
+    # The reference is scipy's bounded least squares over steps between Bernstein control points.
     t = depth / 10
     bernstein = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=1)
     steps = bernstein @ np.tril(np.ones((4, 4)))
@@ -80,7 +81,10 @@ def test_a_shape_is_held_and_said():
 
 
 def test_a_law_through_zero_goes_through_zero_where_the_range_begins_later():
-    """Control points began at the range's first depth once: the law held there was off by millimetres."""
+    """A law through zero passes through zero even if its range begins later.
+
+    Control points once began at the range's first depth. The law was then off by millimetres.
+    """
     depth = np.array([2.0, 4, 6, 8])
     value = np.array([2.0, 3.0, 3.4, 3.3])
     fits = [
@@ -114,11 +118,11 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
     assert found <= squares * (1 + 1e-9)
     assert fit.law(0.1) == 0
     if found < squares * (1 - 1e-6):
-        return  # scipy stopped in a hollow next to it
+        return  # scipy stopped in another local minimum
     np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
     if (
         np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
-    ):  # else the slope has a step just there
+    ):  # otherwise, the slope has a step there
         np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.01)
 
 
@@ -129,7 +133,7 @@ def test_intervals_cover_the_truth(norm):
     for seed in range(400):
         depth, value = measured(seed, repeats=6)
         if norm == _core.Norm.absolute:
-            value[seed % 12 :: 12] += 8.0  # wild ones
+            value[seed % 12 :: 12] += 8.0  # outliers
         fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 4, norm=norm))
         covered.append(np.abs(fit.law.coefficients - TRUTH.coef) <= fit.law.half_interval_95)
     assert 0.93 <= np.mean(covered) <= 0.975
@@ -159,8 +163,11 @@ def test_as_many_values_as_coefficients_leave_nothing_to_judge_by():
 
 
 def best_over_all_subsets(depth, value, degree):
-    """Least squares of max(0, polynomial): each value that may be on the floor is left out in turn, by numpy; then
-    scipy looks on from there."""
+    """Return the least squares of max(0, polynomial), found by trying all subsets.
+
+    numpy leaves out each subset of the values that may be on the floor. scipy then continues from the best
+    results.
+    """
     powers = np.vander(depth, degree + 1, increasing=True)
 
     def cost(c):
@@ -178,7 +185,10 @@ def best_over_all_subsets(depth, value, degree):
 
 @pytest.mark.parametrize("seed", range(25))
 def test_the_floor_is_the_best_of_all(seed):
-    """One of ten such fits once ended in a hollow of its own, up to 0.6 mm off."""
+    """The fit with a floor is the best of all.
+
+    One of ten such fits once ended in a local minimum, up to 0.6 mm off.
+    """
     depth = np.linspace(1, 10, 8)
     truth = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
     value = np.maximum(0, truth(depth)) + np.random.default_rng(seed).normal(0, 0.5, depth.size)
@@ -190,7 +200,10 @@ def test_the_floor_is_the_best_of_all(seed):
 
 @pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
 def test_many_depths_above_a_floor_are_fitted_too(norm):
-    """There are more ways to be below it than are tried: the likely ones are."""
+    """Many depths above a floor are fitted, too.
+
+    There are too many ways for values to be below the floor, so the fit tries only the likely ones.
+    """
     depth = np.linspace(0.1, 10, 120)
     truth = np.polynomial.Polynomial([-2.35, 2.75, -0.42, 0.024])
     value = np.maximum(0, truth(depth)) + np.random.default_rng(1).normal(0, 0.1, depth.size)
@@ -233,7 +246,11 @@ for path in {line.split()[-1] for line in lines if "/libglog" in line}:
 
 
 def test_a_search_that_leads_nowhere_is_reported_by_its_error_alone():
-    """Of marks that no brush paints. Whether Ceres logs a warning there depends on rounding: its log level does not."""
+    """A failed search is reported by its error alone.
+
+    The marks are marks that no brush paints. Whether Ceres logs a warning depends on rounding, but its log
+    level does not.
+    """
 
     def run(**environment: str):
         environment = {k: v for k, v in os.environ.items() if k != "GLOG_minloglevel"} | environment

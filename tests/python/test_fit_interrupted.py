@@ -1,4 +1,4 @@
-"""Ctrl-C in the long fits: KeyboardInterrupt, and what they were given is as it was."""
+"""Ctrl-C in a long fit raises KeyboardInterrupt and leaves the inputs unchanged."""
 
 import os
 import signal
@@ -13,7 +13,7 @@ ROUND = find_brush("round-6")
 
 
 def marks(count):
-    """Corners at many depths, painted by the brush."""
+    """Return painted marks of corners at many depths."""
     passes = []
     for k in range(count):
         depth, x = 2.0 + 6.0 * (k % 30) / 30, 60.0 * (k % 20)
@@ -57,7 +57,7 @@ def union():
 @pytest.mark.parametrize("made", [law, fit_of_marks, union])
 def test_ctrl_c_is_heard(made):
     call = made()
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores SIGINT
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     try:

@@ -1,4 +1,4 @@
-"""G-code that others wrote for pens: its ways, when the pen is down, what a brush paints with it."""
+"""Foreign G-code for pens is read: its moves, pen positions and painted marks."""
 
 import re
 from dataclasses import replace
@@ -57,7 +57,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def drawn(text):
-    """Places (n, 2) [mm] to which the pen goes while it is down, with their lines."""
+    """Return the places (2,) [mm] that the pen reaches while down, by line number."""
     some = read_moves(text)
     down = zip(some, read_pen(some).down, strict=True)
     return {way.line: way.points_mm[-1, :2].round(6).tolist() for way, is_down in down if is_down}
@@ -76,7 +76,11 @@ def test_inches_circles_and_relative_places():
 
 
 def test_a_laser_is_dark_on_rapid_ways():
-    """By M4, which grbl runs so, and as much or little power as the picture asks for."""
+    """A laser does not draw on rapid moves.
+
+    The laser uses M4, so grbl switches it off on rapid moves. The power is as the picture requires, high or
+    low.
+    """
     laser = "G21G90\nM4S0\nG0X20Y20\nG1X80Y20S1000F900\nG1X80Y60\nG0X100Y30\nG1X140Y60S500\nG0X0Y0\nM5\n"
     assert drawn(laser) == {4: [80.0, 20.0], 5: [80.0, 60.0], 7: [140.0, 60.0]}
 
@@ -100,7 +104,11 @@ def test_check_does_not_take_a_tone_for_a_servo(desk, capsys):
 
 
 def test_a_servo_stays_down_on_rapid_ways_after_m4():
-    """convert reads a laser's program, and check one for a servo, which M4 sets as M3 does."""
+    """After M4, a servo stays down on rapid moves, unlike a laser.
+
+    convert reads the program as a laser's program. check reads it as a servo's program, where M4 sets the
+    servo like M3.
+    """
     down = [way for way in read_moves("G21G90\nG0X0Y0\nM4S30\nG1X20Y0F900\nG0X40Y0\nM5\n") if way.rapid][-1]
     assert down.power == 30.0
 
@@ -136,7 +144,7 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("X2.5", "G4 P1 X2.5", "line-unread 13"),
         ("J0.5", "J0.5 R0.5", "line-unread 8"),
         ("J0.5", "J0.5 P2", "line-unread 8"),
-        ("I0 J0.5", "I99999999999999999999 J0.5", "line-unread 8"),  # its radius divided by zero
+        ("I0 J0.5", "I99999999999999999999 J0.5", "line-unread 8"),  # its radius was divided by zero
         ("I0 J0.5", "R99999999999999999999", "line-unread 8"),
     ],
 )
@@ -150,14 +158,19 @@ def test_what_is_not_known_is_refused(old, new, reported):
     [
         ("G1 Z-1 F300\nG1 X30 Y12 F1200\nG1 X30 Y32\nG0 Z5\nG1 Y10", {"line3": [[30, 12], [30, 32]]}),
         ("G21\nM3 S90\nG1 X10 Y10 F3000\nM3 S50\nG1 X60 Y10\nM5\nG0 X0 Y0", {"line5": [[10, 10], [60, 10]]}),
-        (  # homed with the pen down: the next line begins where nobody knows, and not at the end of the one before
+        # Homed with the pen down: the next line begins at an unknown place, not at the end of the line
+        # before.
+        (
             "G21\nG0 X0 Y0\nM3 S50\nG1 X9 Y9 F900\nG28 X0 Y0\nG1 X50 Y20\nG1 X60\nM5",
             {"line4": [[0, 0], [9, 9]], "line7": [[50, 20], [60, 20]]},
         ),
     ],
 )
 def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
-    """A pen that is down before any place is named ended in an IndexError."""
+    """A line begins at its first known place.
+
+    A pen that was down before the first place once caused an IndexError.
+    """
     design = read_gcode(text.encode(), ReadOptions(sheet_mm=(100, 100)))
     found = {each.id: each.subpaths[0].cubics for each in design.elements}
     assert {name: [cubics[0, 0].tolist(), cubics[-1, 3].tolist()] for name, cubics in found.items()} == lines
@@ -213,7 +226,10 @@ M5
     ],
 )
 def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed, reported):
-    """Of M280, M3 and grbl-servo were advised; of a servo, --paper-z."""
+    """The advice of check works when you type it.
+
+    check once advised M3 and grbl-servo for an M280 program, and --paper-z for a servo.
+    """
     (desk / "f.gcode").write_text(program)
     status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", *typed.split())
     assert status == 1 and agrees(said, reported), said
@@ -224,7 +240,10 @@ def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed,
 
 
 def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
-    """A servo of 0 to 90: all of it was deeper than the deepest row of the table."""
+    """Servo values outside every shipped table lead to advice to write a table.
+
+    With a servo from 0 to 90, every value was once deeper than the deepest row of the table.
+    """
     (desk / "f.gcode").write_text(SERVO.replace("S500", "S30"))
     for cell in ("linuxcnc-3axis", "grbl-servo"):
         status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", "--cell", cell)
@@ -323,7 +342,10 @@ def test_a_full_circle_is_drawn(desk, capsys, line):
 
 @pytest.mark.parametrize("end", ["M2", "M2 G90", "G90 M30"])
 def test_nothing_is_read_after_the_end_of_a_program(end):
-    """Words after M2 on its line made the program go on."""
+    """Nothing is read after the end of a program.
+
+    Words after M2 on its line once made the program continue.
+    """
     moves = "G90\nG0 Z5\nG0 X60 Y60\nG1 Z-1 F300\nG1 X80\n"
     assert len(read_moves(f"{moves}{end}\nG1 X90 Y90\n")) == len(read_moves(moves))
 
@@ -340,7 +362,10 @@ def test_nothing_is_read_after_the_end_of_a_program(end):
     ],
 )
 def test_a_servo_that_is_down_behind_the_last_line_is_reported(desk, capsys, end, is_down):
-    """Its last word is no move; the end of a program lets go of what M3 holds, as M5 does."""
+    """A servo that is still down after the last line is reported.
+
+    The last word is not a move. The end of a program releases the servo that M3 holds, like M5.
+    """
     assert SERVO.endswith("M5\n")
     (desk / "end.nc").write_text(SERVO.removesuffix("M5\n") + end)
     status, _, said = in_json(capsys, "check", "end.nc", "--cell", "grbl-servo", "--sheet", "120x100")
@@ -354,7 +379,11 @@ DOTS = {
 
 
 def test_m3_s0_is_up_and_an_angle_of_0_is_one():
-    """grbl stops at S0 as at M5: with the cell's table S0 was the deepest. A servo of Marlin's may be down at 0."""
+    """M3 S0 lifts the pen, but an M280 angle of 0 is a servo angle.
+
+    grbl stops at S0 as at M5. With the cell's table, S0 was once the deepest position. A Marlin servo may be
+    down at 0.
+    """
     off = "G21 G90\nM3 S0\nG1 F900 X10 Y10\nM3 S500\nG1 X40\nS0\nG1 X60\nM3 S500\nG1 Y30\nS0\n"
     assert drawn(off) == drawn(off.replace("M3 S0", "M5").replace("\nS0", "\nM5")) != []
     angle = "G21 G90\nM280 P0 S90\nG0 X10 Y10\nM280 P0 S0\nG1 X40 F900\nM280 P0 S90\n"
@@ -379,7 +408,8 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1\nG1 X60\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG1 X60 F0\nG0 Z5\n", "speed-out-of-range 4 0"),
         ("G0 Z5\nG0 X50 Y50\nG1 Z-1 F300\nG0 X60\nG0 Z5\n", "rapid-too-low 4"),
-        ("G0 Z5\nG0 X50 Y50\nG1 Z-4 F300\nG0 X90 Z1\nG0 Z5\n", "rapid-too-low 4"),  # most of the way touches
+        # most of this move touches the paper
+        ("G0 Z5\nG0 X50 Y50\nG1 Z-4 F300\nG0 X90 Z1\nG0 Z5\n", "rapid-too-low 4"),
         ("G1 Z-1 F300\nG0 X50\nG0 Z5\n", "line-incomplete 1"),
         ("G0 Z5\nG1 Z-1 F300\nG1 X50 Y50\nG0 Z5\n", "line-incomplete 2"),
         ("M3 S500\nG1 X50 Y10 F600\nM5\n", "line-incomplete 2"),

@@ -1,4 +1,4 @@
-"""The fuzz targets of the package, as `make fuzz` runs them: each reads its seeds, and a fault ends in a finding."""
+"""The fuzz targets of `make fuzz` read their seeds and report a planted fault."""
 
 import logging
 import random
@@ -28,7 +28,10 @@ def test_each_target_reads_one_of_its_seeds_and_refuses_others_in_one_line(name)
 
 @pytest.mark.parametrize("name", ["svg", "dxf", "measurements_json", "turn_picture", "css"])
 def test_mutators_make_other_inputs_that_are_often_still_read(name):
-    """One of each form."""
+    """Mutators make new inputs that are often still readable.
+
+    The test covers one target of each form.
+    """
     target, seeds, choose = targets.TARGETS[name], targets.seeds_of(name), random.Random(1)
     made = [mutators.structured(choose.choice(seeds), target, seeds, choose) for _ in range(60)]
     assert len(set(made) - set(seeds)) > 40

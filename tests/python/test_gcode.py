@@ -1,4 +1,7 @@
-"""G-code: the words LinuxCNC wants, and numbers that no controller can misread."""
+"""G-code has the words that LinuxCNC needs.
+
+No controller can misread its numbers.
+"""
 
 import re
 from dataclasses import replace
@@ -89,7 +92,7 @@ def test_the_slowest_stroke_still_moves():
 def test_every_language_has_a_program_to_look_at():
     for post in (
         each for name, each in POSTS.items() if name != "robodk"
-    ):  # anything a user's own post writes
+    ):  # robodk uses a post that the user writes, which may produce any format
         assert list(GOLDEN.parent.glob(f"*{post.extensions[0]}")), f"tests/golden has no {post.extensions[0]}"
 
 
@@ -120,7 +123,10 @@ def test_golden_of_other_firmware(name):
 
 @pytest.mark.parametrize("name", ["marlin-3axis", "klipper-3axis"])
 def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name):
-    """They forget the word behind its line, and G0 goes as fast as the last F said."""
+    """Printers get one command word per line and a feed for every move.
+
+    They ignore a second word on a line, and G0 moves at the feed of the last F word.
+    """
     lines = [line for line in text_of(*TWO, cell=name).splitlines() if line and not line.startswith(";")]
     words = [re.findall(r"[GM]\d+", line) for line in lines]
     assert all(len(each) == 1 for each in words)
@@ -137,7 +143,11 @@ def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name
     ("name", "is_read"), [("marlin-3axis", False), ("klipper-3axis", False), ("grbl-3axis", True)]
 )
 def test_a_command_with_a_sign_is_none_to_printers(name, is_read):
-    """The others read G-0 as G0; a printer leaves the line out, and what comes next runs from where it stands."""
+    """Printers do not read a command with a sign.
+
+    Other controllers read G-0 as G0. A printer skips the line, and the next move starts from where the tool
+    is.
+    """
     damaged, count = re.subn(r"(?m)^G0 X", "G-0 X", text_of(*TWO, cell=name), count=1)
     assert count
     if is_read:
@@ -163,7 +173,11 @@ HALF_TURNS = [(40 + 4 * np.cos(a), 30 + 4 * np.sin(a), -2.0) for a in np.linspac
     ],
 )
 def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm, off_mm, is_circle):
-    """FluidNC refuses radii 0.005 mm apart; lines of 0.6 mm are 0.011 mm from a circle of 4 mm."""
+    """Circles are written as arcs only if the firmware stays close to them.
+
+    FluidNC refuses radii that differ by 0.005 mm. Lines of 0.6 mm are up to 0.011 mm from a circle with a
+    radius of 4 mm.
+    """
     cell = replace(find_cell(name), arc_segment_mm=segment_mm)
     poses = np.array(HALF_TURNS)
     poses[-1, 0] -= off_mm
@@ -178,7 +192,17 @@ def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm
 def test_grbl_is_spared_what_it_does_not_know():
     text = text_of(("a" * 200, TWO[0][1], 20.0), cell="grbl-3axis")
     words = {word for line in code_lines(text) for word in re.findall(r"[GM]\d+", line)}
-    assert words == {"G0", "G1", "G17", "G21", "G40", "G80", "G90", "G94", "M2"}  # all in grbl 1.1's list
+    assert words == {
+        "G0",
+        "G1",
+        "G17",
+        "G21",
+        "G40",
+        "G80",
+        "G90",
+        "G94",
+        "M2",
+    }  # grbl 1.1 lists all of these
     assert max(map(len, text.splitlines())) <= 70
     assert "%" not in text
 
@@ -219,7 +243,11 @@ def test_the_first_rise_is_over_every_place_of_paper_that_leans():
 
 
 def cpp_golden(name: str) -> str:
-    """What tests/cpp/linuxcnc_test.cpp holds brushsvg::posts against, of the plan flat_machine.plan.json."""
+    """Return a golden file of the C++ test of brushsvg::posts.
+
+    tests/cpp/linuxcnc_test.cpp compares the posts with this file. The file belongs to the plan
+    flat_machine.plan.json.
+    """
     return GOLDEN.with_name(name).read_text(encoding="ascii")
 
 
@@ -234,7 +262,10 @@ def test_cpp_writes_the_same_program(tmp_path):
 
 
 def bench():
-    """A machine, brush and title with numbers and letters of their own, as linuxcnc_test.cpp has them."""
+    """A machine, brush and title with unusual numbers and letters.
+
+    linuxcnc_test.cpp has the same values.
+    """
     like = find_cell("linuxcnc-3axis")
     speeds = replace(
         like.speeds,

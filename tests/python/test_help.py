@@ -1,4 +1,7 @@
-"""`--help`: commands by task, common options in groups on one screen, all of them with `--help-all`."""
+"""`--help` groups commands by task and common options on one screen.
+
+`--help-all` shows all options.
+"""
 
 import argparse
 import re
@@ -9,7 +12,7 @@ from brushsvg.cli import main
 from brushsvg.cli.arguments.help_text import COMMANDS, RARE_OPTIONS, TOPICS, command_text
 from brushsvg.cli.arguments.parser import command_parser
 
-MAX_LINES = {"convert": 60}  # 40 for the others
+MAX_LINES = {"convert": 60}  # 40 for the other commands
 
 
 def is_listed(flag: str, text: str) -> bool:
@@ -17,7 +20,7 @@ def is_listed(flag: str, text: str) -> bool:
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
-    """Return the parsers of all commands and of those below them, such as `cell place`."""
+    """Return the parsers of all commands and their subcommands, such as `cell place`."""
     found: dict[str, argparse.ArgumentParser] = {}
     waiting = [("", command_parser())]
     for name, parser in waiting:

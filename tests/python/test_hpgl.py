@@ -1,4 +1,4 @@
-"""HP-GL for pens: what is drawn is within half a unit of the plan, and what a pen cannot draw is refused."""
+"""HP-GL stays within half a unit of the plan and refuses what a pen cannot draw."""
 
 import re
 from dataclasses import replace
@@ -41,7 +41,7 @@ def pen(max_speed_mm_s=100.0):
 
 
 def drawn(*lines, speed=20.0, height=DOWN):
-    """A plan: each line (n, 2) at one height, set down and lifted on the spot."""
+    """Return a plan of lines (n, 2) at one height, set down and lifted in place."""
     passes = []
     for number, line in enumerate(lines, 1):
         line = np.asarray(line, dtype=float)
@@ -134,7 +134,10 @@ def test_a_height_of_the_paper_cannot_be_set(tmp_path, capsys):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_random_lines_come_back(seed):
-    """Nothing that is written breaks a limit, and check takes it for the plan."""
+    """Random lines are read back unchanged.
+
+    The program exceeds no limit, and check recognizes the plan.
+    """
     rng = np.random.default_rng(seed)
     x, y = rng.uniform(60, 200, 2)
     machine = Machine(scale=tuple(rng.uniform(0.97, 1.03, 2)), skew=float(rng.uniform(-0.02, 0.02)))
@@ -208,7 +211,10 @@ def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
 
 @pytest.mark.parametrize("cell", ["hpgl-plotter", "marlin-servo"])
 def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_path, capsys, cell):
-    """The pen is lifted and let down again, and no way leads to it."""
+    """A stroke that begins at the end of the one before is set down there.
+
+    The pen is lifted and set down again without a move.
+    """
     lines = '<path d="M20 20H50"/><path d="M50 20L80 40"/><path d="M80 40V50"/>'
     drawing = tmp_path / "lines.svg"
     drawing.write_text(

@@ -105,7 +105,10 @@ def test_strokes_that_a_brush_adds_to_a_filled_shape_are_said_to_come():
 
 
 def test_lists_stay_on_the_picture_and_entries_are_on_no_other():
-    """A narrow picture with long names, in the PNG's own font: names of blocks in a DXF are as long."""
+    """Lists stay on the picture, and entries do not overlap.
+
+    The picture is narrow and has long names, in the PNG's own font. Names of blocks in a DXF are as long.
+    """
     names = [f"INSERT-93.1.{k}/LWPOLYLINE-8{k}" for k in range(9)]
     lines = "".join(
         f'<path id="{name}" d="M{5 + 5 * k} 5v9" stroke-width="{1 + k / 10}"/>'

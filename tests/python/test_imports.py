@@ -1,4 +1,4 @@
-"""Which folder may import what: every include and import, compared with tests/imports.toml."""
+"""Every include and import is allowed by tests/imports.toml."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ HEADERS = CPP / "include" / "brushsvg"
 RULES = tomllib.loads((ROOT / "tests" / "imports.toml").read_text(encoding="utf-8"))
 MAX_FILES = 15  # in a source folder
 
-# Headers without a test of their own name, and why.
+# Headers without a test that has their name, and the reason.
 UNTESTED = {
     "error": "two value types; the tests of their users check them",
     "lag_impl": "the bodies of lag.hpp, tested with it",
     "marks": "value types, filled and used by simulate, coverage and io",
     "settings": "a value type, read and written by io",
 }
-# These two import by the names of a table that they hold.
+# These two files import the names of their own table.
 BY_NAME = (PACKAGE / "__init__.py", PACKAGE / "cli" / "commands" / "__init__.py")
 
 
@@ -42,8 +42,10 @@ def language(path: Path) -> str:
 
 
 def unit(path: Path) -> str:
-    """Return the top folder of a file, or the stem of a Python module at the top; of a public C++ header, the folder of
-    its source."""
+    """Return the top folder of a file, or the stem of a top-level Python module.
+
+    For a public C++ header, return the folder of its source.
+    """
     if path.suffix == ".py":
         return path.relative_to(PACKAGE).with_suffix("").parts[0]
     if path.parent != HEADERS:
@@ -57,7 +59,7 @@ def included(path: Path, text: str) -> set[str]:
     found = set()
     for quoted, angled in re.findall(r'^[ \t]*#[ \t]*include\s*(?:"([^"]+)"|<([^>]+)>)', text, re.MULTILINE):
         if angled:
-            if not re.fullmatch("[a-z0-9_]+", angled):  # <vector> is of the standard library
+            if not re.fullmatch("[a-z0-9_]+", angled):  # <vector> is part of the standard library
                 found.add(angled.split("/")[0])
             continue
         homes = {unit(home) for home in CPP.rglob(Path(quoted).name)} or {quoted}
@@ -71,7 +73,10 @@ def included(path: Path, text: str) -> set[str]:
 
 @cache
 def imported(path: Path, text: str) -> list[list[str]]:
-    """Return every import of a Python file by its full name, those in functions and for type checkers too."""
+    """Return the full names of all imports in a Python file.
+
+    Imports in functions and for type checkers count, too.
+    """
     folder = ["brushsvg", *path.relative_to(PACKAGE).parts[:-1]]
     names: list[list[str]] = []
     for node in ast.walk(ast.parse(text)):
@@ -89,7 +94,10 @@ def imported(path: Path, text: str) -> list[list[str]]:
 
 
 def python_unit(name: list[str]) -> str:
-    """Return the unit of a module by its full name; a name that is no module comes from __init__."""
+    """Return the unit of a module by its full name.
+
+    A name that is not a module comes from __init__.
+    """
     if name[0] != "brushsvg":
         return name[0]
     inside = name[1] if len(name) > 1 else "__init__"
@@ -105,7 +113,7 @@ def uses(path: Path, text: str) -> set[str]:
 
 
 def complaints(path: Path, text: str) -> list[str]:
-    """Return what a file imports against the rules, in sentences."""
+    """Return sentences about the forbidden imports of a file."""
     where, own = path.relative_to(ROOT).as_posix(), unit(path)
     rules = RULES[language(path)]
     if own not in rules:
@@ -148,7 +156,7 @@ def test_modules_import_each_other_in_one_direction():
     modules = {path.relative_to(PACKAGE.parent).with_suffix("").parts: path for path in PACKAGE.rglob("*.py")}
     graph = {}
     for name, path in modules.items():
-        if path.name == "__init__.py":  # tables of what a folder offers, imported when used
+        if path.name == "__init__.py":  # These are tables of a folder's names, imported on use.
             continue
         targets = set()
         for full in imported(path, files()[path]):
@@ -158,11 +166,14 @@ def test_modules_import_each_other_in_one_direction():
                     targets.add(target)
                     break
         graph[name] = targets - {name}
-    TopologicalSorter(graph).prepare()  # CycleError names a cycle
+    TopologicalSorter(graph).prepare()  # a CycleError names the cycle
 
 
 def test_folders_stay_small():
-    """Data, public headers, tests, and folders with one file per robot language are exempt."""
+    """Source folders stay small.
+
+    Data, public headers, tests, and folders with one file per robot language are exempt.
+    """
     exempt = {"posts", "readback", "bindings", "include", "brushsvg"}
     for root in (PACKAGE, CPP):
         for folder in {path.parent for path in files() if path.is_relative_to(root)} - {root}:
@@ -259,7 +270,8 @@ def test_documents_name_files_that_exist(document):
     quoted = re.findall(r"`([\w.-]+/[\w./-]+)`", (ROOT / document).read_text(encoding="utf-8"))
     assert quoted
     for path in quoted:
-        if path.isupper() or "NAME" in path or path.startswith("brushsvg/"):  # a pattern; a format's name
+        # a pattern, or the name of a format
+        if path.isupper() or "NAME" in path or path.startswith("brushsvg/"):
             continue
         assert any(
             (home / name).exists() for home in (ROOT, PACKAGE, CPP) for name in (path, f"{path}.py")
@@ -267,7 +279,10 @@ def test_documents_name_files_that_exist(document):
 
 
 def test_equations_name_code_and_tests_that_exist():
-    """In a cell of a table, names in backquotes stand in a file that the same cell names."""
+    """The equations page names only code and tests that exist.
+
+    If a table cell names a file, the file contains the other names in backquotes.
+    """
     rows = 0
     for line in (ROOT / "docs" / "reference" / "equations.md").read_text(encoding="utf-8").splitlines():
         for cell in line.split("|") if line.startswith("|") else ():

@@ -1,4 +1,4 @@
-"""JAKA script: what a stub of the robot does with our programs, what the reader refuses of them."""
+"""A stub of the robot runs JAKA scripts, and the reader refuses invalid ones."""
 
 import re
 from dataclasses import replace
@@ -23,7 +23,11 @@ LEANING = replace(CELL, paper=Paper((-150.0, -500.0, 20.0), (2.0, -3.0, 25.0)))
 
 
 class Robot:
-    """events: (name, poses (n, 6), speed, acceleration, tolerance) of each move, ("sleep", s), ("pause",)."""
+    """A stub that records events of a program.
+
+    `events` contains (name, poses (n, 6), speed, acceleration, tolerance) for each move, ("sleep", s) and
+    ("pause",).
+    """
 
     def __init__(self, height_mm):
         self.here, self.tool, self.events = [-100.0, -400.0, height_mm, 180.0, 0.0, 0.0], None, []
@@ -58,7 +62,10 @@ class Robot:
 
 
 def run(text, height_mm=300.0):
-    """What a program does. AssertionError or a Python error for what the language does not have."""
+    """Run a program and return the robot.
+
+    Raise AssertionError or a Python error for anything that the language does not have.
+    """
     robot = Robot(height_mm)
     assert text.isascii()
     lines = [line for line in text.splitlines() if line.strip() != "end"]
@@ -74,7 +81,10 @@ def moves(robot):
 
 
 def touched(robot, cell):
-    """(name, point in the paper's frame, speed, tolerance) of those below the clearance."""
+    """Return the moves below the clearance.
+
+    Each is (name, point in the paper's frame, speed, tolerance).
+    """
     back = np.linalg.inv(robot_from_paper(cell))
     rows = [
         (name, point, speed, cut)

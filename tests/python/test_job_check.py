@@ -1,4 +1,7 @@
-"""The last look at programs before the first stroke: the air run round a job, and the strokes that find the paper."""
+"""Programs for the checks before the first stroke are correct.
+
+They are the air run round a job, and the strokes that find the paper.
+"""
 
 import json
 import re
@@ -26,7 +29,8 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
     program = f"border{LANGUAGES[name]}"
     flags = ("--cell", name, "--z-offset", "0.4", "--compensation", "none", "--fit", "90x50")
     if name == "grbl-servo":
-        flags = ("--cell", name, "--compensation", "none", "--fit", "90x50")  # it has no height to spare
+        # grbl-servo has no height to spare
+        flags = ("--cell", name, "--compensation", "none", "--fit", "90x50")
     assert call(capsys, "setup", "border", "two.svg", "-o", program, *flags)[0] == 0
     status, out, err = call(capsys, "check", program)
     assert (status, err) == (0, [])
@@ -129,7 +133,10 @@ def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
 
 
 def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
-    """Round a job that could never be run itself."""
+    """An air run beyond the workspace is refused.
+
+    The job itself could not be run either.
+    """
     (desk / "two.svg").write_text(DRAWING.replace("C40 10 60 10 90 40", "L190 40"))
     status, _, reported = in_json(capsys, "setup", "border", "two.svg", "-o", "border.ngc")
     assert status == 1 and agrees(reported[-1][1], "tool-off-sheet right")

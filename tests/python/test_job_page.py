@@ -1,4 +1,4 @@
-"""The page that a job is painted on: nothing that is printed crosses anything else."""
+"""On the printed page of a job, nothing crosses anything else."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ LETTER_MM = 0.6 * MAX_TEXT_MM
 
 
 def boxes_of(page):
-    """(left, bottom, right, top) of each label, and of each tick."""
+    """Return (left, bottom, right, top) of each label and of each tick."""
     labels = [
         (x, y, x + min(LETTER_MM * len(label.text), label.width_mm), y + MAX_TEXT_MM)
         for label in page.printed.labels

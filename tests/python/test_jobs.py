@@ -1,4 +1,4 @@
-"""Before the first stroke: the air run round the job, and the strokes that find the paper."""
+"""Jobs before the first stroke: the air run, and strokes that find the paper."""
 
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""Lines that meet end to end, painted as one."""
+"""Lines that meet end to end are painted as one line."""
 
 import re
 

@@ -1,5 +1,8 @@
-"""Where thick limbs meet: shapes that lines with a width made are painted by these lines again, straight next to what
-joins them, and as wide where they end in another as before."""
+"""Thick limbs that meet are painted by the lines that made their shape.
+
+Lines with a width make each shape. The strokes found in the shape stay straight next to a joining line, and
+keep their width where they end in another line.
+"""
 
 import numpy as np
 import pytest
@@ -9,7 +12,7 @@ from brushsvg import _core
 from brushsvg.strokes.skeleton import outline_strokes
 from brushsvg.strokes.swept_areas import region
 
-SEEN_MM = 0.15  # where a shape stays bare deeper in, or paint is further outside, one sees it
+SEEN_MM = 0.15  # A person sees an unpainted depth or an overspill larger than this.
 
 EDGE_MM = 0.15
 
@@ -54,7 +57,8 @@ SHAPES = {
 }
 
 
-# An arm and a leg, cut off straight, whose outer edges meet at the right edge of a stem, or would meet amid it.
+# An arm and a leg with straight cuts. Their outer edges meet at the right edge of a stem, or would meet
+# inside it.
 LIMBS = {
     "K": [(3.2, -1.8), (23, -21.6), (28, -16.6), (10.8, 0.6), (24, 13.8), (20.5, 17.3), (3.2, 0)],
     "forked k": [(3.1, -1), (21, -18.9), (26.2, -13.7), (12.5, 0), (26.2, 13.7), (21, 18.9), (3.1, 1)],

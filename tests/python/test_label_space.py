@@ -1,4 +1,7 @@
-"""Labels of pictures: inside, apart from each other, and off the marks where there is room."""
+"""Labels stay inside the picture and apart from each other.
+
+They stay off the marks where there is room.
+"""
 
 import numpy as np
 import pytest
@@ -43,7 +46,11 @@ def test_labels_stay_inside_and_cover_nothing_while_a_candidate_is_free(anchors,
 
 
 def covers(box, marks, placed, anchors, anchor) -> bool:
-    """Slowly: whether a box is on a mark, a label, a leader or within 2 of an anchor, or its leader on a label."""
+    """Return whether a label at this box would cover something.
+
+    This slow check looks for marks, labels and leaders under the box, and for anchors within 2 of the box.
+    It also checks whether the box's own leader crosses a label.
+    """
     rows, columns = np.nonzero(marks)
     cells = [(x * CELL, y * CELL, (x + 1) * CELL, (y + 1) * CELL) for x, y in zip(columns, rows, strict=True)]
     on_marks = any(common(box, cell) > 1e-9 for cell in cells)

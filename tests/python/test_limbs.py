@@ -1,4 +1,7 @@
-"""Limbs that are thin next to what they leave are painted, and corners grow none."""
+"""Limbs that are thinner than the shape they leave are painted.
+
+Corners do not get extra limbs.
+"""
 
 import warnings
 
@@ -21,14 +24,20 @@ def swept(made) -> list:
 
 
 def reached(made, x0: float, y0: float, x1: float, y1: float) -> float:
-    """Share of a box, in the drawing's frame of 50 mm, that discs of the strokes reach."""
+    """Return the share of a box that discs of the strokes reach.
+
+    The box is in the drawing's frame of 50 mm.
+    """
 
     box = [np.array([(x0, 50 - y1), (x1, 50 - y1), (x1, 50 - y0), (x0, 50 - y0)], float)]
     return _core.area(_core.intersect(box, swept(made))) / _core.area(box)
 
 
 def t_of(stem: float, bar: float, out: float) -> str:
-    """A stem that ends above the bar, which sticks out by so much on both sides."""
+    """Return a stem that ends above its bar.
+
+    The bar sticks out by `out` on both sides.
+    """
     left, right = 25 - stem / 2, 25 + stem / 2
     return (
         f"M{left} 5H{right}V15H{right + out}V{15 + bar}H{right}V45H{left}V{15 + bar}H{left - out}V15H{left}Z"
@@ -61,8 +70,8 @@ def test_a_flag_on_one_side_is_painted():
 @pytest.mark.parametrize(
     "d",
     [
-        "M20 5H28V45H20Z",  # a sans
-        "M20 5L28 7V45L20 43Z",  # cut slantwise, corners of 76 degrees
+        "M20 5H28V45H20Z",  # sans serif
+        "M20 5L28 7V45L20 43Z",  # with slanted cuts and corners of 76 degrees
         "M20 5.5Q20 5 20.5 5H27.5Q28 5 28 5.5V44.5Q28 45 27.5 45H20.5Q20 45 20 44.5Z",  # rounded
         "M19 5H29Q28 6 28 9V41Q28 44 29 45H19Q20 44 20 41V9Q20 6 19 5Z",  # flared
         "M20 5H28V20L28.4 20.3V20.9L28 21.2V45H20V33L19.6 32.7V32L20 31.7Z",  # with teeth
@@ -80,22 +89,31 @@ def test_ends_and_rough_edges_of_a_stem_grow_no_hairs(d):
     ],
 )
 def test_the_end_of_a_stem_is_painted_where_its_ear_leaves_it_near_the_top(d, end):
-    """One line cut the corner from the stem into the ear, and left the stem's end bare."""
+    """The end of a stem is painted if its ear leaves it near the top.
+
+    A single line once cut the corner from the stem into the ear, and left the stem's end bare.
+    """
     made = found(d)
     assert len(made) == 2
     assert reached(made, *end) > 0.9
 
 
 def test_a_stem_inside_of_a_crossing_is_painted():
-    """A thick stem between a bar and its foot was in the crossing of both, where no line ran."""
+    """A stem inside a crossing is painted.
+
+    A thick stem between a bar and its foot once counted as part of both crossings, where no line ran.
+    """
     made = found("M20 5H28V33H33V37H28V42H32V45H16V42H20V37H8V33H20Z")
     assert reached(made, 20.5, 36, 27.5, 42) > 0.9
 
 
 @pytest.mark.parametrize(("top", "slant_deg"), [(5, 0), (8, 16)])
 def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_next_to_the_bowl(top, slant_deg):
-    """Bowl and stem meet in necks; the first became a ring through both of them, with the foot left over; at the second
-    the stem began where the bowl leaves it."""
+    """The stem of an a runs from its top to its foot, next to the bowl.
+
+    Bowl and stem meet in two necks. At the first, a ring once ran through both bowl and stem, and left the
+    foot over. At the second, the stem once began where the bowl leaves it.
+    """
     outer = (
         f"M20 {top}H29V34C29 38 32 39 37 37C36 43 32 46 27 46C23 46 20 43 20 39"
         "C17 44 13 46 9 46C-1 46 -1 5 10 5C15 5 18 7 20 10Z"
@@ -109,7 +127,10 @@ def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_next_to_the_bowl(top, sl
 
 
 def test_a_line_that_comes_back_to_where_it_ends_has_no_way_there():
-    """Out and back by a half width each: without a word of numpy's."""
+    """A line that returns to its own end has no direction there.
+
+    The line goes out and back by half a width each. numpy must not warn.
+    """
     line = np.array([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 0.0, 2.0]])
     square = [np.array([[-5.0, -5.0], [5.0, -5.0], [5.0, 5.0], [-5.0, 5.0]])]
     with warnings.catch_warnings(action="error"):

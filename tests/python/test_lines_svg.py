@@ -1,4 +1,4 @@
-"""Strokes written as lines with a width are read again as the same strokes."""
+"""Strokes that are written as lines with a width are read back unchanged."""
 
 import xml.etree.ElementTree as ET
 
@@ -14,7 +14,7 @@ from brushsvg.show.editable_svg import WIDTH_TOLERANCE, lines_svg
 
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
-# a wedge that bends, a bar of one width, a ring that swells, a dot
+# A curved wedge, a bar of one width, a swelling ring, and a dot.
 WEDGE = (
     '<path id="wedge" d="M10 10C30 10 40 20 60 40L56 43C40 26 30 12 10 12Z" fill="#203060" stroke="none"/>'
 )
@@ -73,7 +73,10 @@ def test_layers_settings_and_odd_ids_are_kept():
 
 
 def test_a_name_that_ends_as_a_repeat_does_is_no_repeat():
-    """An element called a#2 that is painted twice was once left out with its repeats."""
+    """A name that looks like a repeat is not treated as a repeat.
+
+    An element with the name a#2 that is painted twice was once left out with its repeats.
+    """
     _, _, root = again('<path id="a#2" d="M10 10H30" data-brushsvg-passes="2"/>' + LINE)
     assert [path.get("data-stroke") for path in root.iter(f"{SVG}path")] == ["a#2", "line"]
 

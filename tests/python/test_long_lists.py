@@ -1,4 +1,7 @@
-"""Lists and arrays longer than any that is read, within each other too: refused before room is made for them."""
+"""Lists and arrays that are too long are refused before memory is allocated.
+
+This includes nested lists.
+"""
 
 import itertools
 
@@ -13,11 +16,11 @@ from brushsvg.read.svg.paths import path_data, shapes
 from brushsvg.strokes import path_objects
 
 SQUARE = np.array([[0, 0], [9, 0], [9, 9], [0, 9.0]])
-LONG = range(10**9)  # 8 GB, were it copied
+LONG = range(10**9)  # a copy would need 8 GB
 
 
 def all_rows(columns: int) -> np.ndarray:
-    """Ten thousand million rows that are one."""
+    """Return ten thousand million rows that share the memory of one."""
     return np.broadcast_to(0.0, (10**10, columns))
 
 
@@ -116,7 +119,10 @@ def test_laws_answer_in_the_shape_of_their_arguments():
     "d", ["M0 0" + "h1" * 200, "M0 0l" + "1 1 " * 200, "M0 0a" + "3 3 0 0 1 1 1 " * 200, "M" + "1 1 " * 200]
 )
 def test_a_path_of_more_commands_than_any_drawing_has_is_read_up_to_there(monkeypatch, d):
-    """Forty megabytes of them took six gigabytes and more than a minute."""
+    """A path with too many commands is read up to the limit.
+
+    A path of 40 MB once needed 6 GB of memory and more than a minute.
+    """
     for module in (path_data, shapes, path_objects):
         monkeypatch.setattr(module, "MOST_COMMANDS", 100)
     commands, error = path_data.parse_path(d)

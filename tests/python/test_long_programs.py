@@ -1,5 +1,8 @@
-"""Jobs of more lines than one program should have are several: URScript's run one after the other, KRL's are called.
-What they do is judged by the tests' own interpreters, next to the same job in one program."""
+"""Jobs with too many lines for one program become several programs.
+
+URScript's programs run one after the other; KRL's programs are called. The tests' own interpreters compare
+their effect with that of a single program.
+"""
 
 import re
 import sys
@@ -24,12 +27,12 @@ from brushsvg.machine.posts.urscript import NEXT
 from brushsvg.model.library import find_brush
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-MOST = {"ur5e": 1000, "kr6-r900": 2500}  # lines, by the sources that docs/machines/ur.md and kuka.md name
+MOST = {"ur5e": 1000, "kr6-r900": 2500}  # Lines; docs/machines/ur.md and kuka.md name the sources.
 NO_LIMIT = 10**9
 
 
 def files_of(path: Path) -> list[Path]:
-    """A job's files in the order in which they run, the one that was requested first."""
+    """Return a job's files in the order in which they run, starting with `path`."""
     others = [other for other in path.parent.glob(f"*{path.suffix}") if other != path]
     return [path, *sorted(others, key=lambda other: int(re.search(r"\d+$", other.stem)[0][-3:]))]
 
@@ -39,13 +42,16 @@ def text_of(files: list[Path]) -> str:
 
 
 def way(ran) -> list:
-    """What a run does, whichever line says it."""
+    """Return the legs of a run without their line numbers."""
     return [leg._replace(line=0) for leg in ran.legs]
 
 
 @pytest.fixture(params=MOST)
 def job(request, tmp_path, capsys, monkeypatch):
-    """(name of the cell, the job's first file, the text of the same job in one program), with the plan next to it."""
+    """Return a cell's name, a job's first file, and the job's text in one program.
+
+    The plan is in the parent folder.
+    """
     name = request.param
     plan = waves(30, 90)
     (tmp_path / "waves.json").write_text(_core.write_plan(plan))

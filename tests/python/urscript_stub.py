@@ -1,4 +1,7 @@
-"""A small interpreter of URScript, by the manual's signatures: runs a program and records where the tool goes."""
+"""A small interpreter of URScript that records where the tool goes.
+
+The signatures come from the manual.
+"""
 
 import contextlib
 import re
@@ -7,7 +10,7 @@ import numpy as np
 
 
 class Pose(tuple):
-    """p[x, y, z, rx, ry, rz] in metres and as a rotation vector."""
+    """A URScript pose p[x, y, z, rx, ry, rz] in metres, with a rotation vector."""
 
 
 CALLS = (
@@ -40,17 +43,19 @@ def pose_of(frame):
 
 
 class HaltedError(Exception):
-    """The program has ended, whichever thread said so."""
+    """The program has ended, from any of its threads."""
 
 
 class _NextFrameError(Exception):
-    """A thread gives the rest of its time away."""
+    """A thread gives up the rest of its time slice."""
 
 
 class Robot:
-    """events: (name, poses, speed m/s, blend radius m) of each move; ("sleep", s) and ("popup", text).
+    """A robot that records what a program does.
 
-    force: from a place of the TCP [m] to what presses on it [N]. A thread is run once behind each move.
+    `events` contains (name, poses, speed m/s, blend radius m) for each move, ("sleep", s) and ("popup",
+    text). `force` returns the force [N] that presses on the TCP at a place [m]. After each move, a thread
+    runs once.
     """
 
     def __init__(self, start=(0.0, -0.4, 0.5, 3.14159265, 0.0, 0.0), force=lambda place: 0.0):
@@ -115,7 +120,7 @@ class Robot:
 
 
 def _in_python(line):
-    """A thread and what ends one, as Python says it."""
+    """Translate URScript lines that start or end a thread to Python."""
     line = re.sub(r"^( *)thread (\w+\(\):)$", r"\1def \2", line)
     line = re.sub(r"^( *)halt$", r"\1halt()", line)
     line = re.sub(r"^( *)kill (\w+)$", r"\1kill(\2)", line)
@@ -123,8 +128,10 @@ def _in_python(line):
 
 
 def run(text, **settings):
-    """What programs do that run one after the other. AssertionError or a Python error for what the language does not
-    have."""
+    """Run programs one after the other and return the robot.
+
+    Raise AssertionError or a Python error for anything that the language does not have.
+    """
     robot = Robot(**settings)
     for program in re.split(r"(?m)^(?=def )", text):
         robot.tcp = robot.thread = None
