@@ -1,4 +1,7 @@
-"""Strokes in the margin of a page: where they are added, where not, and that no figure of the drawing knows them."""
+"""Strokes in the margin of a page: where they are added and where not.
+
+They change no figure in the report on the drawing.
+"""
 
 from __future__ import annotations
 
@@ -45,12 +48,12 @@ def test_they_stand_on_a_page_of_a_brush_that_is_not_calibrated(desk):
     run("convert word.svg -o bare.json --brush mine.json")
     plan, bare = read_plan("plan.json"), read_plan("bare.json")
     own = [each for each in plan.passes if each.settings.kind != "margin"]
-    assert own == list(bare.passes)  # the job itself is the same
+    assert own == list(bare.passes)  # margin strokes do not change the job itself
     assert [each.stroke for each in added(plan)] == [
         "margin-2",
         "margin-3",
         "margin-4",
-    ]  # margin-1 is the drawing's
+    ]  # the drawing has a stroke named margin-1
     deepest = [-np.min(each.poses_mm[:, 2]) for each in added(plan)]
     assert deepest == sorted(deepest) and deepest[0] < 0.6 * deepest[2]
     assert deepest[2] <= max(-np.min(each.poses_mm[:, 2]) for each in own) + 0.01  # no deeper than the job
@@ -150,7 +153,11 @@ def test_a_calibrated_brush_needs_none(desk):
 
 
 def test_depths_that_were_only_typed_are_not_calibrated(desk):
-    """It learned down to 4 mm and was typed to 8: its range is both, and a job of 6 mm got no strokes."""
+    """Depths that were only typed do not count as calibrated.
+
+    The brush was calibrated down to 4 mm and typed in down to 8 mm. Its range covers both, and a job of 6 mm
+    once got no margin strokes.
+    """
     brush = brushsvg.find_brush("mine.json")
     size = sum(len(getattr(brush, law).coefficients) for law in LAWS)
     brush.covariance = (1e-6 * np.eye(size)).tolist()
@@ -162,7 +169,11 @@ def test_depths_that_were_only_typed_are_not_calibrated(desk):
 
 
 def test_figures_of_a_photograph_are_of_the_drawing(desk):
-    """The same with and without strokes in the margin, but for the camera's noise; and compare finds out which page."""
+    """Figures from a photograph describe the drawing, not the margin strokes.
+
+    The figures are equal with and without margin strokes, except for camera noise. `compare` finds the right
+    page by itself.
+    """
     (desk / "studio.toml").write_text('format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = 1.15\n')
     seen = {}
     for margin in ("auto", "off"):
@@ -178,7 +189,11 @@ def test_figures_of_a_photograph_are_of_the_drawing(desk):
 
 
 def test_a_sheet_with_them_teaches_more(desk):
-    """Of two strokes at one depth each the lag elsewhere stays unknown; the truth is the simulator's."""
+    """A sheet with margin strokes calibrates the lag at more depths.
+
+    The drawing has two strokes at one depth each, so the lag at other depths stays unknown. The simulator
+    supplies the true lag.
+    """
     (desk / "studio.toml").write_text('format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = 1.2\n')
     off = {}
     for margin in ("auto", "off"):

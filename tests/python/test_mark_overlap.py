@@ -1,4 +1,4 @@
-"""Pixels laid over each other, against shapes whose answer is known."""
+"""Overlaps measured in pixels agree with shapes whose answer is known."""
 
 import numpy as np
 import pytest
@@ -23,9 +23,10 @@ def test_who_touches_whom():
     strokes = [
         straight("a", (0, 0), (20, 0), 1.0),
         straight("b", (10, 5), (10, 1.9), 1.0),
-        straight("near", (0, 2.3), (5, 2.3), 0.99),  # its box meets that of a, 0.3 mm are between them
+        # The box of "near" meets the box of a, but the marks are 0.3 mm apart.
+        straight("near", (0, 2.3), (5, 2.3), 0.99),
         straight("c", (10, 6), (30, 30), 1.0),
-        straight("diagonal", (28, 8), (40, 20), 1.0),  # within the box of c
+        straight("diagonal", (28, 8), (40, 20), 1.0),  # inside the box of c
     ]
     assert _core.touching(strokes) == [[0, 1, 3]]
     halves = [straight("left", (0, 40), (5, 40), 1), straight("right", (9, 40), (15, 40), 1)]
@@ -33,12 +34,15 @@ def test_who_touches_whom():
     halves[0].wanted_mm, halves[1].wanted_mm = (
         [box(0, 38, 7, 42)],
         [box(7, 38, 15, 42)],
-    )  # shares of one letter
+    )  # both are parts of one letter
     assert _core.touching(halves) == [[0, 1]]
 
 
 def test_pixels_agree_with_rings():
-    """On a drawing that needs tiles as well as on one that does not."""
+    """Pixels agree with rings, with and without tiles.
+
+    The test uses one drawing that needs tiles and one that does not.
+    """
     brush = find_brush("round-6")
     rng = np.random.default_rng(3)
     strokes = [

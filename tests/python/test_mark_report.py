@@ -1,4 +1,4 @@
-"""What the report on painted marks says of how well they are predicted."""
+"""The report on painted marks says how well the model predicts them."""
 
 import re
 import tomllib
@@ -21,7 +21,7 @@ def test_overlaps_count_marks_where_they_are_and_without_their_displacement():
     ways = [np.array([[20, 20 + y, 0], [30, 20 + y, -4], [60, 25 + y, -4.0]]) for y in (0.0, 40.0)]
     marks = _core.simulate(_core.Plan("b", "", (1.0, 1.0), [_core.Pass("", way) for way in ways]), brush)
     _core.trace_outlines(marks, brush)
-    # the sheet is elsewhere, and the second mark is 1.5 mm off on it
+    # The sheet is displaced, and the second mark is another 1.5 mm off.
     moved = [np.array([3.0, -2.0]), np.array([3.0, -0.5])]
     painted = [
         _core.PaintedMark(str(k), way, [np.array(ring) + by for ring in one.outline_mm])
@@ -46,7 +46,11 @@ def test_overlaps_count_marks_where_they_are_and_without_their_displacement():
 
 
 def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_nothing():
-    """Of a ratio that might change with depth and does not. Half widths once were +- 470 mm by rows of other laws."""
+    """Each law gets its own rows of the covariance, even if another law has no term.
+
+    A ratio may depend on depth in principle although it is constant here. With the rows of other laws, the
+    uncertainty of half widths was once +- 470 mm.
+    """
     ratio = [1.9, 0.0, 0.0, 0.0]
     laws = _core.MarkLaws([3.0, 1.0], [0.0, 0.4], [0.0, 0.5, -0.01], 1.9, 1.0, False, ratio)
     variances = np.array([1, 2, 3, 4, 5, *[6] * len(ratio), 7, 8, 9, 10, 11]) * 1e-4
@@ -58,7 +62,11 @@ def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_
 
 @pytest.mark.parametrize("name", sorted(cell_names()))
 def test_the_table_for_a_cell_says_for_which_machines_its_lines_have_no_use(name):
-    """Without --cell nobody knows the machine: backlash was printed for arms as well, whose cell refuses it."""
+    """The table for a cell marks the lines that have no use on a kind of machine.
+
+    Without --cell, the kind of machine is unknown. Backlash was once printed for arms as well, whose cells
+    refuse it.
+    """
     cell = find_cell(name)
     parts = ("lean", "axes", "tilt", "backlash")
     options = _core.MarkOptions()

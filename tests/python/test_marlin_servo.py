@@ -1,4 +1,4 @@
-"""Marlin with a pen on a servo: what is drawn is the plan, and the machine stands while the pen goes."""
+"""Marlin with a pen on a servo draws the plan and stands still for pen moves."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +27,7 @@ SHEET = (100.0, 60.0)
 
 
 def drawn(*lines, speed=20.0):
-    """A plan: each line (n, 2) at the pen's height, set down and lifted on the spot."""
+    """Return a plan of lines (n, 2), with the pen set down and lifted on the spot."""
     passes = []
     for number, line in enumerate(lines, 1):
         flat = np.column_stack([line, np.full(len(line), DOWN)])

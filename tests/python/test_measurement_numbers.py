@@ -1,5 +1,7 @@
-"""Every number of every measurement file, one after the other, as something that it cannot be: a sentence with file,
-element and number, and no brush."""
+"""Every number of every measurement file is replaced by an impossible value.
+
+Each time, the result must be a message with file, element and number, and no brush.
+"""
 
 import json
 import re
@@ -18,8 +20,8 @@ from brushsvg.errors import Error
 HEAD = {"format": "brushsvg/measurements", "version": 1}
 DEPTHS = (2.0, 4.0, 6.0, 8.0, 10.0)
 ROUND = find_brush("round-6")
-GONE = object()  # the key, or the item, is not there
-# What no number of these files can be. Python's json reads and writes NaN and Infinity.
+GONE = object()  # the key or the item is missing
+# Values that no number of these files can have. Python's json reads and writes NaN and Infinity.
 NEVER = {
     "1e9": 1e9,
     "1e308": 1e308,
@@ -85,7 +87,10 @@ MEASURED = {
 
 
 def painted():
-    """Two depths, each with a corner, and a straight stroke; a box round each for its mark."""
+    """Return marks of two depths, each with a corner and a straight stroke.
+
+    The outline of each mark is a box around the stroke.
+    """
     passes, marks = [], []
     for k, depth in enumerate((2.0, 4.0)):
         y = 40.0 * k
@@ -107,7 +112,10 @@ def painted():
 
 
 def places(value, path=()):
-    """Where numbers stand: of lists the first two items and the last one, which stand for the others."""
+    """Yield the paths of all numbers.
+
+    In a list, the first two items and the last one stand for the others.
+    """
     if isinstance(value, dict):
         for key, each in value.items():
             yield from places(each, (*path, key))
@@ -136,8 +144,11 @@ def reported(path):
 
 @pytest.fixture
 def calibrated(tmp_path, capsys, monkeypatch):
-    """(content of a file, its suffix) -> what `brushsvg calibrate` says of it where it refuses it, else None. Marks are
-    not fitted, which takes seconds: what comes so far was taken for true."""
+    """Return a function for the refusal that `brushsvg calibrate` prints for a file.
+
+    The function takes the content and the suffix of a file. It returns None if calibrate accepts the content.
+    Fitting marks would take seconds, so content that gets as far as the fit counts as accepted.
+    """
 
     def fitted(*_):
         raise Error("so far, so good")
@@ -254,7 +265,7 @@ def test_a_number_of_a_chart_is_bounded_by_what_it_means(path):
     taken = []
     for words, value in [*NEVER.items(), ("-1", -1), ("gone", GONE)]:
         if path[-1] == "speed_mm_s" and value is GONE:
-            continue  # there is a default
+            continue  # a missing speed has a default
         try:
             read_chart(json.dumps(changed(CHART, path, value)).encode())
         except Error as refusal:

@@ -1,4 +1,7 @@
-"""Shapes of the fuzz target medial_axis whose axis was wrong: corners that touch were moved across an edge near by."""
+"""Shapes from the fuzz target medial_axis whose axis was wrong.
+
+Corners that touch were moved across an edge nearby.
+"""
 
 import numpy as np
 
@@ -12,7 +15,10 @@ WRONG_MM = 1e-3
 
 
 def drawn() -> list[np.ndarray]:
-    """Outlines on a grid of 0.25 mm that cross themselves and each other, as the fuzzer made them."""
+    """Return outlines that cross themselves and each other, as the fuzzer made them.
+
+    The points are on a grid of 0.25 mm.
+    """
     steps = np.frombuffer(bytes.fromhex(INPUT), np.uint8).astype(float)
     counts, points = (11, 12, 8, 11), 0.25 * steps.reshape(-1, 2) - 20.0
     return np.split(points, np.cumsum(counts)[:-1])

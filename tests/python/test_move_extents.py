@@ -1,4 +1,7 @@
-"""How far lines and circles reach, by formula, held against a thousand places on each, found in another way."""
+"""Extents of lines and circles by formula agree with a thousand points on each.
+
+The points are found in another way than the formulas.
+"""
 
 import cmath
 import math
@@ -31,7 +34,10 @@ FLAT = st.just(0.0)
 
 @st.composite
 def circles(draw, rise=FLAT):
-    """(start, end, (x, y, turn)) and how far it turns [rad], which the formula has to find again."""
+    """Draw (start, end, (x, y, turn)) and the sweep [rad] of a circle.
+
+    The formula must recover the sweep.
+    """
     x, y, z = draw(POINT)
     radius, first = draw(st.floats(0.5, 300)), draw(st.floats(-4, 4))
     turn, sweep = draw(st.sampled_from([1, -1])), draw(st.floats(0.01, 6.2))
@@ -43,7 +49,7 @@ def circles(draw, rise=FLAT):
 
 
 def sampled(circle) -> np.ndarray:
-    """Places along a circle: its start turned about its centre, step by step."""
+    """Return points along a circle: its start, turned about its centre step by step."""
     start, end, (x, y, turn), sweep = circle
     shares = np.linspace(0, 1, COUNT)
     spoke = complex(start[0] - x, start[1] - y)
@@ -52,7 +58,7 @@ def sampled(circle) -> np.ndarray:
 
 
 def both(frame, start, end, circle):
-    """A line and a circle, and places on them, in a frame."""
+    """Return a line and a circle in a frame, points along both, and the step in mm."""
     line = np.linspace(start, end, COUNT)
     return (
         paths_in_frame(frame, make_paths([[start, end]], [circle[:3]])),
@@ -90,7 +96,11 @@ def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, s
 
 @given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
 def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
-    """Only programs that were changed have one; all that circle and climb span is checked instead."""
+    """The extents of a climbing circle are never underestimated.
+
+    Only edited programs contain a climbing circle. The whole space that circle and climb span is checked
+    instead.
+    """
     some, places = (
         paths_in_frame(frame, make_paths([], [circle[:3]])),
         transform_points(frame, sampled(circle)),
@@ -108,7 +118,10 @@ def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, 
 
 
 def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
-    """As machines run it, and as no places of its ends show."""
+    """A circle that ends where it starts goes all the way round.
+
+    Machines run it this way, although its start and end do not show it.
+    """
     some = make_paths([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
     low, high = bounds(some)
     assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))
@@ -130,7 +143,10 @@ def test_ways_that_stay_in_a_place_or_run_along_a_side():
 @given(st.floats(0.05, 3.0), st.floats(5, 200), st.floats(5, 200), st.floats(1e-3, 2))
 @pytest.mark.slow
 def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, after_mm, tolerance_mm):
-    """What the limits allow for: no place of the triangle of a joint is further from the two moves."""
+    """A cut corner stays within twice the cut, which is the allowance of the limits.
+
+    No point of the triangle at a joint is further from the two moves.
+    """
     path = np.array(
         [(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)]
     )
@@ -154,9 +170,7 @@ def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
 
 
 def test_the_nearest_place_of_a_climbing_circle_is_on_its_way():
-    climbing = make_paths(
-        [], [((2, 0, -3), (2, 0, 5), (0, 0, 1))]
-    )  # round the z axis: nearest where it passes z 0
+    climbing = make_paths([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # around the z axis; nearest at z 0
     assert distances_from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
 
 

@@ -1,4 +1,7 @@
-"""A brush from a few numbers paints what was typed in, says what it assumes, and is refused when it cannot be."""
+"""A brush from a few numbers paints the typed widths and lists its assumptions.
+
+Numbers that no brush can have are refused.
+"""
 
 import csv
 import io
@@ -18,7 +21,7 @@ from brushsvg.cli import main
     "widths",
     [
         [(3, 2.5), (8, 7)],
-        [(3, 5), (8, 7)],  # a parabola through these and 0 would fall before depth 8
+        [(3, 5), (8, 7)],  # a parabola through these points and 0 would fall before depth 8
         [(8, 7), (3, 5), (1, 2)],
         [(0.1, 0.3), (0.5, 1.1)],
         [(4, 5)],
@@ -56,9 +59,9 @@ def test_what_is_assumed_says_so():
     ("lags", "at_rest_mm", "terms"),
     [
         ([(2, 5), (8, 14)], 2.0, 2),
-        ([(8, 14), (2, 5), (5, 9.6)], 2.0, 2),  # a tenth off the line: no bend for that
+        ([(8, 14), (2, 5), (5, 9.6)], 2.0, 2),  # a tenth off the line, which is no reason for a bend
         ([(2, 7), (5, 12), (8, 14)], 2.0, 3),
-        ([(2, 1), (8, 13)], None, 3),  # the line through these is negative at the touch
+        ([(2, 1), (8, 13)], None, 3),  # the line through these points is negative at touch depth
     ],
 )
 def test_a_lag_that_grows_with_depth_is_that_typed_in(lags, at_rest_mm, terms):
@@ -141,7 +144,10 @@ def test_a_table_of_widths():
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("mark", [".", ","])
 def test_a_table_as_any_spreadsheet_writes_it(separator, mark, ending):
-    """With quotes where a separator stands in a number, and the empty rows and columns of a sheet."""
+    """A table is read in any form that a spreadsheet writes.
+
+    Values that contain the separator are in quotes, and the sheet has empty rows and columns.
+    """
     cells = [["depth_mm", "note", "width_mm", ""], ["3", "1,5 or 1.5; a", "2.5", ""], ["", "", "", ""]]
     cells += [["+8.25", "", "7e0", ""]]
     for row in cells:
@@ -305,7 +311,7 @@ class Terminal(io.StringIO):
 
 
 def answered(monkeypatch, capsys, words, answers):
-    """Status, standard output, and what the terminal showed."""
+    """Return the exit status, standard output, and the text that the terminal showed."""
     shown = Terminal()
     monkeypatch.setattr("sys.stdin", Terminal("\n".join(answers)))
     monkeypatch.setattr("sys.stderr", shown)
@@ -320,7 +326,7 @@ def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_sam
     status, out, shown = answered(monkeypatch, capsys, ["brush", "new", "-o", requested], answers)
     assert status == 0 and out.startswith(str(requested))
     flags = shown[shown.index("--lag-at 2=") :].splitlines()[0].split()
-    lags = {2: 4.45, 5: 7.05, 8: 9.0}  # the turn and 0.3 of the width
+    lags = {2: 4.45, 5: 7.05, 8: 9.0}  # the turn plus 0.3 of the width
     widths = {2: 1.5, 5: 3.5, 8: 5}
     assert flags == [
         word for d in lags for word in ("--lag-at", f"{d}={lags[d]:g}", "--width-at", f"{d}={widths[d]:g}")
@@ -370,7 +376,10 @@ def test_fewer_than_three_depths_are_warned_about(tmp_path, capsys, words, depth
 
 
 def test_the_lag_of_a_turn_is_that_of_the_brush_it_makes():
-    """The middle of the mark of such a brush turns where the ruler read it."""
+    """The lag computed from a turn is the lag of the brush made from it.
+
+    The middle of this brush's mark turns where the ruler read the turn.
+    """
     brush = new_brush("mine", [(2, 4.45), (5, 7.05), (8, 9.0)], [(2, 1.5), (5, 3.5), (8, 5)])
     for depth, width, turn in ((2, 1.5, 4.0), (5, 3.5, 6.0), (8, 5.0, 7.5)):
         assert lag_of_turn(turn, width) == pytest.approx(brush.lag(depth), abs=0.3)

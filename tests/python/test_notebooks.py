@@ -1,4 +1,4 @@
-"""The notebooks of examples/ run from top to bottom, and say what they promise."""
+"""The notebooks of examples/ run from top to bottom and show what they promise."""
 
 import json
 import re
@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples" / "notebooks").glob("*.ipynb"))
-MOST_CELLS = 16  # to be read in ten minutes
+MOST_CELLS = 16  # so that a notebook can be read in ten minutes
 
 
 @pytest.fixture
 def reported(tmp_path):
-    """What the cells of a notebook print, and the kinds of pictures they show."""
+    """Return a function for the printed text and the kinds of pictures of a notebook."""
     nbclient, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
 
     def run(path: Path) -> tuple[str, set[str]]:

@@ -1,4 +1,8 @@
-"""Filled shapes to strokes: how many, along which lines, which way, in which order, and what each should become."""
+"""Filled shapes become strokes.
+
+The tests check the number of strokes, their middle lines, their directions, their order and the part of the
+shape that belongs to each stroke.
+"""
 
 import numpy as np
 import pytest
@@ -24,12 +28,12 @@ def path(d: str, rest: str = "") -> str:
 
 
 def ends(stroke) -> list[list[float]]:
-    """Start and end of a stroke in the drawing's frame, y down."""
+    """Return the start and the end of a stroke in the drawing's frame, y down."""
     return [[round(x, 1), round(50 - y, 1)] for x, y in (stroke.middle_mm[0, :2], stroke.middle_mm[-1, 6:])]
 
 
 def marks(made) -> list:
-    """What discs of the found widths paint along the found lines."""
+    """Return the area that discs of the found widths paint along the found lines."""
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
     return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
 
@@ -49,8 +53,12 @@ def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
 
 @pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, True), (10.0, False)])
 def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(slant_mm, is_straight):
-    """Cut at 84, 70, 45 and 31 degrees. Towards a corner of 70 degrees, as an A's feet have, the leg made a hook, and
-    to that of 45 degrees, as a k's arms have, it ran as a leaf."""
+    """A leg stays straight up to a slanted cut and bends into a sharper corner.
+
+    The cuts are at 84, 70, 45 and 31 degrees. The leg once made a hook towards a corner of 70 degrees, which
+    the feet of an A have. Towards a corner of 45 degrees, which the arms of a k have, the stroke once had the
+    shape of a leaf.
+    """
     (leg,) = painted(path(f"M40 5V{40 + slant_mm}L46 40V5Z"))
     line = _core.flatten(leg, 0.01)[:, :2]
     assert (np.abs(line[:, 0] - 43).max() < 0.35) == is_straight
@@ -65,7 +73,11 @@ def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(sl
     ],
 )
 def test_an_arm_whose_sides_bend_is_as_wide_at_its_cut(d, half_mm):
-    """As in C and r: the axis points past the middle of the cut, and ran on into its corner, 2.0 and 1.8 mm."""
+    """An arm with bent sides keeps its width up to its cut, as in C and r.
+
+    The medial axis points past the middle of the cut. The stroke once ran on into the corner, where its half
+    width was 2.0 and 1.8 mm.
+    """
     (letter,) = painted(path(d))
     halves = letter.half_width[0][1], letter.half_width[-1][1]
     at = {x > 30: half for (x, _), half in zip(ends(letter), halves, strict=True)}
@@ -79,8 +91,12 @@ def polygon(shape) -> str:
 
 @pytest.mark.parametrize("slant_deg", [-10, 0, 10, 20])
 def test_an_arm_of_a_round_c_ends_amid_its_cut(slant_deg):
-    """The corner that a bent side leaves went after the other one of the cut, and the way into it counted as the
-    line's: thick C, S and 2 ended in one corner of their cuts, and half of these was blank."""
+    """An arm of a round C ends in the middle of its cut.
+
+    The corner where a bent side ends was once dropped later than the other corner of the cut. The path into
+    this corner counted as part of the line. Thick C, S and 2 ended in one corner of their cuts, and half of
+    each cut stayed blank.
+    """
     amid, way = (np.array([np.cos(t), np.sin(t)]) for t in np.radians([40, 40 + slant_deg]))
     upper = [15 * amid - 8 * way, 15 * amid + 12 * way]
     cut = shapely.Polygon([(0, 0), *upper, (60, 0), *((x, -y) for x, y in upper[::-1])])
@@ -94,7 +110,10 @@ def test_an_arm_of_a_round_c_ends_amid_its_cut(slant_deg):
 
 
 def test_a_bar_runs_on_through_its_stem_where_that_has_a_stub():
-    """The left part of the bar of a bold f or t, too short for a branch of its own, was left blank."""
+    """The left part of the bar of a bold f or t is painted.
+
+    This part is too short for a branch of its own and once stayed blank.
+    """
     _, bar = painted(path("M20 5H28V18H36V25H28V45H20V25H16V18H20Z"))
     assert ends(bar) == [[19.5, 21.5], [32.5, 21.5]]
     flush, _ = sorted(painted(path("M20 5H28V18H36V25H28V45H20Z")), key=lambda each: -ends(each)[1][0])
@@ -102,7 +121,11 @@ def test_a_bar_runs_on_through_its_stem_where_that_has_a_stub():
 
 
 def test_a_corner_in_which_two_strokes_end_belongs_to_both():
-    """Neither had a straight end in its part, and both ended round. Where a bar runs into a stem, nothing is added."""
+    """Both strokes that end in one corner get the whole corner as their target.
+
+    Neither stroke had a straight end in its part, and both ended round. Where a bar runs into a stem, the bar
+    gets no extra area.
+    """
     dee = painted(path("M20 5H35Q55 5 55 25Q55 45 35 45H20ZM28 11V39H35Q48 39 48 25Q48 11 35 11Z"))
     assert len(dee) == 2
     for y in (5.1, 44.7):
@@ -115,7 +138,10 @@ def test_a_corner_in_which_two_strokes_end_belongs_to_both():
 
 
 def test_a_last_step_sideways_is_left_out():
-    """As the axis of an s ends: what squares ends looks for the cut along the last direction."""
+    """A last step sideways, as at the end of the axis of an s, is left out.
+
+    The code that squares an end looks for the cut along the last direction of the line.
+    """
     bar = np.array([(0.0, -3.0), (40.0, -3.0), (40.6, 3.0), (0.0, 3.0)])
     along = np.column_stack([np.linspace(5, 37, 33), np.zeros(33), np.full(33, 3.0)])
     line = run_to_cut(np.vstack([along, (37.1, 0.1, 2.9)]), [bar])
@@ -124,7 +150,10 @@ def test_a_last_step_sideways_is_left_out():
 
 
 def test_a_hairline_that_ends_in_a_ball_keeps_its_way_from_the_stem():
-    """As the tail of a y: the stem's straight cut is far behind the end, and not the end's own."""
+    """A hairline that ends in a ball keeps its course, as in the tail of a y.
+
+    The straight cut of the stem is far behind the end and does not belong to the end.
+    """
     stem = [(0.0, 40.0 - k, 3.4) for k in range(28)]
     tail = [(3.3 - 0.5 * k, 10.2 - k, 0.15) for k in range(20)]
     ball = [(-6.8, -9.0, 3.9)]
@@ -146,7 +175,10 @@ def test_a_pointed_end_keeps_its_point():
 @pytest.mark.parametrize("inner_mm", [12, 14, 16])
 @pytest.mark.parametrize("blunt_mm", [5, 6, 7, 8])
 def test_the_legs_of_an_apex_are_straight_and_begin_next_to_each_other(blunt_mm, inner_mm):
-    """Both began at one place and bent towards it, or one went on into the apex."""
+    """The legs of an apex are straight and begin next to each other.
+
+    Both legs once began at one place and bent towards it, or one leg went on into the apex.
+    """
     left, right = 25 - blunt_mm / 2, 25 + blunt_mm / 2
     legs = painted(path(f"M10 45L{left} 5H{right}L40 45H34L25 {inner_mm}L16 45Z"))
     assert len(legs) == 2
@@ -161,19 +193,25 @@ def test_the_legs_of_an_apex_are_straight_and_begin_next_to_each_other(blunt_mm,
 @pytest.mark.parametrize(
     ("d", "least"),
     [
-        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 next to each other
+        ("M10 6H16.5V34L28.7 6H35.3L18.5 40Q14.3 48.5 10 40Z", 0.977),  # 0.970 if the lines end side by side
         ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.968),  # 0.948 towards one place
     ],
 )
 def test_lines_that_meet_in_a_round_corner_cover_it_either_way(d, least):
-    """Below the ends of the lines, which discs leave blunt."""
+    """Two lines cover the round corner in which they meet.
+
+    The comparison stops short of the lines' ends, because discs leave the ends blunt.
+    """
     made = painted(path(d))
     shape = _core.intersect(target(made), [np.array([(0.0, 0.0), (60.0, 0.0), (60.0, 38.0), (0.0, 38.0)])])
     assert _core.area(_core.intersect(marks(made), shape)) > least * _core.area(shape)
 
 
 def test_what_turns_at_a_corner_as_one_stroke_is_one_line():
-    """A gap between its parts would be refused."""
+    """A shape that turns at a corner as one stroke has one connected line.
+
+    A gap between the parts of the line would be refused.
+    """
     (hook,) = painted(path("M10 10H40V20L16 45L12 41L32 16H10Z"))
     assert len(hook.middle_mm) > 2
     assert hook.middle_mm[1:, :2] == pytest.approx(hook.middle_mm[:-1, 6:])
@@ -242,12 +280,15 @@ def test_where_lines_cross_they_stay_straight_and_both_have_the_crossing():
 
 @pytest.mark.parametrize(("half_mm", "bar_half_mm"), [(4, 2.5), (5, 3)])
 def test_a_thick_line_that_bends_where_a_thin_one_crosses_it_is_one_stroke(half_mm, bar_half_mm):
-    """The thick line of an x turned by more than 60 degrees in all, and was left as two arms with a gap between."""
+    """The thick line of an x stays one stroke where a thin line crosses it.
+
+    The thick line turns by more than 60 degrees in all. It was once left as two arms with a gap between them.
+    """
     thick = shapely.LineString([(6, 19), (24, 19), (36, 31), (54, 31)]).buffer(half_mm, cap_style="flat")
     thin = shapely.box(30 - bar_half_mm, 7, 30 + bar_half_mm, 43)
     made = painted(path(polygon(thick.union(thin))))
     assert len(made) == 2, "the thick line and the thin one"
-    assert _core.overlap(marks(made), target(made)) > 0.93  # below 0.9 as two arms
+    assert _core.overlap(marks(made), target(made)) > 0.93  # with two arms the overlap is below 0.9
 
 
 def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
@@ -270,13 +311,16 @@ def test_a_stem_runs_up_to_its_serif_where_the_bowl_leaves_it_right_below():
     assert ends(bowl)[0][0] < 22 < 33 < ends(bowl)[1][0], "the arm is a stroke of its own, from the stem"
     assert (
         _core.overlap(marks([stem, bowl]), target([stem, bowl])) > 0.94
-    )  # 0.855 with the stem bent into the bowl
+    )  # with the stem bent into the bowl the overlap is 0.855
 
 
 @pytest.mark.parametrize(("top", "valley"), [(6, 24), (7, 24)])
 def test_a_stem_that_sticks_out_next_to_its_arch_is_a_stroke_of_its_own(top, valley):
-    """The humps of a script's n and m: too blunt for a branch of their own, they were lost where the short stem was
-    taken for the flick of its arch, which turned at the corner below them."""
+    """A stem that sticks out next to its arch is a stroke of its own.
+
+    The humps of a script's n and m are too blunt for a branch of their own. They were once lost: the short
+    stem was mistaken for the flick of its arch, and the arch turned at the corner below the humps.
+    """
     stem = f"M10 44V{top + 18}C10 {top + 10} 13 {top} 17 {top}C20 {top} 22 {top + 4} {valley} 12"
     made = painted(path(f"{stem}C28 9 31 8 35 8C43 8 46 14 46 20V44H38V24C38 13 26 12 18 30V44Z"))
     assert len(made) == 2, "the stem, and the arch from it on"
@@ -317,7 +361,8 @@ def test_loops_that_are_slivers_leave_a_ring_from_any_beginning():
     from brushsvg.geometry.rings import signed_area, without_slivers
 
     bar = [[0, 0], [10, 0], [10, 4], [0, 4]]
-    tail = [[10, 4], [14, 4.001], [14, 4.004]]  # touches the bar at a corner, and has a tail of its own
+    # The tail touches the bar at a corner and has a thin tail of its own.
+    tail = [[10, 4], [14, 4.001], [14, 4.004]]
     ring = np.array(
         [*bar[:3], *tail[1:2], [14, 4.001], [16, 4.001], [16, 4.002], [14, 4.001], tail[2], *bar[2:]], float
     )
@@ -332,7 +377,11 @@ def test_loops_that_are_slivers_leave_a_ring_from_any_beginning():
 
 
 def test_slivers_that_touch_a_shape_take_its_axis_nowhere():
-    """Moved apart where they touch, their sides crossed, and the axis went on outside, some meters far."""
+    """Slivers that touch a shape do not pull its axis away from the shape.
+
+    Where slivers touch, their corners are moved apart. Their sides once crossed then, and the axis went on
+    outside the shape, several meters away.
+    """
     from brushsvg.strokes.skeleton import outline_strokes
 
     random = np.random.default_rng(1)
@@ -387,8 +436,11 @@ def test_corners_stay_corners():
 
 
 def test_a_belly_amid_a_line_is_as_wide_as_it_is():
-    """Its corner leaves a node of the axis there, and from arm to arm of that the width changed evenly: the body was no
-    wider than its arms."""
+    """A bulge in the middle of a line is painted at its full width.
+
+    The corner of the bulge leaves a node of the axis there. The width once changed evenly from one arm of the
+    node to the other, and the bulge became no wider than its arms.
+    """
     body = shapely.union_all(
         [shapely.Point(30, 25).buffer(4), shapely.box(30, 25, 33.6, 28.6), shapely.box(10, 24.2, 50, 25.8)]
     )
@@ -401,7 +453,10 @@ def test_a_belly_amid_a_line_is_as_wide_as_it_is():
 
 @pytest.mark.parametrize(("turned_deg", "apart_mm"), [(0, 7.8), (12, 7.6), (90, 7.8)])
 def test_dots_that_touch_are_dots(turned_deg, apart_mm):
-    """Two squares that overlap at a corner, as in Arabic letters, were a line with a waist, and lost their corners."""
+    """Two squares that overlap at a corner, as in Arabic letters, are two dots.
+
+    They once became a line with a waist and lost their corners.
+    """
     square = shapely.affinity.rotate(shapely.box(27, 22, 33, 28), 45)
     pair = square | shapely.affinity.translate(square, apart_mm)
     made = painted(path(polygon(shapely.affinity.rotate(pair, turned_deg))))
@@ -415,7 +470,10 @@ def test_dots_that_touch_are_dots(turned_deg, apart_mm):
 
 @pytest.mark.parametrize("waist_mm", [4.4, 2.4])
 def test_a_line_with_a_waist_is_a_line(waist_mm):
-    """Hardly narrower than its ends; or as narrow, but long."""
+    """A line with a waist is one line.
+
+    The waist is hardly narrower than the ends, or it is narrow but long.
+    """
     bar = shapely.union_all(
         [
             shapely.Point(25, 25).buffer(3),
@@ -575,7 +633,7 @@ def test_edges_side_by_side_are_counted_in_bands():
     teeth = zigzag(20_000)
     tilted = np.column_stack([teeth[:, 0], teeth[:, 1] + teeth[:, 0] / 10])
     assert pairs(tilted) < 1e5, "side by side, none above another"
-    # all reach up to a line beyond which but one edge is: passed over one by one
+    # All edges reach up to a line, and only one edge is above it. The edges are skipped one by one.
     assert pairs([*teeth, [100, 40], [0, 40]]) == pytest.approx(0.04 * 20_000**2 / 2, rel=0.02)
     angle = np.linspace(0, 2 * np.pi, 20_000, endpoint=False)
     assert pairs(np.column_stack([np.cos(angle), np.sin(angle)])) < 20_000 * 300

@@ -1,4 +1,4 @@
-"""Fetching paint: when, where, in which order, and never below what is safe."""
+"""Fetching paint: when, where, in which order, and never lower than is safe."""
 
 import json
 import re
@@ -48,7 +48,7 @@ def cell_with(reload, *stations):
 
 
 def plan_of(*strokes):
-    """Strokes as (length in mm, colour, layer, and perhaps settings)."""
+    """Return a plan of strokes: (length [mm], colour, layer, optional settings)."""
     passes = [
         _core.Pass(f"s{k}", np.array([(0, 0, 0), (length, 0, -1.0)]), 20.0, layer, colour, *settings)
         for k, (length, colour, layer, *settings) in enumerate(strokes, 1)
@@ -145,7 +145,11 @@ def test_a_visit_goes_down_into_the_paint_and_drips_off():
 def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_hard_or_rinsed(
     tmp_path, capsys
 ):
-    """By the tests' own interpreter: full, short, hard wash and full, rinse and short."""
+    """Paint is stirred first, then only dipped into; the brush is washed or rinsed.
+
+    The tests' own interpreter runs the program. The visits are: full, short, hard wash and full, rinse and
+    short.
+    """
     stirred = (
         replace(BLACK, stir_mm=4.0, stir_turns=3),
         replace(ANY, stir_mm=3.0),
@@ -249,7 +253,10 @@ def test_a_stroke_may_ask_for_paint_or_go_without():
 
 
 def test_names_do_not_make_a_stroke_a_part_of_another():
-    """Parts are named s+2; a drawing may name its own strokes so, or as it likes."""
+    """A stroke named like a load of another stroke is not mistaken for one.
+
+    Loads are named s+2, and a drawing may use names of this form for its own strokes.
+    """
     brush, every = find_brush("round-6"), 100.0
     line = np.array([(20, 0, 0), (25, 0, -3), (60, 0, -3), (58, 0, 0)], float)
     names = ["a", "a+2", "a+3", "b~2", "b+x", "+2", "2+"]
@@ -276,7 +283,7 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
 def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
     brush = find_brush("round-6")
     cell = cell_with(Reload("length", 40.0, 5.0))
-    step = np.array([(0, 0), (4, 0)] * 20, float)  # to and fro on the spot: the bristles never pull
+    step = np.array([(0, 0), (4, 0)] * 20, float)  # to and fro on the spot: the bristles are never pulled
     hairline = np.column_stack([np.linspace(0, 150, 40), np.zeros(40), np.full(40, -0.04)])
     for poses in (np.column_stack([step, np.full(40, -5.0)]), hairline):
         passes = [_core.Pass("rub", poses + np.array([30, 30, 0]), 20.0, "", "#000000")]
@@ -288,7 +295,7 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
         assert (
             report_long_strokes(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
         )
-    for every in (40.0, 90.0):  # a line is cut between its two poses
+    for every in (40.0, 90.0):  # a line can be cut between its two poses
         long = [
             _core.Pass(
                 "line", np.array([(20, 50, 0), (30, 50, -4), (380, 50, -4), (370, 50, 0)], float), 20.0
@@ -342,7 +349,10 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
 
 
 def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
-    """By hand: at 0.4 per metre marks are 5 % narrower after 128.2 mm."""
+    """A load lasts until its marks are narrower than the cell allows.
+
+    By hand: at 0.4 per metre, marks are 5 % narrower after 128.2 mm.
+    """
     brush, plan = find_brush("round-6"), plan_of(*[(40, "#000000", "")] * 6)
     reload = Reload("length", 200.0, narrower_percent=5.0)
 
@@ -375,8 +385,12 @@ def test_a_long_stroke_is_painted_in_parts_as_short_as_the_brush_asks_for():
 
 
 def test_prediction_narrows_whole_strokes_as_their_loads():
-    """Of a stroke in three loads, and of one that goes on with the paint of the one before: outlines of the whole
-    strokes and of the loads, each by the dips of its own, are alike; without dips in between they are not."""
+    """The predicted width of a whole stroke is the width that its loads give.
+
+    One stroke needs three loads, and one goes on with the paint of the stroke before it. The test compares
+    the outlines of the whole strokes with the outlines of the loads, each with its own dips. Without dips in
+    between, the outlines differ.
+    """
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 150.0, 6.0))
     brush.paint = _core.Paint(3.0)
     plan = long_plan(brush)
@@ -400,8 +414,11 @@ def test_prediction_narrows_whole_strokes_as_their_loads():
 
 
 def test_parts_begin_where_they_were_cut():
-    """The dips of whole strokes against the loads' own ways: from one to the next the stroke advances by what the load
-    painted less its landing, its lift and what it came back."""
+    """Loads begin where their stroke was cut.
+
+    The test compares the dips along whole strokes with the paths of the loads. From one load to the next, the
+    stroke advances by the painted length of the load, minus its landing, its lift and the overlap.
+    """
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 150.0, 6.0))
     plan = long_plan(brush)
     loads = split_into_loads(plan, brush, cell)
@@ -429,7 +446,7 @@ def test_a_brush_that_says_nothing_of_its_paint_is_reported():
 
 
 def test_loads_are_no_plan():
-    """What was cut is not cut again, nor reported as if each load were a stroke."""
+    """Loads are not cut again, nor reported as if each load were a stroke."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     loads = split_into_loads(long_plan(brush), brush, cell)
     for taken in (
@@ -443,7 +460,11 @@ def test_loads_are_no_plan():
 
 
 def test_loads_that_were_written_as_a_plan_are_not_cut_again():
-    """Parts are longer than a load by what the brush comes back: as strokes they would be cut once more."""
+    """Loads that were written as a plan are not cut again.
+
+    Each part is longer than a load, because the brush comes back a little before it goes on. If the parts
+    were read as strokes, they would be cut once more.
+    """
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     loads = split_into_loads(long_plan(brush), brush, cell)
     text = _core.write_plan(loads.as_plan())
@@ -498,7 +519,10 @@ def test_all_reports_of_a_job_count_loads(tmp_path, monkeypatch, capsys):
 
 
 def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
-    """Both ends may be where the tool may go, and not the way between."""
+    """The path to the paint is checked before anything is written.
+
+    Both ends of the path can be allowed although the path between them is not.
+    """
     brush = find_brush("round-6")
     cell = cell_with(Reload("stroke"), ANY)
     wall = ((-12.0, -50.0, -50.0), (-8.0, 150.0, 50.0))

@@ -25,8 +25,12 @@ def brush():
     ("displaced_mm", "is_reported"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)]
 )
 def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_reported):
-    """A straight mark that was shifted sideways is outside by the shift. Kaushan's B, as good as it can be painted,
-    was reported with a tracking error of 4.9 mm; Lobster's A had no notice of a thorn of 2.3 mm."""
+    """Paint outside a shape is reported by its distance from the shape.
+
+    A straight mark that is shifted sideways is outside by the shift. Kaushan's B, painted as well as
+    possible, was once reported with a tracking error of 4.9 mm. Lobster's A had a thorn of 2.3 mm without a
+    notice.
+    """
     run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
     reported = find_paint_outside([bar("a", 30.0)], [run], brush)
     assert bool(reported) == is_reported
@@ -43,7 +47,10 @@ def test_paint_on_a_neighbour_is_in_the_target(brush):
 
 
 def test_a_tracking_error_is_reported_where_the_brush_is_known_better(brush):
-    """The lag of round-6 is known to 0.58 mm as standard deviation: 0.1 mm from the line are lost in it."""
+    """A tracking error is reported only where it exceeds the brush's uncertainty.
+
+    The lag of round-6 has a standard deviation of 0.58 mm, which hides an error of 0.1 mm.
+    """
     for displaced_mm, is_reported in ((0.1, False), (0.4, True)):
         run = _core.compensate([bar("a", 30.0 + displaced_mm)], brush, (100.0, 60.0)).plan.passes[0]
         error = _core.tracking_error_of(run, bar("a", 30.0), brush, 0.05)

@@ -1,4 +1,7 @@
-"""Plans press deeper as paint runs out: marks come out as wide as drawn, within the depths that were measured."""
+"""Plans press deeper as paint runs out.
+
+Marks then have the drawn width, within the measured depths.
+"""
 
 import random
 from dataclasses import replace
@@ -27,7 +30,7 @@ COUNT = 60
 
 @cache
 def drawing():
-    """Lines, waves and bows of 20 mm and of any width from 2 to 5 mm."""
+    """Return a drawing of lines, waves and bows, 20 mm long and 2 to 5 mm wide."""
     rng = random.Random(3)
     rows = []
     for k in range(COUNT):
@@ -61,7 +64,7 @@ def prepared(tmp_path, rate, cell=ONE_LOAD, compensation="closed", drawn=None, *
 
 
 def mean_overlap(work, rate):
-    """With the drawn strokes, each stroke alone."""
+    """Return the mean overlap of marks with drawn strokes, each stroke alone."""
     marks = predict_plan_marks(work.plan, brush_of(rate), cell=work.options.cell)
     found = []
     for trace, stroke in zip(marks.passes, work.strokes, strict=True):
@@ -76,7 +79,10 @@ def mean_overlap(work, rate):
 @pytest.mark.slow
 @sample("compensation", ["closed", "refined"], keep=1)
 def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
-    """The last marks would be a sixth too narrow."""
+    """The marks of a job with one load are as wide as drawn.
+
+    Without the correction, the last marks would be a sixth too narrow.
+    """
     always, now = (prepared(tmp_path, rate, compensation=compensation) for rate in (0.0, 0.05))
     fresh = mean_overlap(always, 0.0)
     assert mean_overlap(always, 0.05) < fresh - 0.07
@@ -85,12 +91,15 @@ def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
 
 
 def test_next_to_the_middle_marks_are_as_wide_as_drawn(tmp_path):
-    """Half way along each stroke, by a cut through the mark; the last ones were half as wide else."""
-    # ways round caps reach the middle of lines so short
+    """A cut through the middle of each mark has the drawn width.
+
+    Without the correction, the last marks were half as wide.
+    """
+    # On lines as short as these, turns in round caps reach as far as the middle.
     work = prepared(tmp_path, 0.22, start="pointed", end="round")
     marks = predict_plan_marks(work.plan, brush_of(0.22), cell=ONE_LOAD)
     assert marks.passes[-1].width_share[-1] < 0.6
-    for trace, stroke in zip(marks.passes[::3], work.strokes[::3], strict=True):  # the lines
+    for trace, stroke in zip(marks.passes[::3], work.strokes[::3], strict=True):  # the strokes that are lines
         ends = np.asarray(stroke.middle_mm).reshape(-1, 2)[[0, -1]]
         along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
         across = 20 * np.array([-along[1], along[0]])
@@ -107,7 +116,7 @@ def test_depth_falls_back_where_paint_is_fetched(tmp_path):
     deepest = np.array([-np.asarray(one.poses_mm)[:, 2].min() for one in work.plan.passes])
     fresh = prepared(tmp_path, 0.0, cell, drawn=same).plan.passes
     usual = np.array([-np.asarray(one.poses_mm)[:, 2].min() for one in fresh])
-    more = (deepest / usual)[::3]  # lines have one depth
+    more = (deepest / usual)[::3]  # each line has one depth
     assert 5 < sum(fetched) < COUNT / 3
     assert more.min() < 1.05 and 1.15 < more.max() < 1.4
     after = [k for k in range(3, COUNT, 3) if fetched[k]]
@@ -115,7 +124,10 @@ def test_depth_falls_back_where_paint_is_fetched(tmp_path):
 
 
 def test_without_paint_plans_stay(tmp_path):
-    """And with paint that never runs out they are the same to the last bit."""
+    """A brush without paint, or with paint that never runs out, gets the usual plan.
+
+    The two plans are equal to the last bit.
+    """
     plans = [_core.write_plan(prepared(tmp_path, rate).plan) for rate in (0.0, 1e-12)]
     assert plans[0].split('"passes"')[1] == plans[1].split('"passes"')[1]
 

@@ -1,4 +1,4 @@
-"""Measurement files with painted marks: what is read, and what is refused in which words."""
+"""Measurement files with painted marks: the accepted contents and the refusals."""
 
 import json
 
@@ -13,7 +13,7 @@ from brushsvg.errors import Error
 
 
 def strokes():
-    """Two depths, each with a corner, and a straight one."""
+    """Return a stroke with a corner and a straight stroke for each of two depths."""
     out = []
     for k, depth in enumerate((2.0, 4.0)):
         y = 40.0 * k
@@ -28,7 +28,7 @@ def strokes():
 
 
 def around(poses, grow=2.0):
-    """Something like a mark: a box round the way."""
+    """Return a box around the path, as a rough mark."""
     xy = np.array(poses)[:, :2]
     (x0, y0), (x1, y1) = xy.min(axis=0) - grow, xy.max(axis=0) + grow
     return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
@@ -217,7 +217,10 @@ def test_the_file_itself(keys, where, said):
     ],
 )
 def test_a_sheet_in_another_place_is_reported_with_it(moved, said):
-    """Each of them was once queried for the ids of its strokes."""
+    """A sheet in another place gets one report, with its displacement.
+
+    Instead, each of these sheets was once queried for the ids of its strokes.
+    """
     shift = {"far": [0.0, 90.0, 0.0], "right": [40.0, 130.0, 0.0]}
     more = [(name, (np.array(strokes()[0][1]) + by).tolist()) for name, by in shift.items()]
     every = [*strokes(), *more]

@@ -1,4 +1,7 @@
-"""Strokes from svgpathtools' paths, path data and arrays, and back; drawings that are open already."""
+"""Strokes from svgpathtools' paths, path data and arrays, and back.
+
+Drawings that are already open can be used as well.
+"""
 
 import io
 import xml.etree.ElementTree as ET

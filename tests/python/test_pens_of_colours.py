@@ -1,4 +1,7 @@
-"""Strokes of several colours on a machine without paint: a stop for each other pen; and --speed, for all strokes."""
+"""On a machine without paint, the program stops for each other pen.
+
+The strokes have several colours. The option --speed applies to all strokes.
+"""
 
 import re
 from dataclasses import replace

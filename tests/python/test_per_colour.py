@@ -1,4 +1,4 @@
-"""A program for each colour: the strokes of one colour each, where they are in the whole drawing."""
+"""One program for each colour, with strokes where the whole drawing has them."""
 
 import re
 
@@ -7,7 +7,7 @@ from diagnostics import in_json, is_reported
 
 import brushsvg
 
-INKS = {"#ffd700": "bd", "#d32f2f": "e", "#1a237e": "ac"}  # the lightest first
+INKS = {"#ffd700": "bd", "#d32f2f": "e", "#1a237e": "ac"}  # the lightest colour first
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60" fill="none" '
     'stroke-width="2">{}</svg>'
@@ -45,7 +45,10 @@ def test_each_colour_has_a_program(desk, capsys):
 
 
 def test_strokes_of_a_colour_are_where_they_are_in_all(desk, capsys):
-    """With --fit they would each fill the sheet, were they fitted alone."""
+    """Strokes of one colour have the positions that they have in the whole drawing.
+
+    If --fit were applied to each colour alone, each would fill the sheet.
+    """
     words = "convert", "word.svg", "-o", "all.json", "--fit", "80x40"
     assert in_json(capsys, *words)[0] == 0
     assert (
@@ -83,7 +86,10 @@ def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
 
 
 def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
-    """Strokes in the margin were in one of them, and check refused the others."""
+    """Every program of a page has the same sheet.
+
+    Margin strokes were once in one program only, and check refused the other programs.
+    """
     words = "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--page", "page.svg"
     assert in_json(capsys, *words)[0] == 0
     for file, ink in zip(sorted(desk.glob("out*")), INKS, strict=True):
@@ -107,7 +113,10 @@ SHAPES = (
 
 
 def test_a_shape_has_the_colour_of_its_fill_and_an_outline_its_own(tmp_path, monkeypatch, capsys):
-    """All of fine and broad was painted in the colour of the outline."""
+    """A shape has the colour of its fill, and its outline has its own colour.
+
+    All of "fine" and "broad" was once painted in the colour of the outline.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "word.svg").write_text(DRAWING.format(SHAPES))
     status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.json")

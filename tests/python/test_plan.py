@@ -1,4 +1,7 @@
-"""Plans as Python sees them: poses without copies, views that outlive what they show, arcs."""
+"""Plans in Python: poses without copies, long-lived views, and arcs.
+
+A view outlives the plan that it shows.
+"""
 
 import gc
 import re
@@ -66,7 +69,10 @@ def test_an_arc_that_is_none_is_refused_by_the_simulator_too():
 
 
 def test_nothing_is_added_to_a_copy_without_a_word():
-    """plan.passes.append(...) was once lost: it changed a list that nobody kept."""
+    """Appending to plan.passes fails instead of changing a copy.
+
+    plan.passes.append(...) once changed a temporary list, and the new pass was lost.
+    """
     plan, brush = plan_of(_core.Pass("a", [[0, 0, 0], [5, 0, -1]])), find_brush("round-6")
     marks = _core.simulate(plan, brush)
     stroke = _core.Stroke("s", np.zeros((1, 8)), half_width=[(0, 1)])
@@ -101,7 +107,10 @@ def test_nothing_is_added_to_a_copy_without_a_word():
 
 
 def test_laws_are_values():
-    """A law that was taken from a fit and given another floor was the fit's own."""
+    """Laws cannot be changed.
+
+    A law that was copied from a fit and given another floor once changed the fit's own law.
+    """
     law = find_brush("round-6").lag
     for name in ("coefficients", "floor", "source", "rmse_mm", "degrees_of_freedom"):
         with pytest.raises(AttributeError):
@@ -120,6 +129,6 @@ def test_where_a_stroke_comes_from_is_kept_in_fields():
         stroke.id,
         stroke.id,
         0,
-    )  # not taken apart
+    )  # the name is not split into its parts
     stroke.id = "other/2"
     assert (stroke.id, stroke.origin.element, stroke.origin.part) == ("other/2", "other/2", 0)

@@ -1,4 +1,7 @@
-"""Axes that stay behind where they turn back: the way on the paper, in no more poses than it has bends."""
+"""Backlash: axes stay behind where they turn back.
+
+The test checks the path on paper, which needs few more poses than it has bends.
+"""
 
 import numpy as np
 import pytest
@@ -11,7 +14,10 @@ from brushsvg.machine.realised.passes import as_run, passes_with_backlash  # noq
 
 
 def ways_in_small_steps(passes, backlash):
-    """By the rule alone: the slide moves once the play is crossed."""
+    """Return the paths by the rule alone.
+
+    The slide moves once the backlash is crossed.
+    """
     half, slide, last, out = 0.5 * np.array(backlash), None, None, []
     for poses in passes:
         rows = []
@@ -45,12 +51,15 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
         )
         come = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
         assert np.interp(come[-1] / 2, come, poses[:, 2]) == pytest.approx(depth, abs=0.1)
-        assert len(poses) < 6 * 8  # of 0.4 mm each they would be several hundred
+        assert len(poses) < 6 * 8  # with a pose every 0.4 mm there would be several hundred
 
 
 @pytest.mark.parametrize("height", [-0.4, 0.4])
 def test_a_tool_leans_from_where_it_touches_the_paper(height):
-    """Pressed on the spot and drawn to the right, over paper that is lower or higher than it was taught."""
+    """A tool begins to lean where it touches the paper.
+
+    The brush is pressed on the spot and drawn to the right. The paper is lower or higher than taught.
+    """
     reported = core.Pass(
         stroke="s",
         poses_mm=np.array([[10.0, 20, 0], [10, 20, -2], [30, 20, -2], [30, 20, 0]]),

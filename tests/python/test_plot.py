@@ -1,4 +1,7 @@
-"""Pictures of brushes: bands from the covariance where there is one, and a sentence without matplotlib."""
+"""Pictures of brushes have bands where there is a covariance.
+
+Without matplotlib, a message says how to install it.
+"""
 
 import sys
 
@@ -26,7 +29,7 @@ def test_bands():
     half, what = law_band(brush, "lag", depths)
     assert np.all(half == 0.58) and "RMSE" in what
     assert law_band(brush, "half_width", depths) is None
-    # by hand: of the 13 coefficients only c0 and c1 of tip_gap vary, together
+    # Computed by hand: of the 13 coefficients, only c0 and c1 of tip_gap vary, and they vary together.
     covariance = np.zeros((13, 13))
     covariance[5:7, 5:7] = [[0.04, -0.01], [-0.01, 0.01]]
     brush.covariance = covariance.tolist()
@@ -37,7 +40,10 @@ def test_bands():
 
 
 def test_paint_is_drawn_where_the_brush_has_it():
-    """Its middle line falls to what the law says, the band about it is wider the longer the way."""
+    """The paint picture shows the decay of the brush's paint.
+
+    The middle line falls to the value of the law, and the band around it widens with the length.
+    """
     brush = find_brush("round-6")
     brush.paint = _core.Paint(0.5, calibrated_mm=(0, 800), lasts_mm=600, covariance=[[0.01, 0], [0, 400]])
     figure = new_figure((11, 7.2))
@@ -51,7 +57,10 @@ def test_paint_is_drawn_where_the_brush_has_it():
 
 
 def test_every_curve_is_named_once_and_no_name_is_on_a_law():
-    """In one legend below the laws, of which each has its line, its band and what was measured of it."""
+    """Each curve is named once, and no name covers a law.
+
+    The names are in one legend below the laws. Each law has its line, its band and its measurements.
+    """
     brush = find_brush("round-6")
     figure = new_figure((11, 7.2))
     brush_picture_on(figure, brush, {"lag": np.array([[1, 4.0], [9, 13.0]])})

@@ -1,4 +1,7 @@
-"""G-code as owners of plotters write it: many styles, four drawings each, read as the lines that were intended."""
+"""G-code as plotter owners write it is read as the lines that were intended.
+
+There are many styles, with four drawings each.
+"""
 
 import math
 import random
@@ -15,7 +18,7 @@ MARK_MM = 1.0
 
 
 def drawing(chance):
-    """Lines (n, 2) of a small sketch, away from the pots at the left."""
+    """Return the lines (n, 2) of a small sketch, away from the pots on the left."""
     lines = []
     for _ in range(chance.randint(3, 9)):
         x, y, turn = chance.uniform(40, 150), chance.uniform(20, 120), chance.uniform(0, math.tau)
@@ -34,7 +37,11 @@ def at(point, before="G1", after=""):
 
 
 def by_z(lines, up, down, travel="G0", draw="G1", head=("G21", "G90"), hop=None, dip=None):
-    """A pen on Z. up, down: heights; hop: the height between strokes that are near; dip: lines before each stroke."""
+    """Yield a program with the pen on Z.
+
+    up and down are the heights of the pen, hop is the height between strokes that are near, and dip yields
+    lines before each stroke.
+    """
     yield from head
     yield f"G0 Z{up:g}"
     for k, line in enumerate(lines):
@@ -60,12 +67,12 @@ def by_servo(lines, up, down, travel="G0", off=False):
 
 
 def inverted(lines, travel="G0"):
-    """The pen is up at Z0 and down at Z5."""
+    """Return a program with the pen up at Z0 and down at Z5."""
     return by_z(lines, 0, 5, travel=travel)
 
 
 def parked(lines, up, down):
-    """It begins and ends at z 0, where the pen is up."""
+    """Yield a program that begins and ends at z 0, where the pen is up."""
     yield from ("G21", "G90", "G1 X0 Y0 Z0 F3000")
     for line in lines:
         yield from (f"G1 Z{up:g}", at(line[0]), f"G1 Z{down:g} F800")
@@ -85,7 +92,10 @@ def pot(comment):
 
 
 def with_backlash_hops(lines):
-    """At each point of a line the pen hops a little, against play: the line goes on."""
+    """Yield a program whose pen hops a little in the middle of each line.
+
+    The hops counter backlash, and the line goes on after each hop.
+    """
     yield from ("G21", "G90", "G0 Z5")
     for line in lines:
         yield at(line[0], "G0")
@@ -99,7 +109,7 @@ def with_backlash_hops(lines):
 
 
 def pressed(lines, chance):
-    """A brush whose depth changes along its strokes."""
+    """Yield a program of a brush whose depth changes along its strokes."""
     yield from ("G21", "G90", "G0 Z6")
     for line in lines:
         yield at(line[0], "G0")
@@ -209,7 +219,10 @@ def test_coats_of_paint_at_one_place_are_no_dips():
 
 
 def test_a_reading_that_loses_most_is_refused():
-    """Its strokes change height without a lift: nothing says which of the two heights draws."""
+    """A reading that loses most of the drawing is refused.
+
+    The strokes change height without a lift, so it is unclear which of the two heights draws.
+    """
     text = ["G21", "G90", "G0 Z10", "G0 X0 Y0", "G1 Z0 F500", "G1 X10 Y0"]
     text += [f"G1 X{20 + 5 * k} Y{10 * (k % 2)} Z4" for k in range(30)]
     text += [
@@ -222,7 +235,11 @@ def test_a_reading_that_loses_most_is_refused():
 
 
 def test_to_begin_and_end_at_z_0_turns_no_z():
-    """Single lines, all by G1: nothing else shows which of both heights draws, and z 0 is usually paper."""
+    """Beginning and ending at z 0 does not invert z.
+
+    All moves are G1 and all strokes single lines, so nothing else shows which height draws. Usually, z 0 is
+    paper.
+    """
     hatch = [np.array([(40, y), (80, y)]) for y in (40, 50, 60)]
     design = read_gcode("\n".join(parked(hatch, 5, 0)).encode(), ReadOptions(sheet_mm=(200, 150)))
     assert is_reported(design.notices, "pen-reading 0 5")
@@ -241,7 +258,10 @@ def test_the_paper_of_a_z_that_falls_to_lift():
 
 
 def test_check_refuses_a_z_that_falls_to_lift(tmp_path, monkeypatch, capsys):
-    """Drawn at z 0.5, travel at -4: it predicted the travel."""
+    """Check refuses a program whose z falls to lift the pen.
+
+    The program draws at z 0.5 and travels at -4. Check once predicted the travel as paint.
+    """
     monkeypatch.chdir(tmp_path)
     lines = [np.array([(40, 40), (80, 40)]), np.array([(40, 60), (80, 60)])]
     (tmp_path / "falls.gcode").write_text("\n".join(by_z(lines, -4, 0.5)))
@@ -273,7 +293,10 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
 
 
 def test_words_that_are_about_the_drawing_make_no_dips():
-    """A header, a text and remarks name dips; one stroke is one, outside of the drawing."""
+    """Words about the drawing do not count as dips.
+
+    A header, a text and remarks mention dips. Only one stroke, outside the drawing, is a dip.
+    """
     lines = [
         [(20, 20), (40, 20)],
         [(20, 30), (60, 60)],

@@ -1,4 +1,4 @@
-"""Installing the extension for Inkscape, from the source tree and from its zip."""
+"""The extension for Inkscape can be installed from the source tree and its zip."""
 
 import subprocess
 import sys
@@ -109,7 +109,10 @@ def test_a_name_in_the_zip_cannot_lead_elsewhere(profile, tmp_path, zipped):
 )
 @pytest.mark.parametrize("module", ["lxml", "cssselect"])
 def test_what_inkscapes_python_lacks_is_reported_with_its_package(tmp_path, script, module):
-    """As in a system whose Inkscape was installed without what it recommends."""
+    """A module that Inkscape's Python lacks is reported with its package.
+
+    This happens where Inkscape was installed without its recommended packages.
+    """
     (tmp_path / "drawing.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
     lacks = f"raise ModuleNotFoundError('No module', name='{module}')\n"
     for name in ("inkex", "lxml"):

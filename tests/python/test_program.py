@@ -1,4 +1,4 @@
-"""What the robot does with a plan, and what it refuses."""
+"""The program of a plan: its moves, their speeds, and the plans that are refused."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,7 @@
-"""The project file: found near a drawing, read strictly, overruled by the command line and the drawing, explained."""
+"""The project file is found near a drawing, read strictly, and explained.
+
+The command line and the drawing overrule it.
+"""
 
 import copy
 import os
@@ -42,7 +45,7 @@ def project(text: str, folder: str = ".") -> None:
 
 
 def said(**settings) -> str:
-    """The drawing with settings on its root."""
+    """Return the drawing with settings on its root element."""
     return DRAWING.replace(
         "<svg ",
         "<svg " + " ".join(f'data-brushsvg-{name}="{value}"' for name, value in settings.items()) + " ",
@@ -50,7 +53,7 @@ def said(**settings) -> str:
 
 
 def explained(capsys, *words) -> dict[str, str]:
-    """What --explain says of each setting."""
+    """Return the sentence of --explain for each setting."""
     capsys.readouterr()
     status, _, reported = in_json(capsys, *words, "--explain")
     assert status == 0, reported
@@ -58,13 +61,13 @@ def explained(capsys, *words) -> dict[str, str]:
 
 
 def made(*words) -> bytes:
-    """The program of d.svg."""
+    """Return the program that convert writes for d.svg."""
     assert main(["convert", "d.svg", "-o", "made.script", "--force", "--quiet", *words]) == 0
     with open("made.script", "rb") as file:
         return file.read()
 
 
-# --- found
+# --- finding the project file
 
 
 def test_the_nearest_file_above_a_drawing_is_found(desk):
@@ -81,7 +84,7 @@ def test_the_nearest_file_above_a_drawing_is_found(desk):
 def test_the_search_ends_at_a_repository_and_at_home(desk, monkeypatch):
     (desk / "work/letters").mkdir(parents=True)
     project("")
-    (desk / "work/.git").touch()  # a file in a work tree, a folder in a clone
+    (desk / "work/.git").touch()  # .git is a file in a work tree and a folder in a clone
     assert find_project_file("work/letters/a.svg") is None
     project("", "work")
     assert find_project_file("work/letters/a.svg") == str(desk / "work" / NAME)
@@ -99,7 +102,7 @@ def test_a_folder_of_that_name_is_none_and_a_path_is_needed(desk):
         brushsvg.find_project(3)
 
 
-# --- read
+# --- reading the project file
 
 
 def test_paths_are_relative_to_the_file_and_names_are_kept(desk):
@@ -121,7 +124,7 @@ def test_paths_are_relative_to_the_file_and_names_are_kept(desk):
     assert brushsvg.read_project(NAME) == pickle.loads(pickle.dumps(copy.copy(brushsvg.read_project(NAME))))
 
 
-TYPED = {  # option: valid values, and values that are refused
+TYPED = {  # option: valid values, and refused values
     "sheet": ("a4 Letter 100x80 8.5x11in", "a9 100 x 0x4"),
     "fit": ("60x40 4x3cm", "a4 60"),
     "origin": ("20,15 2cm,1in -5,0", "20 20,15,3 2e6,0 a,b"),
@@ -186,7 +189,7 @@ def test_numbers_need_no_quotes(desk):
     assert brushsvg.read_project(NAME).settings == {"paint_speed": 12.0, "width": 2.5, "join": True}
 
 
-BAD = {  # text behind the format: code, key, and what the sentence names
+BAD = {  # text after the format line: code, key, and the values that the sentence names
     'brush = "roun-6"': ("brush-unknown round-6", "brush"),
     'cell = "ur5"': ("cell-unknown ur5e", "cell"),
     'brush = "mine"': ("brush-unknown mine.json", "brush"),
@@ -250,7 +253,7 @@ def test_a_file_that_is_not_valid_costs_one_sentence(desk, capsys, text):
         (b'format = "brushsvg/project"\nversion = true', "version-unknown True"),
         (b"\xff\xfe", "not-toml"),
         (b"# " + b"x" * MAX_BYTES, f"file-too-large {MAX_BYTES}"),
-        (b"x" * MAX_BYTES, "not-toml"),  # at once: a search that begins at each letter takes hours
+        (b"x" * MAX_BYTES, "not-toml"),  # refused at once; a search that restarts at each letter takes hours
     ],
 )
 def test_a_file_that_is_none_of_ours_is_refused(desk, data, expected):
@@ -267,7 +270,7 @@ def test_a_file_that_may_not_be_read_is_refused(desk):
         brushsvg.find_project("d.svg")
 
 
-# --- who counts more
+# --- precedence of settings
 
 
 def test_the_command_line_then_the_drawing_then_the_project_then_the_default(desk, capsys):
@@ -378,7 +381,7 @@ def test_what_does_not_suit_a_drawing_is_no_mistake(desk, capsys):
 def test_a_drawing_and_a_plan_name_the_brush_that_counts(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')
-    (desk / "d.svg").write_text(said(brush="mine"))  # its name, which the project has a file for
+    (desk / "d.svg").write_text(said(brush="mine"))  # the name of a brush for which the project has a file
     assert gives(explained(capsys, "convert", "d.svg", "-o", "o.json")["brush"], "mine.json", NAME)
     assert gives(explained(capsys, "preview", "o.json", "-o", "o.png")["brush"], "mine.json", NAME)
     (desk / "d.svg").write_text(said(brush="minne"))
@@ -390,7 +393,7 @@ def test_a_drawing_and_a_plan_name_the_brush_that_counts(desk, capsys):
     assert status == 0 and not is_reported(reported, "plan-of-other-brush")
 
 
-# --- commands
+# --- commands with a project file
 
 
 @pytest.mark.slow
@@ -405,7 +408,8 @@ def test_a_program_made_under_a_project_file_is_checked_under_it(desk, capsys, m
     )
     assert main(["convert", "job/d.svg", "-o", "job/o.script", "--quiet"]) == 0
     assert main(["check", "job/o.script", "job/d.svg"]) == 0
-    (desk / "elsewhere/.git").mkdir(parents=True)  # nothing is found from here
+    # The .git folder keeps the search from finding the project file from here.
+    (desk / "elsewhere/.git").mkdir(parents=True)
     monkeypatch.chdir(desk / "elsewhere")
     assert main(["check", "../job/o.script"]) == 0
     monkeypatch.chdir(desk)
@@ -491,7 +495,8 @@ def test_a_comparison_of_brushes_has_the_one_of_the_project(desk, capsys):
     assert re.search(r"(?m)^mine ", capsys.readouterr().out)
     assert main(["preview", "d.svg"]) == 0
     assert "mine" not in capsys.readouterr().out
-    (desk / "d.svg").write_text(said(brush="unknown"))  # a list of all brushes is of those, not the drawing's
+    # --all-brushes lists all brushes, not the drawing's brush only.
+    (desk / "d.svg").write_text(said(brush="unknown"))
     assert main(["preview", "d.svg", "--all-brushes"]) == 0
 
 
@@ -523,7 +528,7 @@ def test_settings_of_a_project_are_named_unless_quiet(desk, capsys):
     assert NAME not in capsys.readouterr().err
 
 
-# --- init
+# --- the init command
 
 
 def test_init_without_a_terminal_takes_its_answers_from_flags(desk, capsys):
@@ -553,7 +558,7 @@ def test_init_without_a_terminal_takes_its_answers_from_flags(desk, capsys):
 
 
 def at_terminal(folder, *words, answers: str) -> tuple[int, str]:
-    """Exit status, and all that a terminal shows."""
+    """Return the exit status and everything that a terminal shows."""
     pty = pytest.importorskip("pty")
     terminal, its_end = pty.openpty()
     os.write(terminal, answers.encode())
@@ -577,9 +582,8 @@ def test_init_asks_four_questions_each_with_a_default(desk):
     assert status == 0 and len(re.findall(r"\[[^\[\]]+\]: ", shown)) == 4
     assert brushsvg.read_project(desk / NAME).settings == {"cell": "linuxcnc-3axis", "sheet": (210.0, 297.0)}
     status, shown = at_terminal(desk, "init", answers="\n\n\n\n")
-    assert status == 1 and not re.search(
-        r"\[[^\[\]]+\]: ", shown
-    )  # it is there already: there are no questions
+    # The file exists already, so init asks no questions.
+    assert status == 1 and not re.search(r"\[[^\[\]]+\]: ", shown)
     status, shown = at_terminal(
         desk, "init", "--force", answers="ur5\nur5e\nroun-6\nrigid\na9\na5\nfast\n12,5\n"
     )
@@ -608,7 +612,7 @@ def test_what_init_writes_can_be_filled_in(desk):
     assert set(brushsvg.read_project(NAME).settings) == {*CHOICE_BY_TOP_KEY.values(), "paint_speed", "detail"}
 
 
-# --- names
+# --- setting names
 
 
 @pytest.mark.parametrize(
@@ -649,7 +653,7 @@ def test_a_misspelled_name_in_the_file_is_answered_with_the_nearest(desk, text, 
 
 
 def completions(line: str) -> list[str]:
-    """What a shell is given for a line."""
+    """Return the completions that a shell gets for a line."""
     pytest.importorskip("argcomplete")
     env = os.environ | {
         "_ARGCOMPLETE": "1",

@@ -1,4 +1,7 @@
-"""The package as a library: its names, what they cost, the examples, and writing a program from Python."""
+"""The package as a library: its names, their import cost, and the examples.
+
+The module also tests writing a program from Python.
+"""
 
 import inspect
 import re
@@ -57,7 +60,7 @@ def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monke
         {"cell": brushsvg.find_cell("ur5e"), "plan": plan, "marks": brushsvg.simulate(plan, brush)}[kind]
     )
     Path(name).write_text(text, encoding="utf-8")
-    assert write(read(name)) == write(read(tmp_path / name)) == text  # a str without a slash is a path too
+    assert write(read(name)) == write(read(tmp_path / name)) == text  # a str without a slash is also a path
     if kind != "cell":
         assert write(read(text)) == text
     for data in (None, b"\xff\xfe", b"moo", text.encode()[:40]):
@@ -82,7 +85,7 @@ def test_what_is_set_up_has_the_extras_that_its_commands_need():
         "arm",
         "cluster",
         "parquet",
-    )  # the last two are not set up: batch says what it lacks
+    )  # batch reports that the last two packages are missing
     assert named == {re.split("[<>=]", each)[0] for name in of_commands for each in extras[name]}
     before_dev = (root / "Makefile").read_text().split("$(VENV)/.dev:")[0]
     (installs,) = re.findall(r"\$\(PIP_INSTALL\) (\S*)$", before_dev, re.M)
@@ -112,7 +115,8 @@ def test_the_demo_leaves_everything(tmp_path):
         re.M,
     )
     shown, printed = (np.array(figures, float) for figures in ([row[1:] for row in rows], reported))
-    # processors differ: where an optimizer stops (refined) by some thousandths, all others by one of the last digit
+    # Results differ between processors: by some thousandths where an optimizer stops (refined), and by one in
+    # the last digit elsewhere.
     assert np.allclose(shown, printed, rtol=0, atol=0.005), "README.md has other figures"
     assert np.allclose(shown[:-1], printed[:-1], rtol=0, atol=0.0011), "README.md has other figures"
     overlap = {row[0].split(",")[0]: float(row[1]) for row in reversed(rows)}

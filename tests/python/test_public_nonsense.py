@@ -1,4 +1,7 @@
-"""Any input of the public names ends in a result or in Error: no crash, no hang, no other traceback."""
+"""Any input to the public names ends in a result or in Error.
+
+Crashes, hangs and other tracebacks are failures.
+"""
 
 import subprocess
 import sys
@@ -12,7 +15,7 @@ import brushsvg
 
 MODULES = ("laws",)
 BATCHES = 6
-LONG_S = 300  # a hang, and not a measure of speed
+LONG_S = 300  # catches a hang; it does not limit the speed
 
 
 def test_no_public_name_is_forgotten():

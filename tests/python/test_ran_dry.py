@@ -1,4 +1,4 @@
-"""Which marks of a sheet say how long its one load of paint lasted."""
+"""The marks of a sheet from which the length of its one load of paint is known."""
 
 import pytest
 
@@ -9,8 +9,11 @@ LENGTHS = (40.0, 30.0, 50.0, 20.0, 60.0)
 
 
 def sheet(shares):
-    """Painted marks of straight strokes without names, 4 mm wide, so much of each painted, and the whole ones. An L
-    before them reports the lag."""
+    """Return painted marks of straight strokes, and their full outlines.
+
+    The strokes are 4 mm wide and have no names. Each share is the painted part of a stroke; an L before the
+    strokes gives the lag.
+    """
     ways = [[[0, 0, -2], [30, 0, -1], [30, 30, -1]]]
     ways += [[[0, 50 + 25 * k, -2], [length, 50 + 25 * k, -1]] for k, length in enumerate(LENGTHS)]
     plan = {"passes": [{"stroke": "", "poses_mm": poses, "speed_mm_s": 20} for poses in ways]}

@@ -14,7 +14,7 @@ from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.swept_areas import region
 from brushsvg.strokes.wide_shapes import within_reach
 
-WIDE = "M10 10H90V26H10Z"  # 16 mm; round-6 paints 8.4
+WIDE = "M10 10H90V26H10Z"  # 16 mm wide; round-6 paints up to 8.4 mm
 WEDGE = "M10 20L90 12V28Z"
 
 
@@ -43,7 +43,10 @@ def test_what_is_in_reach_and_what_was_drawn_stays(brush):
 
 @pytest.mark.parametrize(("width", "is_painted"), [(8.41, True), (8.59, True), (8.7, False)])
 def test_a_line_that_is_too_wide_by_less_than_one_sees_is_painted(brush, width, is_painted):
-    """A brush typed in with 4.8 mm painted 4.791 mm, and refused a job for one dot of 4.8 mm."""
+    """A line that is too wide by less than the eye can see is painted.
+
+    A brush made for a typed width of 4.8 mm painted 4.791 mm, and a job was refused for one dot of 4.8 mm.
+    """
     line = of("M10 20H60", f'fill="none" stroke="red" stroke-width="{width}"')
     (made,), target, notices = within_reach(line, brush)
     assert target == line and not notices
@@ -88,7 +91,10 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
 
 
 def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
-    """The whole job was refused for it."""
+    """A line thinner than the brush is painted at the brush's smallest width.
+
+    The whole job was once refused for such a line.
+    """
     liner = find_brush("liner-1")  # 1 to 2 mm wide
     for width, is_reported in ((0.9, False), (0.4, True)):
         made = of("M10 20H60", f'fill="none" stroke="red" stroke-width="{width}"')
@@ -101,18 +107,18 @@ def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
         with refused(f"width-out-of-reach {width} '[1, 2] mm'", "p"):
             within_reach(made, liner, "refuse")
     rigid = find_brush("rigid")
-    assert within_reach(made, rigid, "passes")[0] == made  # its one width is not checked
+    assert within_reach(made, rigid, "passes")[0] == made  # a brush with a single width is not checked
 
 
 def test_a_sliver_that_is_less_than_half_of_the_smallest_mark_is_left_out():
-    liner = find_brush("liner-1")  # its smallest mark is 0.79 mm2
+    liner = find_brush("liner-1")  # its smallest mark has an area of 0.79 mm2
     sliver, dot = "M60 10h0.6v0.6h-0.6z", "M60 10h0.7v0.7h-0.7z"
     made = of(f"M10 20H50V21.5H10Z{sliver}")
     passes, target, (notice,) = within_reach(made, liner)
     assert len(made) == 2 and len(passes) == len(target) == 1
     assert agrees(notice, "width-out-of-reach 0.36 0.79 liner-1", next(s.id for s in made if s != target[0]))
     assert len(within_reach(of(f"M10 20H50V21.5H10Z{dot}"), liner)[0]) == 2
-    assert len(within_reach(made, find_brush("round-6"))[0]) == 2  # it paints down to no width
+    assert len(within_reach(made, find_brush("round-6"))[0]) == 2  # round-6 has no smallest width
     with refused("nothing-to-paint 0.36", "p"):
         within_reach(of(sliver), liner)
     with refused("width-out-of-reach"):
@@ -147,7 +153,10 @@ def overlap(strokes, shape, brush) -> float:
     keep=3,
 )
 def test_a_shape_wider_than_the_brush_is_painted_whole_unless_its_width_is_to_be_the_nearest(brush, d):
-    """Of a bar of 16 mm half was painted, and a disc of 9.4 mm became a drop."""
+    """A shape wider than the brush is painted whole, except with "clamp".
+
+    Half of a bar of 16 mm was once left blank, and a disc of 9.4 mm became a drop.
+    """
     made = of(d)
     shape = made[0].wanted_mm
     assert _core.overlap(mark_of(passes_of(made, brush), brush), shape) > 0.975
@@ -158,7 +167,10 @@ def test_a_shape_wider_than_the_brush_is_painted_whole_unless_its_width_is_to_be
 
 
 def test_the_stems_of_a_drawing_are_of_one_weight(brush):
-    """Of h66 in a bold serif the h was filled with 11 mm wide stems, the 6 kept to 8.4 mm."""
+    """All stems of a drawing have one weight.
+
+    In the word h66 in a bold serif, the h was filled with stems 11 mm wide, but the 6 was kept at 8.4 mm.
+    """
     for d in ("M10 40H90V49H10Z", "M10 5H90V29H10Z"):
         made = of(d)
         mark = region(mark_of(passes_of(made, brush), brush))
@@ -166,7 +178,10 @@ def test_the_stems_of_a_drawing_are_of_one_weight(brush):
 
 
 def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
-    """8.45 mm in place of 8.4 was reported for nine strokes of a word."""
+    """A width that is hardly out of reach causes no warning.
+
+    Nine strokes of a word were once reported for a width of 8.45 mm instead of 8.4.
+    """
     for wide_mm, is_reported in ((8.45, False), (8.55, False), (8.7, True)):
         painted, _, notices = within_reach(of(f"M10 10H90V{10 + wide_mm}H10Z"), brush)
         assert bool(notices) == is_reported
@@ -176,7 +191,10 @@ def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
 
 
 def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
-    """The trial of a letter with such an arm was refused and counted as nothing: all other letters were filled."""
+    """An arm that is hardly too wide does not cause passes in other letters.
+
+    The trial of a letter with this arm was once refused and not counted, and all other letters were filled.
+    """
     arm, bar = "M10 10H90V18.45H54.8V60H44.2V18.45H10Z", "M10 70H90V80.4H10Z"
     bare = 'fill="red" stroke="none"'
     both = strokes(read(f'<path id="arm" d="{arm}" {bare}/><path id="bar" d="{bar}" {bare}/>'))[0]

@@ -1,4 +1,7 @@
-"""`--compensation refined` on shapes wider than the brush, its notices, and a machine's limits."""
+"""`--compensation refined`: wide shapes, notices, and the limits of a machine.
+
+Wide shapes are wider than the brush.
+"""
 
 from dataclasses import replace
 
@@ -23,7 +26,7 @@ BARS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="90mm" vi
 def works(tmp_path, text, **how):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(text)
-    # round and butt terminals leave nothing to refine
+    # With a round or butt terminal, nothing would be left to refine.
     plain = {"start": "pointed", "end": "round"}
     return [prepare(drawing, Options(compensation=each, **plain, **how)) for each in ("closed", "refined")]
 
@@ -34,21 +37,24 @@ def overlap(work, number):
 
 
 def test_a_stroke_too_wide_for_the_brush_stays_straight(tmp_path):
-    """Bars of 12 and 24 mm had hooks and became a C, up to 14 mm off the middle, since that covers more."""
+    """A stroke that is too wide for the brush stays straight.
+
+    Bars of 12 and 24 mm once had hooks and became a C, up to 14 mm off the middle, because this covers more.
+    """
     closed, refined = works(tmp_path, BARS, wide="clamp")
     marks = _core.simulate(refined.plan, refined.brush).passes
-    # of the bar that is three times too wide hardly anything of its ends is worth a turn of the edge
+    # For the bar that is three times too wide, turning the brush at the ends gains almost nothing.
     least = (0.01, 0.0)
     for number, (middle_mm, trace) in enumerate(zip((26.0, 82.0), marks, strict=True)):
         widest = _core.widest_points(trace, refined.brush)
         inside = (widest[:, 1] > 22) & (widest[:, 1] < 68)
         assert widest[inside, 0] == pytest.approx(np.full(inside.sum(), middle_mm), abs=0.15)
-        assert overlap(refined, number) > overlap(closed, number) + least[number]  # ends are refined as ever
+        assert overlap(refined, number) > overlap(closed, number) + least[number]  # the ends are refined
     assert not is_reported(refined.notices, "off-middle-line")
 
 
 def bar(half, target=True):
-    """A bar of a constant half width, as its outline gives it."""
+    """Return a bar of constant half width, in the form that an outline gives."""
     p = np.linspace((30, 50), (90, 50), 4).reshape(1, 8)
     stroke = _core.Stroke("bar", p, half_width=[(0, half), (1, half)])
     if target:
@@ -66,8 +72,11 @@ def test_outlines_within_reach_and_a_little_beyond_are_refined_towards():
 
 @pytest.mark.parametrize(("away_mm", "is_reported"), [(0.8, [True, False]), (2.5, [True, True])])
 def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
-    """Two strokes 4 mm wide: the miss of one in closed form counts from the tolerance on, that of a refined one from
-    where its paint is half its half width outside."""
+    """A refined mark next to its stroke is reported.
+
+    The strokes are 4 mm wide. In closed form, the tracking error counts from the tolerance on. In a refined
+    plan, it counts from where the paint is outside by half the half width.
+    """
     stroke = bar(2.0, target=False)
     a_pass = compensate([stroke], BRUSH, (120, 90)).plan.passes[0]
     a_pass.poses_mm = a_pass.poses_mm + np.array([0, away_mm, 0])
@@ -77,7 +86,10 @@ def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
 
 
 def test_a_refined_plan_reports_strokes_left_in_closed_form(tmp_path):
-    """Nothing is refined on a thread, and its misses were reported with --compensation closed only."""
+    """A refined plan reports the tracking errors of strokes left in closed form.
+
+    Nothing is refined on a thin line, and its errors were once reported with --compensation closed only.
+    """
     text = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"><path id="z"
         d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.4"/></svg>"""
     closed, refined = works(tmp_path, text, corners="turn")
@@ -98,7 +110,11 @@ stroke="#000" stroke-linecap="round"><path id="one" d="M20 20 H40 V40" stroke-wi
     ids=["height", "margin"],
 )
 def test_a_refined_stroke_beyond_a_limit_is_left_in_closed_form(tmp_path, limit, d, width):
-    """What closed painted was refused when refined: the tool goes lower, or further beyond the edge."""
+    """A refined stroke that would exceed a limit of the machine stays in closed form.
+
+    Refined strokes go lower, or further beyond the edge. A drawing that closed form painted was once refused
+    in refined mode.
+    """
     text = TWO.format(d=d, width=width)
     closed, refined = works(tmp_path, text)
     poses = [np.vstack([each.poses_mm for each in work.plan.passes]) for work in (closed, refined)]
@@ -122,7 +138,7 @@ def test_a_refined_stroke_beyond_a_limit_is_left_in_closed_form(tmp_path, limit,
 
 
 def test_the_command_line_refines_within_its_cell(tmp_path, monkeypatch):
-    """And what it wrote is what `check` expects of the drawing."""
+    """The command line refines within the limits of its cell, and check accepts it."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.svg").write_text(TWO.format(d="M20 80 H60", width=5))
     assert cli.main(["cell", "new", "-o", "low.toml"]) == 0
@@ -134,7 +150,10 @@ def test_the_command_line_refines_within_its_cell(tmp_path, monkeypatch):
 
 
 def test_a_dot_stays_round(tmp_path):
-    """Its footprint goes round on the spot: moved, it had bulges."""
+    """A dot stays round in a refined plan.
+
+    Its footprint turns on the spot. When refinement moved the footprint, the dot had bulges.
+    """
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'
@@ -157,7 +176,7 @@ def test_refining_that_changes_nothing_says_so_and_why(tmp_path):
     (tmp_path / "bar.svg").write_text(BAR)
     refined = prepare(tmp_path / "bar.svg", Options(compensation="refined"))
     assert len(said_of_nothing(refined)) == 1 and NO_GAIN in said_of_nothing(refined)[0].sentence
-    closed, refined = works(tmp_path, BAR)  # the same but for its ends, which are refined
+    closed, refined = works(tmp_path, BAR)  # equal except for the ends, which are refined
     assert not np.array_equal(closed.plan.passes[0].poses_mm, refined.plan.passes[0].poses_mm)
     assert not said_of_nothing(closed) and not said_of_nothing(refined)
     low, lower = (work.plan.passes[0].poses_mm[:, 2].min() for work in (closed, refined))

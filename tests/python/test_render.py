@@ -1,4 +1,4 @@
-"""Pictures: the paint is where the marks are, in its colour, up is up."""
+"""In pictures, the paint is where the marks are, in its colour, with y up."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -30,7 +30,10 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 @pytest.fixture(scope="module")
 def painted():
-    """A red line low on the left, a blue one high on the right, and a red one over it."""
+    """Return marks of three lines.
+
+    A red line is low on the left, a blue line high on the right, and a red line crosses the blue one.
+    """
     brush = find_brush("round-6")
     lines = [((8, 6), (24, 6), RED), ((30, 24), (50, 24), BLUE), ((40, 10), (40, 25), RED)]
     strokes = [
@@ -142,7 +145,11 @@ def test_panels_are_complete_at_one_scale(shape, landscape):
 
 
 def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone():
-    """The order does not matter where they cross; where none does, the picture is all of theirs."""
+    """Several processors paint a page as each stroke is painted alone.
+
+    Where strokes cross, their order does not change the picture. Where no strokes cross, the picture is the
+    maximum of their pictures.
+    """
     brush, rng = find_brush("round-6"), np.random.default_rng(2)
     sheet, count = (400.0, 300.0), 96
     apart = [((10 + 30 * (k % 12), 15 + 34 * (k // 12)), rng.uniform(-9, 9, 2)) for k in range(count)]
@@ -164,7 +171,7 @@ def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone()
 
     marks = marks_of(apart)
     alone = np.max([picture(marks, [each]) for each in marks.passes], axis=0)
-    assert np.abs(picture(marks, marks.passes) - alone).max() < 1e-5  # sums of a row in single precision
+    assert np.abs(picture(marks, marks.passes) - alone).max() < 1e-5  # the row sums have single precision
     marks = marks_of(crossing)
     assert (picture(marks, marks.passes) == picture(marks, marks.passes[::-1])).all()
 
@@ -173,7 +180,10 @@ PLACES = {1: (16.0, 4.4), 2: (59.5, 29.5)}
 
 
 def test_numbers_of_places_stay_inside_and_off_the_paint(painted):
-    """The second place is in a corner of the sheet."""
+    """The numbers of places stay inside the picture and off the paint.
+
+    The second place is in a corner of the sheet.
+    """
     marks, brush, _ = painted
     scale = 20.0
     paint = coverage(marks, brush, (0, 0, *SHEET), scale)

@@ -1,4 +1,7 @@
-"""A command replaces what brushsvg wrote and nobody changed; anything else only with --force."""
+"""A command replaces only unchanged files that brushsvg wrote.
+
+Any other file is replaced only with --force.
+"""
 
 import os
 from pathlib import Path
@@ -29,7 +32,10 @@ def desk(tmp_path, monkeypatch):
 
 
 def is_kept(capsys, path, *words):
-    """That the command is refused for this file, and leaves it as it was; and replaces it with --force."""
+    """Return whether the command refuses to replace this file without --force.
+
+    The refused command must leave the file unchanged, and --force must replace it.
+    """
     before = Path(path).read_bytes()
     status, _, reported = in_json(capsys, *words)
     kept = status == 1 and is_reported(reported, "file-exists") and reported[-1][0] == path
@@ -102,7 +108,10 @@ def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monke
 
 
 def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, capsys, monkeypatch):
-    """Root may write anywhere, so a stand-in is used."""
+    """A refusal because of an unwritable home names the path.
+
+    Root may write anywhere, so the test uses a stand-in for os.access.
+    """
     place = desk / "state" / "brushsvg" / "written.txt"
     place.mkdir(parents=True)
     monkeypatch.setattr(

@@ -1,4 +1,4 @@
-"""Figures of the report against shapes whose answer is known."""
+"""Figures of the report agree with shapes whose answer is known."""
 
 import csv
 import dataclasses
@@ -146,7 +146,8 @@ def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
     marks = simulate(plan, brush)
     rows, _ = measure(PaintedPlan(plan, marks, brush, strokes))
     (letter,) = groups(marks, brush, strokes)
-    assert letter.overlap > max(row.overlap for row in rows) + 0.01  # each covers the other's pointed start
+    # Each mark covers the pointed start of the other mark.
+    assert letter.overlap > max(row.overlap for row in rows) + 0.01
 
 
 WORST = Worst((12.34, 5.67), True, 0.5, "too short", "shorter-than-footprint")

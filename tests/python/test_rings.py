@@ -1,4 +1,4 @@
-"""Lists and rings from Python, before anything is computed with them."""
+"""Lists and rings from Python are checked before anything is computed with them."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,10 @@ SQUARE = np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])
 
 
 class Endless:
-    """A list of a length that fits nowhere; who asks for one of its entries has begun to copy it."""
+    """A list that has a length but no entries.
+
+    Each request for an entry is counted: it shows that the caller has begun to copy the list.
+    """
 
     def __init__(self, length):
         self.length, self.requested = length, 0

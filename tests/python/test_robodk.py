@@ -1,4 +1,7 @@
-"""A post of RoboDK's kind is called with what the arm shall do, and what it cannot do is refused."""
+"""A post for RoboDK is called with the moves of the arm.
+
+Moves that the post cannot make are refused.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -63,7 +66,10 @@ def test_a_circle_right_after_the_press_is_painted_at_the_speed_of_painting():
 
 
 def test_a_tilted_brush_is_written_pose_by_pose():
-    """The brush leans by 20 degrees towards x from its second pose on, the tip where the plan has it."""
+    """A tilted brush is written pose by pose.
+
+    The brush leans by 20 degrees towards x from its second pose on, with the tip where the plan has it.
+    """
     leans = np.array([[0.0, 0, 1], [np.sin(np.pi / 9), 0, np.cos(np.pi / 9)]])[[0, 1, 1]]
     poses = [[20, 20, 0], [40, 20, -2], [60, 20, -2]]
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("s", poses, 20.0, tool_axes=leans)])
@@ -76,7 +82,7 @@ def test_a_tilted_brush_is_written_pose_by_pose():
         place = " ".join(f"{each:.3f}" for each in pose)
         (line,) = {line for line in lines if line.startswith(f"line {place} ")}
         assert float(line.split()[-1]) == pytest.approx(-axis[2], abs=1e-5)
-    assert lines[-2].endswith("down -1")  # upright where it travels
+    assert lines[-2].endswith("down -1")  # upright while it travels
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,8 @@
-"""RAPID, KRL, TP, DRL, Lua for Dobot and Python for xArm: what an interpreter of the tests' own, made from the manual,
-does with our programs, and what `check` makes of them. It shares nothing with what writes and reads them."""
+"""RAPID, KRL, TP, DRL, Lua for Dobot and Python for xArm do what the plan says.
+
+An interpreter of the tests' own, written from the manuals, runs our programs, and `check` reads them. The
+interpreter shares no code with the posts and readers.
+"""
 
 import inspect
 import io
@@ -43,7 +46,7 @@ NAMES = {
     "lrmate200id": "fanuc",
     "m0609": "doosan",
 }
-CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # what defines them
+CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # their programs contain circles
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
@@ -59,7 +62,7 @@ def needs_lua(language: str) -> None:
 
 
 def run(text: str, cell, height_mm: float = 300.0) -> Run:
-    """What a program does from a place over the robot's table."""
+    """Return the moves of a program that starts from a place above the robot's table."""
     needs_lua(cell.language)
     spin = places.down_of({"tool": {"spin_deg": cell.tool.spin_deg}})
     tool = places.tool_of({"tool": {"tcp_mm": cell.tool.tcp_mm, "rotation_deg": cell.tool.rotation_deg}})
@@ -80,7 +83,10 @@ def sound(text: str, cell, **at) -> Run:
 
 
 def touched(ran: Run, cell) -> list[tuple[Leg, np.ndarray]]:
-    """The legs that end below the clearance, with their end in the paper's frame."""
+    """Return the legs that end below the clearance, and their ends.
+
+    The ends are in the paper frame.
+    """
     back = np.linalg.inv(robot_from_paper(cell))
     ends = [
         (leg, places.moved(back, np.array([leg.end]))[0]) for leg in ran.legs if leg.kind in ("feed", "arc")
@@ -130,7 +136,7 @@ def test_corners_are_blended_within_reach_and_not_where_the_brush_turns_back(nam
 
 
 def gentle(cell, speed_mm_s=12.7) -> str:
-    """A stroke with bends of a degree."""
+    """Return the program of a stroke with bends of one degree."""
     poses = np.array([(10, 10, 0), (14, 10, -2), (18, 10, -2), (22, 10.1, -2), (26, 10.3, -2), (30, 10.3, 0)])
     a_pass = _core.Pass("gentle", poses, speed_mm_s)
     made = program(_core.Plan("b", "", (100.0, 60.0), [a_pass]), BRUSH, cell)
@@ -138,7 +144,10 @@ def gentle(cell, speed_mm_s=12.7) -> str:
 
 
 def test_dobot_gets_whole_blends_and_whole_speeds():
-    """The manual names no others. Where the cell says that finer ones are taken, they are written."""
+    """Programs for Dobot have whole blends and whole speeds.
+
+    The manual names no other values. If the cell declares a finer resolution, the program uses it.
+    """
     cell = replace(on("cr5", SQUARE), blending=Blending(0.05, 2.0))
     reported = "MovL(on_paper(18.000, 10.000, -2.000), {speed = 12, r = 1})\n"
     reported += "MovL(on_paper(22.000, 10.100, -2.000), {speed = 12, r = 1})\n"
@@ -281,7 +290,7 @@ def test_what_the_reader_refuses(name, old, new, said):
 
 
 LOOKS = "tip = get_current_posx(DR_BASE)[0]\n", "flange = get_current_tool_flange_posx(DR_BASE)\n"
-SAME = [  # as the controller runs it
+SAME = [  # equal for the controller
     ("m0609", "".join(LOOKS), "".join(reversed(LOOKS))),
     ("m0609", LOOKS[0], LOOKS[0].replace("[0]", "[-0]")),
 ]
@@ -301,7 +310,10 @@ def test_what_the_reader_takes_for_the_same(name, old, new):
 
 @pytest.mark.parametrize("title", ["coding: rot13", "coding=coding:utf-7 +AAo-x = 1"])
 def test_no_title_sets_the_encoding_of_python(title):
-    """Python obeys such remarks in the first two lines of a file."""
+    """No title sets the encoding of a Python program.
+
+    Python obeys an encoding remark in the first two lines of a file.
+    """
     cell = find_cell("xarm6")
     text = text_for(cell, header=(f"title: {title}", f"brush: {title}, 3 strokes"))
     letters, _ = tokenize.detect_encoding(io.BytesIO(text.encode()).readline)
@@ -312,7 +324,10 @@ def test_no_title_sets_the_encoding_of_python(title):
 @pytest.mark.slow
 @sample("name", NAMES, keep=2)
 def test_no_dangerous_program_is_allowed(name, tmp_path):
-    """A sample; tests/integration has three hundred of each job."""
+    """No dangerous program passes check, in a sample.
+
+    tests/integration has three hundred of each job.
+    """
     needs_lua(NAMES[name])
     figures = Figures()
     for job in ("two lines", "leaning"):

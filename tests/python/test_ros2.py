@@ -1,4 +1,7 @@
-"""Poses with times for ROS 2: what a table says, what rosbags makes of the message, and that times can be kept."""
+"""Poses with times for ROS 2: the table, and the message as rosbags reads it.
+
+The machine must be able to keep the times.
+"""
 
 import json
 import re
@@ -62,7 +65,10 @@ def test_the_brush_goes_through_the_plans_poses(paper):
 
 
 def test_speeds_and_accelerations_are_the_cells():
-    """Differences of rows, which the table's rounding changes by little."""
+    """Speeds and accelerations stay within the cell's limits.
+
+    The test uses differences between rows, which the rounding of the table changes only a little.
+    """
     cell = on("fr3", SQUARE)
     most = cell.speeds.acceleration_mm_s2
     rows = table(cell)
@@ -72,7 +78,8 @@ def test_speeds_and_accelerations_are_the_cells():
     ways = np.linalg.norm(steps, axis=1)
     speeds = ways / after_s
     assert (speeds <= rows[1:, 4] * (1 + 1e-6)).all()
-    # even acceleration: the mean speeds of two rows are so far apart as their middles in time
+    # With constant acceleration, the difference of two mean speeds is proportional to the time between the
+    # middles of the two intervals.
     changes = np.abs(np.diff(speeds)) / (after_s[1:] + after_s[:-1]) * 2
     assert changes.max() < most * 1.01
     ramps = (after_s < 1.5 * SLICE_S) & (speeds < 0.99 * rows[1:, 4])
@@ -93,7 +100,7 @@ def test_corners_that_cannot_be_cut_are_stopped_at_and_others_are_slow():
 
 
 def message(text: str) -> tuple[list[list[float]], str, str]:
-    """Times, places and turns of a table; its frames."""
+    """Return the times, positions and rotations of a table, its frame and its link."""
     rows = [line.split(",") for line in text.splitlines() if line[0] in "-0123456789"]
     frames = re.search(r"# frame: (\S+)\n# link: (\S+)", text).groups()
     return [[float(cell) for cell in row[:8]] for row in rows], *frames
@@ -114,7 +121,10 @@ def test_json_has_the_rows_of_the_table():
 @pytest.mark.skipif(not find_spec("rosbags"), reason="rosbags is not installed")
 @pytest.mark.parametrize("name", ["fr3_link8", "tool0", "arm/flange", "a"])
 def test_rosbags_reads_the_message(name):
-    """Names of other lengths put the doubles at other places."""
+    """rosbags reads the message for frame names of any length.
+
+    The length of a name shifts the position of the doubles in the message.
+    """
     from rosbags.typesys import Stores, get_typestore
 
     cell = on("fr3", TURNED)
@@ -191,7 +201,11 @@ def test_a_person_cannot_be_waited_for_and_frames_have_names():
 
 
 def test_check_accepts_lifts_that_are_hardly_longer_than_what_is_rounded(tmp_path, monkeypatch, capsys):
-    """By 0.015 mm on a machine that leans: how fast that is depends on the last decimals of both ends."""
+    """Check accepts lifts that are hardly longer than the rounding.
+
+    The lifts are about 0.015 mm long, on a machine that leans. Their speed depends on the last decimals of
+    both ends.
+    """
     monkeypatch.chdir(tmp_path)
     cell = find_cell("fr3")
     leans = Machine(lean_mm_per_mm=(-0.333, -0.861), scale=(1.0014, 1.035), skew=0.0589, height_mm=-1.2)

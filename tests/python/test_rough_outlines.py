@@ -1,4 +1,7 @@
-"""Rough outlines of scans and traced bitmaps: their mean edge gives the strokes. Clean outlines stay as they are."""
+"""The strokes of rough outlines follow the mean edge.
+
+Scans and traced bitmaps have rough outlines. Clean outlines stay unchanged.
+"""
 
 import tracemalloc
 
@@ -15,7 +18,10 @@ HALF_MM = 2.2
 
 
 def drawn(*cubics, half_mm=HALF_MM):
-    """Rings of lines of one width with round ends; each line is a chain of cubics."""
+    """Return the outline of lines of one width with round ends.
+
+    Each line is a chain of cubics.
+    """
     rings = []
     for cubic in cubics:
         points = np.array(cubic, float).reshape(-1, 2)
@@ -38,7 +44,10 @@ LETTERS = {
 
 
 def roughened(rings, sigma_mm, step_mm, seed=4):
-    """Places so far apart, each moved across the outline by normal noise."""
+    """Return points at the given spacing, each displaced across the outline by noise.
+
+    The noise has a normal distribution.
+    """
     noise, made = np.random.default_rng(seed), []
     for ring in rings:
         closed = np.vstack([ring, ring[:1]])
@@ -50,7 +59,7 @@ def roughened(rings, sigma_mm, step_mm, seed=4):
 
 
 def pixels(rings, side_mm):
-    """The outline of all pixels whose middle is in the shape."""
+    """Return the outline of all pixels whose centre is inside the shape."""
     shape = region(rings)
     left, low, right, high = np.array(shape.bounds) + np.array([-1, -1, 1, 1]) * side_mm
     xs, ys = np.meshgrid(np.arange(left, right, side_mm), np.arange(low, high, side_mm))
@@ -69,7 +78,7 @@ def region(rings):
 
 
 def overlap(strokes, rings) -> float:
-    """Of what discs paint along the strokes, with a shape: intersection over union."""
+    """Return the intersection over union of the disc paint along strokes and a shape."""
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in strokes]
     painted = region(_core.unite([ring for each in bare for ring in _core.wanted_outline(each, 0.01)]))
     shape = region(rings)
@@ -87,7 +96,10 @@ ROUGH = {
 @pytest.mark.parametrize("letter", LETTERS)
 @pytest.mark.parametrize("kind", ROUGH)
 def test_a_rough_letter_has_the_strokes_of_the_clean_one(letter, kind):
-    """An R with noise of 0.2 mm became 11 strokes for 6, with an overlap of 0.87."""
+    """A rough letter has the strokes of the clean letter.
+
+    An R with noise of 0.2 mm once became 11 strokes instead of 6, with an overlap of 0.87.
+    """
     clean = LETTERS[letter]
     expected = outline_strokes(clean)
     found = outline_strokes(ROUGH[kind](clean))
@@ -112,13 +124,13 @@ def star(radius_mm: float, points: int, depth: float) -> np.ndarray:
 
 
 def ragged(radius_mm: float, points: int, least_mm: float, most_mm: float) -> np.ndarray:
-    """Points of a leaf, none like another."""
+    """Return the outline of a leaf with irregular teeth."""
     depths = np.random.default_rng(2).uniform(least_mm, most_mm, points) / radius_mm
     return regular(radius_mm, 2 * points) * (1 - np.repeat(depths, 2) * np.tile([0, 1], points))[:, None]
 
 
 def gear(radius_mm: float, teeth: int) -> np.ndarray:
-    """Teeth with straight flanks, as high as wide."""
+    """Return the outline of a gear whose teeth have straight flanks, as high as wide."""
     turn = 2 * np.pi / teeth
     at = (np.arange(teeth)[:, None] + [0.0, 0.45, 0.55, 0.95]).ravel() * turn
     radii = np.tile([0, 0, 1, 1], teeth) * radius_mm * turn / 2 + radius_mm
@@ -126,7 +138,7 @@ def gear(radius_mm: float, teeth: int) -> np.ndarray:
 
 
 def curved_gear(radius_mm: float, teeth: int) -> np.ndarray:
-    """Teeth of 20 points each, narrower than the gaps between them."""
+    """Return a gear with teeth of 20 points each, narrower than their gaps."""
     at = np.arange(20 * teeth) / 20
     wave = np.clip(1.4 * np.sin(2 * np.pi * at) + 0.35 * np.sin(4 * np.pi * at) ** 2, -0.8, 1)
     angles, radii = 2 * np.pi * at / teeth, radius_mm * (1 + 2 * wave / teeth)
@@ -159,7 +171,10 @@ CLEAN = {
 
 @pytest.mark.parametrize("name", CLEAN)
 def test_a_clean_shape_stays_as_it_is(name):
-    """A first attempt took the corners of a nonagon and the teeth of a gear for dents."""
+    """A clean shape stays unchanged.
+
+    A first attempt mistook the corners of a nonagon and the teeth of a gear for dents.
+    """
     rings = _core.fill(CLEAN[name], "nonzero")
     assert smooth_rough_outlines(rings) is rings
 
@@ -167,7 +182,10 @@ def test_a_clean_shape_stays_as_it_is(name):
 @pytest.mark.parametrize("step_mm", [0.05, 0.1, 0.2])
 @pytest.mark.parametrize("decimals", [2, 3, 12])
 def test_rounded_coordinates_of_many_points_are_not_rough(step_mm, decimals):
-    """A straight line of points rounded to 0.01 mm turns left and right all along."""
+    """Many points with rounded coordinates are not a rough outline.
+
+    A straight line of points rounded to 0.01 mm turns left and right along its whole length.
+    """
     turned = shapely.transform(region(LETTERS["n"]), lambda xy: xy @ [[0.8, 0.6], [-0.6, 0.8]])
     for shape in (turned, shapely.Polygon([(0, 0), (31, 7), (27, 30), (14, 12), (3, 29)])):
         rings = [shapely.get_coordinates(shapely.segmentize(shape.exterior, step_mm))[:-1].round(decimals)]
@@ -183,7 +201,10 @@ def test_roughness_follows_the_noise(sigma_mm):
 
 @pytest.mark.parametrize("side_mm", [0.1, 0.3])
 def test_pixels_are_rough_by_half_of_them(side_mm):
-    """Their steps are as alike as the teeth of a gear."""
+    """The roughness of a pixel outline is half a pixel.
+
+    The steps are as regular as the teeth of a gear.
+    """
     rough_mm, half_width_mm = measure_roughness_mm(pixels(LETTERS["S"], side_mm))
     assert 0.4 * side_mm < rough_mm <= 0.5 * side_mm
     assert half_width_mm == pytest.approx(HALF_MM, rel=0.1)
@@ -206,7 +227,10 @@ def test_specks_and_pinholes_of_a_rough_shape_are_left_out():
 
 
 def test_a_large_rough_shape_stays_within_its_memory():
-    """Smoothing asks for places every 0.1 mm of 80 m."""
+    """Smoothing a large rough shape stays within its memory limit.
+
+    Smoothing needs points every 0.1 mm along 80 m.
+    """
     x = np.linspace(0, 40_000, 90_000)
     noise = np.random.default_rng(1).normal(0, 0.05, (2, len(x)))
     hair = np.vstack([np.column_stack([x, noise[0]]), np.column_stack([x[::-1], 6 + noise[1]])])

@@ -1,4 +1,7 @@
-"""Round ends of wide lines: the front of a footprint is blunt there, so the brush is turned round in the cap."""
+"""Round ends of wide lines: the brush turns round within the cap.
+
+The front of a footprint is too blunt to paint the cap alone.
+"""
 
 import numpy as np
 import pytest
@@ -35,7 +38,7 @@ def mark(some: list, start: str = "auto", end: str = "auto"):
 
 
 def strays_mm(painted, width_mm: float) -> float:
-    """How far the edges of the mark and of the drawn capsule are apart at most."""
+    """Return the largest distance between the edges of mark and drawn capsule."""
     target = MIDDLE.buffer(width_mm / 2, quad_segs=64)
     points = [shapely.points(shapely.get_coordinates(each)) for each in (painted, target)]
     return float(
@@ -49,7 +52,11 @@ def strays_mm(painted, width_mm: float) -> float:
 @pytest.mark.parametrize("drawn", [line, capsule])
 @pytest.mark.parametrize("width_mm", [5.75, 6, 7, 8, 8.4])
 def test_both_ends_are_round(drawn, width_mm):
-    """Of 6 mm they were hexagons, as the front of a footprint is: 0.4 mm off. 0.1 mm is seen by nobody."""
+    """Both ends of a wide line are round.
+
+    At 6 mm, the ends were hexagons like the front of a footprint, with an error of 0.4 mm. An error of 0.1 mm
+    is invisible.
+    """
     painted, plan = mark(drawn(width_mm))
     assert strays_mm(painted, width_mm) < 0.1
     assert len(plan.passes[0].poses_mm) < 60

@@ -1,4 +1,4 @@
-"""Rounding of a pass in a program's text: readers of one decide as its writer does."""
+"""The rounding of a pass in a program's text: readers decide as the writer does."""
 
 import random
 from dataclasses import replace
@@ -39,7 +39,7 @@ def cell_of(name, decimals, **changes):
 
 
 def found_by_check(poses, arcs, cell):
-    """The text of one stroke, and what check says of its lines."""
+    """Return the text of one stroke, and the line that check reports as different."""
     a_pass = _core.Pass("one", np.array(poses), 20.0, arcs=arcs)
     made = unchecked_program(whole(_core.Plan(BRUSH.name, "", SHEET_MM, [a_pass])), BRUSH, cell)
     text = "".join(text_of(POSTS[cell.language], made))
@@ -50,11 +50,11 @@ def found_by_check(poses, arcs, cell):
     )
 
 
-# a chord of 0.7 mm on a circle of 14 mm between lines, as a turn that fills a corner ends
+# Between lines, the arc has a chord of 0.7 mm on a circle of 14 mm. Turns that fill a corner end like this.
 ONE_CHORD = [DOWN, (30, 20, -2), (45, 22, -2), *arc((50, 40), 14, -70, -67.2, 2), (60, 40, -2), UP]
-# on a circle of 400 m: at any number of decimals that one writes, its places are on one line
+# On a circle of 400 m, the points are on one line at any number of decimals in use.
 FLAT = [DOWN, (30, 20, -2), *arc((40, 4e5 + 20), 4e5, -89.9993, -89.9985, 3), (60, 40, -2), UP]
-# smaller than what is written: rounded, it may run round the other way
+# The arc is smaller than the written unit: after rounding, it may run the other way round.
 SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2), UP]
 
 
@@ -92,7 +92,11 @@ def test_what_goes_up_almost_straight_is_as_fast_as_what_is_written(name, rotati
 @pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4])
 @pytest.mark.parametrize("x", [40.0, 40.0004])
 def test_a_servo_stays_where_less_than_half_a_unit_is_gone_next_to_its_lift(x, sideways_mm):
-    """3e-4 mm from 40.0004 to 40.0007 are a unit when rounded: nobody writes it, and nobody took it for a lift."""
+    """A servo stays in place if it moves by less than half a unit next to its lift.
+
+    From 40.0004 to 40.0007 is 3e-4 mm, but one unit after rounding. No post wrote this move, and no reader
+    accepted the line as a lift.
+    """
     poses = [DOWN, (20, 20, -2), (x, 25, -2), (x + sideways_mm, 25, -1), (60, 50, -1), UP]
     assert found_by_check(poses, [], cell_of("grbl-servo", 3))[1] is None
 
@@ -100,12 +104,12 @@ def test_a_servo_stays_where_less_than_half_a_unit_is_gone_next_to_its_lift(x, s
 SERVO_ROWS = (
     ((-10.0, 900.0), (0.0, 600.0), (5.0, 400.0)),
     ((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0)),
-    ((-10.0, 0.0), (5.0, 60.0)),  # a value is a quarter of a millimetre
+    ((-10.0, 0.0), (5.0, 60.0)),  # one value is a quarter of a millimetre
 )
 
 
 def to_and_fro(chance: random.Random) -> list:
-    """Poses on one spot at other depths, there and back, or along a line of a few tenths."""
+    """Return poses at several depths, on one spot, to and fro, or on a short line."""
     x, y = (round(chance.uniform(20, 40), 4) for _ in "xy")
     angle, length = chance.uniform(0, 2 * np.pi), chance.choice([0.0, 0.2, 0.5, 1.0, 6.0])
     along = [(0.0, length)[k % 2] if chance.random() < 0.7 else 0.0 for k in range(chance.randint(2, 9))]
@@ -120,8 +124,11 @@ def to_and_fro(chance: random.Random) -> list:
 @sample("table", SERVO_ROWS, keep=1)
 @pytest.mark.parametrize("step_mm", [0.05, 0.2, 0.5])
 def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
-    """Half of these were refused by check: a rest amid a lift was read as none, moves of a unit were left out, and a
-    lift that rounding may make none had to be there."""
+    """Check accepts the to-and-fro strokes that a servo paints.
+
+    Check once refused half of these programs. It ignored a rest in the middle of a lift, left out moves of
+    one unit, and required a lift that rounding can remove.
+    """
     chance = random.Random(f"to and fro {table} {step_mm}")
     cell = cell_of("grbl-servo", chance.choice([3, 4]))
     servo = replace(cell.servo, table=table, step_mm=step_mm)
@@ -165,7 +172,8 @@ def test_places_are_those_of_the_text_in_the_frame_that_it_has():
     assert leaning.sideways_mm > upright.sideways_mm
 
 
-# a way that is 40 times as steep as long, as a long lag ends a dab: of its parts each is two units long
+# A path that is 40 times as steep as long, like the end of a dab with a long lag. Each of its parts is two
+# units long.
 STEEP = [(49.4, 50, 0), (57.4, 50, -3.4833148), (57.310625, 50, -1.5511636), (57.35, 50, 0)]
 
 
@@ -223,7 +231,7 @@ def test_no_circle_begins_or_ends_next_to_one_by_less_than_a_move():
     (reported,) = written.arcs
     run = np.delete(written.poses_mm[:, :2], slice(reported.first + 1, reported.last), axis=0)
     radii_mm = np.linalg.norm((run[3:-3] + run[4:-2]) / 2 - (50, 40), axis=1)
-    assert len(radii_mm) > 3 and np.abs(radii_mm - 14).max() < 0.0101  # the other one's chords
+    assert len(radii_mm) > 3 and np.abs(radii_mm - 14).max() < 0.0101  # chords of the other circle
 
 
 @pytest.mark.parametrize("turn", [1, -1])
@@ -233,7 +241,11 @@ def test_no_circle_begins_or_ends_next_to_one_by_less_than_a_move():
     ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3", "irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"],
 )
 def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
-    """Rounded, its end could be on either side of its beginning: then it would be run all round, or not at all."""
+    """A whole circle is written as two halves.
+
+    After rounding, its end could be on either side of its beginning. The machine would then run all the way
+    round, or not at all.
+    """
     cell = cell_of(name, 3, paper=Paper((0.3, -400.1, 20.0), (0, 0, 97.57)))
     on = arc((50, 40), 14, -70, -70 + turn * degrees, 24)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
@@ -249,8 +261,11 @@ def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
 @pytest.mark.parametrize("degrees", [361.0, 371.4, 540.0, 800.0])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
 def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees, turn):
-    """A small closed triangle was turned by 371.4 degrees: written in one line, it ran 11.4 degrees, or the other
-    way."""
+    """A circle that goes on beyond its beginning keeps all its turns.
+
+    A small closed triangle was turned by 371.4 degrees. Written in one line, the circle ran 11.4 degrees, or
+    the other way round.
+    """
     on = arc((50, 40), 9.47, 72.19, 72.19 + turn * degrees, 67)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
     reported, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
@@ -265,7 +280,10 @@ def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees,
 @pytest.mark.parametrize("at", [100, 180, 190, 250])
 @pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
 def test_a_circle_whose_named_pose_is_half_way_round_or_farther_is_read(name, at):
-    """Of its poses the middle one is named, where on the circle that is."""
+    """A circle is read back with its named pose at any position.
+
+    The program line names the middle one of the poses, which can be anywhere on the circle.
+    """
     angles = [0, at / 3, at / 2, at, (at + 300) / 2, 290, 300]
     on = [point for angle in angles for point in arc((50, 40), 14, angle, angle, 1)]
     poses = [DOWN, (30, 20, -2), *on, (60, 40, -2), UP]
@@ -315,7 +333,11 @@ def test_check_allows_all_that_convert_writes(seed, tmp_path, capsys):
 
 @pytest.mark.parametrize(("cell", "radius_mm"), [("grbl-servo", 7.5048828125), ("irb120", 7.505615234375)])
 def test_check_allows_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, tmp_path, capsys):
-    """As large as convert allows: a servo's whole values, or corners that are cut, take the mark 0.01 mm further."""
+    """Check accepts marks that touch the edge of the sheet.
+
+    The marks are as large as convert allows. Whole servo values, or corners that are cut, then extend the
+    mark by 0.01 mm.
+    """
     source, program = tmp_path / "a.svg", tmp_path / f"a{'.gcode' if cell == 'grbl-servo' else '.mod'}"
     ring = f'<circle cx="8" cy="8" r="{radius_mm}" fill="none" stroke="black" stroke-width="1"/>'
     source.write_text(

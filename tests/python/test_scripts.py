@@ -1,4 +1,7 @@
-"""Scripts next to the package use what is there: nobody runs all of them, and names move."""
+"""Scripts next to the package use names that exist.
+
+No test runs all of the scripts, and names move.
+"""
 
 import ast
 import importlib

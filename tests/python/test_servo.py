@@ -1,4 +1,4 @@
-"""G-code for a brush on a servo: the values that come out paint at the heights that went in."""
+"""G-code for a brush on a servo paints at the heights that the plan asks for."""
 
 import itertools
 import re
@@ -29,7 +29,10 @@ CELL = find_cell("grbl-servo")
 
 
 def run(text):
-    """(x, y, height) at the end of each line that moves, with its height held along it; and the waiting in s."""
+    """Return (x, y, height) at the end of each move, and the total waiting time [s].
+
+    The servo keeps its height along each line.
+    """
     table = np.array(sorted(CELL.servo.table))
     x = y = value = None
     rows, waited = [], 0.0
@@ -62,14 +65,18 @@ def test_the_lift_alone_takes_its_time():
     _, waited = run(text_of(("dab", [(10, 10, 0), (10, 10, -2), (10, 10, 0)], 20.0), cell="grbl-servo"))
     down_s = (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 20 + CELL.heights.clearance_mm / 6 + 2 / 6
     up_s = 2 / 6 + CELL.heights.clearance_mm / 6 + (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 50
-    lifts = 7  # up before anything; approach, land, press, release, lift, retract
+    lifts = 7  # one up before all else; then approach, land, press, release, lift, retract
     assert waited == pytest.approx(down_s + up_s + lifts * CELL.servo.settle_s, abs=0.06)
 
 
 @pytest.mark.parametrize(("values", "step_mm"), [(80, 0.5), (150, 0.25), (1000, 0.1)])
 def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm):
-    """A lift after a line begins where the line's last part was held, half a step away, and values are whole: waits
-    were those of the plan's heights, up to a half too short."""
+    """No lift is faster than programmed, for the values that are written.
+
+    The last part of a line is held at half a step from its end height. A lift after the line begins there,
+    and values are whole numbers. Waits were once computed from the plan's heights and were up to half too
+    short.
+    """
     cell = replace(CELL, servo=Servo(((-10.0, 0.0), (0.0, 0.6 * values), (5.0, float(values))), step_mm, 0.0))
     poses = np.array([(10, 10, 0), (10, 10, -1), (14, 10, -3.3), (16, 11, -1.7), (16, 11, 0)])
     plan = SimpleNamespace(
@@ -96,8 +103,11 @@ def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm
 @pytest.mark.parametrize("rim_mm", [-5.0, 0.0])
 @pytest.mark.parametrize("language", ["grbl-servo", "grbl-3axis"])
 def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, capsys, language, rim_mm):
-    """Its programs went down to it and up again as in the air, and were refused when they were read back; so was a dip
-    faster than the cell paints."""
+    """The brush moves slowly into and out of a vessel that is lower than the paper.
+
+    Programs once moved down to the vessel and up again at the speed for free air, and the reader refused
+    them. The reader also refused a dip faster than the cell paints.
+    """
     ink = Station(
         "ink", (-10.0, 10.0), surface_mm=-5.5, depth_mm=2.0, rim_mm=rim_mm, wipe_mm=((-8.0, 10.0, rim_mm),)
     )
@@ -130,7 +140,11 @@ def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
     ],
 )
 def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, height):
-    """They would silently become the table's ends: travel through the paint, strokes that stay thin."""
+    """Heights outside the servo's table are refused.
+
+    Otherwise they would silently become the ends of the table: the brush would travel through the paint, or
+    strokes would stay thin.
+    """
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
         passes=[
@@ -170,7 +184,10 @@ def test_values_follow_the_table():
 
 
 def test_the_output_is_never_switched_off():
-    """In laser mode grbl's output is off where the motion mode is not G1, at M5 and at M2."""
+    """The program contains no command that switches the output off.
+
+    In laser mode, grbl switches the output off if the motion mode is not G1, at M5 and at M2.
+    """
     text = text_of(*TWO, cell="grbl-servo")
     code = [line for line in text.splitlines() if line and not line.startswith("(")]
     assert code.index("G1 F3000.0") < code.index("M3 S800")
@@ -179,8 +196,11 @@ def test_the_output_is_never_switched_off():
 
 
 def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
-    """Where the line before it was held, rounded heights do not show to the value: a lift that begins four values
-    later waits a tenth of a millimetre less, and was taken for one that was changed."""
+    """A lift may wait less if rounded heights make it begin nearer to its end.
+
+    Rounded heights do not show the exact value at which the line before a lift was held. A lift that began
+    four values later waited for a tenth of a millimetre less, and was mistaken for a changed lift.
+    """
     like = _ActComparison(CELL)
 
     def lift(waits_s):
@@ -207,7 +227,10 @@ def test_lifts_that_are_none_are_left_out_up_to_the_end_of_either_program():
 @pytest.mark.parametrize("width_mm", [0.0004, 0.002, 0.003, 0.006, 0.04, 0.08, 0.3])
 @pytest.mark.parametrize(("name", "suffix"), [("grbl-servo", ".nc"), ("axidraw-ebb", ".ebb")])
 def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
-    """The typed brush's strokes begin this steeply, and no servo plotter took them (too-steep)."""
+    """A steep path is pressed and lifted on the spot.
+
+    Strokes of the typed brush begin this steeply, and every servo plotter refused them (too-steep).
+    """
     steep = [(20, 20, 0), (20 + width_mm, 20, -4), (40, 20, -4), (40 + width_mm, 20, 0)]
     cell = find_cell(name)
     text = text_of(("a", steep, 20.0), cell=name)
@@ -224,7 +247,10 @@ def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
 @pytest.mark.parametrize("cell", ["grbl-servo", "axidraw-ebb"])
 @pytest.mark.parametrize("lag", ["2", "5", "8"])
 def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypatch, capsys, lag, cell):
-    """Such a stroke ends with a lift of 2.1 mm on a way of 0.04 mm, in parts of nearly two steps each."""
+    """Check accepts a straight line by a brush with a constant lag.
+
+    This stroke ends with a lift of 2.1 mm on a path of 0.04 mm, in parts of nearly two steps each.
+    """
     monkeypatch.chdir(tmp_path)
     Path("line.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
@@ -239,7 +265,10 @@ def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypat
 
 
 def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypatch, capsys):
-    """It gives way to that, and the line begins 0.024 mm higher than it was planned."""
+    """Check accepts a pose that has the servo value of the pose before it.
+
+    The program leaves out the second pose, and the line begins 0.024 mm higher than planned.
+    """
     monkeypatch.chdir(tmp_path)
     servo = Servo(((-10.613, 262.466), (11.656, 1012.189)), 0.05, 0.0)
     machine = Machine(height_mm=-0.18880217172035013)
@@ -259,7 +288,11 @@ def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypat
 
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])
 def test_a_steep_way_of_rounded_parts_is_no_jump(width_mm):
-    """Places rounded by half a unit of 3e-3 mm took that much less time, and check called its own program fast."""
+    """Rounded parts of a steep path do not look like a jump.
+
+    Coordinates rounded by half a unit of 3e-3 mm shortened the time of the path, and check rejected its own
+    program as too fast.
+    """
     cell = find_cell("grbl-servo")
     steep = [(21.522, 28.978, 0), (21.522, 28.978, -2.785), (21.522 + width_mm, 28.978, -0.105)]
     text = text_of(("a", [*steep, (21.522 + width_mm, 28.978, 0)], 15.0), cell="grbl-servo")
@@ -274,7 +307,10 @@ def test_a_lift_before_any_feed_has_a_speed():
 
 
 def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
-    """The machine's feed is that of the way without the lift: at 20 mm/s a slope of 1.2 made 31 of it."""
+    """The tip is nowhere faster than the brush allows on a slope.
+
+    The machine's feed ignores the lift: at 20 mm/s, a slope of 1.2 gave the tip 31 mm/s.
+    """
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
@@ -295,7 +331,10 @@ def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
 
 @pytest.mark.parametrize("name", [name for name in cell_names() if find_cell(name).servo])
 def test_shipped_tables_hold_the_safe_height_over_thicker_paper(name):
-    """The table of grbl-servo ended at the safe height: each positive --z-offset was refused."""
+    """Shipped servo tables reach the safe height over thicker paper as well.
+
+    The table of grbl-servo once ended at the safe height, so every positive --z-offset was refused.
+    """
     cell = find_cell(name)
     poses = np.array([(10, 10, 0), (12, 10, -2.0), (40, 10, -2.0), (42, 10, 0)])
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("s", poses, 9.0)])

@@ -1,4 +1,7 @@
-"""What a drawing says of an element to brushsvg: values in C++ and Python, JSON only in plan.json."""
+"""Settings that a drawing gives to an element for brushsvg.
+
+They are values in C++ and Python, and JSON in plan.json only.
+"""
 
 import numpy as np
 import pytest

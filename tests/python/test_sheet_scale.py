@@ -1,4 +1,4 @@
-"""Whether a sheet of marks has the size of its plan, by how far off its marks are."""
+"""The displacements of its marks show whether a sheet has the size of its plan."""
 
 import re
 
@@ -13,7 +13,10 @@ A5 = np.array([[x, y] for y in (25.0, 75.0, 125.0, 175.0) for x in (20.0, 50.0, 
 
 
 def off(middles, seed, sigma_mm=0.5, by=(1.0, 1.0), turn=0.0):
-    """What a fit finds of marks displaced at random, on a sheet that is stretched, shifted and turned."""
+    """Return the displacements of marks on a stretched, shifted and turned sheet.
+
+    Each mark is also displaced at random.
+    """
     c, s = np.cos(turn), np.sin(turn)
     out = middles - middles.mean(axis=0)
     there = (out * by) @ np.array([[c, s], [-s, c]])
@@ -71,6 +74,9 @@ def test_an_undetermined_scale_says_nothing():
 
 
 def test_a_sheet_as_exact_as_a_scan_passes():
-    """Without noise any scale is certain: as much as a scan is off is let through."""
+    """A sheet as exact as a scan is accepted.
+
+    Without noise, any difference of scale is significant. The test allows the scale error of a scan.
+    """
     assert not is_refused(A5, 0.002 * (A5 - A5.mean(axis=0)))
     assert is_refused(A5, 0.004 * (A5 - A5.mean(axis=0)))

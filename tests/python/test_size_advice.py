@@ -1,4 +1,7 @@
-"""Does this brush suit this drawing: sizes and brushes tried, by value and from the command line."""
+"""Advice on whether a brush suits a drawing, by trying sizes and brushes.
+
+The tests call the functions and the command line.
+"""
 
 import json
 import re
@@ -29,14 +32,14 @@ BRUSH = find_brush("round-6")
 
 
 def painted(strokes):
-    """Made in closed form."""
+    """Return the marks of a plan in closed form, and the strokes."""
     plan = _core.compensate(strokes, BRUSH, None).plan
     return _core.simulate(plan, BRUSH).passes, strokes
 
 
 def test_too_large_a_drawing_is_advised_to_shrink():
     found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
-    assert found.overlaps[1.0] == 0.0  # 16 mm wide: refused
+    assert found.overlaps[1.0] == 0.0  # refused, because it is 16 mm wide
     assert found.best == 0.5
     advice = size_advice.advise_on_size(found)
     assert gives(advice, "0.97", "0.5", "0.00", "--scale 0.5"), advice
@@ -52,7 +55,10 @@ def test_a_drawing_of_the_right_size_is_left_alone():
 
 
 def test_what_looks_better_is_tried_as_it_is_made():
-    """A first look costs a few strokes at nine sizes; what is then advised holds for more of them."""
+    """Sizes that look better are tried in the way in which the drawing is made.
+
+    A first look costs a few strokes at nine sizes. The advice then holds for more strokes.
+    """
     seen = []
 
     def made(strokes):
@@ -60,14 +66,14 @@ def test_what_looks_better_is_tried_as_it_is_made():
         return painted(strokes)
 
     found = size_advice.best_size([line(150, 4.0), line(150, 5.0)] * 20, BRUSH, made, quick=painted)
-    assert found.overlaps[1.0] == pytest.approx(0.4, abs=0.15)  # half of them are refused
+    assert found.overlaps[1.0] == pytest.approx(0.4, abs=0.15)  # half of the strokes are refused
     assert (found.best, found.tried, len(seen)) == (
         0.7,
         size_advice.MAX_TRIED_STROKES,
         size_advice.MAX_TRIED_STROKES * len(found.overlaps),
     )
     found = size_advice.best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
-    assert found.best == 1.0  # nothing looked better
+    assert found.best == 1.0  # no size looked better
 
 
 def test_nothing_is_advised_where_no_size_can_be_painted():
@@ -75,7 +81,7 @@ def test_nothing_is_advised_where_no_size_can_be_painted():
 
 
 def said(tmp_path, text, **options):
-    """(overlap at a scale, advice) of a drawing."""
+    """Return the overlap and the advice for a drawing."""
     path = tmp_path / "said.svg"
     path.write_text(text)
     work = preparation.prepare(path, Options(**options), partly=True)
@@ -88,7 +94,11 @@ SHEET = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" vi
 
 
 def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
-    """0.7 times was advised for 0.82 in place of 0.69, where dabs refined come to 0.86, and to 0.83 at that size."""
+    """Sizes are tried with refinement if the drawing is refined.
+
+    0.7 times was once advised for an overlap of 0.82 instead of 0.69. Refined dabs reach 0.86, and 0.83 at
+    0.7 times the size.
+    """
     text = f'{SHEET}<g stroke="#000" stroke-linecap="round">{DABS}</g></svg>'
     assert gives(said(tmp_path, text, start="pointed")[1], "0.7")
     overlap, advice = said(tmp_path, text, start="pointed", compensation="refined")
@@ -99,7 +109,10 @@ def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
 
 @pytest.mark.thorough
 def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
-    """A square filled in passes was advised to shrink, as if it were painted in one."""
+    """Sizes are tried with shapes filled in passes if the drawing has passes.
+
+    A square filled in passes was once advised to shrink, as if one stroke painted it.
+    """
     text = f'{SHEET}<rect id="r" x="30" y="20" width="60" height="50"/></svg>'
     overlap, advice = said(tmp_path, text, wide="clamp")
     assert re.search(r"--scale 0\.\d", advice) and gives(advice, f"{overlap:.2f}")
@@ -181,7 +194,7 @@ def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
         assert made.read_text().count("<path") == 4
         assert "clipPath" in made.read_text()
         return
-    image = cv2.imread(str(made))[:1200]  # the sheet alone, 90 x 60 mm
+    image = cv2.imread(str(made))[:1200]  # only the sheet, 90 x 60 mm
     for colour in ("b4b8c0", "d1431f", "2f6fd0"):
         bgr = [int(colour[k : k + 2], 16) for k in (4, 2, 0)]
         assert (image == bgr).all(axis=2).sum() > 15, colour

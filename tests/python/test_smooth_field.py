@@ -1,4 +1,7 @@
-"""Machines that are off by a smooth field over the sheet: programs make up for it, check knows where the tool goes."""
+"""Machines with a smooth field of position errors over the sheet.
+
+Programs compensate for the field, and check knows where the tool goes.
+"""
 
 import re
 from dataclasses import replace
@@ -33,7 +36,7 @@ FIELD = {
     "field_reach_mm": (62.0, 40.0),
 }
 BENT = Machine(**FIELD)
-NARROW = replace(BENT, field_reach_mm=(30.0, 40.0))  # strokes go beyond
+NARROW = replace(BENT, field_reach_mm=(30.0, 40.0))  # strokes go beyond this reach
 BOTH = replace(BENT, lean_mm_per_mm=(0.2, 0.1), scale=(1.01, 0.99), skew=0.005, height_mm=0.3)
 ON_A_MAP = replace(BOTH, map_mm=tuple(GRID))
 
@@ -46,7 +49,10 @@ def desk(tmp_path, monkeypatch):
 
 
 def goes(reported, machine):
-    """(n, 3) where it goes for a command: the formula once more, in other words, without a map."""
+    """Return the positions (n, 3) that a machine without a map reaches for commands.
+
+    The formula is written independently of the package.
+    """
     out = []
     for x, y, z in reported:
         (mx, my), (rx, ry) = machine.field_middle_mm, machine.field_reach_mm
@@ -98,7 +104,7 @@ def test_check_reads_back_what_was_planned(desk, capsys, name, machine):
     if LANGUAGES[name] in (".nc", ".ebb"):
         machine = replace(
             machine, lean_mm_per_mm=(0.0, 0.0), map_mm=(), height_mm=0.0
-        )  # 5 mm is all it lifts
+        )  # the machine lifts no more than 5 mm
     suffix = LANGUAGES[name]
     cell = replace(find_cell(name), name="mine", machine=machine)
     (desk / "mine.toml").write_text(write_cell(cell))
@@ -190,7 +196,10 @@ def test_the_table_is_written_as_it_is_read():
 
 
 def test_a_corrected_cell_undoes_the_field_as_well():
-    """Faults beyond the cell come on top of where the cell took the tool."""
+    """A corrected cell also undoes the field.
+
+    Faults beyond the cell are added at the position to which the cell moved the tool.
+    """
     now = corrected_machine(found(replace(TRUE, lean_mm_per_mm=(0.0, 0.0))), MIDDLE, BENT)
     reported = np.random.default_rng(2).uniform((0, 0, 0), (120, 70, 0), (50, 3))
     once = goes(reported, BENT)[:, :2]
@@ -200,6 +209,7 @@ def test_a_corrected_cell_undoes_the_field_as_well():
 
 def test_corrections_of_cells_without_a_field_are_still_theirs():
     plain = Machine((0.3, -0.2), (1.01, 0.99), 0.012)
-    of_before = "7ccbf0b11ef28f6cc52756145aa04d87cf6649893894d3ca953761c866dc2b9d"  # by 06aaa888
+    # This is the value at commit 06aaa888.
+    of_before = "7ccbf0b11ef28f6cc52756145aa04d87cf6649893894d3ca953761c866dc2b9d"
     assert machine_sha256(plain) == of_before
     assert machine_sha256(replace(plain, **FIELD)) != machine_sha256(plain)

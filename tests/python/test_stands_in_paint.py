@@ -1,5 +1,7 @@
-"""`check` looks at what few programs change by accident: how the tool is turned amid a circle, each step of a servo's
-lift, and stops within a stroke."""
+"""`check` reports three rare kinds of accidental changes.
+
+They are the rotation of the tool within a circle, each step of a servo's lift, and stops within a stroke.
+"""
 
 import re
 from pathlib import Path
@@ -26,7 +28,7 @@ def desk(tmp_path, monkeypatch):
 
 
 def written(cell):
-    """The path of a program in the cell's language, and its text."""
+    """Return the path of a program in the cell's language, and its text."""
     path = Path(f"a{POSTS[find_cell(cell).language].extensions[0]}")
     brushsvg.convert("a.svg", path, cell=cell)
     assert brushsvg.check(path, "a.svg", cell=cell).problems == ()
@@ -53,7 +55,7 @@ def test_the_middle_of_a_circle_holds_the_brush_upright(desk):
         brushsvg.check(path, "a.svg", cell="kr6-r900")
 
 
-RAMPS = {  # a lift in small steps: its lines, of which the last one is left
+RAMPS = {  # patterns for a lift in small steps without its last step, and for one step
     "axidraw-ebb": (r"(?:S2,\d+,4,0,[1-9]\d*\n)+(?=(S2,\d+,4,0,)[1-9]\d*\n)", r"(S2,\d+,4,0,)(\d+)\n"),
     "grbl-servo": (r"(?:M3 S\d+\nG4 P[\d.]+\n)+(?=M3 S\d+\nG4 P[\d.]+\n)", r"(M3 S\d+\nG4 P)([\d.]+)\n"),
 }
@@ -62,7 +64,10 @@ RAMPS = {  # a lift in small steps: its lines, of which the last one is left
 @pytest.mark.parametrize("number", [0, 1])  # down to the paper, and up
 @pytest.mark.parametrize("cell", RAMPS)
 def test_a_servo_goes_to_the_paper_in_small_steps(desk, cell, number):
-    """All of a lift at once, which then waits as long as all its steps did."""
+    """Check refuses a lift in one step.
+
+    The changed lift waits as long as all its steps did.
+    """
     path, text = written(cell)
     lifts, step = RAMPS[cell]
     ramp = [each for each in re.finditer(lifts, text) if len(re.findall(step, each[0])) > 5][number]
@@ -71,7 +76,7 @@ def test_a_servo_goes_to_the_paper_in_small_steps(desk, cell, number):
     total = f"{sum(waits):.3f}" if cell == "grbl-servo" else f"{sum(waits):.0f}"
     slam = text[: ramp.start()] + f"{last[1]}{total}\n" + text[last.end() :]
     assert is_reported(problems(path, slam, cell), "speed-out-of-range servo")
-    # each step as small, but all of them at once: only the last one waits
+    # Each step is equally small, but the steps come all at once: only the last one waits.
     rush = re.sub(step, lambda each: f"{each[1]}{'0.001' if cell == 'grbl-servo' else 1}\n", ramp[0])
     rush = text[: ramp.start()] + rush + f"{last[1]}{total}\n" + text[last.end() :]
     assert is_reported(problems(path, rush, cell), "speed-out-of-range servo")
@@ -98,7 +103,7 @@ def test_a_stop_within_a_stroke_is_refused(desk, cell, old, new):
 
 
 def later(text, from_row, more_s):
-    """All rows of a table of times from one on, so much later."""
+    """Return a table of times with all rows after one row delayed."""
     rows, count = [], 0
     for line in text.splitlines():
         if re.match(r"\d", line):

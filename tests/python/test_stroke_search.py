@@ -1,4 +1,7 @@
-"""Filled shapes are painted whole, from their simulated marks: corners, slabs, arms and counters."""
+"""Filled shapes are painted whole: corners, slabs, arms and counters.
+
+The search uses the simulated marks.
+"""
 
 import numpy as np
 import pytest
@@ -27,7 +30,7 @@ CORNERS = {
 
 
 def painted(tmp_path, d, **options):
-    """(shape, mark, plan) of a path."""
+    """Return the shape, the mark and the plan of a path."""
     file = tmp_path / "shape.svg"
     file.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
@@ -47,11 +50,12 @@ def test_nothing_that_one_sees_is_missing_or_sticks_out(tmp_path, d):
     assert mark.difference(shape.buffer(0.3)).area < 0.1
     missing = shape.buffer(-0.15).difference(mark)
     largest = max((each.area for each in shapely.get_parts(missing)), default=0.0)
-    assert largest < 0.03 * 4.2**2  # of a stroke's price, 0.1 squares of the greatest half width
+    # A stroke costs as much as 0.1 squares of the largest half width. Smaller areas get no stroke.
+    assert largest < 0.03 * 4.2**2
     assert shape.intersection(mark).area / shape.union(mark).area > 0.965
 
 
-HAIRLINES = {  # heavy diagonals with hairlines: the letters z and k
+HAIRLINES = {  # heavy diagonals with hairlines, as in the letters z and k
     "z": "M20 6H41.99L29.83 27.4C33.99 27.4 39.22 25.02 40.49 19.28H41.49V28.02H20"
     "L32.16 6.61C28 6.61 22.77 9 21.5 14.73H20.5Z",
     "a low z": "M20 6H41.18L29.6 28.33C33.18 28.33 38.53 25.91 39.68 22.53H40.68V28.91H20"
@@ -63,8 +67,12 @@ HAIRLINES = {  # heavy diagonals with hairlines: the letters z and k
 
 @pytest.mark.parametrize("d", HAIRLINES.values(), ids=HAIRLINES)
 def test_hairlines_hold_a_letter_together_in_few_strokes(tmp_path, d):
-    """An added stroke was cut short of the area that it was for, and added again up to 200 times. And where a stroke
-    was cut in parts, no candidate ran along its middle line, so that the hairline between the parts stayed bare."""
+    """Hairlines hold a letter together without many strokes.
+
+    An added stroke was once cut short of the area that it should paint, and was added again up to 200 times.
+    Where a stroke was cut in parts, no candidate ran along its middle line, and the hairline between the
+    parts stayed bare.
+    """
     shape, mark, plan = painted(tmp_path, d)
     assert len(plan.passes) < 25
     assert len(shapely.get_parts(mark)) == 1
@@ -72,7 +80,10 @@ def test_hairlines_hold_a_letter_together_in_few_strokes(tmp_path, d):
 
 
 def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
-    """Each stroke was within its own limb, and a gap of 0.24 mm was left between them, without a word."""
+    """The arms of a k touch its stem.
+
+    Each stroke was within its own limb, and a gap of 0.24 mm was left between them without a notice.
+    """
     shape, mark, _ = painted(
         tmp_path, "M20 20H26.1V32.7L31.5 20H37.4L31.8 33.5L37.8 50H31.7L27.1 36.6L26.1 38.3V50H20Z"
     )
@@ -88,7 +99,10 @@ def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
 
 
 def test_a_counter_stays_open(tmp_path):
-    """As in a fat 4: a stroke ran down the counter."""
+    """A counter stays open.
+
+    In a fat 4, a stroke once ran down the counter.
+    """
     shape, mark, _ = painted(tmp_path, "M20 5H32V35H38V43H32V52H22V43H6V36ZM22 18L14 35H22Z")
     assert mark.difference(shape.buffer(0.15)).area < 1.0
     counter = shapely.Polygon([(22, 60 - 18), (14, 60 - 35), (22, 60 - 35)])
@@ -97,7 +111,10 @@ def test_a_counter_stays_open(tmp_path):
 
 @pytest.mark.parametrize(("detail", "corners"), [("draft", 0), ("normal", 4), ("fine", 4)])
 def test_the_detail_says_how_small_an_area_gets_a_stroke(detail, corners):
-    """A square of 5 mm, painted by a dot, lacks 0.21 squares of half a width in each corner."""
+    """The detail setting decides how small an area can be and still get a stroke.
+
+    A square of 5 mm, painted by a dot, lacks 0.21 squares of its half width in each corner.
+    """
     square = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 5.0), (0.0, 5.0)])
     brush = find_brush("round-6")
     dot = _core.Stroke("p", np.full((1, 8), 2.5), half_width=[(0.0, 2.5)])
@@ -122,6 +139,9 @@ def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
 
 @pytest.mark.parametrize("plain", [{"end": "round"}, {"start": "pointed"}, {"corners": "turn"}])
 def test_the_sides_of_a_wide_shape_are_painted_with_any_ends(tmp_path, plain):
-    """Of a bar 12 mm wide two thirds were painted once an end was set."""
+    """The sides of a wide shape are painted with any kind of end.
+
+    Only two thirds of a bar 12 mm wide were painted once an end was set.
+    """
     shape, mark, _ = painted(tmp_path, "M5 20H55V32H5Z", **plain)
     assert shape.intersection(mark).area / shape.union(mark).area > 0.93

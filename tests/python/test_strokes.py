@@ -11,7 +11,7 @@ LINE = SubPath(np.array([[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]]))
 
 
 def named(*elements):
-    """Names and notices of elements given as (id, number of sub-paths)."""
+    """Return the names and notices of elements given as (id, number of sub-paths)."""
     made = tuple(Element(name, (LINE,) * count, 1.0) for name, count in elements)
     result, notices = strokes(Design((10.0, 10.0), made))
     return [stroke.id for stroke in result], notices
@@ -79,7 +79,10 @@ def test_repeats_are_separated_from_names_that_look_like_them():
 
 
 def test_no_stroke_is_called_as_the_parts_of_another_are():
-    """Lifted at its corners `a` becomes a, a~2, a~3: `a~2` named a second stroke."""
+    """No stroke has a name that a part of another stroke gets.
+
+    Lifted at its corners, `a` becomes a, a~2, a~3. The name `a~2` once stood for a second stroke.
+    """
     names, notices = named(
         ("a", 1), ("a~2", 1), ("b~2", 1), ("c~2+3", 1), ("c", 2), ("c/2~2", 1), ("c/1+2", 1)
     )
@@ -97,7 +100,7 @@ ARC = 20 * np.column_stack([np.cos(np.linspace(0, np.pi, 60)), np.sin(np.linspac
 
 
 def off(stroke, points):
-    """How far points [mm] are from the middle line."""
+    """Return the distances [mm] of points from the middle line."""
     line = flatten(stroke, 1e-4)[:, :2]
     a, d = line[:-1], np.diff(line, axis=0)
     t = np.clip(((points[:, None] - a) * d).sum(-1) / (d**2).sum(-1), 0, 1)
@@ -124,12 +127,16 @@ def test_a_smooth_stroke_passes_every_point_within_the_tolerance(tolerance_mm, c
     assert off(stroke, points).max() <= tolerance_mm
     lines = len(Stroke.from_points(points, 3.0).middle_mm)
     assert lines == len(points) - 1
-    few = 12 if tolerance_mm > 0.007 else lines  # 0.007: what is between the points and a circle through them
+    # A circle through the points differs from them by up to 0.007 mm in between.
+    few = 12 if tolerance_mm > 0.007 else lines
     assert len(stroke.middle_mm) <= few
 
 
 def test_a_long_zigzag_keeps_its_teeth():
-    """In even steps of a long line its corners were cut off."""
+    """A long zigzag keeps its teeth.
+
+    Even steps along a long line once cut off its corners.
+    """
     points = np.column_stack([np.arange(400.0) * 5, np.arange(400) % 2 * 9.0])
     stroke = Stroke.from_points(points, 1.0, tolerance_mm=0.1)
     assert off(stroke, points).max() <= 0.1

@@ -32,7 +32,7 @@ def read(body, page=PAGE, **options):
 
 
 def only(body, page=PAGE):
-    """The single element of a drawing without notices."""
+    """Return the single element of a drawing that has no notices."""
     design = read(body, page)
     assert design.notices == ()
     (element,) = design.elements
@@ -40,7 +40,7 @@ def only(body, page=PAGE):
 
 
 def ends(element):
-    """Joints of the first sub-path, in SVG's frame on the 50 mm high page."""
+    """Return the joints of the first sub-path, in SVG's frame on the 50 mm high page."""
     cubics = element.subpaths[0].cubics
     points = np.vstack((cubics[:, 0], cubics[-1:, 3]))
     return (points * (1, -1) + (0, 50)).round(9).tolist()
@@ -58,11 +58,14 @@ def in_user_units(d, matrix=IDENTITY, scale=1.0):
     return trace(commands, matrix, scale)
 
 
-# The path grammar and its curves, against svgpathtools.
+# The path grammar and its curves are compared with svgpathtools.
 
 
 def random_path(rng):
-    """Valid path data written in the ways drawing programs write it, arcs left to a test of their own."""
+    """Return valid path data in the styles of drawing programs.
+
+    Arcs have a test of their own.
+    """
 
     def number():
         value = rng.choice((rng.uniform(-90, 90), rng.uniform(-1, 1), float(rng.randint(-9, 9))))
@@ -157,13 +160,14 @@ def test_arcs_stay_within_the_tolerance_after_the_transform(seed):
     joints = [oracle.point(k / len(cubics)) for k in range(len(cubics) + 1)]
     joints = np.array([[p.real, p.imag] for p in joints]) @ mapped[0] + mapped[1]
     assert np.abs(np.vstack((cubics[:, 0], cubics[-1:, 3])) - joints).max() < 1e-8
-    # Back to where the ellipse is the unit circle: how far off is a point, at most, on paper?
+    # Map the points to where the ellipse is the unit circle, and find their largest distance from it on
+    # paper.
     points = (points_along(cubics) - mapped[1]) @ np.linalg.inv(mapped[0]) @ (1, 1j) - oracle.center
     points *= np.exp(-1j * math.radians(turn))
     off_unit = np.abs(np.hypot(points.real / oracle.radius.real, points.imag / oracle.radius.imag) - 1).max()
     largest = np.linalg.norm(mapped[0], 2) * max(oracle.radius.real, oracle.radius.imag)
     assert off_unit * largest < 1e-4
-    assert off_unit > 1e-9  # cubics are no circles: the measure sees something
+    assert off_unit > 1e-9  # cubics are not exact circles, so the measure must be above zero
 
 
 @pytest.mark.parametrize(("radius", "cubics"), [(0.3, 4), (23.0, 8), (24.0, 10), (4e5, 42)])
@@ -177,7 +181,7 @@ def test_arcs_cost_no_more_cubics_than_needed(radius, cubics):
 
 
 def test_arcs_at_the_edge_of_their_definition():
-    too_small = in_user_units("M0 0A1 1 0 0 1 10 0").subpaths[0].cubics  # grown to a half circle
+    too_small = in_user_units("M0 0A1 1 0 0 1 10 0").subpaths[0].cubics  # its radii grow to a half circle
     assert np.abs(np.linalg.norm(points_along(too_small) - (5, 0), axis=1) - 5).max() < 1e-4
     assert points_along(too_small)[:, 1].min() == pytest.approx(-5, abs=1e-3)
     nearly_whole = in_user_units("M0 0a5 5 0 1 1 1e-7 0").subpaths[0].cubics
@@ -188,7 +192,7 @@ def test_arcs_at_the_edge_of_their_definition():
     assert len(in_user_units("M0 0A5 5 0 1 1 0 0L9 9").subpaths[0].cubics) == 1
 
 
-# Damage: read up to the error, which is named.
+# Damaged path data is read up to the error, and the error is named.
 
 
 @pytest.mark.parametrize(
@@ -276,11 +280,14 @@ def test_damaged_shapes_transforms_and_widths_are_named(shape, said):
     assert design.elements[-1].id == "sound"
 
 
-# Shapes, transforms, page.
+# Shapes, transforms and the page.
 
 
 def corners(body):
-    """Joints of a shape without those inside its arcs, which are between two cubics of equal direction."""
+    """Return the joints of a shape, without the joints inside its arcs.
+
+    A joint inside an arc is between two cubics of equal direction.
+    """
     cubics = only(body).subpaths[0].cubics
     into, out = cubics[:-1, 3] - cubics[:-1, 2], cubics[1:, 1] - cubics[1:, 0]
     alike = np.abs(into - out).max(axis=1) < 1e-9
@@ -364,7 +371,7 @@ def test_y_points_up_from_the_lower_left_corner():
 
 @pytest.mark.parametrize(
     ("page", "sheet", "corner"),
-    [  # corner: where user point (10, 10) is on paper
+    [  # corner: the position of user point (10, 10) on paper
         ('width="100mm" height="50mm" viewBox="0 0 100 50"', (100, 50), (10, 40)),
         ('width="4in" height="2in"', (101.6, 50.8), (10 * 25.4 / 96, 50.8 - 10 * 25.4 / 96)),
         ('width="10cm" height="5cm" viewBox="10 10 1000 500"', (100, 50), (0, 50)),
@@ -555,7 +562,7 @@ def test_document_order_is_kept_across_groups_and_tags():
     assert [element.id for element in read(body).elements] == list("123456")
 
 
-# What is not painted is named.
+# Anything that is not painted is named.
 
 FIRST = '<path d="M0 0H5"/>'
 GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradient>'
@@ -757,7 +764,7 @@ def test_deep_nesting_is_walked_without_recursion():
     ],
 )
 def test_long_nonsense_takes_no_longer_than_its_length(body):
-    assert read(FIRST + body).elements  # what takes the square of its length does not end
+    assert read(FIRST + body).elements  # code with quadratic running time would not end
 
 
 @pytest.mark.parametrize(
@@ -808,7 +815,7 @@ def test_files(tmp_path):
 
 
 def loaded_by(code: str, *arguments) -> set[str]:
-    """Modules in a fresh process that has run a piece of code."""
+    """Return the modules of a fresh process that has run a piece of code."""
     code += "\nprint(*sys.modules, file=sys.stderr)"
     command = [sys.executable, "-c", code, *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -1,4 +1,4 @@
-"""Which declaration wins, and what style sheets may cost."""
+"""Which CSS declaration wins, and how much time style sheets may cost."""
 
 import pytest
 from diagnostics import agrees, are_reported, is_reported, refused
@@ -53,7 +53,7 @@ def test_rules(css, mm):
     assert width(css) == mm
 
 
-MM = 96 / 25.4  # px
+MM = 96 / 25.4  # in px
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,10 @@ def test_display_visibility_and_geometry_by_rule():
 
 
 def test_lengths_without_a_unit_are_none_in_css():
-    """In an attribute they are px; browsers drop such a declaration, and what is weaker counts."""
+    """Lengths without a unit are invalid in CSS.
+
+    In an attribute they are px. Browsers drop an invalid declaration, and the next weaker declaration counts.
+    """
     body = '<circle id="c" r="5" cx="9" cy="9" style="r:8;cx:9.5e0;cy:0"/><circle id="d" r="5" cx="9" style="r:8px"/>'
     design = read(f"<style>#c{{r:6px}}</style>{body}")
     starts = [element.subpaths[0].cubics[0, 0].tolist() for element in design.elements]
@@ -231,7 +234,11 @@ def test_deep_and_wide_documents_with_rules():
     ],
 )
 def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
-    """SVG 2, 5.6.3; Inkscape uses the place of the original, which is reported where it makes another style."""
+    """In a copy, selectors match within the copied elements only.
+
+    See SVG 2, 5.6.3. Inkscape matches at the place of the original. If this gives another style, a notice
+    reports the difference.
+    """
     copied = '<defs><i/><g id="g"><path id="p" d="M0 0H5"/></g></defs>'
     design = read(
         f'<style>{selector}{{stroke-width:7}}</style>{copied}<g class="here"><use id="u" href="#g"/></g>'

@@ -19,11 +19,11 @@ def test_arc_length_against_quadrature():
     random = np.random.default_rng(3)
     cubics = random.uniform(0, 50, (40, 4, 2))
     cubics[1:, 0] = cubics[:-1, 3]
-    cubics[5] = cubics[5, :1]  # a point
+    cubics[5] = cubics[5, :1]  # all four points coincide
     known = knots(cubics)
     truth = [quad(speed, 0, 1, args=(cubic,), epsabs=1e-10, limit=200)[0] for cubic in cubics]
     error = np.abs(known[:, -1] - truth)
-    assert error.max() < 5e-3  # [mm], where a handle turns the line back on itself
+    assert error.max() < 5e-3  # [mm]; largest where a handle turns the line back on itself
     assert np.median(error) < 1e-8
     at = np.linspace(0, sum(truth), 200)
     number, t = parameters_at(cubics, known, at)
@@ -68,7 +68,11 @@ def test_patterns(attributes, count):
     [("10", [0, 4, 8, 12, 16, 20]), ("40", [0, 1, 2, 3, 4, 5]), ("0", [0, 20]), ("-3", [0, 2, 4, 6, 8, 10])],
 )
 def test_path_length_stretches_the_dashes(said, ends):
-    """A path of 20 mm said to be 10 long has dashes twice as long; of no length none."""
+    """pathLength stretches the dashes.
+
+    A path of 20 mm with a pathLength of 10 has dashes twice as long. With a pathLength of 0, the line is
+    solid.
+    """
     design = read(f'<path d="M0 0H20" stroke-dasharray="2" pathLength="{said}"/>')
     spans = [(start[0], end[0]) for _, start, end in lines(design)]
     assert np.ravel(spans)[: len(ends)] == pytest.approx(np.array(ends))
@@ -84,8 +88,11 @@ def test_path_length_is_of_all_sub_paths_and_stretches_the_offset():
 
 @pytest.mark.parametrize("more", ["", ' pathLength="2"'])
 def test_dashes_of_a_stroke_that_does_not_scale_do_not_either(more):
-    """They count in px of the screen, as its width does: 3 mm are 3 mm under any transform, but where pathLength says
-    otherwise, whose share of the line is the same."""
+    """Dashes of a non-scaling stroke do not scale either.
+
+    They are in px of the screen, like the stroke's width: 3 mm are 3 mm under any transform. With pathLength,
+    a dash keeps its share of the line.
+    """
     body = (
         '<path d="M0 0H5" transform="scale(4 8)" stroke-dasharray="{}" vector-effect="non-scaling-stroke"{}/>'
     )

@@ -1,4 +1,4 @@
-"""Layers as Inkscape, Illustrator, CorelDRAW, Affinity and Figma write them, and --layer among them."""
+"""Layers from Inkscape, Illustrator, CorelDRAW, Affinity and Figma, and --layer."""
 
 import pytest
 from diagnostics import agrees, refused

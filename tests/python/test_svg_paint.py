@@ -1,4 +1,4 @@
-"""What a stroke and a fill are painted with, alone and together, and the notices about it."""
+"""Paints of strokes and fills, alone and together, and the notices about them."""
 
 import pytest
 from diagnostics import are_reported, refused
@@ -107,7 +107,10 @@ def test_a_visibility_that_is_none_counts_as_not_given():
 
 
 def test_a_paint_is_looked_up_once(monkeypatch):
-    """3,000 shapes with a gradient of 3,000 stops took twenty seconds."""
+    """Each paint server is looked up once.
+
+    3,000 shapes with a gradient of 3,000 stops once took twenty seconds.
+    """
     requested = []
     monkeypatch.setattr(
         paint_servers.PaintServers, "_stop", lambda _self, stop: requested.append(stop) or "#00ff00"
@@ -129,7 +132,10 @@ def test_a_box_is_measured_once(monkeypatch):
 
 
 def test_white_is_reported():
-    """What it hides is painted, too: paint is not cut off by what is on top."""
+    """White paint is reported.
+
+    Shapes under white paint are painted too, because paint is not cut off by shapes on top.
+    """
     for fill, stroke in (
         ("white", "blue"),
         ("white", "none"),
@@ -158,7 +164,10 @@ def test_a_fill_of_another_colour_than_the_stroke_keeps_it():
 
 @pytest.mark.parametrize("clip", ["", 'clip-path="url(#c)"'])
 def test_dashes_around_a_shape_leave_it_whole(clip):
-    """The shape was that of each dash."""
+    """Dashes around a shape leave the filled shape whole.
+
+    The filled shape once became the shape of each dash.
+    """
     before = '<clipPath id="c"><rect width="90" height="90"/></clipPath>'
     dashed = 'stroke-width="0.5" stroke-dasharray="1 1" ' + clip
     shape, line = painted("#f00", "#00f", dashed, before).elements[1:]

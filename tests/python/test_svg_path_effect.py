@@ -85,7 +85,10 @@ def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():
 @pytest.mark.parametrize("other", ["spiro", "bspline", "mirror_symmetry", "powerstroke", "skeletal"])
 @pytest.mark.parametrize("order", ["#e;#f", "#f; #e"])
 def test_next_to_another_effect_the_outline_counts(other, order):
-    """It is what Inkscape shows: the line under a Spiro was drawn 5 mm from where it is."""
+    """Next to another path effect, the outline counts.
+
+    Inkscape shows the outline. The line under a Spiro was once drawn 5 mm from its visible position.
+    """
     effects = EFFECT.format(effect="powerstroke", visible="true", kind="Linear", points="0,1", scale=1)
     effects += f'<inkscape:path-effect effect="{other}" id="f"/>'
     design = read(f"<defs>{effects}</defs>{PATH.replace('#e', order).format('')}")

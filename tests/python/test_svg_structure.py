@@ -1,4 +1,4 @@
-"""use, symbol, nested svg, switch, layers, and what a drawing says to brushsvg."""
+"""use, symbol, nested svg, switch, layers, and settings for brushsvg."""
 
 import pytest
 from diagnostics import agrees, are_reported, refused
@@ -393,7 +393,7 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
         ('speed="-1"', "setting-invalid -1 0.001 10000"),
         ('speed="nan"', "setting-invalid 'nan'"),
         ('speed="1_0"', "setting-invalid '1_0'"),
-        ('passes="\u0663"', "setting-invalid '٣'"),  # an Arabic three
+        ('passes="\u0663"', "setting-invalid '٣'"),  # an Arabic digit three
         ('width="5 furlongs"', "setting-invalid '5 furlongs'"),
         ('width="0"', "setting-invalid 0 0.001 1000"),
         ('passes="1.5"', "setting-invalid '1.5'"),

@@ -1,4 +1,4 @@
-"""Text to drawings, with fonts made here: every coordinate is known beforehand."""
+"""Text becomes drawings; the fonts are made here, so every coordinate is known."""
 
 import io
 import re
@@ -49,7 +49,10 @@ def paths(document):
 
 
 def drawn(text, font=None, **options):
-    """d of each path of a text without notices, with an em of 10 mm unless said otherwise."""
+    """Return d of each path of a text without notices.
+
+    The em is 10 mm by default.
+    """
     options = {"size_mm": 10, **options}
     document, notices = text_svg(text, font or svg_font(), **options)
     assert notices == []
@@ -63,18 +66,18 @@ def refusal(text, font, **options) -> Error:
 
 
 def starts(text, glyphs=GLYPHS, **options):
-    """x of the first point of each glyph in mm, measured from the first glyph's."""
+    """Return x of the first point of each glyph [mm], relative to the first glyph."""
     found = [float(re.match(r"M (-?[\d.]+)", d)[1]) for d in drawn(text, svg_font(glyphs), **options)]
     return [round(x - found[0], 4) for x in found]
 
 
-# Single lines
+# Single-line fonts
 
 
 def test_a_letter_stands_upright_with_20_mm_and_half_a_width_around_it():
     document, notices = text_svg("T", svg_font(), size_mm=10, width_mm=1)
     root = ET.fromstring(document.encode())
-    # the ink is 4 by 7 mm, the line's width adds 1 mm
+    # The ink is 4 by 7 mm, and the line's width adds 1 mm.
     assert (root.get("width"), root.get("height"), root.get("viewBox")) == ("45mm", "48mm", "0 0 45 48")
     assert root.find(SVG + "title").text == "T"
     (path,) = paths(document)
@@ -100,7 +103,7 @@ def test_a_font_without_units_has_1000_to_the_em():
 
 
 def test_glyphs_follow_at_their_advance_or_the_fonts():
-    # I at 100 with an advance of 200, T starts at 0 and has the font's 400
+    # I is at 100 with an advance of 200; T starts at 0 and has the font's advance of 400.
     assert starts("ITI I") == [0, 1, 6, 11]
 
 
@@ -119,17 +122,23 @@ def test_a_point_stays_a_dab_and_a_closed_line_closed():
 
 
 def test_curves_keep_their_shape_and_bound_the_ink_themselves():
-    """The handles reach 400 up, the curve itself 300."""
+    """The bounds of the ink come from the curve, not from its handles.
+
+    The handles reach up to 400, the curve itself to 300.
+    """
     (d,) = drawn("\u00e9")
     assert d == "M 20.5000,23.5000 C 20.5000,19.5000 23.5000,19.5000 23.5000,23.5000"
 
 
 def test_every_command_against_svgpathtools():
-    """Tilted arcs are left to the points below: svgpathtools 1.8 turns them the wrong way under a flip."""
+    """Every path command agrees with svgpathtools.
+
+    Tilted arcs are left to the next test: svgpathtools 1.8 turns them the wrong way under a flip.
+    """
     d = "M 10 20 l 30 40 h 50 V 300 q 50 60 80 0 t 90 10 c 10 20 30 40 50 -60 s 40 20 90 0 A 90 60 0 0 1 300 40 z"
     ours = svgpathtools.parse_path(drawn("x", svg_font(f'<glyph unicode="x" d="{d} m 5 5 l 9 9"/>'))[0])
     theirs = svgpathtools.parse_path(d + " m 5 5 l 9 9")
-    flip = 0.01  # mm to the unit
+    flip = 0.01  # mm per font unit
     shift = ours[0].start - complex(theirs[0].start.real, -theirs[0].start.imag) * flip
     lengths = [part.length() for part in (ours, theirs)]
     assert lengths[0] == pytest.approx(lengths[1] * flip, abs=1e-3)
@@ -140,7 +149,10 @@ def test_every_command_against_svgpathtools():
 
 
 def test_a_tilted_arc_is_mirrored_with_its_letter():
-    """An arc of 30 degrees' tilt, drawn as SVG says (appendix B.2.4), then mirrored by hand."""
+    """A tilted arc is mirrored with its letter.
+
+    The arc is tilted by 30 degrees, drawn as in SVG's appendix B.2.4, and mirrored by hand.
+    """
     arc = svgpathtools.parse_path("M 0 0 A 300 100 30 0 1 400 50")
     ours = svgpathtools.parse_path(
         drawn("x", svg_font('<glyph unicode="x" d="M 0 0 A 300 100 30 0 1 400 50"/>'))[0]
@@ -187,7 +199,7 @@ def test_a_letter_and_its_accent_find_the_glyph_of_both():
 )
 def test_kerning(kern):
     glyphs = GLYPHS + f'<hkern k="150" {kern}/>'
-    # T 400 wide and I's line at 100: 5 mm without, 3.5 mm with kerning; no other pair is moved
+    # T is 400 wide and the line of I is at 100: 5 mm without kerning, 3.5 mm with it. No other pair is moved.
     assert starts("TI", glyphs) == [0, 3.5]
     assert starts("TTIT I", glyphs) == [0, 4, 7.5, 8.5, 16.5]
 
@@ -293,7 +305,7 @@ def test_other_encodings(encoding):
     assert drawn("I", svg_font().decode().encode(encoding)) == drawn("I")
 
 
-# Numbers
+# Numbers and their ranges
 
 
 @pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf"), 1000.5])
@@ -334,7 +346,7 @@ def test_writing_from_right_to_left_is_named():
     assert agrees(notice, "text-direction 2")
 
 
-# Outlines
+# Outline fonts
 
 FEATURES = """
 feature kern { pos A V -200; pos A A <10 100 0 0>; } kern;
@@ -343,7 +355,11 @@ feature liga { sub f i by f_i; } liga;
 
 
 def outline_font(features=FEATURES):
-    """A triangle A of 1000, its mirror V, f, i and their ligature as bars, a curve o; .notdef has ink."""
+    """Return a font with a few glyphs.
+
+    The font has 1000 units to the em. The glyphs are a triangle A, its mirror V, bars for f, i and their
+    ligature, and a curve o. The glyph .notdef has ink.
+    """
     names = [".notdef", "space", "A", "V", "f", "i", "f_i", "o"]
     builder = FontBuilder(1000, isTTF=True)
     builder.setupGlyphOrder(names)
@@ -392,7 +408,7 @@ def ttf():
 
 
 def filled(text, font, **options):
-    """(id, d) of each glyph, and the notices."""
+    """Return (id, d) of each glyph, and the notices."""
     document, notices = text_svg(text, font, **{"size_mm": 10, **options})
     return [(path.get("id"), path.get("d")) for path in paths(document)], notices
 
@@ -433,7 +449,10 @@ def test_outlines_are_kerned_and_joined(ttf):
 
 
 def test_a_glyph_is_raised_as_the_font_says(ttf):
-    """The pair A A moves its first letter 10 to the right and 100 up."""
+    """A glyph is raised as the font specifies.
+
+    The pair A A moves its first letter 10 to the right and 100 up.
+    """
     glyphs, _ = filled("AA", ttf)
     assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "25.9000,28.0000"]
 
@@ -475,7 +494,10 @@ def test_a_woff_bomb_is_refused(ttf, monkeypatch):
 
 
 def test_the_first_of_a_collection(ttf):
-    """The header of a collection before one font, its tables' offsets moved by as much."""
+    """The first font of a collection is used.
+
+    The test puts a collection header before one font and moves the offsets of its tables accordingly.
+    """
     header = struct.pack(">4sHHLL", b"ttcf", 1, 0, 1, 16)
     count = struct.unpack(">H", ttf[4:6])[0]
     rows = [struct.unpack(">4sLLL", ttf[12 + 16 * k : 28 + 16 * k]) for k in range(count)]
@@ -520,11 +542,14 @@ def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
     ],
 )
 def test_a_font_that_does_not_say_how_large_it_is_is_refused(ttf, tag, at, becomes, said):
-    """HarfBuzz would set it, at 1000 units to the em, or each letter an em wide."""
+    """A font without a valid em size is refused.
+
+    HarfBuzz would accept the font, with 1000 units to the em or with each letter an em wide.
+    """
     row = next(k for k in range(12, len(ttf), 16) if ttf[k : k + 4] == tag.encode())
     offset = struct.unpack(">L", ttf[row + 8 : row + 12])[0]
     start = row if at is None else offset + at
-    becomes = becomes or b"zzzz"  # the table is called otherwise
+    becomes = becomes or b"zzzz"  # the table gets another name
     with refused(said):
         text_svg("AV", ttf[:start] + becomes + ttf[start + len(becomes) :])
 
@@ -538,9 +563,13 @@ def outcome(font):
 
 
 def test_composites_that_hold_each_other_end():
-    """Each glyph is made of the next one twice, the last of the first: without a bound it never ends."""
+    """Reading composite glyphs that contain each other comes to an end.
+
+    Each glyph contains the next one twice, and the last glyph contains the first one. Without a limit,
+    reading would never end.
+    """
     count = 40
-    glyphs = [bytes(10)]  # .notdef, empty
+    glyphs = [bytes(10)]  # .notdef is empty
     for k in range(count):
         parts = [struct.pack(">HHbb", more | 0x0002, (k + 1) % count + 1, 9, 0) for more in (0x0020, 0)]
         glyphs.append(struct.pack(">hhhhh", -1, 0, 0, 99, 99) + b"".join(parts))
@@ -557,7 +586,7 @@ def test_composites_that_hold_each_other_end():
     reader = SFNTReader(sound)
     tables = {tag: reader[tag] for tag in reader.keys()}  # noqa: SIM118
     head = bytearray(tables["head"])
-    head[50:52] = b"\0\1"  # offsets of four bytes
+    head[50:52] = b"\0\1"  # offsets have four bytes
     tables |= {
         "head": bytes(head),
         "glyf": b"".join(glyphs),
@@ -569,7 +598,7 @@ def test_composites_that_hold_each_other_end():
         writer[tag] = data
     writer.close()
     glyph_set = TTFont(hostile).getGlyphSet()
-    with pytest.raises(RecursionError):  # the font is as bad as it was intended to be
+    with pytest.raises(RecursionError):  # this shows that the font is as bad as intended
         glyph_set["A"].draw(DecomposingRecordingPen(glyph_set))
     assert agrees(refusal("A", hostile.getvalue()), "nothing-to-paint")
 
@@ -587,7 +616,10 @@ def saved(font) -> bytes:
 
 
 def test_letters_without_an_outline_are_named():
-    """As for fonts that hold pictures; what is blank by its nature is not named."""
+    """Letters without an outline are named.
+
+    Fonts that hold pictures have letters of this kind. Characters that are blank by nature are not named.
+    """
     font = TTFont(io.BytesIO(outline_font()))
     font["glyf"]["V"] = TTGlyphPen(None).glyph()
     reported, count = reported_of(saved(font), "A V\u00adA")

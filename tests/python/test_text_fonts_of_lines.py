@@ -1,4 +1,7 @@
-"""Single-line fonts as TrueType: contours that go back as they came, or have two points, are read as lines."""
+"""Single-line fonts as TrueType are read as lines.
+
+Their contours go back along themselves, or have two points.
+"""
 
 import numpy as np
 import pytest
@@ -48,7 +51,10 @@ def font(tmp_path):
 
 
 def lines_of(font, letter):
-    """Points (n, 2) of each line of a letter, in units of the font from its lower left corner."""
+    """Return the points (n, 2) of each line of a letter, in font units.
+
+    The origin is the lower left corner of the letter.
+    """
     document, reported = text_svg(letter, font, size_mm=100, width_mm=2)
     design = read_svg(document.encode())
     assert are_reported(reported, "font-of-lines") and all(

@@ -1,4 +1,4 @@
-"""Several jobs at a time in threads of one process: each ends as it does alone."""
+"""Several jobs in threads of one process each end as they do alone."""
 
 import threading
 from concurrent.futures import CancelledError, ThreadPoolExecutor

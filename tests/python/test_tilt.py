@@ -1,4 +1,4 @@
-"""How a brush is tilted: read, written, kept, and refused where it would be lost."""
+"""The tilt of a brush is read, written, kept, and refused where it would be lost."""
 
 import copy
 import json
@@ -27,7 +27,7 @@ POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [70, 30, 0]]
 
 
 def axes(*tilts_deg, towards_deg=0.0):
-    """Unit vectors leaned towards a direction of the paper."""
+    """Return unit vectors that lean towards a direction of the paper."""
     tilts, towards = np.radians(tilts_deg), np.radians(towards_deg)
     return np.column_stack([np.sin(tilts) * np.cos(towards), np.sin(tilts) * np.sin(towards), np.cos(tilts)])
 
@@ -41,7 +41,7 @@ def plan(tool_axes=TILTED):
 
 
 def reported(change):
-    """The text of a plan.json with something of its second pass changed."""
+    """Return the text of a plan.json after a change to its second pass."""
     document = json.loads(_core.write_plan(plan()))
     change(document, document["passes"][1])
     return json.dumps(document)
@@ -169,7 +169,10 @@ def test_and_takes_one_that_is_held_upright(name):
 
 
 def test_cells_that_cannot_tilt_the_brush_write_no_program(tmp_path):
-    """Those of three axes: test_tilted_programs.py has the others."""
+    """Cells that cannot tilt the brush write no program.
+
+    This test has the cells with three axes; test_tilted_programs.py has the others.
+    """
     for name in brushsvg.cell_names():
         cell = brushsvg.find_cell(name)
         if cell.tool:

@@ -1,4 +1,7 @@
-"""Programs that tilt the brush: where its tip and its axis are, judged by scipy's rotations; what check refuses."""
+"""Programs that tilt the brush: the position of its tip and its axis.
+
+The tests compute both with scipy's rotations. They also check which programs check refuses.
+"""
 
 import inspect
 import json
@@ -48,7 +51,7 @@ TILTING = tuple(SUFFIXES)
 
 
 def axes(*tilts_deg, towards_deg=0.0):
-    """Unit vectors leaned towards a direction of the paper, or one each."""
+    """Return unit vectors that lean towards a direction of the paper, or one each."""
     tilts, towards = np.radians(tilts_deg), np.radians(towards_deg)
     return np.column_stack([np.sin(tilts) * np.cos(towards), np.sin(tilts) * np.sin(towards), np.cos(tilts)])
 
@@ -62,7 +65,10 @@ def plan(*tool_axes, poses=POSES, speed=20.0):
 
 
 def anyhow(name="ur5e"):
-    """A cell on which nothing is along an axis: paper that leans, a tool that is turned, a bent holder."""
+    """Return a cell in which nothing is parallel to an axis.
+
+    The paper leans, the tool is turned, and its holder is bent.
+    """
     cell = brushsvg.find_cell(name)
     x, y, z = cell.paper.origin_mm
     tool = replace(cell.tool, tcp_mm=(12.0, -7.0, 150.0), rotation_deg=(0.0, 10.0, 5.0), spin_deg=30.0)
@@ -78,7 +84,7 @@ def text_for(of, cell):
 
 
 def commanded_ur(text, cell):
-    """(tips (n, 3) [mm], rotations) of each move in the robot's frame, and the line that moved to it."""
+    """Return the tips (n, 3) [mm] and rotations of all moves, in the robot's frame."""
     rows = [(pose, name) for name, *rest in run(text).events for pose in rest[0] if name.startswith("move")]
     tips = 1e3 * np.array([pose[:3] for pose, _ in rows])
     return tips, Rotation.from_rotvec([pose[3:] for pose, _ in rows])
@@ -88,13 +94,13 @@ N = r"(-?[\d.]+)"
 
 
 def in_paper(tips, turned, cell):
-    """The same in the robot's frame of commands in that of the paper."""
+    """Convert tips and rotations from the paper frame to the robot's frame."""
     frame = robot_from_paper(cell)
     return tips @ frame[:3, :3].T + frame[:3, 3], Rotation.from_matrix(frame[:3, :3]) * turned
 
 
 def commanded_rapid(text, cell):
-    """As RAPID has it: quaternions begin with the part that is no axis."""
+    """Read RAPID, whose quaternions begin with the scalar part."""
     upright = re.search(rf"RETURN \[\[x, y, z\], \[{N}, {N}, {N}, {N}\]", text).groups()
     moves = re.findall(rf"MoveL (?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N}, {N})?\)", text)
     tips = np.array([move[:3] for move in moves], dtype=float)
@@ -103,7 +109,7 @@ def commanded_rapid(text, cell):
 
 
 def commanded_ros2(text, cell):
-    """The flange, that holds the tip: rows that are poses of the plan."""
+    """Read rows with poses of the plan, which give the flange that holds the tip."""
     rows = np.array(
         [line.split(",")[:8] for line in text.splitlines() if line.endswith(",pose")], dtype=float
     )
@@ -113,14 +119,14 @@ def commanded_ros2(text, cell):
 
 
 def commanded_krl(text, cell):
-    """A about z, B about the new y, C about the newest x."""
+    """Read KRL angles: A about z, B about the new y, C about the newest x."""
     rows = re.findall(rf"LIN [{{]X {N}, Y {N}, Z {N}, A {N}, B {N}, C {N}[}}]", text)
     rows = np.array(rows, dtype=float)
     return in_paper(rows[:, :3], Rotation.from_euler("ZYX", rows[:, 3:], degrees=True), cell)
 
 
 def commanded_dobot(text, cell):
-    """About the fixed axes x, y, z."""
+    """Read Dobot angles, which are about the fixed axes x, y, z."""
     upright = re.search(rf"pose = [{{]x, y, z, {N}, {N}, {N}[}}]", text).groups()
     moves = re.findall(rf"MovL\((?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N})?\)", text)
     rows = np.array([move if move[3] else (*move[:3], *upright) for move in moves], dtype=float)
@@ -128,7 +134,7 @@ def commanded_dobot(text, cell):
 
 
 def commanded_xarm(text, cell):
-    """Roll, pitch and yaw: about the fixed axes x, y, z of the robot."""
+    """Read roll, pitch and yaw, which are about the fixed axes x, y, z of the robot."""
     upright = re.search(rf"UPRIGHT = \({N}, {N}, {N}\)", text).groups()
     moves = re.findall(rf"(?m)^(?:go|lean)\({N}, {N}, {N}(?:, {N}, {N}, {N})?, {N}, (?:None|{N})\)$", text)
     rows = np.array([move[:6] if move[3] else (*move[:3], *upright) for move in moves], dtype=float)
@@ -136,7 +142,7 @@ def commanded_xarm(text, cell):
 
 
 def commanded_doosan(text, cell):
-    """A about z, B about the new y, C about the newest z."""
+    """Read Doosan angles: A about z, B about the new y, C about the newest z."""
     upright = re.search(rf"return posx\(x, y, z, {N}, {N}, {N}\)", text).groups()
     moves = re.findall(rf"movel\((?:on_paper|tilted)\({N}, {N}, {N}(?:, {N}, {N}, {N})?\)", text)
     rows = np.array([move if move[3] else (*move[:3], *upright) for move in moves], dtype=float)
@@ -149,7 +155,10 @@ def commanded_jaka(text, cell):
 
 
 def commanded_fanuc(text, cell):
-    """W, P and R of each point: about the fixed axes x, y, z; in the order in which the program goes there."""
+    """Read the points in the order in which the program visits them.
+
+    W, P and R are about the fixed axes x, y, z.
+    """
     points = re.findall(
         rf"P\[(\d+)\][^X]*X = {N}  mm,\s*Y = {N}  mm,\s*Z = {N}  mm,\s*W = {N} deg,\s*P = {N} deg,\s*R = {N} deg",
         text,
@@ -173,7 +182,10 @@ COMMANDED = {
 
 
 def strokes(tips, cell):
-    """Slices of the moves between the places at safe height, and the tips in the paper's frame."""
+    """Return slices of the moves between positions at safe height, and tips on paper.
+
+    The tips are in the paper frame.
+    """
     frame = robot_from_paper(cell)
     paper = (tips - frame[:3, 3]) @ frame[:3, :3]
     high = np.flatnonzero(paper[:, 2] > cell.heights.safe_mm - 0.01)
@@ -187,7 +199,7 @@ def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
     (on,), paper = strokes(tips, cell)
     target = split_turning_moves(plan(TILTED).passes[0])
     poses, leans = np.asarray(target.poses_mm), np.asarray(target.tool_axes)
-    # approach and landing before, lift behind
+    # Approach and landing before the stroke, lift after it.
     poses = np.vstack(
         [poses[0] + (0, 0, cell.heights.clearance_mm), poses, poses[-1] + (0, 0, cell.heights.clearance_mm)]
     )
@@ -196,11 +208,11 @@ def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
     frame = Rotation.from_matrix(robot_from_paper(cell)[:3, :3])
     along = frame.inv().apply(turned[on].apply((0.0, 0.0, -1.0)))  # the tool's z points into the paper
     assert along == pytest.approx(leans, abs=2e-5)
-    # the shortest turn from upright: no further than the axes are apart
+    # The turn from upright is the shortest one, which equals the angle between the axes.
     upright = frame * Rotation.from_euler("x", 180, degrees=True) * Rotation.from_euler("z", 30, degrees=True)
     tilts_deg = np.degrees(np.arccos(np.clip(leans[:, 2], -1, 1)))
     assert np.degrees((turned[on] * upright.inv()).magnitude()) == pytest.approx(tilts_deg, abs=2e-3)
-    assert np.degrees((turned[[0, -1]] * upright.inv()).magnitude()).max() < 1e-3  # upright where it travels
+    assert np.degrees((turned[[0, -1]] * upright.inv()).magnitude()).max() < 1e-3  # upright while it travels
 
 
 @pytest.mark.skipif(not find_spec("rapidchecker"), reason="rapidchecker is not installed")
@@ -215,7 +227,10 @@ def test_rapidchecker_knows_the_grammar_of_a_tilt(tmp_path, broken):
 
 @pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
 def test_an_xarm_receives_the_lines_as_written():
-    """The program run, every call bound to the signature of the vendor's SDK."""
+    """An xArm receives the lines as written.
+
+    The test runs the program and binds every call to the signature of the vendor's SDK.
+    """
     from xarm.wrapper import XArmAPI
 
     reported = []
@@ -246,7 +261,10 @@ def test_an_xarm_receives_the_lines_as_written():
 
 
 def test_a_pass_without_a_place_is_left_as_it_is():
-    """It is refused where the plan is simulated."""
+    """A pass with an invalid position is returned unchanged.
+
+    The simulation of the plan refuses it.
+    """
     (a_pass,) = plan(TILTED, poses=np.where(np.arange(15).reshape(5, 3) == 6, np.nan, POSES)).passes
     assert split_turning_moves(a_pass) is a_pass
 
@@ -275,8 +293,11 @@ def test_a_turn_of_less_than_a_degree_is_slowed_too():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
-    """Predicted: where the brush's axis meets the paper goes straight between the plan's poses, its lean changes
-    evenly. A robot leads the tip straight and turns the tool evenly about one axis."""
+    """A robot that turns evenly between poses paints what the simulation predicts.
+
+    In the simulation, the point where the brush's axis meets the paper moves straight between poses, and the
+    lean changes evenly. A robot moves the tip straight and turns the tool evenly about one axis.
+    """
     random = np.random.default_rng(seed)
     poses = np.column_stack(
         [np.cumsum(random.uniform(5, 15, 6)), random.uniform(10, 40, 6), -random.uniform(0, 6, 6)]
@@ -303,7 +324,8 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
         tip = (steps.poses_mm[k] + steps.poses_mm[k + 1]) / 2
         lean = middle[:2] / middle[2]
         place = on(tip[None], lean[None])[0]
-        # next to the straight way of the axis on the paper, and off the lean that belongs to that place
+        # Distance from the straight path of the axis on the paper, and from the lean that belongs to this
+        # position.
         way = places[row + 1] - places[row]
         share = (place - places[row]) @ way / (way @ way)
         assert np.linalg.norm(place - places[row] - share * way) < 0.006
@@ -322,7 +344,7 @@ def test_rotations_are_scipys():
         assert -held[:, 2] == pytest.approx(axis, abs=1e-9)
         turn = Rotation.from_matrix(held) * turned.inv()
         apart = np.arccos(np.clip(-turned.as_matrix()[:, 2] @ axis, -1, 1))
-        assert turn.magnitude() == pytest.approx(apart, abs=1e-7)  # no shorter turn leads there
+        assert turn.magnitude() == pytest.approx(apart, abs=1e-7)  # the turn is the shortest one to this axis
     assert of_rotation_vector((0, 0, 0)) == pytest.approx(np.eye(3))
 
 
@@ -337,7 +359,7 @@ def test_upright_rows_are_written_as_before(name):
     assert first(both) == first(before)
     lines = both[both.index("stroke 2 of 2") :].splitlines()
     asbefore = before[before.index("stroke 2 of 2") :].splitlines()
-    assert lines[1] == asbefore[1]  # the travel, and the landing of a first pose that is upright
+    assert lines[1] == asbefore[1]  # the travel move, and the landing of a first pose that is upright
     assert lines[2:4] == asbefore[2:4]
 
 
@@ -345,7 +367,7 @@ def test_upright_rows_are_written_as_before(name):
 
 
 def written(folder, name, of, cell=None):
-    """A plan.json, its program, and words that name its cell."""
+    """Write a plan.json; return its path, the program's path and the --cell option."""
     given, made = folder / "a.json", folder / f"a{SUFFIXES[name]}"
     given.write_text(_core.write_plan(of))
     words = ["--cell", name]
@@ -356,7 +378,10 @@ def written(folder, name, of, cell=None):
 
 
 def read_leaning():
-    """Of the paper: leans, rises, has a map; and the tool gives way."""
+    """Return a cell with many machine errors.
+
+    The paper leans, rises and has a height map, and the tool gives way under load.
+    """
     machine = Machine(
         lean_mm_per_mm=(0.1, -0.05),
         height_mm=0.2,
@@ -377,7 +402,10 @@ def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
 
 @sample("seed", range(2 * len(TILTING)), keep=5)
 def test_check_allows_random_tilts(seed, tmp_path, capsys):
-    """Strokes, tilts, papers, tools and machine errors, all at random; what turns too fast is left out."""
+    """Check accepts random tilts.
+
+    Strokes, tilts, papers, tools and machine errors are all random. Strokes that turn too fast are left out.
+    """
     random, name = np.random.default_rng(seed), TILTING[seed % len(TILTING)]
     cell = anyhow(name) if seed < len(TILTING) else replace(brushsvg.find_cell(name), arm=None)
     tool = replace(cell.tool, spin_deg=float(random.uniform(-180, 180)), turn_deg_s=300.0)
@@ -393,7 +421,7 @@ def test_check_allows_random_tilts(seed, tmp_path, capsys):
         poses = np.column_stack(
             [random.uniform(20, 80, n), random.uniform(15, 45, n), -random.uniform(0.2, 6, n)]
         )
-        poses[[0, -1], 2] *= k > 0  # set down and lifted on the spot otherwise
+        poses[[0, -1], 2] *= k > 0  # the other strokes are set down and lifted on the spot
         held = axes(*random.uniform(0, 29.5, n), towards_deg=random.uniform(0, 360, n))
         passes.append(_core.Pass(f"s{k}", poses, float(random.uniform(3, 25)), tool_axes=np.round(held, 3)))
     given, made, words = written(tmp_path, name, _core.Plan("round-6", "", (100, 60), passes), cell)
@@ -411,7 +439,10 @@ def test_on_paper_that_leans_has_a_map_and_gives_way(tmp_path, capsys):
 
 
 def test_check_plays_the_tilted_mark(tmp_path, capsys):
-    """The picture that check makes is that of predict, and not that of an upright brush."""
+    """Check simulates the tilted mark.
+
+    Its picture agrees with the prediction for the tilted brush, not for an upright brush.
+    """
     of = plan(axes(*[25] * 5), poses=[[20, 20, 0], [30, 20, -4], [60, 20, -4], [75, 35, -3], [75, 35, 0]])
     given, made, words = written(tmp_path, "ur5e", of)
     rings = {}
@@ -438,10 +469,11 @@ def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
     given.write_text(
         _core.write_plan(plan(axes(0, 8.3, 8.3, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))))
     )
-    assert in_json(capsys, "check", made, given, *words)[0] == 0  # no mark shows it
+    assert in_json(capsys, "check", made, given, *words)[0] == 0  # the change is too small to show in a mark
 
 
-# where a language gives a place with the turn of the tool there, the numbers of that, and scipy's word for them
+# For languages that give a position with a rotation: the pattern of its numbers, and the conversions from and
+# to scipy's rotations.
 IN_DEGREES = (
     lambda xyz: Rotation.from_euler("xyz", xyz, degrees=True),
     lambda turned: turned.as_euler("xyz", degrees=True),
@@ -473,8 +505,11 @@ TURNS = {
 
 @sample("name", TILTING, keep=3)
 def test_damaged_directions_are_refused(name, tmp_path, capsys):
-    """Programs with one direction changed by a degree or more, about any line, the tool's own axis included; or with
-    its numbers exchanged or negated: a hundred for UR, thirty for the others."""
+    """Check refuses programs with one damaged direction.
+
+    The direction is turned by a degree or more about any axis, including the tool's own axis. In other cases,
+    its numbers are exchanged or negated. There are a hundred cases for UR and thirty for each other language.
+    """
     given, made, words = written(tmp_path, name, plan(np.zeros((0, 3)), TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
@@ -508,7 +543,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
         numbers = iter([*values[:3], *turn])
         reported = re.sub(N, lambda _, left=numbers: f"{next(left):.9f}", spot[0])
         made.write_text(text[: spot.start()] + reported + text[spot.end() :])
-        # turned about the brush it paints the same, and is yet none of our programs
+        # Turned about its own axis, the brush paints an equal mark, but the program is not one of ours.
         if in_json(capsys, "check", made, *([] if kind == 1 else [given]), *words)[0] == 0:
             allowed.append((number, spot[0], reported))
     assert not allowed
@@ -520,7 +555,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
 def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
-    # remarks of FANUC are short, and go on
+    # FANUC remarks are short and continue on the next line.
     said = r"\n[^\n]*tilt: the brush is held as each(?: ;\n : !\+)? move says[^\n]*"
     text, count = re.subn(said, "", made.read_text(), count=1)
     assert count == 1
@@ -532,8 +567,10 @@ def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tm
 
 @pytest.mark.parametrize("about", ["x", "y", "z"])
 def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
-    """Of a trajectory: a row on the way that is turned by 3 degrees about the brush or to the side, its tip in "
-    "place."""
+    """Check refuses a damaged row between two poses of a trajectory.
+
+    The row is turned by 3 degrees about the brush or to the side, with its tip in place.
+    """
     given, made, words = written(tmp_path, "fr3", plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
@@ -543,7 +580,7 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
     before = Rotation.from_quat([float(each) for each in way[2].split(",")])
     turned = before * Rotation.from_euler(about, 3, degrees=True)
     tip = np.array([float(each) for each in way[1].split(",")[1:4]]) + before.apply(cell.tool.tcp_mm) / 1e3
-    place = tip - turned.apply(cell.tool.tcp_mm) / 1e3  # about its tip
+    place = tip - turned.apply(cell.tool.tcp_mm) / 1e3  # turned about its tip
     reported = ",".join(f"{value:.9f}" for value in [*place, *turned.as_quat()])
     made.write_text(text[: way.start()] + way[1].split(",")[0] + "," + reported + way[3] + text[way.end() :])
     status, _, said = in_json(capsys, "check", made, given, *words)
@@ -574,7 +611,8 @@ def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_pat
         upright = re.sub(r"tilted\((\S+, \S+, [^,]+), [^)]*\)", r"on_paper(\1)", lines[k])
         damaged.append([*lines[:k], upright, *lines[k + 1 :]])
         place = [1e3 * float(each) for each in re.search(r"tilted\((\S+), (\S+), (\S+),", lines[k]).groups()]
-        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:  # others are on the way
+        # The other positions are between poses.
+        if np.linalg.norm(np.subtract(POSES[:-1], place), axis=1).min() < 1e-6:
             damaged.append([*lines[:k], *lines[k + 1 :]])
             own += 1
         damaged += [[*lines[:k], lines[k], lines[k - 1], *lines[k + 1 :]]]
@@ -605,7 +643,10 @@ def test_a_tilt_may_exceed_the_limit_by_rounding_alone(tilt_deg, count):
 
 
 def test_a_tool_that_would_turn_too_fast_is_refused():
-    """From 8 to 20 degrees over a way of 21 mm at 20 mm/s."""
+    """A tool that would turn too fast is refused.
+
+    The tool turns from 8 to 20 degrees over 21 mm at 20 mm/s.
+    """
     cell = brushsvg.find_cell("ur5e")
     text_for(plan(TILTED), cell)
     cell = replace(cell, tool=replace(cell.tool, turn_deg_s=15.0))
@@ -616,7 +657,10 @@ def test_a_tool_that_would_turn_too_fast_is_refused():
 
 @pytest.mark.parametrize("name", TILTING)
 def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, tmp_path, capsys):
-    """Rounded places make some ways shorter, rounded directions some tilts greater."""
+    """Check accepts a program whose turns and tilts are exactly at the limit.
+
+    Rounded positions shorten some paths, and rounded directions increase some tilts.
+    """
     poses = [[20, 20, 0], [22, 21, -2], [25, 20, -2.5], [29, 20.5, -1.5], [33, 20, 0]]
     of = plan(axes(0, 12, 20, 30, 30, towards_deg=np.array([0, 10, 50, 60, 90])), poses=poses, speed=10.0)
     cell = replace(brushsvg.find_cell(name), arm=None)
@@ -655,13 +699,16 @@ def test_in_the_air_it_turns_as_slowly():
         way = np.linalg.norm(np.subtract(after[:3], before[:3]))
         if np.degrees(turn) > 1e-3:
             turns.append(np.degrees(turn) * speed / way)
-    assert len(turns) == 2  # on the way down to the clearance, and up from there
+    assert len(turns) == 2  # on the way down to the clearance, and on the way up from it
     assert max(turns) <= cell.tool.turn_deg_s * 1.001
     assert max(turns) > cell.tool.turn_deg_s * 0.9
 
 
 def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
-    """The joints of a tilted stroke are cut as those of an upright one, and refused where that moves the mark."""
+    """Corners of a tilted stroke are cut as far as the mark allows.
+
+    The joints are cut like the joints of an upright stroke. A cut that shifts the mark is refused.
+    """
     cell = brushsvg.find_cell("ur5e")
     wide = replace(cell, blending=replace(cell.blending, tolerance_mm=5.0, radius_mm=20.0))
     poses = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [60, 50, -2], [60, 50, 0]]
@@ -690,7 +737,7 @@ def test_what_is_no_tilt_is_refused_before_anything_is_made_of_it(poses, held, e
     with np.errstate(all="ignore"):
         split_into_loads(
             plan(held, poses=poses), BRUSH, brushsvg.find_cell("ur5e")
-        )  # and this is no place to fail
+        )  # this call must not raise an exception
 
 
 # Joints of an arm -------------------------------------------------------------------------------------------
@@ -703,7 +750,11 @@ def arm_problems(of, cell):
 
 @pytest.mark.arm
 def test_an_arm_is_followed_as_the_brush_is_held():
-    """At the edge of its reach a UR5e paints with the handle towards itself, and not with it leaned away."""
+    """The check of an arm's joints uses the tilt of the brush.
+
+    At the edge of its reach, a UR5e can paint with the handle towards itself. It cannot paint with the handle
+    leaned away.
+    """
     cell = brushsvg.find_cell("ur5e")
     cell = replace(
         cell, paper=Paper((-50.0, -870.0, 20.0)), workspace=replace(cell.workspace, box_mm=(), reach_mm=())
@@ -742,7 +793,10 @@ def test_predict_warns_of_paint_off_the_sheet(words, tmp_path, capsys):
 
 
 def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
-    """Keys of [tool]."""
+    """The cell file sets the tilt limit and the turning speed.
+
+    They are keys of the table [tool].
+    """
     cell = brushsvg.find_cell("ur5e")
     text = write_cell(replace(cell, tool=replace(cell.tool, tilt_limit_deg=12.0, turn_deg_s=20.0)))
     assert "tilt_limit_deg = 12.0" in text.split("[tool]")[1]

@@ -1,4 +1,4 @@
-"""The timeline of a program: when the tool is where, and what the brush does there."""
+"""The timeline of a program: where the tool is, and what the brush does there."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -25,7 +25,7 @@ DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm"
 <path id="dab" d="M97 20h0" stroke="#802010" stroke-width="3"/></svg>"""
 POT = Station("pot", (-20.0, 30.0), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0)
 HAND = Station("Mary", (-20.0, 30.0), by_hand=True)
-FARTHER_MM = 1e-9  # than its speed says: rounding
+FARTHER_MM = 1e-9  # allows for rounding, on top of the distance at the given speed
 
 
 def cell_with(*stations, name="linuxcnc-3axis"):
@@ -34,7 +34,7 @@ def cell_with(*stations, name="linuxcnc-3axis"):
 
 @pytest.fixture(scope="module")
 def works(tmp_path_factory):
-    """A function: compensation, brush -> the drawing's work and marks."""
+    """Return a function from compensation and brush to the drawing's work and marks."""
     file = tmp_path_factory.mktemp("timeline") / "a.svg"
     file.write_text(DRAWING)
 
@@ -47,7 +47,7 @@ def works(tmp_path_factory):
 
 @pytest.fixture(params=["closed", "none", "constant", "rigid", "ur5e"])
 def played(request, works):
-    """A program with paint, its marks and its timeline."""
+    """Return the work, its marks, a program with paint, and its timeline."""
     how = request.param
     work, marks = works("closed", "rigid") if how == "rigid" else works("closed" if how == "ur5e" else how)
     cell = cell_with(POT, name="ur5e" if how == "ur5e" else "linuxcnc-3axis")
@@ -72,7 +72,8 @@ def test_every_point_of_the_program_is_met_at_the_time_it_is_reached(played):
             continue
         along_mm, v = distances(step, here)[-1], step.speed_mm_s
         a = program.cell.speeds.acceleration_mm_s2
-        # from rest to rest: as if the whole way were at full speed and one ramp came on top; or two ramps alone
+        # From rest to rest, a move takes as long as the whole path at full speed plus one ramp. A short move
+        # has two ramps only.
         now_s += along_mm / v + v / a if along_mm >= v * v / a else 2 * np.sqrt(along_mm / a)
         here = step.points_mm[-1]
         at = np.abs(rows.time_s - now_s) < 1e-9

@@ -1,4 +1,4 @@
-"""The types for editors and type checkers are the real ones, and it is enough to find a mistake."""
+"""The types for editors and type checkers match the package and reveal a mistake."""
 
 import ast
 import importlib.util
@@ -16,8 +16,8 @@ from brushsvg import _core
 ROOT = Path(__file__).parents[2]
 STUBS = Path(brushsvg.__file__).parent / "_core"
 CLASSES = [name for name, _ in inspect.getmembers(_core, inspect.isclass)]
-# what a stub cannot say: classes are of pybind11's own metaclass, those without a constructor take anything to refuse
-# it, and __all__ is the stub's alone
+# A stub cannot express these: classes have pybind11's own metaclass, classes without a constructor accept any
+# arguments in order to refuse them, and only the stub has __all__.
 BEYOND_STUBS = [rf"brushsvg\._core\.({'|'.join(CLASSES)})(\.__init__)?", r"brushsvg\._core(\.lag)?\.__all__"]
 PROGRAM = """import brushsvg
 

@@ -1,4 +1,7 @@
-"""What is said of how sure a brush is: in the report, in the picture, once where nothing is known."""
+"""Uncertainty of a brush: in the report, in the picture, and in one notice.
+
+The notice appears once if nothing is known.
+"""
 
 import json
 
@@ -38,10 +41,10 @@ def test_the_report_says_how_far_off_and_where_from(drawing, capsys):
     found = json.loads(report(drawing, capsys, "--json").out)
     assert found["uncertainty_from"] == "RMSE"
     line, bow = (row["uncertainty_95"] for row in found["strokes"])
-    # r and b as far off as single readings: the ends of any stroke follow from (16) alone
+    # Here, r and b have the errors of single readings, so the ends of any stroke follow from (16) alone.
     ends = 1.959963985 * np.hypot(0.58, 0.85)
     assert line["ends_mm"] == pytest.approx(ends, rel=0.02) == bow["ends_mm"]
-    assert line["middle_mm"] < 0.1 < bow["middle_mm"]  # a lag that is wrong shows where the line bends
+    assert line["middle_mm"] < 0.1 < bow["middle_mm"]  # a wrong lag shows where the line bends
     assert line["width_mm"] is None
     assert found["total"]["uncertainty_95"]["middle_mm"] == bow["middle_mm"]
 
@@ -78,7 +81,7 @@ def test_a_band_with_a_legend(drawing, tmp_path, suffix):
         return
     plain, banded = (cv2.imread(str(path)).astype(int) for path in (plain, banded))
     changed = np.abs(plain - banded).max(axis=2) > 20
-    assert changed[: changed.shape[0] * 9 // 10].mean() > 0.01  # round the marks
+    assert changed[: changed.shape[0] * 9 // 10].mean() > 0.01  # around the marks
     assert changed[changed.shape[0] * 9 // 10 :].mean() > 0.001  # the legend
 
 

@@ -1,4 +1,4 @@
-"""What no stroke reaches is named, shown, and the reason that the report gives."""
+"""Areas that no stroke reaches are named, shown, and explained in the report."""
 
 import json
 from pathlib import Path
@@ -34,13 +34,13 @@ def prepared(tmp_path, d: str, **options):
 
 
 def unreached(drawn, painted, brush):
-    """Areas that no stroke reaches."""
+    """Return the areas that no stroke reaches."""
     passes = _core.compensate(painted, brush, None, start="auto", end="auto").plan.passes
     return [each for each in uncovered_areas(drawn, painted, list(passes), brush) if not each.is_reached]
 
 
 def bar_less(tmp_path):
-    """The strokes of a t, and without its bar."""
+    """Return the strokes of a t, and its stem alone."""
     drawn = list(prepared(tmp_path, T).drawn)
     stem = max(drawn, key=lambda stroke: max(half for _, half in stroke.half_width))
     return drawn, stem
@@ -60,7 +60,11 @@ def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
 
 @pytest.mark.parametrize("measured_mm", [(0.0, 10.0), None])
 def test_a_brush_that_begins_with_no_width_is_looked_at_as_any(tmp_path, measured_mm):
-    """Photographed brushes are measured from depth 0 on: each filled shape ended in a ZeroDivisionError."""
+    """A brush whose width begins at 0 is handled like any other brush.
+
+    Photographed brushes are measured from depth 0. With such a file, each filled shape once ended in a
+    ZeroDivisionError.
+    """
     file = brush_file(tmp_path, lambda lag: lag.update(calibrated_mm=measured_mm) or lag)
     drawn, stem = bar_less(tmp_path)
     found = unreached(drawn, [stem], find_brush("round-6"))
@@ -70,7 +74,7 @@ def test_a_brush_that_begins_with_no_width_is_looked_at_as_any(tmp_path, measure
 
 
 def brush_file(tmp_path, changed) -> str:
-    """A file of round-6 with another lag."""
+    """Write a brush file of round-6 with another lag and return its name."""
     shipped = json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
     lag = {key: value for key, value in changed(shipped["lag"]).items() if value is not None}
     file = tmp_path / "other.json"
@@ -83,7 +87,10 @@ def test_blunt_corners_are_not_named(tmp_path):
 
 
 def test_corners_that_a_squared_end_runs_into_are_not_named(tmp_path):
-    """Discs leave them, and a corner of 45 degrees counts as a limb."""
+    """Corners at a squared end are not reported as unreached.
+
+    Discs leave these corners blank, and a corner of 45 degrees counts as a limb.
+    """
     work = prepared(tmp_path, "M8 10H19L51 42H40Z")
     assert work.unreached == ()
     assert not is_reported(work.notices, "unreached")
@@ -93,7 +100,7 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
     work = prepared(tmp_path, WIDE, wide="clamp")
     assert sum(piece.share for piece in work.unreached) > 0.3
     assert is_reported(work.notices, "unreached", "p")
-    assert all(piece.is_rim for piece in work.unreached)  # its stroke runs amid it
+    assert all(piece.is_rim for piece in work.unreached)  # the stroke runs along the middle of the shape
     rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
     assert agrees(*notices_of_areas(rim.unreached), "unreached", "p")
     (row, *_), _ = report.measure(
@@ -105,7 +112,10 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
 
 
 def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_share(tmp_path):
-    """A seventh of a short stem stays blank next to its pointed beginning, and nothing said so."""
+    """The unpainted part next to a blunt beginning is reported with place and share.
+
+    A seventh of a short stem stays blank next to its pointed beginning, and this was not reported.
+    """
     import shapely
 
     from brushsvg.strokes.swept_areas import region
@@ -138,7 +148,10 @@ def test_it_is_outlined_in_every_picture(tmp_path):
 
 
 def test_the_report_gives_it_as_the_reason(tmp_path):
-    """8.43 mm wide, wider than 8.4, it said of the bar of a t."""
+    """The report names an unreached area as the reason for a fault.
+
+    The bar of a t was once explained with "8.43 mm wide, wider than 8.4".
+    """
     brush = find_brush("round-6")
     drawn, _ = bar_less(tmp_path)
     stem = _core.Stroke("p", np.array([[25, 51, 25, 40, 25, 30, 25, 19]], float), False, [(0.0, 4.215)])
@@ -159,7 +172,10 @@ def test_the_report_gives_it_as_the_reason(tmp_path):
 
 
 def test_what_discs_leave_of_a_corner_is_no_tracking_error(tmp_path):
-    """Of the corners of a bar that is cut aslant the report said: tracking error up to 0.012 mm."""
+    """A corner that discs leave blank is not a tracking error.
+
+    For the corners of a bar with slanted cuts, the report once said: tracking error up to 0.012 mm.
+    """
     work = prepared(tmp_path, "M10 10H50L45 16H15Z")
     (row, *_), _ = report.measure(report.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert row.worst.code == "shape-corner"

@@ -1,4 +1,4 @@
-"""URScript: what a stub of the robot does with our programs, and that the stub refuses broken ones."""
+"""A stub of the robot runs our URScript programs, and refuses broken ones."""
 
 from dataclasses import replace
 from itertools import zip_longest
@@ -56,7 +56,10 @@ def text_for(cell=CELL, strokes=STROKES, header=("title: two strokes",), colours
 
 
 def rows_of(robot, cell):
-    """(name, point in the paper's frame [mm], speed [mm/s], blend [mm]) of every point it goes to."""
+    """Return (name, point [mm], speed [mm/s], blend [mm]) of all points.
+
+    Points are in the paper frame.
+    """
     paper_from_robot = np.linalg.inv(robot_from_paper(cell))
     rows = []
     for name, *rest in robot.events:
@@ -70,7 +73,7 @@ def rows_of(robot, cell):
 
 
 def on_a_circle(start, via, end, count=200):
-    """Points between the first and the last of three on a level circle."""
+    """Return points between the first and the last of three points on a level circle."""
     (a, b, c), level = (np.array(each[:2]) @ (1, 1j) for each in (start, via, end)), start[2]
     ratio = (c - a) / (b - a)
     centre = (b - a) * (ratio - abs(ratio) ** 2) / (2j * ratio.imag) + a
@@ -83,7 +86,7 @@ def on_a_circle(start, via, end, count=200):
 
 
 def touched(robot, cell):
-    """Those below the clearance."""
+    """Return the rows below the clearance."""
     return [row for row in rows_of(robot, cell) if row[1][2] < cell.heights.clearance_mm - 1e-6]
 
 
@@ -122,7 +125,7 @@ def test_the_marks_are_the_plans():
             passes.append(here)
             here = []
         elif point[2] <= 1e-6:
-            via = name == "movec" and not via  # on its way, and then its end
+            via = name == "movec" and not via  # a circle has a point on its path, then its end
             here += on_a_circle(here[-1], point, rows[k + 1][1]) if via else [point]
     rings = []
     reported = [_core.Pass("s", np.array(each), 20.0) for each in passes]
@@ -206,7 +209,10 @@ WATCHED = replace(CELL, contact=Contact(force_n=10.0))
 
 
 def pressed(height_mm, newtons):
-    """What presses on a tool that is held by somebody's hand with 3 N, and lower than a height with more."""
+    """Return a function for the force on a tool at a pose.
+
+    A hand that holds the tool presses with 3 N. Below the height, the force is greater.
+    """
     paper_from_robot = np.linalg.inv(robot_from_paper(CELL))
 
     def force(pose):
@@ -281,7 +287,7 @@ def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_pa
     program.write_text(text.replace(old, new))
     status, _, said = in_json(capsys, *check)
     assert status == 1 and is_reported(said, "program-changed")
-    # nor may it stand in for the program of a cell without
+    # The program must also be refused in place of the program of a cell without contact sensing.
     program.write_text(text)
     assert in_json(capsys, "check", program, "--cell", name)[0] == 1
 

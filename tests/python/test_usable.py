@@ -1,4 +1,4 @@
-"""What nothing can be painted of is refused where strokes become a plan."""
+"""Strokes that cannot be painted are refused when they become a plan."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,10 @@ def test_a_sheet_that_none_can_be_is_refused(sheet_mm):
 
 
 def test_cubics_of_a_stroke_hang_together():
-    """What was between them was painted straight across."""
+    """Cubics of a stroke must be connected.
+
+    A gap between two cubics was once painted straight across.
+    """
     middle = line([(20, 20), (40, 20), (60, 20)])
     middle[1] += [0, 3] * 4
     with refused("geometry-out-of-range 1 0 3", "one"):
@@ -40,7 +43,10 @@ def test_a_closed_stroke_ends_where_it_begins():
 
 
 def test_degrees_of_freedom_are_one_number():
-    """Of a column and a row of a hundred thousand each, their product was built."""
+    """An array of degrees of freedom is refused.
+
+    The code once built the full product of a column and a row of a hundred thousand values each.
+    """
     with pytest.raises(TypeError):
         _core.as_normal(np.ones((100_000, 1)), np.ones(100_000))
 

@@ -1,4 +1,7 @@
-"""Every public value type: what it shows, when two are equal, and that copies are whole and share nothing."""
+"""Every public value type: its repr, its equality, and its copies.
+
+Copies are complete and share nothing with their original.
+"""
 
 import copy
 import inspect
@@ -84,7 +87,7 @@ def calibrated(folder, more=0.0):
     return brushsvg.calibrate(path)
 
 
-# class: values, no two of them equal
+# class: values that all differ from each other
 PROFILES = [
     _core.Profile([1, 2]),
     _core.Profile([1, 2, 0]),
@@ -338,13 +341,16 @@ def another(value, name):
 def can_be_hashed(value):
     try:
         hash(value)
-    except TypeError:  # it can be changed, or holds what can be
+    except TypeError:  # the value is mutable or contains a mutable value
         return False
     return True
 
 
 def fields_of(value):
-    """Public fields in a table, as plain as numpy compares them; nothing of it asks the value whether it is equal."""
+    """Return the public fields as plain values that numpy can compare.
+
+    The function never calls the equality of the value itself.
+    """
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, list | tuple):
@@ -359,7 +365,7 @@ def fields_of(value):
 
 
 def arrays_of(value, way=()):
-    """(how it is reached, array) of all arrays in public fields."""
+    """Yield (path of fields, array) for all arrays in public fields."""
     if isinstance(value, np.ndarray):
         yield way, value
     elif isinstance(value, tuple):
@@ -405,7 +411,7 @@ def test_a_value_is_shown_compared_copied_and_pickled(name, tmp_path):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_array_is_silently_detached(name, tmp_path):
-    """Writing to it either raises or changes the value it was taken from."""
+    """Writing to an array either raises or changes the value that owns it."""
     value = NAMES[name](tmp_path)[0]
     for way, array in arrays_of(value):
         if array.size == 0:
@@ -437,7 +443,11 @@ def test_what_another_version_pickled_is_refused():
 
 @pytest.mark.parametrize("kind", [kind for kind in vars(_core).values() if isinstance(kind, type)])
 def test_what_was_never_made_has_nothing_to_show(kind):
-    """As a debugger shows it, or pytest, whose constructor refused its arguments: memory nobody had filled was read."""
+    """An object without a finished constructor raises TypeError instead of crashing.
+
+    A debugger shows such objects, and so does pytest when a constructor refuses its arguments. Uninitialized
+    memory was once read.
+    """
     unmade = kind.__new__(kind)
     fields = [name for name, field in inspect.getmembers(kind) if isinstance(field, property)]
     asks = [lambda name=name: getattr(unmade, name) for name in fields]

@@ -1,4 +1,4 @@
-"""The verdict of a report: each threshold, from either side."""
+"""The verdict of a report changes at each threshold; the tests try both sides."""
 
 from dataclasses import replace
 

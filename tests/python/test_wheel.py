@@ -1,4 +1,4 @@
-"""The tools that make wheels: what is added to a wheel, and which wheels are refused."""
+"""The tools that make wheels: the files they add, and the wheels they refuse."""
 
 import base64
 import hashlib
@@ -35,7 +35,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="wheels are made
 
 
 def a_library() -> bytes:
-    """A small module of Python itself, which needs the C library alone."""
+    """Return a small extension module of Python itself that needs only the C library."""
     for path in sorted(Path(sysconfig.get_config_var("DESTSHARED")).glob("*.so")):
         data = path.read_bytes()
         if len(data) < 100_000 and not list(contents.problems_of_library(data)):
@@ -45,7 +45,10 @@ def a_library() -> bytes:
 
 @pytest.fixture
 def raw(tmp_path):
-    """What a build leaves: files in any order, with the time at which they were made."""
+    """Write a wheel as a build leaves it.
+
+    Its files are in any order, with the time at which they were made.
+    """
     path = tmp_path / "raw.whl"
     with zipfile.ZipFile(path, "w") as file:
         file.writestr(f"{INFO}/RECORD", "old")
@@ -63,7 +66,7 @@ def wheel(raw, tmp_path):
 
 
 def changed(wheel: Path, **files: bytes | None) -> Path:
-    """A copy with other files; None leaves one out."""
+    """Return a copy with other files; None leaves a file out."""
     out = wheel.with_name("changed.whl")
     with zipfile.ZipFile(wheel) as file, zipfile.ZipFile(out, "w") as other:
         for name in file.namelist():
@@ -127,7 +130,10 @@ def test_code_of_a_library_under_the_gpl_is_refused(word):
 
 
 def test_the_module_of_a_developer_is_refused(wheel):
-    """It is linked to Debian's Ceres, which needs SuiteSparse and LAPACK."""
+    """A developer's own build is refused.
+
+    The module is linked to Debian's Ceres, which needs SuiteSparse and LAPACK.
+    """
     data = Path(brushsvg._core.__file__).read_bytes()
     if b"libcholmod" not in data:
         pytest.skip("this module was compiled without SuiteSparse")

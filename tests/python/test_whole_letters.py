@@ -1,4 +1,4 @@
-"""Refined strokes that touch are kept only where they make a better letter."""
+"""Refined strokes that touch are kept only if they improve the letter."""
 
 import numpy as np
 import shapely
@@ -23,7 +23,7 @@ def test_a_filled_shape_is_painted_no_worse_by_its_refined_passes(tmp_path):
         overlaps[compensation] = _core.common_area(marks.passes, work.strokes, work.brush).overlap
     assert (
         overlaps["refined"] >= overlaps["closed"]
-    )  # each pass alone, refined, left 0.03 of the shape unpainted
+    )  # refined one by one, the passes left 0.03 of the shape unpainted
 
 
 def turned_deg(rings) -> float:
@@ -35,7 +35,10 @@ def turned_deg(rings) -> float:
 
 
 def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_not():
-    """Two bars that touch: one is refined to cover a little more, the other waves and covers more as well."""
+    """A stroke that makes its letter restless is worse, and its neighbour is not.
+
+    Two bars touch. One is refined to cover a little more; the other waves and also covers more.
+    """
     brush = find_brush("round-6")
     bars = [
         Stroke("stem", np.linspace((30, 20), (30, 70), 4).reshape(1, 8), half_width=[(0, 2.5), (1, 2.5)]),
@@ -44,7 +47,7 @@ def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_n
     closed = compensate(bars, brush, (100, 90), start="auto", end="auto").plan.passes
     calm = list(closed)
     waving = Pass("bar", waved(closed[1].poses_mm), closed[1].speed_mm_s)
-    # what was intended is wider than the closed form paints, so that a wave covers more of it
+    # The target is wider than the mark in closed form, so a wave covers more of the target.
     wider = [bars[0], bars[1].replaced(half_width=[(0, 3.4), (1, 3.4)])]
     group = [[0, 1]]
     overlaps, marks = [], []
@@ -53,14 +56,17 @@ def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_n
         _core.trace_outlines(painted, brush)
         overlaps.append(_core.common_area(painted.passes, wider, brush).overlap)
         marks.append(painted.outline_mm)
-    assert overlaps[1] > overlaps[0]  # by overlap alone it was kept
+    assert overlaps[1] > overlaps[0]  # by overlap alone, the wave would be kept
     assert turned_deg(marks[1]) > turned_deg(marks[0]) + 270
     assert find_worse_strokes([closed[0], waving], closed, wider, brush, group) == [1]
     assert find_worse_strokes(calm, closed, wider, brush, group) == []
 
 
 def waved(poses_mm: np.ndarray) -> np.ndarray:
-    """From side to side by 3 mm, which the lag makes less, five times between landing and lift-off, pressed deeper."""
+    """Return poses that wave by 3 mm to either side, pressed deeper.
+
+    There are five waves between landing and lift-off. The lag makes the waves in the mark smaller.
+    """
     inside = np.linspace(poses_mm[2], poses_mm[-3], 60)
     inside[:, 1] += 3.0 * np.sin(np.linspace(0, 10 * np.pi, 60))
     inside[:, 2] -= 2.0

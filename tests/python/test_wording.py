@@ -1,6 +1,7 @@
-"""What people read, held word for word against tests/golden/wording.txt; all other tests ask for codes and numbers.
+"""All texts for users are compared word for word with tests/golden/wording.txt.
 
-After a change of words, write that file again with `make wording`, and read its changes.
+All other tests check codes and numbers. After a change of words, write the file again with `make wording` and
+read its changes.
 """
 
 import argparse
@@ -36,7 +37,7 @@ FILES = {
     "empty.svg": SVG.format(""),
     "plan.json": '{"format": "brushsvg/plan", "version": 99}',
 }
-TYPED = (  # what is done, warned of, refused; what is listed, shown and checked
+TYPED = (  # commands that work, warn or fail; commands that list, show and check
     *(f"convert {name} -o {Path(name).stem}.ngc" for name in FILES),
     "convert none.svg -o out.ngc",
     "convert line.svg -o out.ngc --brush broom",
@@ -58,7 +59,10 @@ TYPED = (  # what is done, warned of, refused; what is listed, shown and checked
 
 
 def helps(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:
-    """(Command, what its --help says of it and its flags), however this version of Python breaks lines."""
+    """Yield each command with the help texts of the command and its flags.
+
+    The result does not depend on how this version of Python breaks lines.
+    """
     lines, below = [parser.description or ""], []
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
@@ -73,7 +77,7 @@ def helps(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:
 
 
 def reports() -> Iterator[tuple[str, str]]:
-    """(Which, the text of it), with all that can stand in one."""
+    """Yield the name and the text of reports that contain all possible parts."""
     row = Figures("line", 0.95, 0.01, 0.04, 0.12, 1, 60.0, 81.5, 42, excess_turning=0.1)
     worst = Worst((12.34, 5.67), True, 0.5, "REASON", "shorter-than-footprint")
     odd = Figures("dab", None, None, None, None, None, None, 12.0, 7, worst)
@@ -88,7 +92,7 @@ def reports() -> Iterator[tuple[str, str]]:
 
 
 def typed() -> Iterator[tuple[str, str]]:
-    """(Command, what it prints), one after the other in a folder of its own."""
+    """Yield each command and its output, run one after the other in a new folder."""
     before = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         for name, content in FILES.items():

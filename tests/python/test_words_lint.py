@@ -1,4 +1,7 @@
-"""tools/words_lint.py finds words of the list in code, and none in the code that has to be free of them."""
+"""tools/words_lint.py finds listed words in code.
+
+It finds none in the folders that must be free of them.
+"""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""Limits of place hold along the way: strokes, ways between them, visits, circles, rises; in every command alike."""
+"""Workspace limits hold along the whole path, in every command alike.
+
+The path includes strokes, travel between them, visits, circles and rises.
+"""
 
 import re
 from dataclasses import replace
@@ -32,7 +35,7 @@ BAR, PAIR = (
 
 
 def robot(**workspace):
-    """A robot that stands in the middle of its paper."""
+    """Return a robot that stands in the middle of its paper."""
     cell = find_cell("ur5e")
     paper = replace(cell.paper, origin_mm=(-300.0, -100.0, 20.0), example=False)
     limits = {"box_mm": (), "reach_mm": (), "margin_mm": 30.0, "tilt_limit_deg": 15.0} | workspace
@@ -57,7 +60,10 @@ def desk(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("limits", "said"), [(RING, AWAY), (POST, KEPT)])
 @pytest.mark.parametrize(("name", "of_stroke", "way"), [("bar", "bar", ""), ("pair", "right", " way")])
 def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way, limits, said):
-    """Both ends were checked, and not the way; between strokes nothing was."""
+    """No path goes through the robot itself.
+
+    Only the two ends of a path were once checked, and nothing was checked between strokes.
+    """
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     drawing, cell = f"{name}.svg", ("--cell", "mine.toml")
     for command in (["convert"], ["setup", "border"]):
@@ -81,7 +87,11 @@ LEFT = {
 
 @pytest.mark.parametrize(("limits", "x_mm"), [(RING, 20), (POST, 20), (LEFT, 20), ({}, -20)])
 def test_of_a_resumed_job_only_the_rest_is_checked(desk, capsys, limits, x_mm):
-    """The first stroke, the way from it and its paint may break any limit: the machine does not go there again."""
+    """In a resumed job, only the rest is checked.
+
+    The first stroke, the path from it and its paint may break any limit, because the machine does not repeat
+    them.
+    """
     (desk / "mine.toml").write_text(write_cell(robot(**limits)))
     (desk / "pair.svg").write_text(PAIR.replace("M20 100", f"M{x_mm} 100"))
     words = ("convert", "pair.svg", "-o", "pair.script", "--cell", "mine.toml")
@@ -96,7 +106,10 @@ def test_of_a_resumed_job_only_the_rest_is_checked(desk, capsys, limits, x_mm):
 
 
 def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes(desk, capsys):
-    """A clip between the first two lanes, lower than neither of them."""
+    """Height measurements and the paths between them keep out of forbidden boxes.
+
+    The box is a clip between the first two lanes, and its top is not lower than the lanes.
+    """
     clip = robot(keep_out_mm=(((-300.0, 90.0, 30.0), (-200.0, 92.0, 45.0)),))
     (desk / "mine.toml").write_text(write_cell(clip))
     height = ("setup", "height", "-o", "job.script", "--sheet", "600x200")
@@ -111,17 +124,19 @@ def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes
 @pytest.mark.parametrize(
     ("box", "who", "said"),
     [
-        (((-6.0, 30.0, 5.0), (-4.0, 50.0, 100.0)), "s", "in-kept-out-box way"),  # from the paint
+        (((-6.0, 30.0, 5.0), (-4.0, 50.0, 100.0)), "s", "in-kept-out-box way"),  # on the path from the paint
+        # At the bottom of the vessel.
         (
             ((-21.0, 39.0, -20.0), (-19.0, 41.0, -4.5)),
             "ink",
             "in-kept-out-box",
-        ),  # at the bottom of the vessel
+        ),
+        # Between the points of a wipe.
         (
             ((-16.0, 39.0, -20.0), (-15.0, 41.0, 5.5)),
             "ink",
             "in-kept-out-box",
-        ),  # between the points of a wipe
+        ),
     ],
 )
 def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, capsys, language, box, who, said):
@@ -154,7 +169,7 @@ def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, caps
         assert call(capsys, "convert", "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
 
 
-ROUND = np.array([(50, 30, -2), (50, -20, -2)], dtype=float)  # the lower one at the edge of a margin of 30 mm
+ROUND = np.array([(50, 30, -2), (50, -20, -2)], dtype=float)  # the lower one is at the edge of a 30 mm margin
 
 
 def plan_of(poses, arcs=(), name="a"):
@@ -174,7 +189,10 @@ def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, x):
 
 
 def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
-    """All of its poses are within."""
+    """A circle that bulges beyond the margin is refused.
+
+    All of its poses are inside.
+    """
     poses = np.array([(40, -25, -2), (60, -25, -2)], dtype=float)
     below = _core.Arc(0, 1, (50.0, -25.0), 1)
     assert forbidden(plan_of(poses), BRUSH, find_cell()) == []
@@ -182,7 +200,10 @@ def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
 
 
 def test_a_rise_on_paper_that_leans_ends_below_the_box():
-    """The highest place over the sheet is checked before anything; nothing is painted there."""
+    """A rise on paper that leans ends below the top of the box.
+
+    The highest position over the sheet is checked before all else. Nothing is painted there.
+    """
     cell = find_cell()
     leans = replace(
         cell,
@@ -201,8 +222,11 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
     ("limit", "said"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")]
 )
 def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsys, name, limit, said):
-    """Over the stroke all is allowed up to the safe height; on paper that leans, the tool first rises over its highest
-    place, and the box's height alone was checked."""
+    """A rise before the first move keeps out of the forbidden space.
+
+    Over the stroke, everything up to the safe height is allowed. On paper that leans, the tool first rises
+    above the highest position of the paper. Only the height of the box was once checked for this rise.
+    """
     cell = find_cell(name)
     suffix = ".ngc" if name == "linuxcnc-3axis" else ".jks"
     lamp = ((-80.0, -160.0, -366.0), (20.0, -100.0, -300.0)), ((900.0, 900.0, 0.0), (901.0, 901.0, 1.0))
@@ -230,7 +254,10 @@ def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsy
 
 
 def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
-    """The reach had no room for the rounding of a program, which check then refused."""
+    """A path that keeps a limit exactly still keeps it after rounding.
+
+    The reach once had no allowance for the rounding of a program, and check then refused the program.
+    """
     cell = replace(robot(), decimals=3)
     (desk / "free.toml").write_text(write_cell(cell))
     assert call(capsys, "convert", "bar.svg", "-o", "bar.json", "--cell", "free.toml")[0] == 0
@@ -294,7 +321,11 @@ def test_jobs_before_the_first_stroke_ask_their_whole_way():
 
 
 def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
-    """Vessel and wipe are next to it, and the tip, full of paint, went across at the height of the rim."""
+    """A wipe beyond the sheet must not be reached across the sheet.
+
+    Vessel and wipe are next to the sheet. The tip, full of paint, once crossed the sheet at the height of the
+    rim.
+    """
     ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-10.0, 40.0, 5.0), (-10.0, 80.0, 5.0)))
     cell = replace(find_cell(), stations=(ink,), reload=Reload("stroke"))
     assert forbidden(plan_of(ROUND), BRUSH, cell) == []
@@ -305,7 +336,10 @@ def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
 
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])
 def test_ways_are_checked_in_any_groups(monkeypatch, at_once):
-    """Strokes on both sides of the robot, each way from one side to the other through it."""
+    """The result does not depend on how many moves are checked at once.
+
+    The strokes are on both sides of the robot, and some paths between them go through it.
+    """
     monkeypatch.setattr(limits, "MAX_MOVES_AT_ONCE", at_once)
     sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
     passes = [
@@ -324,7 +358,10 @@ EDGES = (
 
 
 def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_path, capsys):
-    """At the edge a round beginning was landed beyond the workspace, and the whole drawing refused."""
+    """An automatic beginning is chosen so that the cell can run it.
+
+    At the edge, a round beginning once landed beyond the workspace, and the whole drawing was refused.
+    """
     cell = find_cell()
     cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=2.0))
     (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
@@ -377,7 +414,10 @@ def test_a_cut_beginning_that_the_cell_cannot_cut_is_round_or_pointed(tmp_path, 
 
 
 def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed(tmp_path, capsys):
-    """Beyond the edge by 0.17 mm, the drawing was refused."""
+    """A stroke whose round beginning exceeds the sheet begins pointed.
+
+    The round beginning is 0.17 mm beyond the edge, and the drawing was once refused.
+    """
     drawn = (
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
         '<path id="edge" d="M96.4 45l-18.73 -37.09" stroke="#000" fill="none" stroke-width="7.6"/></svg>'
@@ -391,7 +431,10 @@ def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed
 
 @pytest.mark.parametrize(("margin_mm", "strokes"), [(8.0, 3), (3.0, 1)])
 def test_a_stroke_that_was_added_is_left_out_where_the_cell_has_no_room_for_it(tmp_path, margin_mm, strokes):
-    """The drawing was refused for the strokes into the corners of an L, 0.6 mm beyond the workspace."""
+    """An added stroke is left out where the cell has no room for it.
+
+    The drawing was once refused because strokes into the corners of an L were 0.6 mm beyond the workspace.
+    """
     file = tmp_path / "l.svg"
     file.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="46mm" height="50mm" viewBox="0 0 46 50">'

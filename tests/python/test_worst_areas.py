@@ -10,7 +10,7 @@ LINES = [np.array([(1.0, 5.0), (9.0, 5.0)]), np.array([(1.0, 15.0), (9.0, 15.0)]
 
 
 def sheet(*boxes):
-    """10 x 20 mm; boxes: left, bottom, right, top in mm."""
+    """Return a raster of 10 x 20 mm; boxes are left, bottom, right, top in mm."""
     out = np.zeros((round(20 * PX), round(10 * PX)), np.float32)
     for left, bottom, right, top in boxes:
         out[round((20 - top) * PX) : round((20 - bottom) * PX), round(left * PX) : round(right * PX)] = 1.0

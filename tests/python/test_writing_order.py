@@ -1,4 +1,7 @@
-"""In which order the lines of a letter are painted, by the places of their centres."""
+"""The order in which the lines of a letter are painted.
+
+The tests compare the positions of the lines' centres.
+"""
 
 import numpy as np
 import pytest
@@ -8,7 +11,7 @@ from brushsvg import _core
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.skeleton.reading_order import group_areas, stand_side_by_side
 
-# outline, and a place on each line in the order of writing; y down as in the drawing
+# The outline of each letter, and a point on each line in writing order; y is down, as in the drawing.
 LETTERS = {
     "P": ("M10 5H30A11 11 0 0 1 30 27H16V45H10ZM16 11V21H30A5 5 0 0 0 30 11Z", [(13, 35), (38, 16)]),
     "R": (
@@ -72,7 +75,7 @@ def test_lines_are_painted_in_the_order_of_writing(d, places):
     assert len(set(order.tolist())) == len(places)
 
 
-def test_a_dot_above_a_bar_comes_first_in_a_character():  # after it in a letter, as that of an i
+def test_a_dot_above_a_bar_comes_first_in_a_character():  # the dot of an i comes after its bar in a letter
     dot, bar = lines_of("M5 20H45V26H5ZM21 5H29V12H21Z", "cjk")
     assert dot[:, 1].mean() > bar[:, 1].mean()
 
@@ -81,7 +84,7 @@ def test_a_dot_above_a_bar_comes_first_in_a_character():  # after it in a letter
     ("d", "first", "last"),
     [
         ("M10 10H17V17Q22 10 34 10V18Q20 17 17 28V45H10Z", (14.4, 26.5), (30.5, 14)),
-        ("M10 5H28L13 45H5L18 12H10Z", (13, 8.5), (10, 42)),  # bends as far, but falls
+        ("M10 5H28L13 45H5L18 12H10Z", (13, 8.5), (10, 42)),  # it bends as far, but falls
     ],
     ids=["r", "7"],
 )
@@ -97,7 +100,7 @@ def test_a_hairline_between_two_stems_is_written_upwards():
     assert hairline[0, 1] < hairline[-1, 1]
 
 
-def test_a_hairline_from_one_stem_down_to_the_next_stays():  # of an N
+def test_a_hairline_from_one_stem_down_to_the_next_stays():  # the diagonal of an N
     _, slant, _ = lines_of("M8 5H14V8L32 31V5H38V45H32V39L14 16V45H8Z")
     assert slant[0, 1] > slant[-1, 1]
 
@@ -138,7 +141,7 @@ def test_arabic_is_written_from_the_right_with_bodies_before_dots():
 
 
 def test_characters_of_a_line_are_cut_at_gaps_and_each_is_one_group():
-    # two characters of two parts each, side by side
+    # Two characters of two parts each, side by side.
     parts = np.array([(0, 0, 8, 20), (10, 0, 20, 20), (24, 0, 32, 20), (34, 0, 44, 20)])
     assert group_areas(parts, "cjk") == [[0, 1], [2, 3]]
     assert group_areas(parts, "latin") == [[0], [1], [2], [3]]
@@ -177,7 +180,7 @@ def test_the_stem_of_a_t_or_f_comes_before_its_crossbar(script):
         assert np.ptp(bar[:, 1]) < 2
 
 
-def test_the_bar_of_a_character_comes_before_the_line_that_crosses_it():  # in auto, this form is read as a t
+def test_the_bar_of_a_character_comes_before_the_line_that_crosses_it():  # "auto" reads this form as a t
     wide_and_high = "M22 5H28V16H44V22H28V45H22V22H6V16H22Z"  # 十 with a bar as high as that of a t
     bar, stem = lines_of(wide_and_high, "cjk")
     assert np.ptp(bar[:, 0]) > 30
