@@ -452,10 +452,9 @@ class Search {
         if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2) {
             Painting painting{{best->stroke}, best->tile};
             improve_stroke(painting, tiles_.size(), {true, false, false, true});
-            // measured as the trials were: otherwise the same trial can win again and again
+            // It must still win as the trials are measured: otherwise the same trial wins again and again.
             const double won_mm2 = area_won_mm2(painting.tile) - turn_mm2() * turned(painting.tile);
-            if (won_mm2 > best->won_mm2)
-                best = Trial{std::move(painting.strokes.front()), std::move(painting.tile), won_mm2};
+            if (won_mm2 > 0.0) best = Trial{std::move(painting.strokes.front()), std::move(painting.tile), won_mm2};
         }
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);

@@ -76,7 +76,8 @@ def test_what_is_set_up_has_the_extras_that_its_commands_need():
     root = Path(__file__).parents[2]
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     requested = re.findall(
-        r'lacking\("[^"]*", (.*)\)', "".join(map(Path.read_text, root.glob("python/brushsvg/**/*.py")))
+        r'missing_packages_error\("[^"]*", (.*)\)',
+        "".join(map(Path.read_text, root.glob("python/brushsvg/**/*.py"))),
     )
     named = {name for each in requested for name in re.findall('"(.*?)"', each)}
     of_commands = (
