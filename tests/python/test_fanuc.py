@@ -110,6 +110,11 @@ def test_a_frame_is_set_before_it_is_chosen(small):
     assert status == 1 and is_reported(said, "line-incomplete")
 
 
+def test_a_file_that_begins_with_another_program_is_refused(small):
+    status, said = small(lambda text: text.replace("/PROG  BRUSHSVG", "/PROG  BOTHER", 1))
+    assert status == 1 and is_reported(said, "line-unread"), said
+
+
 def test_a_speed_in_another_unit_is_read_as_that(small):
     """A speed in another unit is read in this unit.
 
