@@ -30,6 +30,8 @@ from brushsvg.machine.preflight import check_job
 from brushsvg.machine.program import make_checked_program, make_visit
 from brushsvg.model.library import find_brush
 from brushsvg.show.evaluation.report import PaintedPlan, measure
+from brushsvg.verify.readback import read_program
+from brushsvg.verify.simulate_program import simulate_program
 
 BLACK = Station(
     "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
@@ -559,3 +561,19 @@ def test_a_station_on_the_sheet_or_far_from_it_is_refused():
         cell = cell_with(Reload("stroke"), Station("ink", place, depth_mm=5.0))
         reported = [each for each in forbidden(plan_of((9, "", "")), BRUSH, cell) if each.where == "ink"]
         assert are_reported(reported, said)
+
+
+def test_check_simulates_each_stroke_freshly_dipped_where_a_cell_fetches_no_paint():
+    """A fault that narrows the marks over all strokes of a program is caught."""
+    brush, cell = find_brush("round-6"), find_cell("linuxcnc-3axis")
+    brush.paint = _core.Paint(2.0, lasts_mm=5000.0)
+    strokes = [
+        _core.Pass(name, [(20, y, 0), (30, y, -3), (90, y, -3), (100, y, 0)], 20.0)
+        for name, y in (("a", 20.0), ("b", 50.0))
+    ]
+    text = "".join(writer.encode(".ngc", _core.Plan("b", "", (120.0, 80.0), strokes), brush, "t", (), cell))
+    found = simulate_program(read_program(text, ".ngc", cell), brush, cell, (120.0, 80.0))
+    heights_mm = [
+        top - bottom for _, bottom, _, top in (_core.painted_bounds(one, brush) for one in found.marks.passes)
+    ]
+    assert heights_mm[0] == pytest.approx(heights_mm[1], abs=1e-9)
