@@ -57,7 +57,7 @@ def paper_of(cell: dict, z_offset_mm: float) -> np.ndarray:
 
 
 def down_of(cell: dict) -> np.ndarray:
-    """Return the tool's rotation (3, 3) in the paper's frame; z points into the paper."""
+    """Return the tool's rotation (3, 3) in the paper's frame, z into the paper."""
     return np.diag([1.0, -1.0, -1.0]) @ turned_deg(0, 0, cell["tool"].get("spin_deg", 0.0))
 
 
@@ -130,7 +130,7 @@ def on_map(commanded: np.ndarray, rows) -> np.ndarray:
 
 
 def commanded_in_air(place, height: float, machine: dict | None) -> np.ndarray:
-    """Return the command (3,) that takes the tool to a place and a height over the paper.
+    """Return the command (3,) that takes the tool over a place of the paper.
 
     In the air, the tool does not lean.
     """
