@@ -27,7 +27,7 @@ class Arm:
         self.tcp = np.eye(4)
 
     def believed(self) -> np.ndarray:
-        """Return the tool's pose (4, 4) that the controller believes, in the robot's frame."""
+        """Return the pose (4, 4) that the controller believes, in the robot's frame."""
         true = self.paper @ frame((0, 0, 0), self.down)
         true[:3, 3] = self.at
         return true @ np.linalg.inv(self.true_tool) @ self.tcp

@@ -24,7 +24,7 @@ CRASHED = "this should not happen"
 
 
 def converted(source, program, *words) -> list[str]:
-    """Return the refusals of `brushsvg convert`, or an empty list if it wrote a program."""
+    """Return the refusals of `brushsvg convert`; empty if it wrote a program."""
     try:
         convert_file(parse(["convert", str(source), "-o", str(program), *map(str, words)]))
     except RefusedError as refused:
@@ -34,7 +34,7 @@ def converted(source, program, *words) -> list[str]:
 
 @contextmanager
 def quick_check():
-    """Yield a function that runs `brushsvg check` with words and returns its refusals.
+    """Yield a function that runs `brushsvg check` and returns its refusals.
 
     The result holds CRASHED after any other error. The function keeps prepared drawings and writes no
     figures. Neither changes what check refuses.

@@ -1,4 +1,4 @@
-"""Run a program for Doosan in Python with a stub of the arm that follows DRL's manual.
+"""Run a program for Doosan in Python, with a stub of the arm after DRL's manual.
 
 The manual says:
 

@@ -1,8 +1,9 @@
-"""Run a program for an EBB, after its published command set (firmware 2.6.0 to 2.8.1).
+"""Run a program for an EBB.
 
-SM moves both motors evenly for a number of milliseconds. Without steps, SM waits. It refuses less than 1.31
-and more than 25,000 steps per second. S2 sets a servo's pulse, at once if it has no rate, and may delay the
-next command. SR and EM take effect at once.
+The interpreter follows the published command set of firmware 2.6.0 to 2.8.1. SM moves both motors evenly for
+a number of milliseconds. Without steps, SM waits. It refuses less than 1.31 and more than 25,000 steps per
+second. S2 sets a servo's pulse, at once if it has no rate, and may delay the next command. SR and EM take
+effect at once.
 
 The program that sends the file removes lines that begin with #. Every other command counts as one that acts.
 """

@@ -1,4 +1,4 @@
-"""Run the part of TP that a program of moves needs, as FANUC's operator's manual says.
+"""Run the TP that a program of moves needs, as FANUC's operator's manual says.
 
 Every program is translated first. If one line is not TP, nothing runs. The program stops at a place that was
 recorded in a different user frame or tool. It also stops if the configuration changes on a straight line.

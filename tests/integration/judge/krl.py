@@ -1,4 +1,4 @@
-"""Run the part of KRL that a program of moves needs, as KUKA's programming manual says.
+"""Run the KRL that a program of moves needs, as KUKA's programming manual says.
 
 Each module is compiled first. If one line is not KRL, or a name is not declared in the module, nothing runs.
 A called routine keeps all settings. BAS(#INITMOV, 0) sets the defaults: the robot's highest speed, no tool

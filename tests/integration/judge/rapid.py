@@ -1,4 +1,4 @@
-"""Run the part of RAPID that a program of moves needs, as ABB's reference manuals say.
+"""Run the RAPID that a program of moves needs, as ABB's reference manuals say.
 
 The module is loaded first. If a part of it is not RAPID, or a name is not declared, nothing runs. Then the
 routine runs from its first instruction, as with the program pointer on it. Blanks and line ends mean nothing.
@@ -166,7 +166,7 @@ class _Parser:
         return token.text
 
     def module(self) -> tuple[dict, dict]:
-        """Return data as {name: (type, expression or None, kind)}, and routines by name."""
+        """Return data as {name: (type, expression or None, kind)}, and routines as {name: routine}."""
         self._want("module")
         self.name = self._name()
         data: dict = {}

@@ -1,4 +1,4 @@
-"""Run the part of URScript that a program of moves needs, as the script manual says.
+"""Run the URScript that a program of moves needs, as the script manual says.
 
 The whole file is compiled first. If one line is not a statement, nothing runs. In a job of several files,
 each file names the next one and starts with nothing set. Poses are metres and rotation vectors. movel stops
