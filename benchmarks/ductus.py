@@ -1,4 +1,4 @@
-"""Count how many of a font's 62 letters and digits have the direction and order of handwriting.
+"""Count how many of 62 glyphs of a font are painted in the order of handwriting.
 
 The judge is KanjiVG, which also has the Latin letters and digits of Japanese schools (CC BY-SA 3.0; `pip
 install kanjivg`). The boxes of a glyph and its writing are aligned. Each place of a painted stroke gets the

@@ -1,4 +1,4 @@
-"""Fit the weights of writing order (stroke_order.json) to stroke-order data, and print their score.
+"""Fit the weights of writing order (stroke_order.json), and print their score.
 
     OMP_NUM_THREADS=1 python benchmarks/fit_stroke_order.py FOLDER -o stroke_order.json
 

@@ -1,4 +1,4 @@
-"""Fit brushes to strokes that robots painted, and score how well they predict other strokes.
+"""Fit brushes to strokes of robots, and score their predictions.
 
     real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings]
 
@@ -161,11 +161,11 @@ def scores(strokes, predicted) -> tuple[np.ndarray, np.ndarray, list]:
     return fixed, np.array([m[0] for m in moved]), [m[1] for m in moved]
 
 
-# What can be had ------------------------------------------------------------------------------------
+# The best overlap -----------------------------------------------------------------------------------
 
 
 def ceiling(strokes) -> tuple[np.ndarray, np.ndarray, int] | None:
-    """Return the overlap (fixed, shift) of two strokes of one command, and its standard errors.
+    """Return the overlap (fixed, shift) of two strokes of one command, with errors.
 
     The third value is the number of pairs of nearly equal commands. The result is None for too few pairs. The
     standard errors come from leaving out a tenth of the strokes in turn.
