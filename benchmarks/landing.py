@@ -53,7 +53,7 @@ REFITTED = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], float)
 
 
 def axes_of(strokes, fit, options) -> dict[str, np.ndarray]:
-    """Return the unit vectors `along` (n, 2) of the strokes by frame, 0 if there is none."""
+    """Return the unit vectors `along` (n, 2) by frame, 0 where there is none."""
     brush = real_paint.brush_for(strokes, fit, options)
     plan, ends, begins = _core.Plan("fitted", "", (1.0, 1.0), []), [], []
     for stroke in strokes:
@@ -90,7 +90,7 @@ def all_landed(strokes, axes, offset_mm, fit, options):
 
 
 def by_displacement(strokes, fit, options) -> np.ndarray:
-    """Return the overlap of each stroke's prediction by displacement (n, rows, columns).
+    """Return each stroke's overlap by displacement (n, rows, columns).
 
     The prediction moves by whole pixels up to FARTHEST_MM. Values beyond this distance are below 0.
     """
@@ -122,9 +122,9 @@ def fixed_and_shift(tables, place) -> np.ndarray:
 
 
 def chosen(by_offset) -> tuple[int, np.ndarray]:
-    """Choose an offset by cross-validation from by_offset (offsets, n, rows, columns).
+    """Choose an offset by cross-validation.
 
-    Also return the gain of each stroke (n,) with the offset that the other folds alone choose.
+    by_offset has the shape (offsets, n, rows, columns). Also return the gain of each stroke (n,) with the offset that the other folds alone choose.
     """
     fold = np.arange(by_offset.shape[1]) % FOLDS
     held, won = np.empty(by_offset.shape[:2]), np.empty(by_offset.shape[1])

@@ -55,7 +55,7 @@ STROKES_A_LOAD = 2
 SURE_GAIN = 0.005
 CAUSES = ("place of the sheet", "machine", "height and tilt of the paper", "brush", "each stroke's own place")
 CAUSES += ("missing paint",)
-MOVES = ("place of the sheet", "each stroke's own place")  # of them nothing is painted otherwise
+MOVES = ("place of the sheet", "each stroke's own place")  # these causes only move strokes
 
 
 def run(word: str, folder: Path) -> str:
