@@ -124,7 +124,8 @@ def fixed_and_shift(tables, place) -> np.ndarray:
 def chosen(by_offset) -> tuple[int, np.ndarray]:
     """Choose an offset by cross-validation.
 
-    by_offset has the shape (offsets, n, rows, columns). Also return the gain of each stroke (n,) with the offset that the other folds alone choose.
+    by_offset has the shape (offsets, n, rows, columns). Also return each stroke's gain (n,) with the offset
+    that the other folds alone choose.
     """
     fold = np.arange(by_offset.shape[1]) % FOLDS
     held, won = np.empty(by_offset.shape[:2]), np.empty(by_offset.shape[1])

@@ -51,7 +51,7 @@ class Law:
 def taut(law, poses, theta0, at=None):
     """Integrate the taut law along one straight move (2, 3) x y depth from heading theta0.
 
-    Returns (contact (n, 2), heading (n,)) at the fractions `at` of the move (default its end).
+    Return (contact (n, 2), heading (n,)) at the fractions `at` of the move (default its end).
     """
     at = np.array([1.0]) if at is None else np.asarray(at, float)
     velocity, rise = poses[1, :2] - poses[0, :2], poses[1, 2] - poses[0, 2]
@@ -95,7 +95,7 @@ class Reference:
         return self.poses[i, 2] + t * (self.poses[i + 1, 2] - self.poses[i, 2])
 
     def _move(self, i):
-        """Split a move where the depth crosses 0 or the law has a kink, and run the parts."""
+        """Split a move where the depth crosses 0 or the law has a kink; run the parts."""
         d0, d1 = self.poses[i, 2], self.poses[i + 1, 2]
         cuts = [0.0, 1.0]
         if d1 != d0:
@@ -497,7 +497,7 @@ def section_6_outline(widest, half_width, vertices=65):
 
 
 def footprint_at(dragged, pressed, depth, pull):
-    """Return an outline (n, 2) from tables [(depth, outline), ...], tip at the origin."""
+    """Return the outline (n, 2) by tables [(depth, outline), ...], tip at the origin."""
 
     def blend(table):
         depths = [d for d, _ in table]
@@ -539,7 +539,7 @@ def united(regions):
 
 
 def swept(outlines, convex, unite=shapely.union_all):
-    """Return the shapely region swept by a moving outline, given at close samples (n, 2).
+    """Return the region swept by a moving outline, given at close samples (n, 2).
 
     unite also decides at which of its vertices a ring begins. The region is the union of hulls of neighbours
     if the outline is convex and hardly turns, or turns about a point outside. A turn about a point of its

@@ -20,7 +20,7 @@ BRISTLES = (
     ((0.1, 0.5), 1.25),
     ((0.5, 1.0), 1.5),
 )  # ranges across a brush, in half widths, and the factor by which paint lasts longer there
-POSES = 260  # the number of poses per stroke for the stepping, about one every 0.3 mm
+POSES = 260  # the least number of poses per stroke for the stepping, about one every 0.3 mm
 CLOSE = (
     420  # poses of a second pass, more where the footprint turns; no point of it moves over 0.5 mm per pose
 )
@@ -152,7 +152,7 @@ class Stranger(TrueBrush):
 
 
 def outline_of(half, widest, front, vertices=33):
-    """Return drops (n, vertices, 2) from half widths, widest sections and fronts (n,)."""
+    """Return drops (n, vertices, 2) from half widths, widest sections, fronts (n,)."""
     angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
     half, widest, front = (
         np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front)
@@ -265,7 +265,7 @@ UNSEEN_SHAPES = {"polyline": _polyline, "hyperbolic": _hyperbolic, "tanh": _tanh
 
 
 def random_stranger(rng, shape):
-    """Return a brush as large as random_brush whose laws have random shapes of this kind.
+    """Return a brush as large as random_brush with random laws of this shape.
 
     Half width, tip gap and widest section are 0 at the touch. Half of each rises in a straight line.
     """
