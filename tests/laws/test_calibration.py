@@ -250,7 +250,7 @@ def test_laws_fitted_together_are_of_the_type_of_laws_fitted_alone():
 
 
 def test_the_angular_stroke_is_read_with_e():
-    """The middle of an angular stroke starts to turn r - e from the TCP's second line."""
+    """The middle of an angular stroke turns r - e from the TCP's second line."""
     readings = []
     for depth in DEPTHS:
         _, contact = corner(depth)

@@ -139,7 +139,7 @@ class Painted:
         self.taut = np.flatnonzero(self.rows.taut & (depth >= 0))
 
     def once_taut(self):
-        """Return distances from the first taut row to the last, with resting rows between."""
+        """Return distances from the first taut row to the last, with rows between."""
         return self.distance[self.taut[0] : self.taut[-1] + 1]
 
 
@@ -256,7 +256,7 @@ def _compensated_in_a_process(half_width, results):
 
 @pytest.mark.parametrize("thick", [2.0, 2.5, 3.0])
 def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
-    """A taper from 0.25 mm to 5 mm within 7.5 mm has a solution.
+    """Compensation of a taper from 0.25 mm to 5 mm within 7.5 mm terminates.
 
     In this taper, the lever e grows faster than the widest point advances.
     """
@@ -293,9 +293,10 @@ def test_sharper_turns_report_what_remains(degrees, remains, tolerance):
 
 
 def contact_behind(parts, depth_at, s, points):
-    """Return P after m has run s along parts (length, curvature, corner before it) to `points`.
+    """Return P after m has run s along parts to `points`.
 
-    m drags P on the lever e > 0, starting along the middle line.
+    A part is (length, curvature, corner before it). m drags P on the lever e > 0, starting along the middle
+    line.
     """
     heading, psi, begin, found = 0.0, 0.0, 0.0, np.full((len(s), 2), np.nan)
     for length, curvature, corner_before in parts:
