@@ -1,4 +1,4 @@
-"""Print the times of this tree next to floors, peers and another tree, as a table.
+"""Print a table of times of this tree, of floors, of peers and of another tree.
 
     table.py [--against TREE] [--rounds 3] [--only WORD]
 
