@@ -68,7 +68,7 @@ class Resvg:
         self.package = modules / PACKAGE
 
     def pages(self, drawings: dict[str, str]) -> dict[str, Page]:
-        """Return the page that resvg paints for each drawing, by name."""
+        """Return {name: the page that resvg paints} for {name: SVG text}."""
         done = subprocess.run(
             ["node", "-e", SCRIPT, str(self.package)],
             input=json.dumps(drawings),

@@ -67,7 +67,7 @@ PLANTED = (
 
 
 def shown() -> dict[str, str]:
-    """Return the shown code of each file, by name."""
+    """Return {name of a file: its code as shown}."""
     found = {f"figure {path.stem}": path.read_text() for path in FIGURES.glob("*.py")}
     found |= {f"example {path.stem}": path.read_text() for path in (REPOSITORY / "examples").glob("*.py")}
     found |= {f"notebook {path.stem}": "\n".join(cells(path)) for path in NOTEBOOKS}
