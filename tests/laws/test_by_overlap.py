@@ -115,7 +115,10 @@ def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
 
 
 def machine_added(made, fit=None):
-    """As for the largest overlap, of edges that held the machine for one without errors."""
+    """Add the machine's errors to a fit, as for the largest overlap.
+
+    The fit by edges assumed a machine without errors.
+    """
     options = copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     machine_found.ask_for(options, ("lean", "axes"))

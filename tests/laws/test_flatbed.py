@@ -113,7 +113,10 @@ def shape(rings):
 
 
 def similarity_off(found) -> tuple[float, float, float]:
-    """Turn [degrees], scale and shift [mm] by which marks are where they were painted, and how well, rms mm."""
+    """Return turn [degrees], scale and shift [mm] from painted to read marks.
+
+    The last value is the rms distance [mm] that remains.
+    """
     both = [stroke for stroke in marks() if stroke in found.marks.outlines_mm]
     was, seen = (
         np.array([complex(*shape(rings[stroke]).centroid.coords[0]) for stroke in both])

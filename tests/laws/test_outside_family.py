@@ -1,4 +1,4 @@
-"""Intervals contain the truth of brushes whose laws are not the fit's polynomials.
+"""Intervals hold the truth of brushes whose laws are not the fit's polynomials.
 
 The stepping simulator paints, and uses none of the library's polynomials.
 """

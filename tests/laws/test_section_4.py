@@ -202,7 +202,7 @@ def test_a_video_from_the_side_gives_the_tip_gap(way):
 
 
 def whole(rng, n=10):
-    """Return data of section 4 with the article's scatter: 0.5 mm and more per stroke."""
+    """Return data of section 4 with the article's scatter: 0.5 mm and more."""
     shifts = rng.normal(0, 0.3, DEPTHS.size)
     d = DEPTHS
     return {

@@ -38,7 +38,7 @@ def axes_on_paper(tips, depths, axes):
 
 
 def stepped(places, depths, lag):
-    """Simulate in small steps; return contact, the way from it to the axis, and depth.
+    """Simulate in small steps; return contact, way from contact to axis, and depth.
 
     The patch is pulled to within lag(depth) of the place where the axis meets the paper. This place moves
     straight from pose to pose.
