@@ -186,7 +186,7 @@ def both_points(m):
 
 
 def ocs(draw):
-    """The same in planes of their own."""
+    """Return the drawing functions in other planes: from below and slanted."""
     return {
         f"{name} {where}": (lambda d, m, draw=draw, z=z, name=name: draw[name](d, m, z))
         for name in draw
