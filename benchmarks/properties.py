@@ -1,4 +1,4 @@
-"""Test properties of programs for random drawings, brush files, cells and options.
+"""Test properties of programs for random drawings, brushes, cells and options.
 
     properties.py [--first 0] [--count 100000] [--hours 1] [--jobs 2] [--dialect NAME ...] [--results FILE]
 

@@ -203,7 +203,7 @@ def test_an_exact_machine_is_found_to_be_exact():
 
 @pytest.mark.parametrize("seed", [5, 6])
 def test_no_lean_is_known_no_better_than_some(seed):
-    """No lean is known no better than a small lean.
+    """The absence of lean is known no better than a real lean.
 
     A brush that is pressed on the spot points where a lean of micrometres moves the tool. With this lean, the
     marks seem to determine everything. Without lean, they seem to determine something else.

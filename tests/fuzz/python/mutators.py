@@ -154,7 +154,7 @@ def change_xml(data: bytes, target: Target, seeds: list[bytes], choose: random.R
 
 
 def _parsed(data: bytes, seed: bytes, parse):
-    """Parse the data, or the seed if the data cannot be parsed or is only a text."""
+    """Parse the data, otherwise the seed, otherwise an empty document."""
     for each in (data, seed):
         try:
             found = parse(each)

@@ -300,7 +300,7 @@ def _with_paint(random, cell):
 
 
 def random_brush(random) -> _core.Brush:
-    """Return a shipped brush, a pen, or a brush that trails little or far."""
+    """Return round-6, a rigid pen, or a new brush that trails little or far."""
     if random.random() < 0.5:
         return find_brush(str(random.choice(("round-6", "round-6", "rigid"))))
     lag_mm = float(random.choice((0.0, 0.3, 3.0, 8.0, 12.0)))
