@@ -26,7 +26,7 @@ ROUND_MM = 2.0  # paper around both marks, for marks that move outwards
 def search(stroke, target, brush, tries: int, seed: int) -> dict[str, float]:
     """Return the overlaps of the report: closed, refined and the best one found.
 
-    Each search has this many simulations.
+    tries is the number of simulations from each start.
     """
     found, best, most = {}, None, -1.0
     for method, step_mm in STARTS:
