@@ -161,9 +161,10 @@ def found_lines(document: str, script: str) -> list[np.ndarray]:
 
 
 def characters(folder: Path, count: int) -> tuple[list[Sample], list[Sample]]:
-    """Return the strokes of characters drawn as one shape, in order, and of all others by their middle lines.
+    """Return the strokes of characters in order.
 
-    The characters that ductus.py judges are in neither.
+    The first list holds characters drawn as one shape, the second all others by their middle lines. The
+    characters that ductus.py judges are in neither.
     """
     files = sorted(file for file in folder.glob("*.json") if len(file.stem) == 1)
     judged, merged, plain = 0, [], []
@@ -191,7 +192,10 @@ def strokes_in_kanjivg(character: str) -> int:
 
 
 def letters(font: bytes) -> dict[str, list[np.ndarray]]:
-    """Return the lines of each letter in the order of its table; letters of another form are left out."""
+    """Return the lines of each letter in the order of its table.
+
+    Letters of another form are left out.
+    """
     result = {}
     for letter, table in LETTERS.items():
         document, _ = text_svg(letter, font, size_mm=50.0)
@@ -272,7 +276,10 @@ def gradient(output: np.ndarray, count: int) -> np.ndarray:
 
 
 def fit(samples: list[np.ndarray], epochs: int, rng: np.random.Generator) -> list[np.ndarray]:
-    """Return the weights: hidden, bias, output. samples: features (n, n, f), single precision."""
+    """Return the weights: hidden, bias, output.
+
+    samples are features (n, n, f) in single precision.
+    """
     count = samples[0].shape[2]
     scale = np.concatenate([x.reshape(-1, count) for x in samples[::7]]).std(axis=0) + 1e-3
     scale[-1] = 1.0
@@ -304,7 +311,7 @@ def fit(samples: list[np.ndarray], epochs: int, rng: np.random.Generator) -> lis
 
 
 def in_order(weights: list[np.ndarray], samples: list[np.ndarray]) -> tuple[float, float]:
-    """Return the share of pairs in order, and of samples whose strokes are all in order."""
+    """Return the share of pairs in order, and of samples completely in order."""
     pairs, whole = [], []
     for sample in samples:
         before, follows = np.moveaxis(np.tanh(sample @ weights[0] + weights[1]) @ weights[2], 2, 0)

@@ -1,4 +1,6 @@
-"""Random brushes paint printed charts, random cameras photograph them, and `calibrate` has to find the brush.
+"""Recover random brushes from photographs of charts with `calibrate`.
+
+The brushes paint printed charts, and random cameras photograph the charts.
 
     photographs.py FOLDER [--count 200] [--brushes 40] [--seed 1] [--sheet a4] [--strokes few] [--again]
                           [--height MM] [--half inside|outside]

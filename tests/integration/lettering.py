@@ -1,4 +1,4 @@
-"""Other people's lettering: Chinese characters with their middle lines, and four fonts."""
+"""Other people's lettering: Chinese characters with middle lines, and four fonts."""
 
 import json
 

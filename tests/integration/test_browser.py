@@ -1,4 +1,4 @@
-"""The page that `preview -o FILE.html` writes, opened in Chromium, paints the predicted marks."""
+"""The page of `preview -o FILE.html` paints the predicted marks in Chromium."""
 
 import json
 import re

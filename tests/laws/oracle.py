@@ -16,7 +16,10 @@ from scipy.spatial import cKDTree
 
 
 class Law:
-    """max(floor + floor_slope d, c0 + c1 d + ...) with its derivative; depth scalar or array."""
+    """The law max(floor + floor_slope d, c0 + c1 d + ...) with its derivative.
+
+    The depth d is a scalar or an array.
+    """
 
     def __init__(self, coefficients, floor=-np.inf, floor_slope=0.0):
         self.coefficients = np.asarray(coefficients, float)
@@ -49,7 +52,7 @@ class Law:
 
 
 def taut(law, poses, theta0, at=None):
-    """Integrate the taut law along one straight move (2, 3) x y depth from heading theta0.
+    """Integrate the taut law along a straight move (2, 3) x y depth from theta0.
 
     Return (contact (n, 2), heading (n,)) at the fractions `at` of the move (default its end).
     """
@@ -73,7 +76,9 @@ def unit(angle):
 
 
 class Reference:
-    """Event-driven simulation of one pass of poses (n, 3), x y z: solve_ivp while taut, roots between.
+    """Event-driven simulation of one pass of poses (n, 3), x y z.
+
+    It uses solve_ivp while the brush is taut, and finds roots for the events.
 
     `at(pose)` gives (contact, heading, taut, pull) at a fractional pose; contact is nan while lifted and
     heading nan before the first motion.

@@ -1,6 +1,6 @@
 -- Dobot's commands as its manual for controller 4 describes them, for an arm without errors.
 --
--- lua5.4 dobot.lua FLANGE ... < program: each FLANGE is "x,y,z,rx,ry,rz" [mm, degrees], the place where a run begins.
+-- lua5.4 dobot.lua FLANGE ... < program: each FLANGE "x,y,z,rx,ry,rz" [mm, degrees] is where a run begins.
 -- The first run prints all its actions. The others print how they begin and how many moves they have. Each action is
 -- one line: kind, line, numbers. A place is twelve numbers, the rows of the flange's frame in the base.
 

@@ -166,7 +166,10 @@ class _Parser:
         return token.text
 
     def module(self) -> tuple[dict, dict]:
-        """Return data as {name: (type, expression or None, kind)}, and routines as {name: routine}."""
+        """Return the data and the routines of the module.
+
+        Data is {name: (type, expression or None, kind)}, and routines are {name: routine}.
+        """
         self._want("module")
         self.name = self._name()
         data: dict = {}
