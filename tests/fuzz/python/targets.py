@@ -167,7 +167,7 @@ CSS_WORDS = (
 
 
 def _read_path(data: bytes) -> None:
-    """Read the first line as d, and the rest as points and transform."""
+    """Read the first line as d, the second as points and the rest as transform."""
     from brushsvg.read.svg.paths.path_data import parse_path, parse_points
     from brushsvg.read.svg.paths.path_to_cubics import trace
     from brushsvg.read.svg.transform import parse_transform
