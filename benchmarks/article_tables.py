@@ -1,5 +1,7 @@
-"""The article's calibrations on made-up data with the article's noise: what its laws come back as, its methods held
-against each other, and what its printed readings would have given.
+"""Repeat the article's calibrations on made-up data with the article's noise.
+
+The program prints how well the laws come back, compares the methods, and shows the errors of the printed
+readings.
 
     python benchmarks/article_tables.py [--repeats 400] [--seed 1]
 """
@@ -15,10 +17,13 @@ from brushsvg import Error, _core, find_brush
 
 polyval = np.polynomial.polynomial.polyval
 SQUARES, ABSOLUTE = _core.Norm.squares, _core.Norm.absolute
-# The article says neither how many values it fitted nor how well angles were read. Its intervals say the first: 17
-# values of r at these depths give (0.9, 1.4, 0.6, 0.10, 0.0050), 10 of b give the 0.11 of the canvas and the 0.14 of
-# the angles. The RMSE of its angles say the second: 7 degrees give both, that of r and that of b, where a first angle
-# read beyond 95 degrees is read again.
+# The article gives neither the number of fitted values nor the accuracy of its angles. Its intervals show the
+# number:
+# 17 values of r at these depths give (0.9, 1.4, 0.6, 0.10, 0.0050), and 10 values of b give the 0.11 of the
+# canvas and
+# the 0.14 of the angles. The RMSE of its angles show the accuracy: 7 degrees give the RMSE of both r and b if
+# a first
+# angle above 95 degrees is read again.
 DEPTHS = np.arange(1, 11.0)
 CANVASES = np.array([*range(11), *range(0, 11, 2)], float)
 VIDEO = np.linspace(1, 10, 12)
@@ -27,7 +32,10 @@ ANGLE_NOISE_RAD = np.radians(7.0)
 
 @dataclass(frozen=True)
 class Law:
-    """A law of the article: (24), (25), (26), its intervals where it prints them, and its RMSE in mm."""
+    """A law of the article: (24), (25) or (26).
+
+    It has the article's intervals, if printed, and its RMSE in mm.
+    """
 
     name: str
     coefficients: tuple[float, ...]
@@ -51,13 +59,13 @@ WIDEST = Law("x_w", (-2.35, 2.75, -0.42, 0.024), None, 0.51, DEPTHS, floor=0.0)
 
 @dataclass(frozen=True)
 class Back:
-    """A law fitted over and over. Shares by coefficient; spreads are standard deviations."""
+    """Repeated fits of a law. Shares are by coefficient, spreads standard deviations."""
 
-    in_article: np.ndarray | None  # of coefficients within the printed interval
-    in_own: np.ndarray  # within the interval of their own fit
-    half_interval_95: np.ndarray  # of the fits, mean
+    in_article: np.ndarray | None  # share of coefficients within the printed interval
+    in_own: np.ndarray  # share within the interval of their own fit
+    half_interval_95: np.ndarray  # mean of the fits
     rmse_mm: float
-    off_mm: float  # of the law from the truth at depths 1 to 10, root mean square
+    off_mm: float  # error of the law at depths 1 to 10, root mean square
 
 
 def come_back(law: Law, repeats: int, rng) -> Back:
@@ -82,7 +90,10 @@ def come_back(law: Law, repeats: int, rng) -> Back:
 
 @dataclass(frozen=True)
 class Method:
-    """How far laws are from their data (median RMSE) and from the truth (root mean square, depths 1 to 10)."""
+    """The errors of a method's laws.
+
+    They are the median RMSE from the data, and the root mean square error at depths 1 to 10.
+    """
 
     lag_rmse_mm: float
     lag_off_mm: float
@@ -90,11 +101,14 @@ class Method:
     gap_off_mm: float
 
 
-FIRST_ANGLE_MOST_RAD = np.deg2rad(95.0)  # beyond, the brush is loose at first and (19) to (23) are refused
+FIRST_ANGLE_MOST_RAD = np.deg2rad(95.0)  # above this the brush is loose at first, so (19) to (23) do not hold
 
 
 def by_angles(noise_rad: float, repeats: int, rng) -> Method:
-    """Section 3.3: at each depth the angles after five ways, (19) to (23), laws by least absolute residuals."""
+    """Repeat the method of section 3.3.
+
+    The angles after five ways at each depth give (19) to (23). The laws have the least absolute residuals.
+    """
     lags, gaps = [], []
     for _ in range(repeats):
         rows = [(d, *_read_angles(d, noise_rad, rng)) for d in DEPTHS]
@@ -107,24 +121,30 @@ def by_angles(noise_rad: float, repeats: int, rng) -> Method:
 
 
 def _read_angles(depth: float, noise_rad: float, rng) -> tuple[float, float]:
-    """r and b from one series: the brush is across the motion, then is dragged by up to r."""
+    """Return r and b from one series of angles.
+
+    The brush first stands across the motion and is then dragged by up to r.
+    """
     lag, gap = (polyval(depth, law.coefficients) for law in (LAG, TIP_GAP))
     s = np.linspace(0.2, 1.0, 5) * lag
     alpha = 2 * np.arctan(np.exp(-s / lag))  # (7) from 90 degrees
     beta = np.arctan2((lag + gap) * (1 - np.sin(alpha)), s - (lag + gap) * np.cos(alpha))  # (12)
     alpha0 = np.inf
-    while alpha0 > FIRST_ANGLE_MOST_RAD:  # who reads more reads again
+    while alpha0 > FIRST_ANGLE_MOST_RAD:  # a person reads a larger angle again
         alpha0 = np.pi / 2 + rng.normal(0, noise_rad)
     alpha, beta = (angles + rng.normal(0, noise_rad, 5) for angles in (alpha, beta))
     try:
         found = _core.from_angles(alpha0, s, alpha, beta)
     except Error:
-        return np.nan, np.nan  # no angle had a logarithm
+        return np.nan, np.nan  # no angle has a logarithm
     return found["lag_mm"], found["tip_gap_mm"]
 
 
 def by_strokes(repeats: int, rng) -> Method:
-    """Section 3.2: r from angular strokes, b from the side view, each with the article's noise."""
+    """Repeat the method of section 3.2.
+
+    r comes from angular strokes and b from the side view, each with the article's noise.
+    """
     fits = []
     for law in (LAG, TIP_GAP):
         exact = polyval(law.depths_mm, law.coefficients)
@@ -147,7 +167,10 @@ def _method(lags, gaps) -> Method:
 
 @dataclass(frozen=True)
 class Reading:
-    """At one depth, in mm: the brush's own r and b, and what strokes say of them, as printed and corrected."""
+    """The true r and b of the brush at one depth, in mm, and their readings.
+
+    Readings are from strokes, by the printed and by the corrected formulas.
+    """
 
     depth_mm: float
     lag: float
@@ -159,7 +182,7 @@ class Reading:
 
 
 def readings(brush, depths=DEPTHS, ramp: float = 0.05) -> list[Reading]:
-    """Angular and straight strokes simulated and read off their marks with a ruler, without noise."""
+    """Simulate angular and straight strokes, and read their marks without noise."""
     out = []
     for depth in depths.tolist():
         lag, gap, widest = (law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest))
@@ -171,7 +194,7 @@ def readings(brush, depths=DEPTHS, ramp: float = 0.05) -> list[Reading]:
 
 
 def _angular(brush, depth: float) -> float:
-    """How far from the TCP's second line the middle of the mark starts to turn."""
+    """Return where the middle of the mark starts to turn, from the TCP's second line."""
     trace = _trace(brush, [[-100, 0, 0], [-90, 0, -depth], [0, 0, -depth], [0, 30, -depth], [0, 30, 0]])
     row = int(np.flatnonzero(np.asarray(trace.pose) >= 2)[0])
     e = brush.tip_to_widest(depth) - brush.tip_gap(depth)
@@ -179,7 +202,11 @@ def _angular(brush, depth: float) -> float:
 
 
 def _straight(brush, depth: float, ramp: float) -> tuple[float, float]:
-    """s_L and D: how far the TCP goes until it is down; from the mark's beginning to where it is widest."""
+    """Return s_L and D.
+
+    s_L is the way of the TCP until it is down. D is the distance from the mark's beginning to its widest
+    place.
+    """
     down = depth / ramp
     poses = [[0, 0, 0], [down, 0, -depth], [down + 60, 0, -depth], [down + 60, 0, 0]]
     rings = _trace(brush, poses).outline_mm

@@ -1,16 +1,16 @@
-"""What `brushsvg compare` says of strokes that robots painted, next to what real_paint.py finds of the same strokes.
+"""Compare results of `brushsvg compare` and real_paint.py for strokes of robots.
 
     compare_real_paint.py FOLDER [--sets NAME ...] [--every N]
 
-FOLDER: as for real_paint.py. Each stroke is a picture of its own, without markers: its pixels are where the data say.
-Strokes with even numbers are fitted by their edges, those with odd ones are predicted and compared. Displacement, width
-and overlap by `compare` (least squares of pixels, in which a mark may turn and grow as well) are held against a search:
-of all shifts by whole pixels the one that overlaps most, and of all marks whose edges are moved out or in by so much,
-in steps of 0.05 mm, the one that overlaps most where that shift has it. Then against one in which a mark is shifted,
-turned and grown until it overlaps most, as `compare` has it.
+FOLDER is the folder of real_paint.py. Each stroke is a separate picture without markers, and the data give
+the places of its pixels. Strokes with even numbers are fitted by their edges. Strokes with odd numbers are
+predicted and compared. `compare` finds displacement, width and overlap by least squares of pixels, where a
+mark may also turn and grow. A search finds the shift by whole pixels with the largest overlap. At this shift
+it moves the edges of the mark out or in, in steps of 0.05 mm, and keeps the largest overlap. A second search
+shifts, turns and grows a mark until its overlap is largest, as `compare` does.
 
-Printed: in how many of 100 strokes they agree within 0.25 mm (displacement, width) and 0.01 (overlap with the
-prediction as it is). A stroke that `compare` does not find agrees in nothing.
+The program prints in how many of 100 strokes the results agree within 0.25 mm (displacement, width) and 0.01
+(overlap with the unchanged prediction). A stroke that `compare` does not find agrees in nothing.
 """
 
 from __future__ import annotations
@@ -54,11 +54,14 @@ def predicted_rings(strokes, fit, options) -> list[list[np.ndarray]]:
 
 
 def compared(stroke, rings):
-    """By compare: displacement (2,), wider, overlap; why not, where it finds no mark."""
+    """Return displacement (2,), wider and overlap by compare.
+
+    If compare finds no mark, return the reason.
+    """
     left, bottom, wide, high = stroke.window
     canvas = Canvas((0.0, 0.0, wide, high), 1 / stroke.px)  # a sheet begins at its corner
     rings = [ring - (left, bottom) for ring in rings]
-    share = np.clip(np.float32(stroke.paint) / (2 * LEVEL), 0, 1)  # half the usual paint: LEVEL
+    share = np.clip(np.float32(stroke.paint) / (2 * LEVEL), 0, 1)  # LEVEL is half of the usual paint
     try:
         found = compare_paint([TargetStroke("stroke", None, rings)], share, canvas, "stroke")
     except Error as refusal:
@@ -70,13 +73,13 @@ def compared(stroke, rings):
 
 
 def away_mm(mask, px: float) -> np.ndarray:
-    """Of each pixel from the mask's edge, below 0 inside."""
+    """Return each pixel's distance from the mask's edge, below 0 inside."""
     out, inside = (cv2.distanceTransform(np.uint8(side), cv2.DIST_L2, 5) for side in (mask == 0, mask > 0))
     return np.where(mask > 0, 0.5 - inside, out - 0.5).astype(np.float32) * px
 
 
 def searched(stroke, predicted):
-    """The same by searching."""
+    """Return displacement, wider and overlap by a search."""
     shift = real_paint.best_shift(predicted, stroke.mask, stroke.px, real_paint.FARTHEST_MM)[1]
     columns, rows = np.round(shift / stroke.px * [1, -1]).astype(int)
     moved = cv2.warpAffine(
@@ -88,7 +91,10 @@ def searched(stroke, predicted):
 
 
 def fully_searched(stroke, predicted, middle_mm, start_mm):
-    """Shift (2,) and wider of the mark that overlaps most, shifted, turned and grown: by a simplex."""
+    """Return shift (2,) and wider of the mark with the largest overlap.
+
+    A simplex shifts, turns and grows the mark.
+    """
     left, bottom, _, high = stroke.window
     middle = ((middle_mm[0] - left) / stroke.px - 0.5, (bottom + high - middle_mm[1]) / stroke.px - 0.5)
     away, mask = away_mm(predicted, stroke.px), np.float32(stroke.mask)

@@ -1,19 +1,20 @@
-"""In how many of 62 letters and digits a font's strokes run and follow each other as one writes them.
+"""Count how many of 62 glyphs of a font are painted in the order of handwriting.
 
-The judge is KanjiVG, which also holds how Japanese schools write Latin letters and digits (CC BY-SA 3.0; `pip install
-kanjivg`). A glyph and its writing are laid over each other by their boxes; each place of a painted stroke takes the
-time at which the nearest place is written. A stroke runs right if that time grows along most of it, two strokes follow
-each other right if the middle time of the first is less.
+The judge is KanjiVG, which also has the Latin letters and digits of Japanese schools (CC BY-SA 3.0; `pip
+install kanjivg`). The boxes of a glyph and its writing are aligned. Each place of a painted stroke gets the
+time at which the nearest place is written. A stroke runs right if this time grows along most of it. Two
+strokes are in the right order if the first one has the smaller middle time.
 
-KanjiVG's letters have no serifs. So these are separated: strokes shorter than 0.7 of another one, and than seven of
-its half widths, on which that begins or ends. Main strokes are held against KanjiVG, a serif against its stem, which it
-follows. Dots, up to twice as long as wide, have no direction. Forms that differ (a, g, 1, 4, 7 of many fonts) are
-judged as well as they can be: look at those that are named before believing them.
+KanjiVG's letters have no serifs, so the program separates serifs. A serif is shorter than 0.7 of another
+stroke, its stem, and shorter than seven half widths of the stem. The stem begins or ends on the serif. Main
+strokes are compared with KanjiVG. A serif must follow its stem. Dots are up to twice as long as wide and have
+no direction. Other forms (a, g, 1, 4, 7 of many fonts) can be judged wrongly: look at the printed letters
+before you trust the result.
 
---characters takes the folder of npm's hanzi-writer-data: 200 of its characters that KanjiVG has with as many strokes,
-each drawn as one shape. Their order is held against both sources; Japanese and Chinese schools write some
-characters differently, so the order of hanzi-writer-data itself has 0.993 of the pairs of KanjiVG, and 0.78 of its
-characters.
+--characters needs the folder of npm's hanzi-writer-data. The program uses 200 of its characters that have as
+many strokes in KanjiVG, each drawn as one shape. Their order is compared with both sources. Japanese and
+Chinese schools write some characters differently, so even the order of hanzi-writer-data has only 0.993 of
+KanjiVG's pairs, and 0.78 of its characters.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ DENSE = np.linspace(0.0, 1.0, 60)
 SERIF, SERIF_HALVES = 0.7, 7.0
 DOT = 2.0
 CHARACTERS, SEED = 200, 20260
-OWN_SHARE = 0.7  # of a painted stroke, what is nearest to one stroke of the reference
+OWN_SHARE = 0.7  # a painted stroke is a stroke of the reference if this share of it is nearest to it
 
 
 @cache
@@ -49,7 +50,10 @@ def kanjivg_folder() -> Path:
 
 
 def written(letter: str) -> list[np.ndarray]:
-    """Lines (n, 2) in the order in which they are written, y up; none if KanjiVG lacks the letter."""
+    """Return lines (n, 2) in the order of writing, y up.
+
+    The list is empty if KanjiVG lacks the letter.
+    """
     file = kanjivg_folder() / f"{ord(letter):05x}.svg"
     if not file.exists():
         return []
@@ -71,7 +75,10 @@ def boxed(lines: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def judged(painted: list[np.ndarray], reference: list[np.ndarray]) -> tuple[list[bool], list[bool]]:
-    """Of each stroke whether it runs right, of each pair of strokes whether they follow each other right."""
+    """Judge direction and order.
+
+    Return whether each stroke runs right, and whether each pair of strokes is in the right order.
+    """
     runs, middles, _ = timed(
         boxed([evenly(line) for line in painted]), boxed([evenly(line) for line in reference])
     )
@@ -85,8 +92,11 @@ def followed(middles: list[float]) -> list[bool]:
 def timed(
     painted: list[np.ndarray], reference: list[np.ndarray]
 ) -> tuple[list[bool], list[float], list[np.ndarray]]:
-    """Of each stroke, whether it runs right, the middle time at which it is written, and the share of its places that
-    are nearest to each reference stroke. All lines have len(DENSE) places, in one frame of size 1."""
+    """Compare each stroke with the times of the reference.
+
+    Return for each stroke whether it runs right, its middle time, and the share of its places that are
+    nearest to each reference stroke. All lines have len(DENSE) places, in one frame of size 1.
+    """
     places = np.vstack(reference)
     headings = np.vstack([np.gradient(line, axis=0) for line in reference])
     headings /= np.maximum(np.hypot(*headings.T), 1e-9)[:, None]
@@ -97,7 +107,8 @@ def timed(
         heading = np.gradient(line, axis=0)
         heading /= np.maximum(np.hypot(*heading.T), 1e-9)[:, None]
         far = np.hypot(*np.moveaxis(line[:, None] - places[None], 2, 0))
-        across = 1.0 - np.abs(heading @ headings.T)  # a crossing line is nearer than it looks
+        # increase the distance of crossing lines, which come too near
+        across = 1.0 - np.abs(heading @ headings.T)
         nearest = np.argmin(far + 0.3 * across, axis=1)
         runs.append(bool(np.sum(np.sum(heading * headings[nearest], axis=1)) > 0))
         middles.append(float(np.median(times[nearest])))
@@ -110,7 +121,10 @@ def lengths_of(lines: list[np.ndarray]) -> list[float]:
 
 
 def serifs(lines: list[np.ndarray], halves: list[float]) -> dict[int, int]:
-    """Which of lines (n, 2) with half widths are serifs, and of which stem: the longest that begins or ends on each."""
+    """Return the index of the stem of each serif among lines (n, 2) with half widths.
+
+    The stem is the longest line that begins or ends on the serif.
+    """
     lengths = lengths_of(lines)
     found = {}
     for k, line in enumerate(lines):
@@ -124,7 +138,7 @@ def serifs(lines: list[np.ndarray], halves: list[float]) -> dict[int, int]:
 
 
 def numbers_in_kanjivg(outlined: list[np.ndarray], reference: list[np.ndarray]) -> np.ndarray:
-    """Which stroke of KanjiVG each stroke of hanzi-writer-data is: those that are nearest, one to one."""
+    """Match each stroke of hanzi-writer-data with the nearest of KanjiVG, one to one."""
     ones, others = boxed([evenly(line) for line in outlined]), boxed(reference)
 
     def far(a: np.ndarray, b: np.ndarray) -> float:
@@ -134,17 +148,18 @@ def numbers_in_kanjivg(outlined: list[np.ndarray], reference: list[np.ndarray]) 
 
 
 def are_found_right(shares: list[np.ndarray]) -> bool:
-    """Whether each painted stroke is one stroke of the reference, and each of those one that is painted."""
+    """Return whether painted strokes and strokes of the reference match one to one."""
     owners = [int(np.argmax(each)) for each in shares]
     one_each = sorted(owners) == list(range(len(shares[0])))
     return one_each and min(max(each) for each in shares) > OWN_SHARE
 
 
 def characters(folder: Path, script: str) -> str:
-    """How well characters drawn as one shape are written, in the order of KanjiVG and in that of their own source.
+    """Return a report on the order of characters that are drawn as one shape.
 
-    Strokes are held against the middle lines of hanzi-writer-data, which are where the outlines do, and these are
-    numbered as in KanjiVG: so no stroke is taken for its neighbour because two drawings differ.
+    The order is compared with KanjiVG and with the characters' own source. Strokes are matched with the
+    middle lines of hanzi-writer-data, which fit the outlines, and these lines get the numbers of KanjiVG. So
+    differences between the two drawings cannot swap neighbouring strokes.
     """
     files = sorted(file for file in folder.glob("*.json") if len(file.stem) == 1)
     rows = []

@@ -1,14 +1,17 @@
-"""The time to make a brush of a painted chart, and whether it is the same brush as another build made.
+"""Time the fit of a painted chart, and compare the brush with another build.
 
-    fit.py [--sheets 3] [--seed 1] [--rounds 2] [--parts lean,axes,tilt,backlash] [--save a.json] [--against b.json]
+    fit.py [--sheets 3] [--seed 1] [--rounds 2] [--parts lean,axes,tilt,backlash] [--save a.json] [--against
+    b.json]
 
-The slow stepping simulator of tests/laws paints the chart of `brushsvg chart --sheet a4`, 49 strokes. Timed are one fit
-from no guess (`fit_marks`) and all that `calibrate` makes of a photograph's marks: both tails, and how far it all moves
-where the edges are moved out; each without and with a machine's numbers. Printed: processor time and time on the
-clock, each the least of the rounds, and iterations of one fit. The floor is one look at all marks with derivatives: a
-fit needs one for each iteration, and the covariance two.
+The slow stepping simulator of tests/laws paints the chart of `brushsvg chart --sheet a4`, 49 strokes. The
+program times one fit without a guess (`fit_marks`), and the whole work of `calibrate` on a photograph's
+marks. This work includes both tails, and the effect of edges that are moved out. Both run without and with a
+machine's numbers. The program prints processor time and time on the clock, each the minimum of the rounds,
+and the iterations of one fit. The floor is one evaluation of all marks with derivatives: a fit needs one per
+iteration, and the covariance two.
 
---against: how far values are from those that --save wrote, and how much longer their intervals are, in half intervals.
+--against prints how far values are from the values of --save, and how much longer their intervals are, in
+half intervals.
 """
 
 from __future__ import annotations
@@ -28,11 +31,11 @@ from brushsvg.calibration.marks.mark_input import read_painted
 
 painter = truth_recovery.painter
 
-EDGE_MM = 0.03  # by which a photograph's edges may be off together
+EDGE_MM = 0.03  # common error of all edges of a photograph
 
 
 def painted(seed: int):
-    """A random brush's chart as it was read."""
+    """Return the read chart of a random brush."""
     rng = np.random.default_rng(seed)
     brush, faults = painter.random_brush(rng), painter.Faults()
     strokes = truth_recovery.strokes_of(rng, brush, (210.0, 297.0))
@@ -47,7 +50,7 @@ def painted(seed: int):
 
 
 def least_time(work, rounds: int):
-    """Least processor time and least time on the clock [s], and what was made."""
+    """Return the least processor time and time on the clock [s], and the result."""
     used, took = [], []
     for _ in range(rounds):
         begin = time.process_time(), time.perf_counter()
@@ -58,7 +61,10 @@ def least_time(work, rounds: int):
 
 
 def values_of(fit, deepest: float) -> dict[str, tuple[float, float]]:
-    """(value, half interval) of the laws at depths, of the height and of the machine's numbers."""
+    """Return {name: (value, half interval)}.
+
+    The values are the laws at depths, the height and the machine's numbers.
+    """
     covariance, out, first = np.array(fit.covariance), {}, 0
     for law, skip in (("lag", 0), ("tip_gap", 1), ("half_width", 1)):
         found = np.array(getattr(fit.laws, law))

@@ -1,20 +1,22 @@
-"""Fit the weights of writing order (stroke_order.json) to stroke-order data, and print how well they do.
+"""Fit the weights of writing order (stroke_order.json), and print their score.
 
     OMP_NUM_THREADS=1 python benchmarks/fit_stroke_order.py FOLDER -o stroke_order.json
 
-FOLDER is where npm puts PACKAGES; they are fetched if they are not there.
+FOLDER is where npm puts PACKAGES. Missing packages are fetched.
 
-Characters come from hanzi-writer-data (npm; stroke order of Make Me a Hanzi). Some are drawn as one shape each, so that
-strokes are joined and parted as brushsvg finds them; the others are given by their middle lines. The 200 characters
-that `ductus.py` judges by KanjiVG are left out. No registry has the stroke order of Latin letters apart from KanjiVG,
-which is the judge. So LETTERS is a table of our own. It is laid over the letters of each font; words of two to four
-letters are made of them. The fonts that `docs/evidence/letters.md` judges are not among them.
+Characters come from hanzi-writer-data (npm; stroke order of Make Me a Hanzi). Some characters are drawn as
+one shape each, so that brushsvg joins and splits their strokes. The others are given by their middle lines.
+The 200 characters that `ductus.py` judges by KanjiVG are left out. Apart from KanjiVG, which is the judge, no
+registry has the stroke order of Latin letters. So LETTERS is a table of our own. It is aligned with the
+letters of each font. Letters are combined to words of two to four letters. The fonts that
+`docs/evidence/letters.md` judges are left out.
 
-The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by Adam. Its
-seed is fixed. Another processor or library of linear algebra may round differently and find slightly other weights.
+The fit maximises the probability of the next stroke, given those that are written (see stroke_order.py), by
+Adam. Its seed is fixed. Another processor or library of linear algebra may round differently and find
+slightly other weights.
 
-The command above wrote stroke_order.json: run again in a new folder, it gave the same file, digit for digit. This takes
-about 15 minutes of one processor.
+The command above wrote stroke_order.json. A second run in a new folder gave an identical file. A run needs
+about 15 minutes on one processor.
 """
 
 from __future__ import annotations
@@ -109,16 +111,17 @@ LETTERS = {
     "?": "8,80 50,98 92,75 48,30|48,8 48,0",
     "+": "0,50 100,50|50,100 50,0",
 }
-SERIF_SHARE = 0.45  # of a letter's box: a longer stroke is no serif
-OTHER_FORM = 0.24  # mean distance between a letter and its table, in boxes: beyond, the font has another form
+SERIF_SHARE = 0.45  # share of a letter's box: a longer stroke is not a serif
+OTHER_FORM = 0.24  # mean distance between a letter and its table, in boxes; above this, the form differs
 SIZE = np.array([28.0, 40.0]) / 100  # mm per percent: the letters of the table themselves
 LETTER_COPIES, WORDS_PER_FONT = 5, 110
-BATCH, HIDDEN, UNKNOWN_SHARE = 32, 64, 0.25  # of samples, units, and samples whose script is not given
+# size of a batch, hidden units, and the share of samples without a known script
+BATCH, HIDDEN, UNKNOWN_SHARE = 32, 64, 0.25
 LEARNING_RATE, DECAY = 6e-3, 2e-5
-KEPT_BACK = 300  # characters drawn as one shape that are not in the fit: choices were made by them
+KEPT_BACK = 300  # characters drawn as one shape that are not in the fit; we used them to make choices
 FAMILIES = """bree-serif courgette crimson-text dancing-script jost kalam libre-baskerville merriweather montserrat
 nunito pacifico patrick-hand playfair-display poppins pt-serif roboto roboto-slab satisfy source-serif-4 zilla-slab"""
-VERSIONS = {"source-serif-4": "5.3.1"}  # others: 5.3.0
+VERSIONS = {"source-serif-4": "5.3.1"}  # all other fonts: 5.3.0
 PACKAGES = [
     "hanzi-writer-data@2.0.1",
     *(f"@fontsource/{family}@{VERSIONS.get(family, '5.3.0')}" for family in FAMILIES.split()),
@@ -130,7 +133,7 @@ to a table of letters of ours; no data of either is in here"
 
 
 def fonts(modules: Path) -> list[bytes]:
-    """Return the fonts of FAMILIES: regular, and bold where there is a bold one."""
+    """Return the fonts of FAMILIES: regular, and bold if it exists."""
     files = (
         modules / "@fontsource" / family / "files" / f"{family}-latin-{weight}-normal.woff"
         for family in FAMILIES.split()
@@ -158,9 +161,10 @@ def found_lines(document: str, script: str) -> list[np.ndarray]:
 
 
 def characters(folder: Path, count: int) -> tuple[list[Sample], list[Sample]]:
-    """Return the strokes of characters drawn as one shape, in order, and of all others by their middle lines.
+    """Return the strokes of characters in order.
 
-    The characters that ductus.py judges are in neither.
+    The first list holds characters drawn as one shape, the second all others by their middle lines. The
+    characters that ductus.py judges are in neither.
     """
     files = sorted(file for file in folder.glob("*.json") if len(file.stem) == 1)
     judged, merged, plain = 0, [], []
@@ -188,7 +192,10 @@ def strokes_in_kanjivg(character: str) -> int:
 
 
 def letters(font: bytes) -> dict[str, list[np.ndarray]]:
-    """Return the lines of each letter in the order of its table; letters of another form are left out."""
+    """Return the lines of each letter in the order of its table.
+
+    Letters of another form are left out.
+    """
     result = {}
     for letter, table in LETTERS.items():
         document, _ = text_svg(letter, font, size_mm=50.0)
@@ -210,7 +217,8 @@ def letters(font: bytes) -> dict[str, list[np.ndarray]]:
             continue
         runs, _, _ = timed(main, reference)
         main = [line if run else line[::-1] for line, run in zip(main, runs, strict=True)]
-        begins = [evenly(line[: 2 * len(line) // 5]) for line in main]  # when a stroke begins, decides
+        # the beginning of a stroke decides its order
+        begins = [evenly(line[: 2 * len(line) // 5]) for line in main]
         time = dict(zip(own, timed(begins, reference)[1], strict=True))
         for k in known:
             leftmost_top = float(flat[k][:, 1].mean() - flat[k][:, 0].mean())
@@ -224,7 +232,7 @@ def table_strokes(table: str) -> list[np.ndarray]:
 
 
 def words(made: dict[str, list[np.ndarray]], rng) -> list[Sample]:
-    """Return the strokes of letters, and of words of two to four of them side by side."""
+    """Return the strokes of letters, and of words of two to four letters."""
     several = {letter: lines for letter, lines in made.items() if len(lines) > 1}
     result = [(stretched(lines, rng), -1.0) for lines in several.values() for _ in range(LETTER_COPIES)]
     names = list(made)
@@ -247,14 +255,17 @@ def stretched(lines: list[np.ndarray], rng) -> list[np.ndarray]:
 
 
 def gradient(output: np.ndarray, count: int) -> np.ndarray:
-    """Return the derivative of -log probability of the order 0, 1, ... by the network's output (count^2, 2)."""
+    """Return the derivative of the loss by the network's output (count^2, 2).
+
+    The loss is -log of the probability of the order 0, 1, ...
+    """
     before, follows = np.moveaxis(output.reshape(count, count, 2), 2, 0)
     margin = before - before.T
     cost = -np.logaddexp(0, -margin)
     np.fill_diagonal(cost, 0)
     score = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1].T.copy()  # step, candidate
     score[1:] += follows[:-1]
-    score[np.tril(np.ones((count, count), bool), -1)] = -1e9  # written before
+    score[np.tril(np.ones((count, count), bool), -1)] = -1e9  # this stroke is already written
     chance = np.exp(score - score.max(axis=1, keepdims=True))
     chance /= chance.sum(axis=1, keepdims=True)
     by_score = chance - np.eye(count, dtype=output.dtype)
@@ -265,7 +276,10 @@ def gradient(output: np.ndarray, count: int) -> np.ndarray:
 
 
 def fit(samples: list[np.ndarray], epochs: int, rng: np.random.Generator) -> list[np.ndarray]:
-    """Return the weights: hidden, bias, output. samples: features (n, n, f), single precision."""
+    """Return the weights: hidden, bias, output.
+
+    samples are features (n, n, f) in single precision.
+    """
     count = samples[0].shape[2]
     scale = np.concatenate([x.reshape(-1, count) for x in samples[::7]]).std(axis=0) + 1e-3
     scale[-1] = 1.0
@@ -297,7 +311,7 @@ def fit(samples: list[np.ndarray], epochs: int, rng: np.random.Generator) -> lis
 
 
 def in_order(weights: list[np.ndarray], samples: list[np.ndarray]) -> tuple[float, float]:
-    """Return the share of pairs in order, and of samples whose strokes are all in order."""
+    """Return the share of pairs in order, and of samples completely in order."""
     pairs, whole = [], []
     for sample in samples:
         before, follows = np.moveaxis(np.tanh(sample @ weights[0] + weights[1]) @ weights[2], 2, 0)

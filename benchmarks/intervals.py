@@ -1,14 +1,14 @@
-"""How often 95 % intervals hold the truth, for each kind of measurement that the article names.
+"""How often 95 % intervals hold the truth, for each measurement of the article.
 
     intervals.py [--count 200] [--marks 20] [--seed 1] [--kinds "angles; widths"]
 
-Made-up measurements of round-6 with normal noise, calibrated --count times for each kind. Printed: how many values of
-each law at depths 1 to 10 mm are within the 95 % band of their calibration, at all depths together and at the worst
-one. 93 to 97 % should be at all depths together. The share itself scatters by the standard error that follows it:
-with --count 200 up to 1.9 %, with 800 0.8 %.
+Made-up measurements of round-6 with normal noise are calibrated --count times for each kind. The program
+prints the share of values of each law at depths 1 to 10 mm that are within the 95 % band of their
+calibration. It prints the share for all depths together and for the worst depth. For all depths together, 93
+to 97 % is right. The share has the printed standard error: up to 1.9 % with --count 200, and 0.8 % with 800.
 
-Marks take seconds each, so there are --marks of them: random brushes, painted by the slow simulator of tests/laws
-(truth_recovery.py).
+Each mark needs seconds, so --marks sets their number. The slow simulator of tests/laws paints them with
+random brushes (truth_recovery.py).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def footprints(rng, from_mm: float = 1.0) -> list[dict]:
 
 
 def angles(rng) -> list[dict]:
-    """A drag at each depth, read five times over the same share of the lag."""
+    """Return a drag at each depth, read five times over an equal share of the lag."""
     rows = []
     for d in DEPTHS:
         r, b, first = LAG(d), GAP(d), np.radians(85)
@@ -68,7 +68,7 @@ def angles(rng) -> list[dict]:
 
 
 def centre_lines(rng) -> list[dict]:
-    """The middle of the mark of a turn by 90 degrees, point by point."""
+    """Return the middle of the mark of a turn by 90 degrees, point by point."""
     rows = []
     for d in DEPTHS:
         r, e = LAG(d), WIDEST(d) - GAP(d)
@@ -81,7 +81,7 @@ def centre_lines(rng) -> list[dict]:
 
 
 def video(rng) -> list[dict]:
-    """A sweep while the brush comes down, seen from the side."""
+    """Return a video from the side of a sweep while the brush comes down."""
     depths = np.linspace(0, 10, 13)
     ferrule = np.column_stack([2.0 * np.arange(13), 40 - depths])
     tip_x = ferrule[:, 0] - (LAG(depths) + GAP(depths)) + np.r_[0, rng.normal(0, VIDEO_MM, 12)]
@@ -89,7 +89,7 @@ def video(rng) -> list[dict]:
 
 
 def straight(rng) -> list[dict]:
-    """Straight strokes of 60 mm, (17) with the lag that it lacks."""
+    """Return straight strokes of 60 mm, by (17) with its missing lag."""
     sums = LAG(DEPTHS) + GAP(DEPTHS) - WIDEST(DEPTHS) + rng.normal(0, LENGTH_MM, DEPTHS.size)
     return [
         {"depth_mm": float(d), "path_mm": 60.0, "distance_mm": float(60 - v)}
@@ -97,7 +97,7 @@ def straight(rng) -> list[dict]:
     ]
 
 
-# what is measured, which laws follow from it, and options
+# measurement, its laws, and options
 KINDS = {
     "angles": (lambda rng: {"angles": angles(rng), "width": widths(rng)}, ("lag", "tip_gap"), {}),
     "angles, total": (
@@ -154,7 +154,7 @@ KINDS = {
 
 
 def held(made, law: str) -> np.ndarray:
-    """At which depths the 95 % band of a law holds the truth."""
+    """Return at which depths the 95 % band of a law holds the truth."""
     [fit] = [each.fit for each in made.laws if each.name == law]
     half = half_interval_mm(np.array(fit.covariance), DEPTHS, fit.law.degrees_of_freedom)
     return np.abs(fit.law(DEPTHS) - TRUTH[law](DEPTHS)) <= half + 1e-9
@@ -172,7 +172,10 @@ def of_kind(name: str, count: int, seed: int) -> list[str]:
 
 
 def line(name: str, law: str, rows: np.ndarray) -> str:
-    """One row of the table, from which of (sets, depths) were held. The depths of a set err together."""
+    """Return one row of the table from the right bands of (sets, depths).
+
+    The errors of the depths of a set are correlated.
+    """
     share = np.mean(rows)
     error = np.std(np.mean(rows, axis=1), ddof=1) / np.sqrt(len(rows))
     worst = np.mean(rows, axis=0).min()

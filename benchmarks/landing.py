@@ -1,28 +1,31 @@
-"""Whether bristles that land to one side of where they are dragged would make predicted marks of real paint better.
+"""Test whether a landing of bristles to one side would predict real paint better.
 
     landing.py FOLDER [--sets NAME ...] [--aim edges|overlap] [--refit] [--planted FRAME ALONG ACROSS]
 
-FOLDER, sets and the fit: as for real_paint.py; strokes with even numbers are fitted, odd ones scored. The patch
-lands d = (along, across) away from the place under the tool, across to the left, and is there until the lag law drags
-it on: the pass begins with a pose at that place, and d is cut to what the lag reaches, since further away no patch
-is. Frames of d:
+FOLDER, sets and the fit are those of real_paint.py. Strokes with even numbers are fitted, and strokes with
+odd numbers are scored. The patch lands at d = (along, across) from the place under the tool; across points to
+the left. It stays there until the lag law drags it on: the pass begins with a pose at that place. d is
+limited to the lag, because a patch is never further away. The frames of d:
 
-    paper     x and y of the sheet
-    before    where the patch headed at the end of the stroke before in the file, as the fitted brush paints it: what
-              that stroke left in the bristles; the first stroke has none and lands under the tool
+    paper     x and y of the sheet before    the heading of the patch at the end of the previous stroke of the
+    file, as the fitted brush paints it.
+              This is the direction in which the stroke left the bristles. The first stroke lands under the
+              tool.
     stroke    the first motion of this stroke
 
-The laws are held; d is one of 49 (0, 1, 2 and 4 mm either way), and with each d, 0 too, one displacement for the set is
-found anew. Both by 5-fold cross-validation on even strokes: displacements by four fifths, then the d with the largest
-mean of `fixed` and `shift` on the fifths left out. Printed as `left out`: what is won there when d, too, is chosen by
-the other four fifths. Then `fixed` and `shift` on odd strokes, what each wins on landing under the tool, and the
-standard error of that by a paired bootstrap over strokes. `refitted`: the laws fitted anew, with that d, and without.
+The laws stay fixed. d is one of 49 (0, 1, 2 and 4 mm either way). For each d, also for 0, one displacement of
+the set is fitted. Both are chosen by 5-fold cross-validation on even strokes: the displacement by four
+fifths, then the d with the largest mean of `fixed` and `shift` on the remaining fifths. `left out` is the
+gain there if the other four fifths choose d as well. Then the program prints `fixed` and `shift` on odd
+strokes, their gains over landing under the tool, and the standard errors of the gains by a paired bootstrap
+over strokes. `refitted` fits the laws again, with this d and without it.
 
---refit: instead, with laws that are fitted anew for each of few d, on one half of the even strokes, and scored on the
-other, both ways: what the mean of `fixed` and `shift` wins. Only the best, if one wins, is scored on odd strokes.
+--refit fits the laws again for each of a few d on one half of the even strokes, and scores them on the other
+half, both ways. It prints the gain in the mean of `fixed` and `shift`. Only the best d, if it has a gain, is
+scored on odd strokes.
 
---planted: odd and even strokes are what the fitted brush paints when it lands so, each displaced as the real one is.
-Whether such a landing would be found, and what it is worth.
+--planted replaces all strokes by those that the fitted brush paints with this landing, each displaced as the
+real stroke is. It shows whether the program would find the landing, and its gain.
 """
 
 from __future__ import annotations
@@ -41,7 +44,7 @@ from brushsvg import _core
 
 FRAMES = ("paper", "before", "stroke")
 STEPS_MM = (0.0, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0)
-OFFSETS = np.array(list(product(STEPS_MM, STEPS_MM)))  # the first is none
+OFFSETS = np.array(list(product(STEPS_MM, STEPS_MM)))  # the first offset is 0
 FOLDS, RESAMPLED = 5, 4000
 REFITTED = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], float)
 
@@ -50,7 +53,7 @@ REFITTED = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], float)
 
 
 def axes_of(strokes, fit, options) -> dict[str, np.ndarray]:
-    """Per frame and stroke the direction `along`, unit vectors (n, 2); 0 where there is none."""
+    """Return the unit vectors `along` (n, 2) by frame, 0 where there is none."""
     brush = real_paint.brush_for(strokes, fit, options)
     plan, ends, begins = _core.Plan("fitted", "", (1.0, 1.0), []), [], []
     for stroke in strokes:
@@ -65,12 +68,12 @@ def axes_of(strokes, fit, options) -> dict[str, np.ndarray]:
 
 
 def reach_mm(stroke, brush, fit) -> float:
-    """The lag where the stroke begins."""
+    """Return the lag where the stroke begins."""
     return float(brush.lag(max(0.0, fit.height_mm - stroke.poses[0, 2])))
 
 
 def landed(stroke, along, offset_mm, brush, fit):
-    """The stroke with its patch landing at an offset in the frame of `along`."""
+    """Return the stroke whose patch lands at an offset in the frame of `along`."""
     x, y = along
     displacement = np.array([[x, y], [-y, x]]).T @ offset_mm
     size = np.hypot(*displacement)
@@ -87,8 +90,10 @@ def all_landed(strokes, axes, offset_mm, fit, options):
 
 
 def by_displacement(strokes, fit, options) -> np.ndarray:
-    """Overlap of each stroke's prediction (n, rows, columns) when it moves by whole pixels up to FARTHEST_MM; below 0
-    beyond that."""
+    """Return each stroke's overlap by displacement (n, rows, columns).
+
+    The prediction moves by whole pixels up to FARTHEST_MM. Values beyond this distance are below 0.
+    """
     out = []
     for picture, stroke in zip(real_paint.our_marks(strokes, fit, options), strokes, strict=True):
         reach = int(FARTHEST_MM / stroke.px)
@@ -106,7 +111,7 @@ def by_displacement(strokes, fit, options) -> np.ndarray:
 
 
 def best_place(tables) -> tuple[int, int]:
-    """The displacement at which strokes overlap most, as indices."""
+    """Return the indices of the displacement with the largest overlap."""
     mean = tables.mean(axis=0)
     row, column = np.unravel_index(int(mean.argmax()), mean.shape)
     return int(row), int(column)
@@ -117,8 +122,11 @@ def fixed_and_shift(tables, place) -> np.ndarray:
 
 
 def chosen(by_offset) -> tuple[int, np.ndarray]:
-    """Of by_offset (offsets, n, rows, columns) the offset that cross-validation chooses; what each stroke wins (n,) by
-    the one that the other folds alone choose."""
+    """Choose an offset by cross-validation.
+
+    by_offset has the shape (offsets, n, rows, columns). Also return each stroke's gain (n,) with the offset
+    that the other folds alone choose.
+    """
     fold = np.arange(by_offset.shape[1]) % FOLDS
     held, won = np.empty(by_offset.shape[:2]), np.empty(by_offset.shape[1])
     for k in range(FOLDS):
@@ -134,7 +142,7 @@ def chosen(by_offset) -> tuple[int, np.ndarray]:
 
 
 def error_of_mean(won) -> np.ndarray:
-    """By resampling strokes: won (n, ...)."""
+    """Return the standard error of the mean of won (n, ...) by resampling strokes."""
     rows = np.random.default_rng(1).integers(len(won), size=(RESAMPLED, len(won)))
     return won[rows].mean(axis=1).std(axis=0)
 
@@ -146,7 +154,10 @@ def gain_words(scored, base) -> str:
 
 
 def scored(seen, unseen, fit, options) -> np.ndarray:
-    """fixed and shift (n, 2) of the unseen, with the displacement that is best for the seen."""
+    """Return fixed and shift (n, 2) of the unseen strokes.
+
+    The displacement is the best one for the seen strokes.
+    """
     place = best_place(by_displacement(seen, fit, options))
     return fixed_and_shift(by_displacement(unseen, fit, options), place)
 
@@ -157,7 +168,10 @@ def fitted(seen, name, aim):
 
 
 def planted(strokes, axes, offset_mm, fit, options):
-    """The strokes as the fitted brush paints them when it lands so, displaced as the real ones are."""
+    """Return strokes that the fitted brush paints with this landing.
+
+    Each is displaced as the real stroke is.
+    """
     there = all_landed(strokes, axes, offset_mm, fit, options)
     usual = real_paint.our_marks(strokes, fit, options)
     painted = real_paint.our_marks(there, fit, options)
@@ -171,7 +185,7 @@ def planted(strokes, axes, offset_mm, fit, options):
 
 
 def tried(strokes, name, aim, plant):
-    """Lines of the table of a set."""
+    """Return the lines of the table of a set."""
     seen, unseen = strokes[::2], strokes[1::2]
     fit, options = fitted(seen, name, aim)
     axes = axes_of(strokes, fit, options)
@@ -209,7 +223,7 @@ def tried(strokes, name, aim, plant):
 
 
 def refitted(strokes, name, aim):
-    """Lines of the table of a set, with the laws fitted anew for each d."""
+    """Return the lines of the table of a set, with laws fitted again for each d."""
     seen = strokes[::2]
     fit, options = fitted(seen, name, aim)
     axes = axes_of(strokes, fit, options)

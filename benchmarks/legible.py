@@ -1,12 +1,15 @@
-"""Whether a stranger can read what is painted: Tesseract, of words and of single letters and digits, as the font itself
-has them and as the brush paints them.
+"""Measure whether painted letters are legible.
 
-The words are every 1,000th of those in Debian's wamerican that have 4 to 8 letters, apostrophes apart. In single
-glyphs capitals and small letters of one shape count as one, and so do O and 0, and l, I and 1; a letter that is read
-twice over, as Vv, is that letter. Each font is painted as large as benchmarks/letters.py has it.
+Tesseract reads words, and single letters and digits, both as the font draws them and as the brush paints
+them.
 
-FONT is a file, TrueType, OpenType or WOFF; tesseract-ocr and wamerican are Debian's packages. --pictures keeps what
-was read wrong as painted and right as drawn.
+The words are every 1,000th of the words in Debian's wamerican with 4 to 8 letters and without apostrophes.
+For single glyphs, capitals and small letters of one shape count as equal, and so do O and 0, and l, I and 1.
+A letter that is read twice, such as Vv, counts as that letter. Each font is painted as large as in
+benchmarks/letters.py.
+
+FONT is a file, TrueType, OpenType or WOFF; tesseract-ocr and wamerican are Debian's packages. --pictures
+keeps the texts that were read wrong as painted and right as drawn.
 """
 
 from __future__ import annotations
@@ -37,8 +40,8 @@ from brushsvg.strokes.skeleton import filled_rings
 
 WORDS = Path("/usr/share/dict/american-english")
 NTH = 1000
-EM_PX, MARGIN_PX, FINE = 72, 24, 4  # Tesseract was taught letters of about that height
-WORD, GLYPH = 8, 10  # its modes: what there is on a picture
+EM_PX, MARGIN_PX, FINE = 72, 24, 4  # Tesseract was trained with letters of about this height
+WORD, GLYPH = 8, 10  # Tesseract's modes: the content of a picture
 ONE_SHAPE = str.maketrans("CKOPSUVWXZ0lI|i", "ckopsuvwxzo1111")
 
 
@@ -53,7 +56,7 @@ def _letters(text: str) -> str:
 
 @dataclass(frozen=True)
 class Case:
-    """A text, its picture as the font has it and as it is painted."""
+    """A text, with its pictures as drawn by the font and as painted."""
 
     text: str
     drawn: np.ndarray
@@ -71,7 +74,7 @@ class Case:
 
 
 def case(text: str, font: bytes, size_mm: float, brush_name: str, compensation: str) -> Case:
-    brush = find_brush(brush_name)  # processes exchange values, which it is not
+    brush = find_brush(brush_name)  # a brush cannot be sent between processes, so each process finds it
     document, _ = text_svg(text, font, size_mm=size_mm)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "text.svg")
@@ -84,7 +87,7 @@ def case(text: str, font: bytes, size_mm: float, brush_name: str, compensation: 
 
 
 def _picture(rings: list[np.ndarray], px_per_mm: float) -> np.ndarray:
-    """Black on white, for any comparison."""
+    """Return a picture of rings, black on white."""
     points = np.vstack(rings)
     low, high = points.min(axis=0), points.max(axis=0)
     width, height = np.ceil((high - low) * px_per_mm).astype(int) + 2 * MARGIN_PX
@@ -99,7 +102,7 @@ def _picture(rings: list[np.ndarray], px_per_mm: float) -> np.ndarray:
 
 
 def read(pictures: Sequence[np.ndarray], mode: int) -> list[str]:
-    """What Tesseract reads on each picture."""
+    """Return the text that Tesseract reads on each picture."""
     if not pictures:
         return []
     with tempfile.TemporaryDirectory() as folder:
@@ -123,19 +126,19 @@ def read(pictures: Sequence[np.ndarray], mode: int) -> list[str]:
 
 @dataclass(frozen=True)
 class Readings:
-    """Of some texts in one font: what was read as drawn, and as painted."""
+    """The readings of some texts in one font, as drawn and as painted."""
 
     cases: list[Case]
     drawn: list[str]
     painted: list[str]
 
     def right(self) -> tuple[int, int]:
-        """How many as drawn, and as painted."""
+        """Return the number of right readings as drawn, and as painted."""
         sums = (sum(map(Case.is_right, self.cases, texts)) for texts in (self.drawn, self.painted))
         return next(sums), next(sums)
 
     def spoilt(self) -> list[tuple[Case, str]]:
-        """Read right as drawn and wrong as painted, and how."""
+        """Return the cases read right as drawn and wrong as painted."""
         rows = zip(self.cases, self.drawn, self.painted, strict=True)
         return [
             (each, painted) for each, drawn, painted in rows if each.is_right(drawn) > each.is_right(painted)
@@ -149,7 +152,7 @@ def readings(
     brush_name: str = "round-6",
     compensation: str = "closed",
 ) -> Readings:
-    """texts: words alone, or glyphs alone."""
+    """Read texts, which are only words or only glyphs."""
     size_mm = fitting_mm(font, find_brush(brush_name))
     one = partial(case, font=font, size_mm=size_mm, brush_name=brush_name, compensation=compensation)
     cases = list(pool.map(one, texts))

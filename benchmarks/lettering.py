@@ -1,9 +1,12 @@
-"""How well other people's lettering is painted, by every compensation: overlap of predicted and target mark as the
-report has it, stroke by stroke and whole character by whole character, poses, and milliseconds of processor time.
+"""Measure how well each compensation paints other people's lettering.
 
-Chinese characters drawn at random from `hanzi-writer-data`, 100 mm high, and letters of two fonts, all fetched by npm
-once into a folder. Widths beyond the brush's are painted at the nearest, and held against the outline as it is.
-`--limit N` compares N strokes with the best that a global search finds, instead.
+The program prints the overlap of predicted and target mark, by stroke and by whole character, as in the
+report. It also prints the number of poses and the milliseconds of processor time.
+
+The lettering is a random choice of Chinese characters of `hanzi-writer-data`, 100 mm high, and letters of two
+fonts. npm fetches them once into a folder. Widths beyond the brush's range are painted at the nearest width,
+and compared with the true outline. `--limit N` compares N strokes with the best result of a global search
+instead.
 """
 
 from __future__ import annotations
@@ -28,13 +31,13 @@ from lettering import PACKAGES, Lettering, letter
 from npm import fetched
 
 TEXT = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
-FONTS = (("sans", 100.0), ("script", 60.0))  # at 100 mm the script is wider than round-6 almost everywhere
-SEARCHED = 30  # characters that the best constant lag is searched on
+FONTS = (("sans", 100.0), ("script", 60.0))  # at 100 mm, the script is wider than round-6 almost everywhere
+SEARCHED = 30  # number of characters for the search of the best constant lag
 TOLERANCE_MM = 0.05
 
 
 def found(design: Design, brush) -> tuple[list, list]:
-    """Strokes to paint, and what each should become."""
+    """Return the strokes to paint, and the target of each."""
     painted, target, _ = within_reach(strokes(design)[0], brush)
     return painted, target
 
@@ -45,7 +48,7 @@ def overlap(trace, target, brush) -> float:
 
 @dataclass
 class Way:
-    """One compensation and what came of it, stroke by stroke and character by character."""
+    """One compensation and its results by stroke and by character."""
 
     name: str
     method: str
@@ -88,8 +91,8 @@ def ways(best_mm: float) -> list[Way]:
 
 
 def painted(design: Design, name: str, best_mm: float) -> tuple[list[Way], int]:
-    """One character by all ways, and how many of its strokes are wider than the brush."""
-    brush = find_brush(name)  # processes exchange values, which it is not
+    """Paint one character in all ways, and count strokes wider than the brush."""
+    brush = find_brush(name)  # a brush cannot be sent between processes, so each process finds it
     some, target = found(design, brush)
     done = ways(best_mm)
     for way in done:
@@ -101,7 +104,7 @@ def painted(design: Design, name: str, best_mm: float) -> tuple[list[Way], int]:
 
 
 def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:
-    """Overlaps of a character's strokes: a row each, a column per lag."""
+    """Return overlaps of a character's strokes, a row per stroke, a column per lag."""
     brush = find_brush(name)
     some, target = found(design, brush)
     return np.array(
@@ -116,7 +119,10 @@ def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:
 
 
 def best_constant_mm(pool, designs: list[Design], brush) -> tuple[float, int]:
-    """The one lag for all strokes whose marks overlap most with the target, to 0.25 mm; tried on how many."""
+    """Return the constant lag with the largest overlap of all strokes, to 0.25 mm.
+
+    Also return the number of tried strokes.
+    """
 
     def best(lags_mm) -> tuple[float, int]:
         work = partial(by_lag, name=brush.name, lags_mm=lags_mm.tolist())
@@ -153,7 +159,7 @@ def measured(title: str, designs: list[Design], brush, processes: int) -> None:
 
 
 def one_limit(place: tuple[Design, int], name: str, tries: int, seed: int) -> dict[str, float]:
-    from limit import search  # brings packages that nothing else here needs
+    from limit import search  # imports packages that only this function needs
 
     brush, (design, k) = find_brush(name), place
     some, target = found(design, brush)
@@ -161,7 +167,7 @@ def one_limit(place: tuple[Design, int], name: str, tries: int, seed: int) -> di
 
 
 def limits(designs: list[Design], brush, options) -> None:
-    """One stroke of each character, drawn at random, as near as a global search comes."""
+    """Compare a random stroke of each character with the best of a global search."""
     random = np.random.default_rng(options.seed)
     places = [(design, int(random.integers(100))) for design in designs[: options.limit]]
     work = partial(one_limit, name=brush.name, tries=options.tries, seed=options.seed)

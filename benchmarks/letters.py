@@ -1,27 +1,29 @@
-"""Whether letters are painted whole: the 62 letters and digits of each font, or --glyphs, each painted alone, and its
-mark compared with its shape.
+"""Measure how completely brushsvg paints letters.
 
-  lost      connected pieces of the shape that neither paint nor a disc of any stroke's width reaches, of more than 3 %
-            of it and wide enough for the brush: limbs without a stroke
-  bare      the same, of what paint alone does not reach: blunt ends too, where a mark begins pointed
-  glyphs    how many glyphs lose a piece, and in the end which
-  silent    of these, how many without a notice that names the place
-  overlap   common area over joint area of mark and shape, mean over the glyphs, and the least
-  notices   how many, in all
-  thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
-  notches   unpainted parts of the shape, deeper in it than 0.15 mm, mm2 per glyph: wedges at crotches, waves
+The program paints each of the 62 letters and digits of a font, or of --glyphs, alone. It compares each mark
+with the shape of its glyph.
+
+  lost      connected pieces of the shape without a stroke, such as limbs. Neither paint nor a disc of any
+  stroke's
+            width reaches them. They are larger than 3 % of the shape and wide enough for the brush.
+  bare      pieces like these that paint alone does not reach. These include blunt ends where a mark begins
+  pointed. glyphs    the number of glyphs that lose a piece, and at the end their names silent    the number
+  of these glyphs without a notice that names the place overlap   common area over joint area of mark and
+  shape, the mean over the glyphs and the smallest notices   the number of all notices thorns    corners of
+  the mark above 20 degrees that stick out of the shape by more than 0.3 mm notches   unpainted parts of the
+  shape, deeper in it than 0.15 mm, in mm2 per glyph: wedges at crotches, waves
             next to stems, blunt corners
-  bulges    how much paint is further outside of the shape than that
-  turning   how much the mark's outline turns more than the shape's, full turns per glyph; rings below 0.01 mm2 are
-            pinholes, and left out
+  bulges    paint that is more than 0.15 mm outside of the shape turning   how much more the mark's outline
+  turns than the shape's, in full turns per glyph. Rings below 0.01 mm2 are
+            pinholes and do not count.
   torn      glyphs whose mark has more pieces than their shape
-  closed    counters wider than the brush's finest line that are painted over
+  closed    painted counters that are wider than the brush's finest line
   outside   places where a mark is more than 0.3 mm outside of its shape
-  strokes   per glyph, and the most that one has
+  strokes   the mean per glyph, and the largest number of one glyph
 
-Each font is painted so large that the stem of its l is nearly as wide as the brush paints, at most 100 mm to the em.
-FONT is a file, TrueType, OpenType or WOFF; --pictures writes a page of all glyphs per font. --against runs the same
-with the Python of another environment, an earlier brushsvg for example, and prints its row first.
+Each font is so large that the stem of its l is nearly as wide as the brush paints, at most 100 mm to the em.
+FONT is a file, TrueType, OpenType or WOFF. --pictures writes a page of all glyphs per font. --against also
+runs the Python of another environment, for example with an earlier brushsvg, and prints its row first.
 """
 
 from __future__ import annotations
@@ -52,13 +54,13 @@ from brushsvg.strokes.wide_shapes import within_reach
 
 GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
 LARGEST_MM = 100.0
-STEM = 0.95  # of the brush's widest mark, how wide an l's stem is
+STEM = 0.95  # width of an l's stem as a share of the brush's widest mark
 LOST_SHARE = 0.03
-SEEN_MM = 0.15  # how far off the shape's a mark's edge may be unseen
-EDGE_MM = 0.3  # how far a mark's edge may be from the shape's and both count as one
+SEEN_MM = 0.15  # nobody sees a smaller distance between the edges of mark and shape
+EDGE_MM = 0.3  # edges of mark and shape up to this far apart count as one
 THORN_RAD = np.radians(20)
-EVEN_MM = 0.5  # what an outline turns within less is an angle of its polygon
-PINHOLE_MM2 = 0.01  # a ring that nobody sees, and that would count a whole turn
+EVEN_MM = 0.5  # a turn within a shorter length is an angle of the polygon
+PINHOLE_MM2 = 0.01  # nobody sees a smaller ring, which would count as a whole turn
 PX_PER_MM, COLUMNS = 6, 11
 
 
@@ -94,7 +96,7 @@ def _drawn(text: str, font: bytes, size_mm: float):
 
 
 def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensation: str) -> Painted:
-    brush = find_brush(brush_name)  # processes exchange values, which it is not
+    brush = find_brush(brush_name)  # a brush cannot be sent between processes, so each process finds it
     document, _ = text_svg(text, font, size_mm=size_mm)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "glyph.svg")
@@ -102,7 +104,7 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         work = prepare(file, Options(brush=brush, compensation=compensation))
     rings = [
         ring for element in read_svg(document.encode()).elements for ring in filled_rings(element)
-    ]  # dots, too
+    ]  # dots as well
     mark_rings = predict(work).outline_mm
     shape, mark = region(rings), region(mark_rings)
     finest = brush.half_width(brush.lag.calibrated_mm[0])
@@ -137,13 +139,13 @@ def _holes(shape) -> list:
 
 
 def _is_closed(hole, mark, finest: float) -> bool:
-    """Whether a counter that a finest line would fit into is painted over."""
+    """Return whether the mark covers a counter that a finest line would fit into."""
     wide = shapely.maximum_inscribed_circle(hole, 0.01).length > finest
     return bool(wide and not _large(hole.difference(mark)))
 
 
 def _pieces(left, shape, finest: float) -> list[tuple[float, float]]:
-    """Places of the large connected pieces of what is left of a shape."""
+    """Return the places of the large connected pieces of the rest of a shape."""
     return [
         piece.representative_point().coords[0]
         for piece in shapely.get_parts(left.buffer(-EDGE_MM).buffer(EDGE_MM))
@@ -153,7 +155,7 @@ def _pieces(left, shape, finest: float) -> list[tuple[float, float]]:
 
 
 def _turns(ring: np.ndarray) -> np.ndarray:
-    """At each vertex, to the left."""
+    """Return the turn to the left at each vertex."""
     edges = np.roll(ring, -1, axis=0) - ring
     before = np.roll(edges, 1, axis=0)
     cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
@@ -174,7 +176,7 @@ def _thorns(rings, shape) -> int:
 
 
 def _turned(rings) -> float:
-    """How much outlines turn in all, looked at every half millimetre."""
+    """Return how much outlines turn in total, sampled every half millimetre."""
     total = 0.0
     for ring in map(_simpler, (ring for ring in rings if abs(signed_area(ring)) >= PINHOLE_MM2)):
         line = shapely.LinearRing(ring)
@@ -185,7 +187,10 @@ def _turned(rings) -> float:
 
 
 def page(all_painted: list[Painted], cell_mm: float) -> np.ndarray:
-    """Paint blue, shapes outlined, bare places ringed in orange, lost ones in red."""
+    """Draw a page of all glyphs.
+
+    Paint is blue and shapes are outlined. Orange rings mark bare places, and red rings mark lost pieces.
+    """
     rows = -(-len(all_painted) // COLUMNS)
     side = int(cell_mm * PX_PER_MM)
     image = np.full((rows * side, COLUMNS * side, 3), 255, np.uint8)
@@ -265,7 +270,7 @@ def main() -> None:
 
 
 def _print_rows_of(python: Path, file: Path, options) -> None:
-    """The rows of a font with another environment's brushsvg."""
+    """Print the rows of a font with another environment's brushsvg."""
     same = ["--brush", options.brush, "--compensation", *options.compensation, "--glyphs", options.glyphs]
     command = [python, __file__, file, *same, "--stem", options.stem, "--processes", str(options.processes)]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout

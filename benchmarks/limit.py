@@ -1,8 +1,9 @@
-"""How well a stroke can be painted at all: a global search that knows nothing of the brush but its simulation.
+"""Search globally for the best possible painting of a stroke.
 
-The poses of a plan are moved in x, y and depth by cubic B-splines along the tool's way; CMA-ES (the package `cma`)
-looks for those whose mark overlaps best, from the plan in closed form with wide steps and from the refined one with
-narrower ones. What it finds is a lower bound of what can be had, above all else that is tried here.
+The poses of a plan are moved in x, y and depth by cubic B-splines along the tool's way; CMA-ES (the package
+`cma`) searches for the mark with the largest overlap. It knows the brush only by its simulation. It starts
+from the plan in closed form with wide steps, and from the refined plan with narrower steps. Its result is a
+lower bound of the best possible overlap, and better than all other methods here.
 """
 
 from __future__ import annotations
@@ -16,14 +17,17 @@ from scipy.interpolate import BSpline
 from brushsvg import _core
 
 CONTROLS = 8
-EVERY_MM = 1.5  # poses along the way: a spline bends between those of a plan
-STARTS = (("closed", 1.0), ("refined", 0.3))  # and the first step [mm]
+EVERY_MM = 1.5  # distance of poses, since a spline bends between the poses of a plan
+STARTS = (("closed", 1.0), ("refined", 0.3))  # the start and its first step [mm]
 WINDOW_PX = 6.0  # per mm
-ROUND_MM = 2.0  # paper round both marks, for what moves out of them
+ROUND_MM = 2.0  # paper around both marks, for marks that move outwards
 
 
 def search(stroke, target, brush, tries: int, seed: int) -> dict[str, float]:
-    """Overlaps as the report has them: closed, refined, and the best that so many simulations from each find."""
+    """Return the overlaps of the report: closed, refined and the best one found.
+
+    tries is the number of simulations from each start.
+    """
     found, best, most = {}, None, -1.0
     for method, step_mm in STARTS:
         start = _core.compensate([stroke], brush, None, method).plan.passes[0]

@@ -1,14 +1,17 @@
-"""Random brushes paint a sheet by machines that lean and whose axes are off, and the fit has to find both.
+"""Recover random brushes and machines from the sheets that they paint.
 
     machine_recovery.py [--brushes 12] [--seed 1] [--processes 2] [--parts lean,axes] [--sheet a4]
                         [--planted lean,axes] [--sine 0.5] [--outside all]
 
-The slow stepping simulator of tests/laws paints, along the ways that the machine runs; the fit gets the commanded
-ways. Printed: how far the lag is off without --machine and with it (rms over depths and brushes), and how often the
-95 % intervals hold each number of the machine, and the lag. --planted: what the machines do, if that is not what the
-fit is requested; numbers of what is not planted are 0. With --sine they are off by a sine over the sheet, too, so many
-mm high and as long as the sheet, which is no field that the fit knows. --outside: brushes whose laws are none of the
-fit's, as in truth_recovery.py. Brushes whose lag is off by more than 3 % anywhere are named by their seeds.
+The machines lean, and their axes have errors. The slow stepping simulator of tests/laws paints along the ways
+that the machine runs; the fit gets the commanded ways. The program prints the error of the lag without
+--machine and with it (rms over depths and brushes). It prints how often the 95 % intervals contain each
+number of the machine, and the lag.
+
+--planted sets the errors of the machines, if they differ from the fitted ones; all other errors are 0. --sine
+adds an error field of this height [mm]: one sine over the sheet, which the fit does not know. --outside uses
+brushes whose laws are not the fit's, as in truth_recovery.py. Brushes whose lag is off by more than 3 %
+anywhere are listed by their seeds.
 """
 
 from __future__ import annotations
@@ -32,7 +35,10 @@ painter = truth_recovery.painter
 
 
 def random_machine(rng, parts) -> dict[str, np.ndarray]:
-    """As large as machines are: lean 0.3 mm per mm, 1 % of scale and skew, 1 mm of tilt over a sheet."""
+    """Return a machine with realistic errors.
+
+    These are lean of 0.3 mm per mm, scale and skew of 1 %, and a tilt of 1 mm over a sheet.
+    """
     drawn = {
         "lean": rng.normal(0, 0.3, 2),
         "axes": rng.normal(0, 0.01, 3),
@@ -44,8 +50,11 @@ def random_machine(rng, parts) -> dict[str, np.ndarray]:
 
 
 def with_play(strokes, backlash: np.ndarray) -> list:
-    """The strokes one after the other, every 0.4 mm, as axes run them that stand still for so long where they turn."""
-    out, behind = [], np.zeros(2)  # of the commanded place, at most half of the backlash
+    """Return the strokes as axes with backlash run them, every 0.4 mm.
+
+    When an axis turns, it stands until the backlash is taken up. Strokes follow each other.
+    """
+    out, behind = [], np.zeros(2)  # distance behind the commanded place, at most half of the backlash
     last = strokes[0][1][0]
     for name, poses in strokes:
         run_to = []
@@ -62,7 +71,10 @@ def with_play(strokes, backlash: np.ndarray) -> list:
 
 
 def displacement_by(machine, strokes, sine_mm: float, rng):
-    """(n, 2) places to (n, 2) mm by which its field displaces the tool, over the box of all strokes."""
+    """Return a function from places (n, 2) to displacements (n, 2) [mm].
+
+    The field of the machine covers the box of all strokes.
+    """
     places = np.concatenate([poses[:, :2] for _, poses in strokes])
     middle, reach = (places.max(axis=0) + places.min(axis=0)) / 2, np.ptp(places, axis=0) / 2
     phases = rng.uniform(0, 2 * np.pi, 2)
@@ -76,12 +88,14 @@ def displacement_by(machine, strokes, sine_mm: float, rng):
 
 
 def run(machine, poses: np.ndarray, centre: np.ndarray, height: float, displaced) -> np.ndarray:
-    """The way that the machine runs when it is commanded to come down on the first of these poses, to follow them and
-    to go up again, on paper that is so much higher."""
+    """Return the true way of the machine for commanded poses, on paper of a height.
+
+    The machine comes down on the first pose, follows the poses and goes up again.
+    """
     up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
     poses = np.vstack([up[:1], poses, up[1:]])
     if np.any(displaced(poses[:, :2])):
-        poses = every_mm(poses)  # straight lines are none any more
+        poses = every_mm(poses)  # straight lines become curved
     at = poses[:, :2] - centre
     z = poses[:, 2] - at @ machine["tilt"]
     scale_x, scale_y, skew = machine["axes"]
@@ -91,7 +105,7 @@ def run(machine, poses: np.ndarray, centre: np.ndarray, height: float, displaced
 
 
 def every_mm(poses: np.ndarray) -> np.ndarray:
-    """The same way with a pose for each 2 mm of it."""
+    """Return the way with a pose every 2 mm."""
     rows = [poses[:1]]
     for a, b in pairwise(poses):
         parts = max(1, int(np.hypot(*(b - a)[:2]) / 2))
@@ -107,8 +121,11 @@ def recover(
     sine_mm: float = 0.0,
     outside: str | None = None,
 ) -> dict:
-    """One brush on one machine: relative errors of the lag without and with the machine in the fit, and (error, half
-    interval) of each number."""
+    """Fit one brush on one machine.
+
+    Return the relative errors of the lag without and with the machine in the fit, and (error, half interval)
+    of each number.
+    """
     rng = np.random.default_rng(seed)
     brush, faults = truth_recovery.brush_for(rng, seed, outside), painter.Faults()
     strokes = truth_recovery.strokes_of(rng, brush, sheet_mm)
@@ -124,7 +141,8 @@ def recover(
         )
 
     sheet = painter.paint(rng, brush, strokes, faults, regions)
-    marks = [_core.PaintedMark(*mark) for mark in sheet.marks if mark[2]]  # what painted nothing is left out
+    # strokes that painted nothing are left out
+    marks = [_core.PaintedMark(*mark) for mark in sheet.marks if mark[2]]
     depths = np.linspace(0.2, 1, 9) * brush.deepest
     out = {"seed": seed, "lag": {}, "s": 0.0, "z": {}}
     for with_machine in (False, True):

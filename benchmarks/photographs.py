@@ -1,18 +1,21 @@
-"""Random brushes paint printed charts, random cameras photograph them, and `calibrate` has to find the brush.
+"""Recover random brushes from photographs of charts with `calibrate`.
+
+The brushes paint printed charts, and random cameras photograph the charts.
 
     photographs.py FOLDER [--count 200] [--brushes 40] [--seed 1] [--sheet a4] [--strokes few] [--again]
                           [--height MM] [--half inside|outside]
 
-FOLDER keeps each photograph and what came of it: a run that was stopped goes on where it was, and `--again` reads and
-fits the photographs that are there once more. `--count 0` only shows what is there. `--height`: the paper's height is
-known to so much (standard deviation), as `brushsvg setup height` finds it, and `calibrate --height` uses it.
+FOLDER keeps each photograph and its result. A stopped run continues where it stopped. `--again` reads and
+fits existing photographs once more. `--count 0` only shows existing results. `--height` is the standard
+deviation to which the paper's height is known. `brushsvg setup height` finds this height, and `calibrate
+--height` uses it.
 
-The paint is the slow stepping simulator's of tests/laws, the pictures the renderer's there: a tilt, a lens of another
-formula, blur, noise, uneven light, shadows, JPEG. Every sixth sheet of either half bulges by a millimetre. Every
-other brush has laws outside of the family that is fitted: a lag that saturates and swings, a width that grows as a
-root, a bent tip gap. The two halves are reported apart. Printed: how far places on the sheet are off (rms), how far
-the lag is off over the range, how often the 95 % intervals hold the truth, what was refused, and which marks were
-left out.
+The slow stepping simulator of tests/laws paints. The renderer of tests/laws makes the pictures, with a tilt,
+a lens with another formula, blur, noise, uneven light, shadows and JPEG. Every sixth sheet of each half
+bulges by a millimetre. Every other brush has laws outside of the fitted family: a lag that saturates and
+swings, a width that grows as a root, and a bent tip gap. The results of the two halves are printed
+separately. They are the errors of places on the sheet (rms), the error of the lag over the range, how often
+the 95 % intervals contain the truth, the refusals, and the marks that were left out.
 """
 
 from __future__ import annotations
@@ -39,8 +42,8 @@ from brushsvg.cli.arguments import values
 from brushsvg.errors import Error
 from brushsvg.model.confidence import law_band
 
-KNOWN_TO = 0.15  # what a person knows of the brush beforehand
-SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest
+KNOWN_TO = 0.15  # relative accuracy to which a person knows the brush before
+SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares of the largest depth
 FAULTS = painter.Faults(noise=0.05, noise_length=0.5, displacement=0.3, placement=0.8, turn=0.008, height=0.1)
 COLOURS = (
     photograph.BLUE,
@@ -48,8 +51,8 @@ COLOURS = (
     np.array([0.7, 0.1, 0.08]),
     np.array([0.1, 0.35, 0.15]),
 )
-BULGING = 6  # every so many sheets of either half
-TEXELS = 16.0  # per mm of the sheet: of A4, more take a gigabyte
+BULGING = 6  # one in this many sheets of each half bulges
+TEXELS = 16.0  # per mm of the sheet; more would need a gigabyte for A4
 
 
 def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
@@ -72,7 +75,7 @@ def camera_of(rng, sheet_mm, is_bulging: bool) -> photograph.Camera:
 
 
 class Case:
-    """What is known of one photograph; brushes inside and outside of the family take turns."""
+    """One photograph; brushes inside and outside the family alternate."""
 
     def __init__(self, number: int, seed: int, brushes: int, sheet_mm, strokes: str | None):
         which = number % brushes
@@ -92,7 +95,7 @@ class Case:
         self.paint_rng = np.random.default_rng([seed, number, 2])
 
     def taken(self) -> tuple[bytes, float]:
-        """The JPEG, and the paper's height."""
+        """Return the JPEG, and the paper's height."""
         photograph.TEXELS = TEXELS
         ways = [(one.stroke, np.array(one.poses_mm)) for one in self.chart.plan.passes]
         painted = painter.paint(self.paint_rng, self.brush, ways, FAULTS)
@@ -103,7 +106,7 @@ class Case:
 
 
 def kept(case: Case, folder: Path) -> tuple[bytes, float]:
-    """A photograph that was taken before, or now."""
+    """Return an existing photograph, or take it now."""
     photo, height = folder / f"{case.number}.jpg", folder / f"{case.number}.height"
     if not height.exists():
         jpeg, true_height = case.taken()
@@ -113,8 +116,10 @@ def kept(case: Case, folder: Path) -> tuple[bytes, float]:
 
 
 def outcome(case: Case, jpeg: bytes, true_height: float, height_known: float | None = None) -> dict:
-    """What came of a photograph, as JSON knows it. height_known: standard deviation of the paper's height about which
-    the studio knows."""
+    """Return the result of a photograph as JSON values.
+
+    height_known is the standard deviation to which the studio knows the paper's height.
+    """
     out = {"number": case.number, "inside": case.inside, "bulging": case.bulging}
     brush, made = case.brush, case.chart
     try:

@@ -1,10 +1,11 @@
-"""Seconds until Inkscape's live preview has its marks, by stage, and how much longer Inkscape itself takes.
+"""Measure the time until Inkscape's live preview shows its marks, by stage.
 
-The extension's process is run as Inkscape runs it, from its start to its end: the system's Python, which starts
-brushsvg, writes the document with the marks and ends. Cold: the first run after the files of Python and brushsvg have
-left the page cache, where this machine lets us drop them (root); warm: the median of seven. Aims: a word of ten strokes
-in 0.5 s warm and 1.0 s cold, a page of 200 in 2 s. To this comes what Inkscape itself does, where it is installed: it
-writes the document for us and reads it back, the processors' time between six previews in one document and one.
+The program runs the extension's process as Inkscape runs it, from start to end. The system's Python starts
+brushsvg, writes the document with the marks and ends. Cold is the first run after Python's and brushsvg's
+files have left the page cache, if this machine allows this (root). Warm is the median of seven runs. The aims
+are 0.5 s warm and 1.0 s cold for a word of ten strokes, and 2 s for a page of 200 strokes. If Inkscape is
+installed, its own time is measured as well: Inkscape writes the document for us and reads it back. Its time
+is the difference in processor time between six previews in one document and one preview.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "plugins" / "inkscape"
 SCRIPT = SOURCE / "brushsvg_preview.py"
 COMMAND = Path(sys.executable).with_name("brushsvg")
-SYSTEM_PYTHON = "/usr/bin/python3"  # has lxml, as Inkscape's own has
+SYSTEM_PYTHON = "/usr/bin/python3"  # this Python has lxml, like Inkscape's own
 RUNS = 7
 IN_INKSCAPE = 5
 PREFERENCES = (
@@ -75,13 +76,16 @@ print("extension: marks put in", f"{{time.perf_counter() - begin:.3f}}")
 
 
 def drawing(strokes: int) -> str:
-    """Wavy strokes of a page, 30 to 60 mm each."""
+    """Return a page of wavy strokes, 30 to 60 mm each."""
     lines = page.page().splitlines()
     return "\n".join([*lines[:1], *lines[1:strokes], "</g></svg>"])
 
 
 def timed(words, **settings) -> tuple[float, float]:
-    """Seconds on the clock, and of the processors' time in our own processes and those they started."""
+    """Return seconds on the clock, and processor seconds of our processes.
+
+    Processes that these have started are included.
+    """
     begin, used = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **settings)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -106,7 +110,10 @@ def median(runs) -> tuple[float, float]:
 
 
 def in_inkscape(file: Path) -> float:
-    """Seconds of the processors' time that Inkscape spends on a preview; its children's are not in it."""
+    """Return Inkscape's processor seconds for a preview.
+
+    The time of its child processes is not included.
+    """
     profile = file.with_suffix(".profile")
     shutil.copytree(SOURCE, profile / "extensions" / "brushsvg")
     (profile / "preferences.xml").write_text(PREFERENCES)

@@ -1,14 +1,15 @@
-"""Random drawings x brush files of every kind x cells x options: nothing that is written may break what must hold.
+"""Test properties of programs for random drawings, brushes, cells and options.
 
     properties.py [--first 0] [--count 100000] [--hours 1] [--jobs 2] [--dialect NAME ...] [--results FILE]
 
-What holds is judged by the tests' own interpreters of each robot language and their own stepping simulator: no pose
-deeper than the brush allows, no mark off the sheet, nothing outside the workspace along the way, nothing fast while
-touching, tracking errors that are reported true, the same input the same bytes, from two processes too, and check
-accepts what convert writes. A refusal is no fault; an exception is.
+The tests' own interpreters of each robot language and their own stepping simulator judge the programs. No
+pose may be deeper than the brush allows. No mark may be off the sheet, no move outside of the workspace, and
+no touching move too fast. Reported tracking errors must be true. Equal input must give equal bytes, also from
+two processes. check must accept the programs that convert writes. A refusal is not a fault, but an exception
+is.
 
-Results are appended to a file, a line for each case; a later run goes on after the last. At the end, or with
---count 0, a table by kind of drawing and brush.
+The program appends results to a file, a line for each case. A later run continues after the last case. At the
+end, or with --count 0, it prints a table by kind of drawing and brush.
 """
 
 from __future__ import annotations
@@ -35,11 +36,11 @@ from judge.checked import quick_check
 from judge.properties import batches_differ, one
 
 ROOT = Path(__file__).parents[1]
-PART = 50  # cases that one process does before it says so; their drawings are one batch as well
+PART = 50  # cases per task of a process; their drawings also form one batch
 
 
 def part(first: int, shelf: Path, dialects: list[str]) -> list[dict]:
-    """The cases from `first` on."""
+    """Run the cases from `first` on."""
     found = []
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()):
         work = Path(folder)
@@ -56,7 +57,7 @@ def part(first: int, shelf: Path, dialects: list[str]) -> list[dict]:
 
 
 def made_shelf(folder: Path, k: int) -> Path:
-    """A process has its own brush files."""
+    """Make the folder of brush files of one process."""
     shelf = folder / str(k)
     shelf.mkdir(exist_ok=True)
     return shelf

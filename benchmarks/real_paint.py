@@ -1,28 +1,33 @@
-"""Brushes fitted to strokes that robots painted, and how well they predict strokes they have not seen.
+"""Fit brushes to strokes of robots, and score their predictions.
 
     real_paint.py FOLDER [--sets NAME ...] [--pictures DIR] [--machine lean,axes] [--ceilings]
 
-A set is a file NAME.npz of FOLDER, all of them unless --sets says which. Its arrays: `intensity` (strokes, rows,
-columns), pixels that are paint above 70, `z_range_m`, and either `ctrl` (strokes, 4, 3 or more), control points of a
-cubic with x, y [m], depth [shares of z_range_m], with `poses` (how many places the robot went
-through, else 10), `x_range`, `y_range` [m] and `grid_m`; or `path` (strokes, 4, 3 or more), places that a spline goes
-through, with `canvas_w_m` and `canvas_h_m`.
+A set is a file NAME.npz of FOLDER. --sets selects sets; otherwise all sets are used. A set has the arrays
+`intensity` (strokes, rows, columns), where pixels above 70 are paint, and `z_range_m`. In addition it has one
+of:
 
-Each set is cleaned up to one blob per stroke; strokes with even numbers are fitted, odd ones scored by overlap
-(intersection over union of pixels). `fixed`: one displacement for the set; `shift`: each stroke may move by up to
-3 mm. Next to ours, on the same strokes: a disc of linear width that is dragged by no lag, by a constant one, by one
-that is linear in depth, each fitted to the largest `fixed`.
+- `ctrl` (strokes, 4, 3 or more), control points of a cubic with x, y [m] and depth [shares of z_range_m],
+with `poses`
+  (the number of places of the robot, otherwise 10), `x_range`, `y_range` [m] and `grid_m`.
+- `path` (strokes, 4, 3 or more), places on a spline, with `canvas_w_m` and `canvas_h_m`.
 
-Ours twice: `edges` is what `brushsvg calibrate` does, `overlap` what it does with --aim overlap: it goes on from there
-with the same laws to the largest mean of `fixed` and `shift`, with footprints held round as long as the strokes do not
-speak against it. Numbers: lag 2, tip gap 1, half width 2, the footprint's shape 2, height of the paper 1, the set's
-displacement 2 (at one depth lag 1, half width 1, no height); `edges` also a shift for each fitted stroke. --machine:
-for `edges` as well, lean 2, axes 3. What `overlap` changes is chosen by fitted strokes that are left out in turn:
-nothing; a dragged disc; laws (at one depth lag 2); those with lean, 2 (none at one depth), and a map of the ways, 4.
+Each set is cleaned to one blob per stroke. Strokes with even numbers are fitted. Strokes with odd numbers are
+scored by overlap (intersection over union of pixels). `fixed` uses one displacement for the set. `shift` lets
+each stroke move by up to 3 mm. For comparison, a disc of linear width is dragged along the strokes without
+lag, with constant lag, and with lag that is linear in depth. Each disc is fitted to the largest `fixed`.
 
-First comes what can be had at all. Two strokes of nearly equal commands overlap less than 1: they are carried on to
-equal commands along a straight line in the way's and the depth's distance. What each misses to the other is between
-both; a model that is right about the mean of many such strokes misses 1/sqrt(2) of it. --ceilings prints no more.
+Two fits of ours are scored. `edges` is the fit of `brushsvg calibrate`. `overlap` is the fit of --aim
+overlap: it starts from `edges` and changes the laws to the largest mean of `fixed` and `shift`. Footprints
+stay round unless the strokes contradict this. Fitted numbers: lag 2, tip gap 1, half width 2, the footprint's
+shape 2, height of the paper 1, the set's displacement 2. At one depth: lag 1, half width 1, no height.
+`edges` also fits a shift for each stroke. --machine adds lean, 2, and axes, 3, for `edges`. `overlap` leaves
+fitted strokes out in turn to choose its changes: nothing, a dragged disc, laws (at one depth lag 2), or laws
+with lean, 2 (none at one depth), and a map of the ways, 4.
+
+First the program prints the best possible overlap. Two strokes of nearly equal commands overlap less than 1.
+A line in the distances of ways and depths extrapolates this overlap to equal commands. Both strokes share the
+missing part. A model of the mean of many equal strokes would miss 1/sqrt(2) of it. --ceilings prints nothing
+else.
 """
 
 from __future__ import annotations
@@ -60,12 +65,15 @@ LEVEL = 70
 FARTHEST_MM = 3.0
 NEAR_MM = 8.0
 JOINED_MM = 1.5
-MARGIN_MM = 8.0  # around way and paint, while searching
+MARGIN_MM = 8.0  # margin around way and paint during a search
 DISCS = ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth"))
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 LAWS = ("lag", "tip_gap", "half_width")
-# Commands are nearly equal: rms distance of their ways as a share of the paint's width, rms distance of their depths
-# as a share of the deepest, the sum of both. Further apart, what strokes miss no longer grows along a line.
+# Two commands are nearly equal if the sum of two shares is small. One is the rms distance of their ways as a
+# share of
+# the paint's width. The other is the rms distance of their depths as a share of the largest depth. For
+# commands further
+# apart, the missing overlap no longer grows along a line.
 ALIKE_WIDTHS, ALIKE_DEPTH = 0.5, 0.3
 FEWEST_PAIRS, TENTHS = 60, 10
 
@@ -93,7 +101,7 @@ def _beziers(data) -> list[Stroke]:
     out = []
     for paint, ctrl in zip(data["intensity"], data["ctrl"], strict=True):
         xy = weights @ ctrl[:, :2] * 1e3
-        # a marker is pressed to one depth, which is called 1 mm
+        # a marker has one depth, here called 1 mm
         depth = np.interp(t, np.linspace(0, 1, 4), ctrl[:, 2]) * deep if deep else np.ones(count)
         poses = np.column_stack([xy, -np.maximum(depth, 0)])
         out.append(_stroke(poses, paint, (x0, y0, x1 - x0, y1 - y0), px))
@@ -113,7 +121,7 @@ def _loops(data) -> list[Stroke]:
         near = np.zeros(paint.shape, np.uint8)
         pixels = np.column_stack([xy[:, 0] / px, (height - xy[:, 1]) / px])
         cv2.polylines(near, [np.round(pixels).astype(np.int32)], False, 255, round(2 * NEAR_MM / px))
-        # a window round the path, in whole pixels
+        # A window around the path, in whole pixels.
         left, top = np.maximum(np.floor(pixels.min(axis=0) - 60).astype(int), 0)
         right, bottom = np.minimum(np.ceil(pixels.max(axis=0) + 60).astype(int), paint.shape[::-1])
         part = np.where(near > 0, paint, 0)[top:bottom, left:right]
@@ -123,8 +131,11 @@ def _loops(data) -> list[Stroke]:
 
 
 def _stroke(poses, paint, window, px, filled=True) -> Stroke:
-    """One blob: parts less than twice JOINED_MM apart are one, and the largest is the stroke. filled: so are the gaps
-    between hairs; not where strokes come back next to themselves."""
+    """Return the stroke as one blob.
+
+    Parts less than twice JOINED_MM apart count as one part, and the largest part is the stroke. filled also
+    paints the gaps between hairs. Strokes that return next to themselves must not be filled.
+    """
     size = 2 * round(JOINED_MM / px) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     closed = cv2.morphologyEx(np.uint8(paint > LEVEL), cv2.MORPH_CLOSE, near)
@@ -150,12 +161,15 @@ def scores(strokes, predicted) -> tuple[np.ndarray, np.ndarray, list]:
     return fixed, np.array([m[0] for m in moved]), [m[1] for m in moved]
 
 
-# What can be had ------------------------------------------------------------------------------------
+# The best overlap -----------------------------------------------------------------------------------
 
 
 def ceiling(strokes) -> tuple[np.ndarray, np.ndarray, int] | None:
-    """Overlap (fixed, shift) of two strokes of one command, its standard errors, and how many pairs of nearly equal
-    commands it is drawn from; None for too few. Standard errors: a tenth of the strokes left out in turn."""
+    """Return the overlap (fixed, shift) of two strokes of one command, with errors.
+
+    The third value is the number of pairs of nearly equal commands. The result is None for too few pairs. The
+    standard errors come from leaving out a tenth of the strokes in turn.
+    """
     at = np.linspace(0, 1, 40)
     ways = np.array([_along(s.poses, at) for s in strokes])
     way_mm = np.sqrt(((ways[:, None, :, :2] - ways[None, :, :, :2]) ** 2).sum(-1).mean(-1))
@@ -208,8 +222,11 @@ def ceiling_words(strokes) -> str:
 
 
 def disc_marks(strokes, x, lag_terms) -> list[np.ndarray]:
-    """x: radius at depth 0 and at the deepest [mm], displacement x y, lag at depth 0, and what is added at the
-    deepest. The patch is pulled to within r of the TCP."""
+    """Return the marks of a disc that is pulled to within r of the TCP.
+
+    x holds the radius at depth 0 and its increase to the largest depth [mm], the displacement in x and y, the
+    lag r at depth 0, and the increase of the lag to the largest depth.
+    """
     deep = max(-s.poses[:, 2].min() for s in strokes) or 1.0
     out = []
     for stroke in strokes:
@@ -238,7 +255,7 @@ def disc_marks(strokes, x, lag_terms) -> list[np.ndarray]:
 
 
 def fit_disc(strokes, lag_terms) -> np.ndarray:
-    """Largest mean overlap on the strokes, one displacement for all."""
+    """Fit a disc to the largest mean overlap, with one displacement for all strokes."""
 
     def loss(x):
         if np.any(x[4:] < -20) or x[0] < 0:
@@ -262,7 +279,7 @@ def fit_disc(strokes, lag_terms) -> np.ndarray:
 
 
 def painted_marks(strokes, ways) -> list:
-    """As the fit of marks takes them; a stroke without paint has none."""
+    """Return the marks for the fit; a stroke without paint has no outline."""
     out = []
     for k, (stroke, way) in enumerate(zip(strokes, ways, strict=True)):
         left, bottom, _, height = stroke.window
@@ -283,13 +300,16 @@ def fit_ours(strokes, name, machine=()):
     options.placement_mm, options.turn_rad, options.displacement_mm = 5.0, 0.0, 1.5
     options.widest_per_half = _core.Prior(1.0, 0.4)
     options.round_tail, options.spacing_mm = True, 2.0
-    options.departing = False  # its figures are those of the few numbers
+    options.departing = False  # the documented figures are of the fit with few numbers
     machine_found.ask_for(options, machine)
     return _core.fit_marks(painted, None, options), options
 
 
 def by_overlap(strokes, fit, options):
-    """What `calibrate --aim overlap` makes of the edges' fit: a fit of the same kind, and what is said of it."""
+    """Refine the fit of the edges as `calibrate --aim overlap` does.
+
+    Return a fit of the same kind and a text about it.
+    """
     strokes = [stroke for stroke in strokes if stroke.mask.any()]
     targets = [_target(stroke, fit) for stroke in strokes]
     marks = painted_marks(strokes, [target.poses_mm for target in targets])
@@ -307,14 +327,17 @@ def _like(fit, **changed):
 
 
 def machine_of(fit) -> tuple[np.ndarray, np.ndarray]:
-    """Lean x and y; scale x and y less 1, and skew."""
+    """Return lean x and y, and the axes: scale x and y less 1, and skew."""
     machine = fit.machine
     return np.array(machine.lean_mm_per_mm), np.array([*np.subtract(machine.scale, 1), machine.skew])
 
 
 @cache
 def _coarse(stroke: Stroke) -> tuple[np.ndarray, tuple]:
-    """The paint in pixels twice as large, and their window: no larger than way and paint need."""
+    """Return the paint in pixels twice as large, and their window.
+
+    The window is only as large as way and paint need.
+    """
     x, y, _, tall = stroke.window
     way = np.column_stack([stroke.poses[:, 0] - x, y + tall - stroke.poses[:, 1]]) / stroke.px
     seen = np.vstack([way, np.argwhere(stroke.mask)[:, ::-1]])
@@ -338,7 +361,7 @@ def brush_for(strokes, fit, options) -> _core.Brush:
 
 
 def _as_run(stroke: Stroke, fit) -> np.ndarray:
-    """The TCP's way as the machine ran it, on the paper at its commanded height."""
+    """Return the TCP's way as the machine ran it, on paper at its commanded height."""
     lean, axes = machine_of(fit)
     poses = np.array(stroke.poses)
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
@@ -348,7 +371,7 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
-    """The same where the fit found paper and sheet to be."""
+    """Return the way of the TCP on the fitted paper and sheet."""
     return _core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
 
 
@@ -363,7 +386,10 @@ def our_marks(strokes, fit, options) -> list[np.ndarray]:
 
 
 def picture(strokes, predicted, shifts, score, path: Path) -> None:
-    """Best, median and worst strokes: paint grey, prediction moved to its best place as a red line, TCP blue."""
+    """Write a picture of the best, median and worst strokes.
+
+    Paint is grey, the TCP is blue. A red line shows the prediction at its best place.
+    """
     order = np.argsort(-score)
     chosen = [*order[:3], *order[len(order) // 2 - 1 : len(order) // 2 + 2], *order[-3:]]
     tiles = []
@@ -418,7 +444,10 @@ def laws_in_words(fit) -> str:
 
 
 def residual_words(strokes, fit, options) -> list[str]:
-    """What is missing to a whole overlap, by what wins it back when each stroke may have its own: place, width, lag."""
+    """Return the causes of the missing overlap as text.
+
+    The share of a cause is the overlap gained if each stroke may have its own place, width or lag.
+    """
     laws, targets = fit.laws, [_target(stroke, fit) for stroke in strokes]
 
     def places(width, lag):
@@ -458,7 +487,7 @@ def _paint_per_mm(strokes) -> float:
 
 
 def _parts(text: str) -> tuple[str, ...]:
-    """These sheets show no more of tilt and backlash than their places do."""
+    """Return the parts of --machine. These sheets do not show tilt and backlash."""
     parts = values.machine_parts(text)
     if not {"lean", "axes"}.issuperset(parts):
         raise argparse.ArgumentTypeError("only lean and axes are looked for here")

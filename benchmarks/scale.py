@@ -1,15 +1,15 @@
-"""Many drawings, and very large ones: every character of hanzi-writer-data through `batch`, the same by a cluster of
-Dask's, and one drawing of 100,000 strokes.
+"""Measure brushsvg with many drawings and with a very large one.
 
     scale.py characters [--count N] [--jobs 2] [--keep FOLDER]
     scale.py cluster [--count 200]
     scale.py strokes [--count 100000]
 
-characters: outlines, closed form, program, picture and figures of each; the duration, the memory of this process
-and of the largest worker. cluster: local workers of one thread each, first one, then two, then two of which one is
-killed half way: the files are compared, byte by byte, with those that processes made, and what a task costs in addition
-the work is measured by tasks that are refused at once. strokes: one `convert` of that many short lines.
-The characters are fetched by npm once.
+characters: `batch` converts every character of hanzi-writer-data. It writes outlines, closed form, program,
+picture and figures of each. The program prints the duration, and the memory of this process and of the
+largest worker. cluster: a Dask cluster converts characters with local workers of one thread each. It runs
+with one worker, with two, and with two of which one is killed half way. The files are compared with those of
+processes, byte by byte. Tasks that are refused at once measure the additional time of a task. strokes: one
+`convert` of this many short lines. npm fetches the characters once.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "integration"))
 from lettering import PACKAGES
 from npm import fetched
 
-UNITS = 1024  # of a character's box
-BASELINE = 900  # y up from there
+UNITS = 1024  # the size of a character's box
+BASELINE = 900  # y points up from this line
 SIZE_MM = 100
 
 
@@ -62,7 +62,7 @@ def main() -> None:
 
 
 def drawings(count: int | None) -> list[tuple[str, str]]:
-    """Names and SVG documents, of characters spread evenly over all of them."""
+    """Return names and SVG documents of characters, spread evenly over all."""
     folder = Path(tempfile.gettempdir(), "brushsvg-lettering")
     folder.mkdir(exist_ok=True)
     files = sorted((fetched(folder, PACKAGES) / "hanzi-writer-data").glob("?.json"))
@@ -83,7 +83,7 @@ def _svg(outlines: list[str]) -> str:
 def characters(out: Path, count: int | None, jobs: int) -> None:
     items = drawings(count)
     begin, before = time.perf_counter(), _used()
-    # started anew, so that what they use is counted as this process's children's
+    # New processes, so that their memory counts as memory of this process's children.
     with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as executor:
         done = brushsvg.batch(items, out / "characters", executor=executor, progress=_report)
     clock, used = time.perf_counter() - begin, _used() - before
@@ -111,7 +111,8 @@ def cluster(out: Path, count: int) -> None:
     print(f"{len(items)} characters\n  one process            {time.perf_counter() - begin:7.1f} s")
     for workers in (1, 2):
         with _workers(workers) as (address, _):
-            brushsvg.batch(items[:4], out / f"warm {workers}", cluster=address)  # what workers load once
+            # workers load their modules once
+            brushsvg.batch(items[:4], out / f"warm {workers}", cluster=address)
             begin = time.perf_counter()
             done = brushsvg.batch(items, out / f"{workers} workers", cluster=address)
             took = time.perf_counter() - begin
@@ -139,7 +140,7 @@ def cluster(out: Path, count: int) -> None:
 
 @contextmanager
 def _workers(count: int) -> Iterator[tuple[str, list[int]]]:
-    """The address of a scheduler, and the processes of its workers."""
+    """Yield the address of a scheduler, and the processes of its workers."""
     from dask import distributed
 
     with distributed.LocalCluster(
@@ -156,7 +157,7 @@ def _same(done, known) -> str:
 
 
 def strokes(out: Path, count: int) -> None:
-    """Short lines in rows: no drawing of a person has so many."""
+    """Convert short lines in rows, more than any drawing of a person has."""
     random = np.random.default_rng(1)
     across = int(np.ceil(np.sqrt(count)))
     lines = []
@@ -192,7 +193,7 @@ def strokes(out: Path, count: int) -> None:
 
 
 def _watch(process: subprocess.Popen, peak: list[float]) -> None:
-    """The most memory it ever had, as the kernel counts it."""
+    """Watch a process and record its peak memory, as the kernel counts it."""
     while process.poll() is None:
         try:
             text = Path(f"/proc/{process.pid}/status").read_text()

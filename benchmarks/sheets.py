@@ -1,15 +1,15 @@
-"""Hidden brushes paint a word sheet after sheet, and the file that stands for each learns from every photograph.
+"""Paint a word with hidden brushes, whose files learn from each photograph.
 
     sheets.py [--count 16] [--starts three one round-6] [--margin auto] [--plain] [--own-mm 0] [--keep FOLDER]
 
-Each brush is drawn at random and painted with by the slow stepping simulator of tests/laws. It is known at first as a
-person would know it: lag and width typed at three depths, each read to 0.5 mm; one lag and two widths; or not at all,
-with the shipped round-6. Every sheet is laid anew; with --own-mm each stroke is so far elsewhere, always alike, and
-once more at random. After each sheet the brush learns from its photograph (`calibrate --plan --prior`), `compare` with
-the new brush writes corrections, and the next sheet is planned with both.
+Each brush is random, and the slow stepping simulator of tests/laws paints with it. At first it is known as a
+person would know it. A person types lag and width at three depths, each read to 0.5 mm, or one lag and two
+widths, or uses the shipped round-6. Every sheet has a new place. --own-mm displaces each stroke by this
+length, once constantly and once at random. After each sheet, the brush learns from its photograph (`calibrate
+--plan --prior`). `compare` with the new brush writes corrections, and the next sheet is planned with both.
 
-Printed: overlap of the paint with the word on sheets 1, 2 and 3, and that of a plan for the true brush, painted on the
-same sheets. The place of the sheet and the strokes in the margin do not count.
+The program prints the overlap of the paint with the word on sheets 1, 2 and 3. It also prints the overlap of
+a plan for the true brush on these sheets. The place of the sheet and the strokes in the margin do not count.
 """
 
 from __future__ import annotations
@@ -56,11 +56,14 @@ PLAIN = re.sub(
     r'stroke-width="[^"]*"', 'stroke-width="2.40"', WORD
 )  # one width; of its strokes only the loop is alone
 PLAIN = re.sub(r'<path id="(line|wave|stem)"[^>]*/>', "", PLAIN).replace("L94 48 L112 24", "L94 48 L104 16")
-SHARES = (0.3, 0.6, 0.95)  # of the deepest, where somebody measures
+SHARES = (0.3, 0.6, 0.95)  # depths at which a person measures, as shares of the largest depth
 
 
 def hidden_brush(number: int):
-    """The number-th random brush that can paint the word, also as deep as round-6 would be pressed for it."""
+    """Return the number-th random brush that can paint the word.
+
+    The brush must also allow the depths of round-6 for this word.
+    """
     rng = np.random.default_rng(51)
     while True:
         brush = painter.random_brush(rng)
@@ -72,7 +75,7 @@ def hidden_brush(number: int):
 
 
 def starts_of(brush) -> dict[str, str]:
-    """Commands by their names."""
+    """Return the commands for the first brush file as {name of a start: command}."""
     depths = [round(share * brush.deepest, 1) for share in SHARES]
 
     def read(law, times):
@@ -166,7 +169,10 @@ def paint_sheets(job: tuple[int, str], folder: Path, margin: str, own_mm: float,
 
 
 def learned(sheet: int, folder: Path, notes: list[str]) -> str:
-    """Brush and corrections of a photograph; what the next plan gets. What is refused is noted and left out."""
+    """Learn from a photograph, and return the words for the next plan.
+
+    Refusals are noted and left out.
+    """
     photo, plan, now = f"photo-{sheet}.jpg", f"plan-{sheet}.json", f"mine-{sheet + 1}.json"
     try:
         run(f"calibrate {photo} --plan {plan} --prior mine-{sheet}.json -o {now}", folder)

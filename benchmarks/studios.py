@@ -1,19 +1,23 @@
-"""Studios with brush, machine, paper and paint unlike their files paint a word and do what compare advises.
+"""Simulate studios that paint a word and follow the advice of compare.
 
     studios.py [--count 60] [--only K] [--processes 2] [--keep FOLDER] [--sheets 3]
 
-Of each studio, at random by its number: a brush up to 20 % off in lag and in width, a tilt of up to 2 mm over the
-sheet, up to 0.5 mm of backlash and 1 % of scale, each stroke 0.1 mm elsewhere (always alike), paint that lasts for
-100 to 300 mm; every sheet is laid anew, each stroke once more 0.1 mm elsewhere, the camera held another way. The paint
-is that of the slow stepping simulator of tests/laws, the pictures the renderer's. Three sheets are painted. After the
-first the brush learns from it (`calibrate --plan --prior --machine axes,tilt,backlash`), `compare` with this brush
-writes the cell (`--corrected-cell`) and the remaining corrections (`convert --corrections`), and the brush is
-dipped before each stroke, not before every other one, where paint is missing; after the second strokes are moved once
-more by what `compare --corrections` says. Machines run the programs' text.
+Brush, machine, paper and paint of a studio differ from their files. The number of a studio is its random
+seed. Lag and width of the brush are up to 20 % off. The machine has a tilt of up to 2 mm over the sheet, up
+to 0.5 mm of backlash and 1 % of scale. Each stroke is always displaced by the same 0.1 mm. Paint lasts for
+100 to 300 mm. Every sheet has a new place, each stroke another random 0.1 mm, and the camera a new pose. The
+slow stepping simulator of tests/laws paints, and the renderer makes the pictures.
 
-Printed: overlap of real paint with the drawing; of the gap that repeats (to what a studio paints that knows its brush,
-and where all else is as it should be) how much is closed; strokes that became worse; whether `compare` names the
-largest cause where it removes more than half of what is lost. --sheets 1: attribution alone.
+The studio paints three sheets. After the first sheet, the brush learns from it (`calibrate --plan --prior
+--machine axes,tilt,backlash`). `compare` with this brush writes the cell (`--corrected-cell`) and the
+remaining corrections (`convert --corrections`). If paint is missing, the brush is dipped before each stroke,
+not before every other stroke. After the second sheet, `compare --corrections` moves the strokes once more.
+Machines run the programs' text.
+
+The program prints the overlap of real paint with the drawing. It prints how much of the repeating gap is
+closed. The gap is the distance to a studio that knows its brush and has no other faults. It also prints the
+strokes that became worse, and whether `compare` names the largest cause, if that cause removes more than half
+of the lost overlap. --sheets 1 tests only the attribution.
 """
 
 from __future__ import annotations
@@ -51,11 +55,11 @@ STROKES_A_LOAD = 2
 SURE_GAIN = 0.005
 CAUSES = ("place of the sheet", "machine", "height and tilt of the paper", "brush", "each stroke's own place")
 CAUSES += ("missing paint",)
-MOVES = ("place of the sheet", "each stroke's own place")  # of them nothing is painted otherwise
+MOVES = ("place of the sheet", "each stroke's own place")  # these causes only move strokes
 
 
 def run(word: str, folder: Path) -> str:
-    """What a command of brushsvg prints; paths are those of the folder."""
+    """Run a command of brushsvg in a folder and return its output."""
     words = [
         str(folder / each) if "." in each and not each.startswith("-") else each for each in word.split()
     ]
@@ -105,7 +109,7 @@ def random_studio(number: int, plan):
 
 
 def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
-    """A table of the results."""
+    """Simulate a studio and return a table of the results."""
     began = time.process_time()
     folder.mkdir(parents=True, exist_ok=True)
     save_brush(studio.known_brush(), folder / "mine-0.json")
@@ -130,7 +134,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         if sheet == 0:
             fault_values, rng = random_studio(number, plan)
             drawn = all_target(folder)
-            # what a studio paints that knows its brush, and where all else is as it should be
+            # The paint of a studio that knows its brush and has no other faults.
             save_brush(studio.known_brush(lag=fault_values.lag, half=fault_values.half), folder / "true.json")
             run("convert word.svg -o plan-true.json --brush true.json --quiet", folder)
             ideal = studio.Faults(lag=fault_values.lag, half=fault_values.half)
@@ -183,7 +187,10 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
 
 
 def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[int, str]:
-    """Does what is advised: files for the next sheet; strokes that a load is for, and the file of corrections."""
+    """Follow the advice of compare and write the files for the next sheet.
+
+    Return the number of strokes per load, and the file of corrections.
+    """
     faults = seen["faults"] or {"causes": []}
     missing = [row for row in faults["causes"] if row["cause"] == "missing paint"]
     if missing and missing[0]["gain_95"][0] > SURE_GAIN:
@@ -197,7 +204,7 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
     words = f"calibrate photo-{sheet}.jpg --plan plan-{sheet}.json --prior mine-{sheet}.json -o mine-{sheet + 1}.json"
     try:
         (folder / f"learnt-{sheet}.txt").write_text(run(f"{words} --machine axes,tilt,backlash", folder))
-    except RuntimeError as refusal:  # nothing is learnt: the cell stays as compare corrected it
+    except RuntimeError as refusal:  # the brush learns nothing, and the cell stays as compare corrected it
         (folder / f"learnt-{sheet}.txt").write_text(str(refusal))
         (folder / f"mine-{sheet + 1}.json").write_bytes((folder / f"mine-{sheet}.json").read_bytes())
         return strokes_a_load, ""
@@ -212,7 +219,7 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
 
 
 def truth_of(fault_values) -> dict[str, float]:
-    """By the names that compare has for its numbers."""
+    """Return the true numbers by the names that compare uses."""
     pairs = {
         "scale": fault_values.scale,
         "backlash": fault_values.backlash,
@@ -226,7 +233,7 @@ def truth_of(fault_values) -> dict[str, float]:
 
 
 def brush_off(brush, fault_values) -> list[float]:
-    """By how much lag and half width are off between 1 and 6 mm, mean share."""
+    """Return the mean relative errors of lag and half width between 1 and 6 mm."""
     depths = np.linspace(1, 6, 11)
     return [
         float(np.mean(np.abs([law(d) for d in depths] / (off * polyval(depths, truth)) - 1)))
@@ -238,7 +245,10 @@ def brush_off(brush, fault_values) -> list[float]:
 
 
 def gains_of(swept, commanded, fault_values, seed: int, drawn, overlap: float) -> dict[str, float]:
-    """The part of overlap each cause takes away: the same sheet painted without it."""
+    """Return the overlap that each cause takes away.
+
+    For each cause, the sheet is painted again without this cause.
+    """
     found = {}
     for cause in CAUSES:
         corrected = fault_values.corrected(cause)

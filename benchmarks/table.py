@@ -1,12 +1,13 @@
-"""What is waited for, as a table: this tree's times next to floors, peers, and those of another tree.
+"""Print a table of times of this tree, of floors, of peers and of another tree.
 
     table.py [--against TREE] [--rounds 3] [--only WORD]
 
-Each row runs a command of brushsvg, or another program, as a process of its own; compiled modules are kept, as where
-brushsvg is installed. Seconds are those of the processors, user and system, of the process and all it started; with
-them the seconds on the clock. Each is the least of the rounds, since other users of a machine can only add. With
---against both trees (built, each with its .venv and build/release) run the same work in turn, so that a ratio holds on
-a machine that is not quiet, too; `make bench-compare REV=...` builds the tree of a revision and does that.
+Each row runs a command of brushsvg, or another program, as a separate process. Compiled modules are kept, as
+in an installed brushsvg. The table shows processor seconds, user and system, of the process and all its
+children, and the seconds on the clock. Each number is the minimum of the rounds, since other users of a
+machine can only add time. With --against, both trees (built, each with its .venv and build/release) take
+turns. Their ratio also holds on a busy machine. `make bench-compare REV=...` builds the tree of a revision
+and runs this comparison.
 """
 
 from __future__ import annotations
@@ -34,10 +35,10 @@ import truth_recovery
 from brushsvg.read.text import text_svg
 
 ROOT = Path(__file__).parents[1]
-SYSTEM_PYTHON = "/usr/bin/python3"  # has lxml, as Inkscape's own has
+SYSTEM_PYTHON = "/usr/bin/python3"  # this Python has lxml, like Inkscape's own
 PREVIEW = ROOT / "plugins" / "inkscape" / "brushsvg_preview.py"
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
-REFINED = 60  # strokes of the page that are refined
+REFINED = 60  # number of refined strokes of the page
 SLOWER = 1.1  # a row is called slower beyond this ratio
 STROKES_OF = """
 import sys, time, brushsvg
@@ -51,7 +52,7 @@ print(time.process_time() - begin, time.perf_counter() - on_clock)
 
 @dataclass(frozen=True)
 class Spent:
-    """Seconds of the processors, and on the clock."""
+    """The seconds of the processors, and on the clock."""
 
     used: float
     clock: float
@@ -69,8 +70,8 @@ class Row:
     name: str
     unit: str
     aim: str
-    measure: Callable[[Path], Spent]  # of a tree
-    reference: str = ""  # floor or peer
+    measure: Callable[[Path], Spent]  # measures a tree
+    reference: str = ""  # the floor or peer of the row
     measure_reference: Callable[[], Spent] | None = None
 
 
@@ -106,7 +107,10 @@ def here(work: Callable[[Path], Spent]) -> Callable[[], Spent]:
 
 
 def painted_chart(file: Path) -> int:
-    """A random brush's chart on A4, painted by the stepping simulator of tests/laws, as a measurement file."""
+    """Write the chart of a random brush on A4 as a measurement file.
+
+    The stepping simulator of tests/laws paints it.
+    """
     rng = np.random.default_rng(1)
     brush, faults = truth_recovery.painter.random_brush(rng), truth_recovery.painter.Faults()
     strokes = truth_recovery.strokes_of(rng, brush, (210.0, 297.0))
@@ -136,7 +140,7 @@ def letters(file: Path) -> None:
 
 
 def refined(drawing: Path, out: Path, strokes: int) -> Callable[[Path], Spent]:
-    """One stroke's refinement: the time beyond the closed form."""
+    """Measure the refinement of one stroke: the time in addition to the closed form."""
 
     def measure(tree: Path) -> Spent:
         closed = brushsvg("convert", drawing, "-o", out)(tree)
@@ -156,7 +160,7 @@ def outlines(drawing: Path) -> Callable[[Path], Spent]:
 
 
 def advance(row: str) -> Callable[[Path], Spent]:
-    """ns a move of a row of advance_bench."""
+    """Measure the time per move of a row of advance_bench."""
 
     def measure(tree: Path) -> Spent:
         bench = tree / "build" / "release" / "benchmarks" / "advance_bench"
@@ -174,7 +178,10 @@ def preview(drawing: Path) -> Callable[[Path], Spent]:
 
 
 def rows(folder: Path, only: str = "") -> list[Row]:
-    """Those with a word in their names; a chart is painted for a row that fits it alone."""
+    """Return the rows whose names have a word.
+
+    A chart is painted only if a row fits it.
+    """
     word, large, part = ROOT / "examples" / "vincent.svg", folder / "page.svg", folder / "part.svg"
     lines = page.page().splitlines()
     large.write_text("\n".join(lines), encoding="utf-8")
@@ -219,7 +226,7 @@ def rows(folder: Path, only: str = "") -> list[Row]:
 
 
 def least(works: list[Callable[[], Spent]], rounds: int) -> list[Spent]:
-    """Of each, all in turn."""
+    """Return the least time of each work; all works run in turn."""
     best = [work() for work in works]
     for _ in range(rounds - 1):
         best = [one.least(work()) for one, work in zip(best, works, strict=True)]

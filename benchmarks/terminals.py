@@ -1,12 +1,14 @@
-"""Whether ends that are drawn alike are painted alike: the 62 letters and digits of each font, each painted alone.
+"""Test whether similarly drawn ends of letters are painted similarly.
 
-An end is looked at by rays along its stroke, from half a width inside of it: how far ahead the outline of the letter is
-left, and how far ahead the paint. Two ends of one letter are drawn alike if their widths differ by 5 % at most and the
-outlines on their rays, one as the other or mirrored, by 0.05 half widths on average. They are painted alike if what is
-lacking or too much on their rays differs by 0.1 half widths at most; a round end differs from one cut straight by 0.2.
+The program paints each of the 62 letters and digits of a font alone. Rays along the stroke examine an end,
+from half a width inside of it. They find how far ahead the outline of the letter is, and how far ahead the
+paint ends. Two ends of one letter are drawn alike if their widths differ by at most 5 %, and the outlines on
+their rays by 0.05 half widths on average. One of the ends may be mirrored. They are painted alike if missing
+or additional paint on their rays differs by at most 0.1 half widths. A round end differs from a straight cut
+by 0.2.
 
-  pairs    of ends drawn alike, and how many of them are painted alike
-  letters  that have such pairs, and in how many of them all pairs are painted alike
+  pairs    the number of pairs of ends drawn alike, and how many of them are painted alike
+  letters  the number of letters with pairs, and how many of them have all pairs painted alike
   which    the other letters
 
 FONT is a file, TrueType, OpenType or WOFF. Each font is painted as large as by letters.py.
@@ -36,9 +38,9 @@ from brushsvg.read.text import text_svg
 from brushsvg.strokes.skeleton import filled_rings
 from brushsvg.strokes.swept_areas import region
 
-ACROSS = np.linspace(-0.9, 0.9, 19)  # where rays run, in half widths
-AHEAD = 2.5  # how far ahead of the path's end an outline belongs to it
-FREE = 1.3  # the outline is nearer than that on both sides of a stroke that stands free
+ACROSS = np.linspace(-0.9, 0.9, 19)  # places of the rays, in half widths
+AHEAD = 2.5  # an outline up to this far ahead of the path's end belongs to it
+FREE = 1.3  # on both sides of a free stroke the outline is nearer than this
 ALIKE_WIDTH, ALIKE_OUTLINE, ALIKE_PAINT = 0.05, 0.05, 0.1
 
 
@@ -49,13 +51,13 @@ class End:
     painted: np.ndarray
 
     def is_drawn_as(self, other: End) -> list[int]:
-        """1 where it is, -1 where it is mirrored."""
+        """Return 1 if the ends are drawn alike, and -1 if they are mirrored."""
         if abs(self.half_mm - other.half_mm) > ALIKE_WIDTH * max(self.half_mm, other.half_mm):
             return []
         return [way for way in (1, -1) if np.abs(self.drawn - other.drawn[::way]).mean() <= ALIKE_OUTLINE]
 
     def is_painted_as(self, other: End, ways: list[int]) -> bool:
-        """Whether the paint differs no more than what is drawn, but for what is hardly seen."""
+        """Return whether the paint of both ends differs only invisibly."""
         return any(
             np.abs((self.painted - self.drawn) - (other.painted - other.drawn)[::way]).mean() <= ALIKE_PAINT
             for way in ways
@@ -63,7 +65,10 @@ class End:
 
 
 def left_at(shape, at: np.ndarray, along: np.ndarray, half_mm: float) -> float:
-    """Where a ray from inside of a shape leaves it, in half widths; 0 where it begins outside."""
+    """Return where a ray from inside of a shape leaves it, in half widths.
+
+    The result is 0 if the ray begins outside.
+    """
     ray = shapely.LineString([at, at + (AHEAD + 1) * half_mm * along])
     inside = [part for part in shapely.get_parts(ray.intersection(shape)) if part.length > 0]
     first = min(inside, key=lambda part: part.distance(shapely.Point(at)), default=None)
@@ -88,7 +93,7 @@ def ends_of(strokes, shape, mark) -> list[End]:
             inside = rows[0, :2] - 0.5 * half_mm * along
             sides = [left_at(shape, inside, way * left, half_mm) for way in (1, -1)]
             if not all(0.5 < side < FREE for side in sides):
-                continue  # in another stroke
+                continue  # this end is in another stroke
             starts = inside + np.outer(ACROSS * half_mm, left)
             drawn, painted = (
                 np.array([left_at(of, at, along, half_mm) for at in starts]) for of in (shape, mark)
@@ -99,7 +104,7 @@ def ends_of(strokes, shape, mark) -> list[End]:
 
 
 def pairs(text: str, font: bytes, size_mm: float, brush_name: str) -> tuple[str, int, int]:
-    """The letter, its pairs of ends that are drawn alike, and how many of these are painted alike."""
+    """Return the text, the pairs drawn alike, and how many are painted alike."""
     document, _ = text_svg(text, font, size_mm=size_mm)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "glyph.svg")

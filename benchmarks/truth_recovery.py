@@ -1,19 +1,20 @@
-"""Random brushes paint a calibration sheet, and the fit has to find it.
+"""Recover random brushes from the calibration sheets that they paint.
 
     truth_recovery.py [--brushes 300] [--seed 1] [--processes 2] [--sheet a4] [--outside all]
 
-With --sheet the strokes are those of `brushsvg chart` on such a sheet, laid out by somebody who knows lag and width of
-the brush to 15 %; without it they are 22 at five depths.
+With --sheet, the strokes are those of `brushsvg chart` on a sheet of this size. Its user knows lag and width
+of the brush to 15 %. Without --sheet, there are 22 strokes at five depths.
 
-The sheet is painted by the slow stepping simulator of tests/laws, not by the library, with noise on its edges, marks
-and sheet displaced and turned, and paper at a wrong height. Printed: how often the 95 % intervals hold the truth, for
-the values of each law at five depths, pooled and each; and how far the lag is off over the range.
+The slow stepping simulator of tests/laws paints the sheet, not the library. Edges have noise, marks and sheet
+are displaced and turned, and the paper has a wrong height. The program prints how often the 95 % intervals
+contain the truth, for the values of each law at five depths, pooled and separately. It also prints the error
+of the lag over the range.
 
-With --outside the laws are none of the fit's polynomials: saturating, kinked, power, logistic, floored or wiggling,
-with random numbers; `all` takes them in turn. `more` takes four other shapes: stepped, hooked at the touch, capped,
-drawn through random points; `unseen` three on which nothing was settled: polyline, hyperbolic, tanh. round-6 is the
-shipped brush, the same each time.
---noise 0 paints clean edges; --family fits without departures from the family.
+With --outside, the laws are not the fit's polynomials. They are saturating, kinked, power, logistic, floored
+or wiggling, with random numbers; `all` uses them in turn. `more` uses four other shapes: stepped, hooked at
+the touch, capped, and drawn through random points. `unseen` uses three shapes on which no choice was based:
+polyline, hyperbolic, tanh. round-6 is the shipped brush, identical each time. --noise 0 paints clean edges;
+--family fits without departures from the family.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from brushsvg.cli.arguments import values
 from brushsvg.model.confidence import half_interval_mm, places
 
 KNOWN_TO = 0.15
-SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # of the deepest
+SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares of the largest depth
 LAWS = {"lag": SHARES, "tip_gap": (1.0,), "half_width": SHARES, "tip_to_widest": (0.6, 1.0)}
 OUTSIDE = [
     *("all", "more", "unseen", "round-6"),
@@ -61,7 +62,7 @@ def options_for(brush, faults) -> _core.MarkOptions:
 
 
 def strokes_of(rng, brush, sheet_mm: tuple[float, float] | None):
-    """[(id, poses (n, 3))] of the chart."""
+    """Return the strokes of the chart as [(id, poses (n, 3))]."""
     if sheet_mm is None:
         return painter.chart_strokes(brush.deepest)
     lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
@@ -100,7 +101,10 @@ def recover(
     noise: float | None = None,
     departing: bool = True,
 ) -> dict:
-    """One brush: error and standard deviation of each value, and the lag's largest relative error."""
+    """Fit one brush.
+
+    Return error and standard deviation of each value, and the lag's largest relative error.
+    """
     rng = np.random.default_rng(seed)
     brush, faults = brush_for(rng, seed, outside), painter.Faults()
     if noise is not None:

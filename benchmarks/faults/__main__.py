@@ -1,27 +1,28 @@
-"""Plant faults all over the sources, and see which tests catch them.
+"""Plant faults in all sources, and find which tests catch them.
 
-    pip install tree-sitter tree-sitter-cpp     # in the Python that runs this
-    python benchmarks/faults plant              # a copy of the tree with 100 faults, each switched off; built
-    python benchmarks/faults map [PATH ...]     # all tests once: who comes by which fault, and how long each takes;
-                                                # --tier ci first, and the others where faults survive
-    python benchmarks/faults try                # each fault switched on, for the tests that come by
+    pip install tree-sitter tree-sitter-cpp     # in the Python that runs this python benchmarks/faults plant
+    # a copy of the tree with 100 faults, each switched off; built python benchmarks/faults map [PATH ...]
+    # run all tests once: which fault each reaches, and its duration;
+                                                # use --tier ci first, then the others for surviving faults
+    python benchmarks/faults try                # switch each fault on, for the tests that reach it
     python benchmarks/faults report             # a table, totals, and the survivors
 
-Which faults: seeded, at least one in each folder of code, the rest by lines; of eight kinds as evenly as it goes:
-comparisons and arithmetic operators changed, `and` and `or` swapped, conditions negated, numbers and constants changed,
-calls removed, results made empty. All are in one build (mutant schemata, Untch et al. 1993): `a < b` is written as
-`(a <= b) if __fault__(17) else (a < b)`, and the switch is on in processes whose environment has BRUSHSVG_FAULT=17,
-commands that a test starts among them. So a fault costs the tests that come by it, a second or two for most.
+A seed chooses the faults: at least one in each folder of code, and the rest by lines. The eight kinds are as
+even as possible: changed comparisons and arithmetic operators, swapped `and` and `or`, negated conditions,
+changed numbers and constants, removed calls, empty results. All faults are in one build (mutant schemata,
+Untch et al. 1993). `a < b` becomes `(a <= b) if __fault__(17) else (a < b)`. The switch is on in processes
+whose environment has BRUSHSVG_FAULT=17, also in commands that a test starts. So trying a fault needs only the
+tests that reach it, a second or two for most.
 
-A comparison or `and`, `or` is only come by where it makes a difference. A test may find a result made by another, in a
-fixture or a cache: after the tests that come by a fault, the others of their files and of their shared fixtures run.
-A test catches a fault if it fails, dies or takes five times as long and half a minute more with it, and passes without.
-Tests that do not pass in the planted tree without a fault (some read the sources) count for nothing. The linters,
-sanitizers and tests/consumer are not run.
+A test reaches a comparison, `and` or `or` only if the fault makes a difference. A test may use a result of
+another test in a fixture or a cache. So after the tests that reach a fault, the other tests of their files
+and shared fixtures run. A test catches a fault if it passes without the fault, and with it fails, dies, or
+takes more than five times its duration plus half a minute. Tests that fail in the planted tree without a
+fault (some read the sources) do not count. The linters, sanitizers and tests/consumer do not run.
 
-Tests of .ci/run come first; what none of them catches goes to the tests marked `thorough`. Every step goes on where it
-was stopped; what is in the work folder (--work) may be deleted. Survivors are judged by hand: those that change nothing
-that matters are listed in equivalent.toml, with the reason.
+Tests of .ci/run come first. Faults that none of them catches go to the tests marked `thorough`. Every step
+continues where it stopped. You may delete the work folder (--work). A person judges the survivors:
+equivalent.toml lists those that change nothing important, with the reason.
 """
 
 from __future__ import annotations

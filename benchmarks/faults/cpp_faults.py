@@ -1,6 +1,7 @@
-"""Faults that C++ code could have: every place of a file where one can be planted, as tree-sitter parses it.
+"""Find every place in C++ code where a fault can be planted.
 
-Needs tree-sitter and tree-sitter-cpp, which the project itself does not: pip install tree-sitter tree-sitter-cpp
+This needs tree-sitter and tree-sitter-cpp, which the project itself does not need: pip install tree-sitter
+tree-sitter-cpp
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from tree_sitter import Language, Node, Parser
 COMPARISONS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "=="}
 ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*", "%": "*"}
 BOOLEAN = {"&&": "||", "||": "&&"}
-# what the compiler must know, and what is no code
+# Code that the compiler must know, and text that is not code.
 SKIPPED = {
     "template_argument_list", "static_assert_declaration", "array_declarator", "enumerator_list", "preproc_if",
     "preproc_def", "preproc_call", "parameter_list", "noexcept", "type_descriptor", "field_initializer_list",
@@ -27,12 +28,12 @@ PARSER = Parser(Language(tree_sitter_cpp.language()))
 
 
 def candidates(file: str, source: bytes) -> list[Fault]:
-    """All faults of a file."""
+    """Return all faults of a file."""
     return _File(file, source).faults
 
 
 def _pure(text: str) -> bool:
-    """Whether an expression may be evaluated twice."""
+    """Return whether an expression may be evaluated twice."""
     if re.search(r"\+\+|--|(?<![=!<>])=(?!=)|[{};\[]\s*[&=]", text):
         return False
     return all(name in PURE_CALLS for name in re.findall(r"(\w+)\s*\(", text))
@@ -45,14 +46,14 @@ class _File:
         self.uses: dict[str, list[Node]] = {}
         self.constants: list[tuple[Node, Node]] = []  # names and values
         self._visit(PARSER.parse(source).root_node, False)
-        if file.endswith(".cpp"):  # those of a header are known to other files, too
+        if file.endswith(".cpp"):  # other files also know the constants of a header
             self._constants()
 
     def _text(self, node: Node) -> str:
         return self.source[node.start_byte : node.end_byte].decode()
 
     def _add(self, kind: str, node: Node, mutated: str, *texts: str, original: str | None = None) -> None:
-        """texts: of the node with the switch, one for each way to write it."""
+        """Add a fault. texts hold the node with the switch, one for each way to write it."""
         original = original or self._text(node)
         if any(mark in original for mark in ("//", "#", "/*")):
             return
@@ -71,7 +72,7 @@ class _File:
             return
         if node.type == "function_definition":
             body = node.child_by_field_name("body")
-            # what binds is run once, on import, except for the lambdas in it
+            # Bindings run once, on import, except for their lambdas.
             binds = "bindings/" in self.file and re.match(r"\w+ bind_?\w*\(", self._text(node))
             if body:
                 self._visit(body, not binds)
@@ -112,7 +113,7 @@ class _File:
                 self._add("call removed", node, ";", f"{{ if (!brushsvg_faults::fault({NUMBER})) {text} }}")
             case "return_statement" if node.named_children and text not in ("return {};", "return false;"):
                 if text == "return true;" or self._text(node.named_children[0]).startswith("!"):
-                    return  # a condition, or as good as one
+                    return  # a condition, or equivalent to one
                 self._add(
                     "return value",
                     node,
@@ -136,11 +137,11 @@ class _File:
             texts = [f"(brushsvg_faults::fault({NUMBER}) ? ({mutated}) : ({original}))"]
             plain = re.fullmatch(
                 r"[\w\s.!<>=&|+-]+", original
-            )  # a boolean's other form may read what is not there
+            )  # the other form of a boolean may read a missing value
             if (kind == "comparison" and _pure(original)) or (kind == "boolean" and plain):
                 both = f"[&] {{ return {one_line(original)}; }}, [&] {{ return {mutated}; }}"
                 texts.insert(0, f"(brushsvg_faults::fault({NUMBER}, {both}) ? ({mutated}) : ({original}))")
-            if operator in "+-":  # of two types of Eigen's, which `?:` cannot choose between
+            if operator in "+-":  # `?:` cannot choose between two types of Eigen
                 sign = f"(brushsvg_faults::fault({NUMBER}) ? -1.0 : 1.0)"
                 texts.append(f"({self._text(left)} {operator} {sign} * ({self._text(right)}))")
             self._add(kind, node, shown, *texts)
@@ -162,7 +163,7 @@ class _File:
                 self.constants.append((name, value))
 
     def _constants(self) -> None:
-        """Constants of the file: where its functions use them they are another number."""
+        """Change constants of the file where its functions use them."""
         for name, value in self.constants:
             word, number = self._text(name), self._text(value)
             other = another(number.replace("'", ""))

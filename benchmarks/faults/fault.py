@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 BUILD = "build/faults"  # in the planted tree
-EXAMPLES = ("01_first_word", "11_custom_post")  # of C++, which write programs
-NUMBER = "@K@"  # stands for the fault's number in the text of an edit
+EXAMPLES = ("01_first_word", "11_custom_post")  # C++ examples that write programs
+NUMBER = "@K@"  # replaced by the fault's number in the text of an edit
 
 
 @dataclass(frozen=True)
 class Edit:
-    """Bytes begin to end of a file become the text."""
+    """Replace the bytes from begin to end of a file by the text."""
 
     begin: int
     end: int
@@ -36,17 +36,17 @@ class Fault:
     mutated: str
     variants: list[list[Edit]]  # ways to write the switch; the first that compiles is used
     number: int = 0
-    part: str = ""  # what it is chosen from and counted with, where that is not its folder
+    part: str = ""  # the group for choosing and counting, if it is not the folder
     edits: list[Edit] = field(default_factory=list)  # the variant that is used
 
     @property
     def place(self) -> str:
-        """Its part, or its folder."""
+        """The part of the fault, or its folder."""
         return self.part or str(PurePosixPath(self.file).parent)
 
     @property
     def identity(self) -> tuple[str, str, int, str]:
-        """The same as long as its line is, where that stands in the file."""
+        """An identity that stays while the line is unchanged, even if the line moves."""
         return self.file, self.code, self.column, self.change
 
     @property
@@ -70,12 +70,15 @@ def read_faults(work: Path) -> list[Fault]:
 
 
 def one_line(text: str) -> str:
-    """The text with runs of white space made one space."""
+    """Return the text with single spaces instead of runs of white space."""
     return " ".join(text.split())
 
 
 def place(source: bytes, begin: int) -> tuple[int, int, str]:
-    """Where a byte is: the number of its line, its column in the stripped text of the line, and this text."""
+    """Return the place of a byte.
+
+    It is the number of the line, the column in the stripped text of the line, and this text.
+    """
     start = source.rfind(b"\n", 0, begin) + 1
     end = source.find(b"\n", begin)
     text = source[start : end if end >= 0 else None].decode()
@@ -84,7 +87,10 @@ def place(source: bytes, begin: int) -> tuple[int, int, str]:
 
 
 def another(number: str) -> str | None:
-    """Another number: small integers one more, others twice as much; None if it is unclear."""
+    """Return another number, or None if the number is unclear.
+
+    Small integers get one more, and other numbers are doubled.
+    """
     try:
         return str(int(number) + 1 if abs(int(number)) <= 16 else 2 * int(number))
     except ValueError:
@@ -97,7 +103,7 @@ def another(number: str) -> str | None:
 
 
 def planted(source: bytes, faults: Iterable[Fault]) -> bytes:
-    """The source with the switches of all the faults."""
+    """Return the source with the switches of all faults."""
     edits = [(edit, fault.number) for fault in faults for edit in fault.edits]
     for edit, number in sorted(edits, key=lambda pair: pair[0].begin, reverse=True):
         text = edit.text.replace(NUMBER, str(number)).encode()
@@ -106,7 +112,10 @@ def planted(source: bytes, faults: Iterable[Fault]) -> bytes:
 
 
 def shares(total: int, sizes: dict[str, int]) -> dict[str, int]:
-    """How many faults each folder gets: one at least, the rest by its lines (largest remainders)."""
+    """Return how many faults each folder gets.
+
+    Each folder gets at least one. The rest is by its lines (largest remainders).
+    """
     rest = max(total - len(sizes), 0)
     exact = {name: rest * size / sum(sizes.values()) for name, size in sizes.items()}
     result = {name: 1 + int(value) for name, value in exact.items()}
@@ -117,7 +126,10 @@ def shares(total: int, sizes: dict[str, int]) -> dict[str, int]:
 
 
 class Choice:
-    """Chooses faults folder by folder, kinds evenly; seeded, so that a tree has the same faults each time."""
+    """Choose faults folder by folder, with kinds evenly.
+
+    The seed gives a tree the same faults each time.
+    """
 
     def __init__(self, candidates: list[Fault], seed: int, accept: Callable[[Fault], bool]):
         self._by_folder: dict[str, list[Fault]] = {}
@@ -133,7 +145,7 @@ class Choice:
         return sorted(self._by_folder)
 
     def take(self, folder: str) -> Fault | None:
-        """One more fault of a folder; None if it has no more."""
+        """Return one more fault of a folder, or None if it has no more."""
         offers = self._offers.setdefault(folder, self._offered(folder))
         for fault in offers:
             if not any(map(fault.overlaps, self.chosen)) and self._accept(fault):

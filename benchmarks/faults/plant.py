@@ -1,4 +1,4 @@
-"""Plants the faults: a copy of the tree with a switch for each, built."""
+"""Plant the faults in a copy of the tree, each with a switch, and build the copy."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ TARGETS = ("_core", "brushsvg_tests", *(f"example_{name}" for name in EXAMPLES))
 
 
 def plant(root: Path, work: Path, seed: int, python: int, cpp: int, safety: int = 0) -> list[Fault]:
-    """Copy the tree at root to work/tree, plant that many faults in each language, or in each part of the safety code,
-    and build it."""
+    """Copy the tree at root to work/tree, plant faults and build it.
+
+    The counts of faults are for each language. safety is the count for each part of the safety code instead.
+    """
     tree = work / "tree"
     copy_tree(root, tree)
     make_venv(root, tree)
@@ -46,7 +48,7 @@ def plant(root: Path, work: Path, seed: int, python: int, cpp: int, safety: int 
         refused = build(tree, choice.chosen)
         if not refused:
             break
-        for fault in refused:  # what compiles in one file that includes a header may not in another
+        for fault in refused:  # a fault in a header may compile in one file and not in another
             print(f"does not compile: {fault.file}:{fault.line}: {fault.change}")
             choice.give_back(fault)
             choice.take(fault.place)
@@ -59,7 +61,7 @@ def number_all(faults: list[Fault]) -> None:
 
 
 def save(work: Path, faults: list[Fault]) -> list[Fault]:
-    """Write the faults down; what was found out about others is no longer true."""
+    """Save the faults, and delete the results of earlier faults."""
     for name in ("map", "tried"):
         shutil.rmtree(work / name, ignore_errors=True)
     (work / "tiers.json").unlink(missing_ok=True)
@@ -70,7 +72,10 @@ def save(work: Path, faults: list[Fault]) -> list[Fault]:
 
 
 def copy_tree(root: Path, tree: Path) -> None:
-    """What git knows or would add; what is no longer there goes, what was built stays."""
+    """Copy all files that git knows or would add.
+
+    Files that no longer exist are deleted. Built files stay.
+    """
     words = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(words, cwd=root, capture_output=True, check=True)
     files = {name for name in listed.stdout.decode().split("\0") if name and (root / name).is_file()}
@@ -86,13 +91,16 @@ def copy_tree(root: Path, tree: Path) -> None:
 
 
 def update(path: Path, content: bytes) -> None:
-    """Write a file unless it is the same already, so that it is not compiled again."""
+    """Write a file only if its content changes, so that it is not compiled again."""
     if not path.exists() or path.read_bytes() != content:
         path.write_bytes(content)
 
 
 def make_venv(root: Path, tree: Path) -> None:
-    """A .venv with the planted package, the switches, and all else borrowed from the tree's own."""
+    """Make a .venv with the planted package and the switches.
+
+    All other packages come from the tree's own .venv.
+    """
     python = root / ".venv/bin/python"
     code = "import sys; print(sys.version_info[1], *(path for path in sys.path if 'site-packages' in path), sep='\\n')"
     done = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
@@ -157,7 +165,7 @@ def choose_cpp(tree: Path, seed: int, count: int, safety: int) -> Choice:
 
 
 def in_parts(candidates: list[Fault]) -> list[Fault]:
-    """Those in the safety code."""
+    """Return the faults in the safety code, with their parts."""
     for fault in candidates:
         fault.part = part_of(fault) or ""
     return [fault for fault in candidates if fault.part]
@@ -180,7 +188,7 @@ def take_all(choice: Choice, count: int, sources: dict[str, bytes]) -> list[Faul
         if folder in sizes:
             sizes[folder] += source.count(b"\n")
     counts = shares(count, sizes)
-    for folder in sorted(sizes, key=sizes.get):  # small ones first: they have the least choice of kinds
+    for folder in sorted(sizes, key=sizes.get):  # small folders first, since they have the fewest kinds
         for _ in range(counts[folder]):
             if (fault := choice.take(folder)) is None:
                 print(f"{folder} has no more faults")
@@ -207,7 +215,7 @@ def configure(tree: Path) -> None:
 
 
 class Compiler:
-    """Return whether a fault compiles: in its file, or for a header in a file that includes it."""
+    """Test whether faults compile, in headers by a file that includes them."""
 
     def __init__(self, tree: Path):
         self.tree = tree
@@ -225,7 +233,10 @@ class Compiler:
         }
 
     def command(self, file: str) -> list[str] | None:
-        """How the file is compiled; a header's by the first source that includes it, over others too."""
+        """Return the command that compiles the file.
+
+        For a header, it is the command of the first source that includes it directly or indirectly.
+        """
         seen, names = set(), {file}
         while names - seen:
             seen |= names
@@ -259,7 +270,7 @@ def with_switches(source: bytes, faults: list[Fault], tree: Path) -> bytes:
         shutil.copy(SWITCHES / header.name, header)
         text = (
             f'#include "{header}"\n#line 1\n'.encode() + text
-        )  # errors name the lines of the file as it was
+        )  # with #line, errors show the lines of the original file
     return text
 
 
@@ -281,7 +292,7 @@ def write(tree: Path, sources: dict[str, bytes], faults: list[Fault]) -> None:
 
 
 def build(tree: Path, faults: list[Fault]) -> list[Fault]:
-    """Build the tree; the faults that the compiler refuses, none once it is built."""
+    """Build the tree; return the faults that the compiler refuses."""
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count()))
     words = ["cmake", "--build", tree / BUILD, "-j", jobs, "--target", *TARGETS, "--", "-k", "0"]
     done = subprocess.run(words, capture_output=True, text=True)

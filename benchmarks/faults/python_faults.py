@@ -1,4 +1,4 @@
-"""Faults that Python code could have: every place of a file where one can be planted."""
+"""Find every place in Python code where a fault can be planted."""
 
 from __future__ import annotations
 
@@ -41,17 +41,20 @@ PURE_CALLS = {"abs", "bool", "float", "int", "isinstance", "len", "max", "min", 
 
 
 def candidates(file: str, source: bytes, elsewhere: set[str]) -> list[Fault]:
-    """All faults of a file. elsewhere: names that other files use, so that their constants are left alone."""
+    """Return all faults of a file.
+
+    elsewhere holds names that other files use. Constants with these names stay unchanged.
+    """
     return _File(file, source, elsewhere).faults
 
 
 def names_in(source: bytes) -> set[str]:
-    """All words of a file."""
+    """Return all words of a file."""
     return set(re.findall(r"\w+", source.decode()))
 
 
 def _pure(node: ast.AST) -> bool:
-    """Whether an expression may be evaluated twice."""
+    """Return whether an expression may be evaluated twice."""
     if isinstance(node, ast.Call):
         known = isinstance(node.func, ast.Name) and node.func.id in PURE_CALLS
         return known and not node.keywords and all(map(_pure, node.args))
@@ -93,7 +96,10 @@ class _File:
         return self.source[begin:end].decode()
 
     def _add(self, kind: str, node: ast.AST, mutated: str, twice: bool = False, shown: str = "{}") -> None:
-        """twice: both forms may be evaluated, to see whether they differ at all. shown: what is around it."""
+        """Add a fault.
+
+        twice: both forms may be evaluated to see whether they differ. shown is the text around the node.
+        """
         begin, end = self._span(node)
         original = self._segment(node)
         also = f", lambda: ({ast.unparse(node)}), lambda: ({mutated})" if twice else ""
@@ -102,7 +108,7 @@ class _File:
         change = [shown.format(one_line(text)) for text in (original, mutated)]
         self.faults.append(Fault(self.file, *place(self.source, begin), kind, *change, [[edit]]))
 
-    # what is walked: code that runs when a function is called, and not what is computed on import
+    # The visitor walks code that runs when a function is called, and skips code that runs on import.
 
     def _body(self, nodes: list[ast.stmt], inside: bool, returns: ast.expr | None) -> None:
         for node in nodes:
@@ -175,7 +181,7 @@ class _File:
             self._add("return value", value, default)
 
     def _constants(self, tree: ast.Module, elsewhere: set[str]) -> None:
-        """Constants of the module that only its functions use: there they are another number."""
+        """Change constants of the module that only its functions use."""
         functions = {id(each) for uses in self.uses.values() for each in uses}
         outside = {
             each.id

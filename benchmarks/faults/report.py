@@ -1,4 +1,4 @@
-"""What became of the faults, as tables."""
+"""Report the outcomes of the faults as tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ EQUIVALENT = Path(__file__).parent / "equivalent.toml"
 
 
 def equivalents() -> dict[tuple, str]:
-    """{identity of a fault: why it changes nothing that matters}."""
+    """Return {identity of a fault: why it changes nothing important}."""
     with EQUIVALENT.open("rb") as file:
         listed = tomllib.load(file).get("fault", [])
     return {
@@ -84,7 +84,7 @@ def judged(fault: Fault, outcome: Outcome | None, known: dict, hit: bool) -> tup
 def details(
     faults: list[Fault], outcomes: dict[int, Outcome], tests: dict[str, Test], hits: dict[int, set[str]]
 ) -> str:
-    """The survivors, to be judged by hand: an entry for equivalent.toml each."""
+    """Return the survivors as entries for equivalent.toml, to be judged by a person."""
     known, lines = equivalents(), []
     for fault in faults:
         outcome = outcomes.get(fault.number)

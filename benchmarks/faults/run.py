@@ -1,4 +1,7 @@
-"""Runs tests of the planted tree: all without a fault, to see who comes by which; then those with each fault."""
+"""Run the tests of the planted tree, first without faults, then with each fault.
+
+The runs without faults find which tests reach which faults.
+"""
 
 from __future__ import annotations
 
@@ -26,14 +29,14 @@ SUITES = (
     ("long", "tests/laws"),
     ("not long", "tests/integration"),
 )
-CPP = "cpp::"  # before the names of C++ tests
+CPP = "cpp::"  # the prefix of the names of C++ tests
 FIRST_TESTS, FIRST_S, MORE = (
     30,
     20.0,
     4,
-)  # a process of pytest costs seconds: the first has few tests, the next more
-SLOWER, LATE_S = 5.0, 30.0  # a test may take so many times as long, and so much longer
-MEMORY = 8 << 30  # bytes for a process: loops that do not end fill it
+)  # starting pytest costs seconds, so the first process has few tests and each later one has more
+SLOWER, LATE_S = 5.0, 30.0  # a test may take this many times its duration, plus this many seconds
+MEMORY = 8 << 30  # limit for a process in bytes, because an endless loop can fill the memory
 
 
 @dataclass
@@ -51,16 +54,16 @@ class Test:
 
 @dataclass
 class Outcome:
-    """What became of a fault."""
+    """The outcome of trying a fault."""
 
     number: int
-    tier: str = ""  # ci or thorough, where a test caught it
+    tier: str = ""  # ci or thorough, if a test caught the fault
     test: str = ""
     why: str = ""
-    tried: int = 0  # tests that ran with it
-    left: int = 0  # that should have, beyond the budget
+    tried: int = 0  # number of tests that ran with the fault
+    left: int = 0  # number of tests that did not run because the budget was used up
     seconds: float = 0.0
-    unreliable: list[str] = field(default_factory=list)  # tests that fail without it, too
+    unreliable: list[str] = field(default_factory=list)  # tests that also fail without the fault
 
 
 class Tree:
@@ -74,7 +77,10 @@ class Tree:
     def start(
         self, words: list, limit: float | None = None, show: bool = False, **env: str
     ) -> tuple[int, str]:
-        """Run a command in the tree; its status and output. At the limit it ends with all that it started."""
+        """Run a command in the tree; return its status and output.
+
+        At the time limit, the command ends together with all processes that it started.
+        """
         surroundings = {
             k: v for k, v in os.environ.items() if not k.startswith(("PYTEST_", "FAULTS_", "BRUSHSVG_"))
         }
@@ -97,7 +103,7 @@ class Tree:
             out = "time limit"
         finally:
             with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)  # what a test left behind, too
+                os.killpg(process.pid, signal.SIGKILL)  # also processes that a test left behind
             process.wait()
         return process.returncode, out or ""
 
@@ -107,9 +113,10 @@ class Tree:
     # the map
 
     def map_tests(self, paths: list[str], processes: int, tier: str) -> None:
-        """Run tests without a fault, and write down who comes by which; those that ran before are left out.
+        """Run tests without a fault, and save which tests reach which faults.
 
-        paths: files and folders, cpp for the tests of C++; none for all suites.
+        Tests that ran before are left out. paths holds files and folders; "cpp" stands for the C++ tests.
+        Without paths, all suites run.
         """
         self.map.mkdir(exist_ok=True)
         settings = {
@@ -148,7 +155,7 @@ class Tree:
         return tests | {f"{CPP}{name}": [examples / f"example_{name}", brush, out] for name in EXAMPLES}
 
     def collect_tiers(self) -> None:
-        """Which tier each test is in, by the markers of the tree."""
+        """Save the tier of each test, by the markers of the tree."""
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "names"
 
@@ -165,7 +172,7 @@ class Tree:
         self.tiers.write_text(json.dumps(tiers, indent=0), encoding="utf-8")
 
     def tests(self) -> dict[str, Test]:
-        """All tests that ran without a fault."""
+        """Return all tests that ran without a fault."""
         tiers = json.loads(self.tiers.read_text(encoding="utf-8"))
         found = {}
         for path in sorted(self.map.glob("tests-*.jsonl")):
@@ -180,7 +187,10 @@ class Tree:
         return found
 
     def hits(self) -> dict[int, set[str]]:
-        """{number of a fault: tests, and files, that came by}; files are those whose import did."""
+        """Return {number of a fault: the tests and files that reach it}.
+
+        A file is listed if importing it reaches the fault.
+        """
         found = defaultdict(set)
         for path in self.map.glob("hits-*.txt"):
             for line in path.read_text(encoding="utf-8").splitlines():
@@ -191,7 +201,10 @@ class Tree:
     # one fault
 
     def run_tests(self, number: int, tests: list[Test]) -> tuple[Test | None, str, int]:
-        """Run tests with a fault (0: none) until one fails: that one, why, and how many ran."""
+        """Run tests with a fault (0: none) until one fails.
+
+        Return the failed test, the reason, and how many tests ran.
+        """
         ran = 0
         names = self.cpp_tests() if any(test.name.startswith(CPP) for test in tests) else {}
         for test in [test for test in tests if test.name in names]:
@@ -236,7 +249,7 @@ class Tree:
         ended = {line["test"] for line in lines if "outcome" in line}
         for line in lines:
             if line.get("outcome") == "failed":
-                # of a file that cannot be imported: all its tests
+                # a file that cannot be imported fails as a whole
                 test = by_name.get(line["test"]) or next(
                     (t for t in tests if t.file == line["test"]), tests[0]
                 )
@@ -275,7 +288,7 @@ class Tree:
         return outcome
 
     def try_all(self, faults: list[Fault], jobs: int, budget: float, again: bool) -> None:
-        """Try each fault that was not tried before, or (again) that no test caught."""
+        """Try each fault that is untried, and with again each fault that no test caught."""
         folder = self.work / "tried"
         folder.mkdir(exist_ok=True)
         tests, hits = self.tests(), self.hits()
@@ -304,9 +317,10 @@ class Tree:
 
 
 def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[Test]]:
-    """Tests that come by a fault, and those that share with these what is made once for many; the quickest first.
+    """Return the tests that reach a fault, and tests that share results with these.
 
-    Shared are fixtures and cached results, of a file or of a whole run: only the first test that needs one comes by.
+    Both lists begin with the quickest test. Tests share fixtures and cached results of a file or of a whole
+    run. Only the first test that needs a shared result reaches the fault in it.
     """
     passing = sorted(
         (test for test in tests.values() if test.outcome == "passed"), key=lambda test: test.seconds
@@ -315,24 +329,24 @@ def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[T
     direct = [test for test in passing if test.name in hits or test.file in files]
     near_files = {test.file for test in direct if not test.name.startswith(CPP)}
     fixtures = {name for test in direct for name in test.shared}
-    # a hit by a test that fails without faults still identifies its file
+    # A test that fails without faults still shows by its hit which file reaches the fault.
     near_files |= {name.split("::")[0] for name in hits if not name.startswith(CPP)}
     known = {test.name for test in direct}
-    if any("::" not in name for name in hits):  # what an import computes, others find there
+    if any("::" not in name for name in hits):  # all other tests may use what an import computes
         return direct, [test for test in passing if test.name not in known]
     near = [test for test in passing if test.file in near_files or fixtures & set(test.shared)]
     return direct, [test for test in near if test.name not in known]
 
 
 def apart(paths: list[str]) -> list[list[str]]:
-    """Paths that one process of pytest can run, and those of the next."""
+    """Split paths into groups that one process of pytest can run."""
     integration = [path for path in paths if path.startswith("tests/integration")]
     groups = ([path for path in paths if path not in integration], integration)
     return [group for group in groups if group]
 
 
 def first(tests: list[Test], most: int, seconds: float) -> list[Test]:
-    """The first tests, so many at most, that take so long together; one at least."""
+    """Return the first tests, within a count and a total time, at least one."""
     total = 0.0
     for count, test in enumerate(tests[:most]):
         total += test.seconds

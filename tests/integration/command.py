@@ -1,4 +1,4 @@
-"""The installed command, as a shell would start it, and small drawings for it."""
+"""Run the installed command as a shell would, with small drawings for it."""
 
 import json
 import os
@@ -26,15 +26,16 @@ class Done:
 
     @property
     def reported(self) -> list[tuple[str, Notice]]:
-        """Of `--messages json`, with the file that each is about."""
+        """Return the notices of `--messages json`, each with its file."""
         return heard(self.err)
 
 
 def brushsvg(*words, cwd, status=None, env=None, before=(), timeout_s=60, **settings) -> Done:
-    """Run the installed command; status: what must come back. stderr holds only lines of ours, always; of JSON where
-    that was requested.
+    """Run the installed command and check its output.
 
-    before: words of a program that starts it. env: changes to the environment, None removes.
+    status is the required exit status. stderr must hold only our lines, or JSON if it was requested. before
+    holds words of a program that starts the command. env holds changes to the environment; None removes a
+    variable.
     """
     environment = {**os.environ, **(env or {})}
     done = subprocess.run(
@@ -72,7 +73,10 @@ def listing(folder):
 
 
 def refused(folder, *words, status=1, **settings):
-    """The one sentence of a refusal, after making sure that it is one and that nothing changed."""
+    """Run a command that must be refused, and return the sentence of its refusal.
+
+    The refusal must be one sentence, and no file may change.
+    """
     before = listing(folder)
     done = brushsvg(*words, cwd=folder, status=status, **settings)
     assert done.out == ""
@@ -82,6 +86,6 @@ def refused(folder, *words, status=1, **settings):
 
 
 def refusal(folder, *words, **settings) -> tuple[str, Notice]:
-    """The same for programs: the file and its notices."""
+    """Run a command that must be refused; return the file and its notice."""
     (reported,) = heard([refused(folder, "--messages", "json", *words, **settings)])
     return reported

@@ -1,4 +1,4 @@
-"""Drawings to feed the installed command, and what it makes of them."""
+"""Drawings for the installed command, and its results."""
 
 import json
 import shutil
@@ -28,7 +28,10 @@ def _installed():
 
 @pytest.fixture(scope="session")
 def npm(request):
-    """A function: a name, packages with their versions -> the folder node_modules that has them; skips without."""
+    """Return a function: a name, packages with versions -> their folder node_modules.
+
+    Skip the test if the packages are missing.
+    """
 
     def get(name: str, packages: dict[str, str]) -> Path:
         try:
@@ -46,13 +49,13 @@ def inkscape(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def plugin(tmp_path_factory):
-    """The extension in a new profile of Inkscape's, one for each file of tests."""
+    """Return the extension in a new profile of Inkscape, one per file of tests."""
     return Plugin(tmp_path_factory.mktemp("plugin"))
 
 
 @pytest.fixture(scope="session")
 def drawing(tmp_path_factory, inkscape):
-    """A function: name of a source -> its SVG file, made when first requested."""
+    """Return a function: name of a source -> its SVG file, made on first request."""
     folder = tmp_path_factory.mktemp("drawings")
     make = {
         "vincent": lambda _: ROOT / "examples" / "vincent.svg",
@@ -74,7 +77,7 @@ def drawing(tmp_path_factory, inkscape):
 
 @pytest.fixture(scope="session")
 def converted(tmp_path_factory, drawing):
-    """A function: source, flags -> the folder with plan.json and program.ngc made of it."""
+    """Return a function: source, flags -> folder with plan.json and program.ngc."""
     known: dict[tuple, Path] = {}
 
     def get(name: str, *flags: str) -> Path:
@@ -90,7 +93,7 @@ def converted(tmp_path_factory, drawing):
 
 @pytest.fixture(scope="session")
 def reported(tmp_path_factory, drawing):
-    """A function: source, flags -> what report --json says of it."""
+    """Return a function: source, flags -> the output of report --json."""
     folder = tmp_path_factory.mktemp("reports")
     known: dict[tuple, dict] = {}
 
@@ -110,7 +113,7 @@ def source(request) -> str:
 
 @pytest.fixture
 def desk(tmp_path):
-    """A folder with a sound drawing, and a program that was there before."""
+    """Return a folder with a sound drawing and an older program."""
     (tmp_path / "sound.svg").write_text(SOUND)
     (tmp_path / "old.ngc").write_text("kept\n")
     return tmp_path

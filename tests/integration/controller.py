@@ -1,4 +1,7 @@
-"""LinuxCNC itself, without a machine: its task, its planner of ways and its loop of a thousand steps in a second."""
+"""Run LinuxCNC itself without a machine.
+
+It runs its task, its motion planner and its loop of a thousand steps per second.
+"""
 
 import os
 import subprocess
@@ -64,8 +67,10 @@ net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 
 
 def ran(program: str, folder: Path, fastest_mm_s: float, acceleration_mm_s2: float) -> np.ndarray:
-    """(n, 3) commanded places of the axes [mm], from one millisecond to the next; AssertionError with LinuxCNC's words
-    if it does not run the program."""
+    """Return the commanded places (n, 3) of the axes [mm] for each millisecond.
+
+    Raise AssertionError with LinuxCNC's message if it does not run the program.
+    """
     of = {"v": fastest_mm_s, "a": acceleration_mm_s2, "display": DISPLAY}
     parts = [AXIS.format(name=name, **of) for name in "XYZ"]
     parts += [JOINT.format(number=number, **of) for number in range(3)]
@@ -76,8 +81,8 @@ def ran(program: str, folder: Path, fastest_mm_s: float, acceleration_mm_s2: flo
         (folder / empty).touch()
     environment = {**os.environ, "HOME": str(folder)}
     environment.pop("DISPLAY", None)
-    with tempfile.TemporaryDirectory() as socket:  # of a short name
-        if os.getuid() == 0:  # it gives the rights of root away, to the user in this variable
+    with tempfile.TemporaryDirectory() as socket:  # the socket needs a short name
+        if os.getuid() == 0:  # LinuxCNC drops the rights of root, for the user in this variable
             Path(socket).chmod(0o777)
             environment |= {"RTAPI_UID": str(NOBODY), "RTAPI_FIFO_PATH": f"{socket}/fifo"}
         done = subprocess.run(

@@ -1,5 +1,7 @@
-"""Small DXF drawings of one feature each. Tables of names and functions: each that draws into (document, model
-space)."""
+"""Small DXF drawings of one feature each.
+
+The tables hold names and functions. A function draws into (document, model space).
+"""
 
 from brushsvg.read.dxf.ezdxf_import import ezdxf
 
@@ -11,7 +13,7 @@ INNER = [(20, 20), (40, 20), (40, 40), (20, 40)]
 FRONT, BELOW, SLANTED = (0, 0, 1), (0, 0, -1), (0.3, -0.4, 0.8)
 
 
-# What feature tables are made of ---------------------------------------------------------------------
+# Parts of the feature tables ------------------------------------------------------------------------
 
 
 def line(msp, a=(10, 10), b=(70, 30), **attributes):
@@ -24,14 +26,14 @@ def text(msp, words=WORDS, align=ALIGN.LEFT, at=(50, 50), to=None, **attributes)
 
 
 def mtext(msp, words=WORDS, **attributes):
-    """As wide as no line of it: without a width the add-on guesses one."""
+    """Add MTEXT wider than its lines, since the add-on guesses a missing width."""
     return msp.add_mtext(
         words, {"style": "T", "insert": (100, 100), "char_height": 8, "width": 300} | attributes
     )
 
 
 def raw(entity, **attributes):
-    """Numbers that ezdxf itself would not let pass."""
+    """Set numbers that ezdxf itself would refuse."""
     for key, value in attributes.items():
         entity.dxf.__dict__[key] = value
 
@@ -184,7 +186,7 @@ def both_points(m):
 
 
 def ocs(draw):
-    """The same in planes of their own."""
+    """Return the drawing functions in other planes: from below and slanted."""
     return {
         f"{name} {where}": (lambda d, m, draw=draw, z=z, name=name: draw[name](d, m, z))
         for name in draw
@@ -515,7 +517,7 @@ def on_layer(d, m, change, **attributes):
 
 
 def through_blocks(d, m, inner, outer, layer_of_inner="0", layer_of_outer="L1"):
-    """A line in a block in a block."""
+    """Draw a line in a block in a block."""
     for name, colour, weight in (("L1", 1, 50), ("L2", 3, 100), ("L3", 5, 140)):
         d.layers.add(name, color=colour, lineweight=weight)
     d.blocks.new("I").add_line((0, 0), (20, 0), {"layer": layer_of_inner} | inner)
@@ -945,7 +947,7 @@ OTHERS = {
     "proxy": with_line("ACAD_PROXY_ENTITY"),
 }
 
-# What the add-on draws otherwise than the DXF reference has it, or otherwise than itself -------------------
+# Features where the add-on contradicts the DXF reference or itself -----------------------------------------
 
 OWN = {
     "ellipse of negative ratio": "the arc goes another way: the minor axis is the turned major one times the ratio",
@@ -977,7 +979,7 @@ OWN = {
     "dashed wide polyline": "it does not dash them",
 }
 
-# What neither of us shows, and CAD does: we must say so.
+# CAD shows these features, and neither the add-on nor brushsvg does. brushsvg must report them.
 NAMED = [
     *(f"text %%{letter}" for letter in "uok"),
     *("style vertical", "mtext vertical", "mtext of a vertical style", "mtext tracking"),

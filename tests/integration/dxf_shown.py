@@ -1,4 +1,4 @@
-"""What ezdxf's drawing add-on shows of a DXF, and what we take it for, as polygons by colour."""
+"""A DXF as ezdxf's drawing add-on shows it and as we read it: polygons by colour."""
 
 import io
 import math
@@ -14,7 +14,7 @@ from brushsvg.read.dxf.ezdxf_import import ezdxf
 from ezdxf.addons.drawing import Frontend, RenderContext, config, recorder  # isort: skip  after the library
 
 PAPER = "#ffffff"
-NEAR_MM = 0.05  # edges nearer than this are the same
+NEAR_MM = 0.05  # edges nearer than this count as equal
 _SHOWN = config.Configuration(
     background_policy=config.BackgroundPolicy.WHITE,
     max_flattening_distance=1e-3,
@@ -24,12 +24,15 @@ _SHOWN = config.Configuration(
 
 
 def shown(data: bytes) -> dict[str, shapely.Geometry]:
-    """By the add-on, on white paper: lines of their weight with round ends."""
+    """Return the polygons that the add-on shows on white paper.
+
+    Lines have their weight and round ends.
+    """
     document = ezdxf.read(io.StringIO(data.decode("utf-8", "surrogateescape")))
     paper = recorder.Recorder()
     try:
         Frontend(RenderContext(document), paper, _SHOWN).draw_layout(document.modelspace(), finalize=True)
-    except (ezdxf.DXFError, AttributeError):  # at what it cannot draw, such as a block that is not there
+    except (ezdxf.DXFError, AttributeError):  # the add-on cannot draw everything, for example a missing block
         return {}
     found: dict[str, list] = {}
     for record in paper.records:
@@ -78,7 +81,7 @@ def _even_odd(rings):
 
 
 def painted(data: bytes) -> tuple[dict[str, shapely.Geometry], list[str]]:
-    """What we read, and every notice except those of parts that are read as intended."""
+    """Return our polygons, and all notices except those of parts read as intended."""
     try:
         design = read_dxf(data, ReadOptions(sheet_mm=(1000, 1000), lenient=True))
     except Error as refusal:
@@ -136,7 +139,10 @@ def _points(cubics):
 
 
 def difference(theirs, ours) -> float:
-    """Area of what only one of them shows, further than NEAR_MM from the other, of all that they show."""
+    """Return the share of the area that only one of them shows.
+
+    Parts within NEAR_MM of the other do not count.
+    """
     nothing = shapely.Polygon()
     off = every = 0.0
     for colour in theirs.keys() | ours.keys():

@@ -1,9 +1,9 @@
-"""Reads a program with LinuxCNC's own interpreter and prints what the machine would do, as JSON.
+"""Interpret a program with LinuxCNC and print the machine's actions as JSON.
 
 Run with the system's Python, which has LinuxCNC's module gcode: python3 interpret.py PROGRAM PARAMETERS
-Events: ["comment", text], ["rapid", x, y, z], ["feed", x, y, z, mm/min], ["arc", x, y, z, mm/min, centre x, centre y,
-turns] (turns > 0 counter-clockwise), ["other", name] for what is neither geometry nor harmless; mm.
-Exit status 1 and LinuxCNC's sentence on stderr when it refuses the program.
+Events: ["comment", text], ["rapid", x, y, z], ["feed", x, y, z, mm/min], ["arc", x, y, z, mm/min, centre x,
+centre y, turns] (turns > 0 counter-clockwise), ["other", name] for calls that are neither geometry nor
+harmless. Lengths in mm. If LinuxCNC refuses the program, the exit status is 1 and its message is on stderr.
 """
 
 import json
@@ -11,7 +11,7 @@ import sys
 
 import gcode
 
-MM = 25.4  # the module speaks inches, in any program
+MM = 25.4  # the module always uses inches
 HARMLESS = {"next_line", "set_plane", "set_xy_rotation", "set_g5x_offset", "set_g92_offset"}
 
 
@@ -68,7 +68,7 @@ class Canon:
 
         def call(*values):
             if name in ("set_xy_rotation", "set_g5x_offset", "set_g92_offset"):
-                # the coordinate system's number comes first in one of them
+                # One of these calls begins with the number of the coordinate system.
                 harmless = not any(values[1:] if name == "set_g5x_offset" else values)
             else:
                 harmless = name in HARMLESS

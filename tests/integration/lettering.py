@@ -1,4 +1,4 @@
-"""Other people's lettering: Chinese characters with their middle lines, and four fonts."""
+"""Other people's lettering: Chinese characters with middle lines, and four fonts."""
 
 import json
 
@@ -23,19 +23,22 @@ MM_PER_UNIT = CHARACTER_MM / 1024
 
 
 class Lettering:
-    """Reads what npm has fetched into a folder node_modules."""
+    """Read the packages that npm has fetched into a folder node_modules."""
 
     def __init__(self, modules):
         self.modules = modules
 
     def characters(self, count: int, seed: int) -> list[tuple[str, dict]]:
-        """Characters drawn at random: (character, {"strokes": path data, "medians": polylines})."""
+        """Return random characters.
+
+        An item is (character, {"strokes": path data, "medians": polylines}).
+        """
         files = sorted(f for f in (self.modules / "hanzi-writer-data").glob("*.json") if len(f.stem) == 1)
         chosen = np.random.default_rng(seed).choice(len(files), count, replace=False)
         return [(files[k].stem, json.loads(files[k].read_text(encoding="utf-8"))) for k in chosen]
 
     def drawings(self, count: int, seed: int) -> list[Design]:
-        """The same as filled shapes, one per stroke."""
+        """Return random characters as filled shapes, one per stroke."""
         sheet_mm = (CHARACTER_MM, CHARACTER_MM)
         return [
             Design(sheet_mm, tuple(outline(f"s{k}", data) for k, data in enumerate(each["strokes"])))
@@ -49,7 +52,7 @@ class Lettering:
 
 
 def outline(name: str, path_data: str) -> Element:
-    """One stroke of a character as a filled element, 100 mm to the box."""
+    """Return one stroke of a character as a filled element; the box is 100 mm."""
     subpaths = []
     for line in parse_path(path_data).continuous_subpaths():
         rows = [each.bpoints() for each in line]
@@ -67,19 +70,22 @@ def outline(name: str, path_data: str) -> Element:
 
 
 def letter(font: bytes, text: str, size_mm: float = 60.0):
-    """A drawing of a text in a font."""
+    """Return a drawing of a text in a font."""
     document, _ = text_svg(text, font, size_mm=size_mm)
     return read_svg(document.encode())
 
 
 def swept(strokes) -> list[np.ndarray]:
-    """What a disc of the found width paints along the found lines, without their own outlines."""
+    """Return the paint of a disc of the found width along the found lines.
+
+    The lines' own outlines are not used.
+    """
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in strokes]
     return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.02)])
 
 
 def covered(paint, shape) -> float:
-    """Share of a shape that is painted."""
+    """Return the share of a shape that is painted."""
     return (_core.area(paint) + _core.area(shape) - _core.area(_core.unite([*paint, *shape]))) / _core.area(
         shape
     )

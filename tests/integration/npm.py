@@ -10,17 +10,20 @@ LIMIT_S = 600
 
 
 class UnavailableError(Exception):
-    """It cannot be had here; the text says why."""
+    """The packages are not available; the text gives the reason."""
 
 
 def fetched(folder: Path, packages: dict[str, str]) -> Path:
-    """The folder node_modules with these packages (name -> version) in it; nothing is fetched that is there already.
-    UnavailableError without node and npm, and if npm cannot fetch them."""
+    """Return the folder node_modules with these packages (name -> version).
+
+    Existing packages are not fetched again. Raise UnavailableError without node and npm, or if npm cannot
+    fetch the packages.
+    """
     modules = folder / "node_modules"
     for tool in ("node", "npm"):
         if not shutil.which(tool):
             raise UnavailableError(f"{tool} is missing: apt-get install --no-install-recommends nodejs npm")
-    with (folder / "lock").open("w") as lock:  # tests run side by side
+    with (folder / "lock").open("w") as lock:  # tests run in parallel
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not all(_has(modules, *each) for each in packages.items()):
             _install(folder, packages)
@@ -29,7 +32,7 @@ def fetched(folder: Path, packages: dict[str, str]) -> Path:
 
 def _install(folder: Path, packages: dict[str, str]) -> None:
     options = ("--no-package-lock", "--no-save", "--no-audit", "--no-fund", "--ignore-scripts")
-    # all of them: what is left out, npm removes
+    # Name all packages, because npm removes the others.
     target = [f"{name}@{version}" for name, version in packages.items()]
     words = ["npm", "install", "--prefix", str(folder), *options, *target]
     try:

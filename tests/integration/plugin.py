@@ -1,4 +1,4 @@
-"""The real Inkscape with our extension installed, in a profile of its own."""
+"""The real Inkscape with our extension, in a separate profile."""
 
 import os
 import shutil
@@ -7,12 +7,15 @@ from pathlib import Path
 
 from command import COMMAND
 
-SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import what is there
+SHIPPED = "/usr/share/inkscape/extensions"  # Inkscape lets scripts import modules from this folder
 SOURCE = Path(__file__).parents[2] / "plugins" / "inkscape"
 
 
 class Plugin:
-    """Inkscape runs our scripts with the system's Python, as it would without us, and finds brushsvg on PATH."""
+    """Inkscape with our extension.
+
+    Inkscape runs our scripts with the system's Python, as usual, and finds brushsvg on PATH.
+    """
 
     def __init__(self, folder: Path, command: Path | None = COMMAND):
         self.folder = folder
@@ -34,7 +37,10 @@ class Plugin:
             self.env.pop(name, None)
 
     def set(self, **parameters: str) -> None:
-        """What the dialogs of extensions remember, `preview__brush="rigid"` for one of org.brushsvg.preview."""
+        """Set values that dialogs of extensions remember.
+
+        `preview__brush="rigid"` sets a value of org.brushsvg.preview.
+        """
         said = " ".join(f'org.brushsvg.{k.replace("__", ".")}="{v}"' for k, v in parameters.items())
         (self.profile / "preferences.xml").write_text(
             '<inkscape xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd" version="1">'
@@ -42,26 +48,32 @@ class Plugin:
         )
 
     def save(self, drawing: Path, out: Path, entry: str = "") -> subprocess.CompletedProcess:
-        """As a person who saves a copy; entry: which one, where several have the same extension."""
+        """Save a copy, as a person would.
+
+        entry selects a file type if several have this extension.
+        """
         chosen = [f"--export-extension=org.brushsvg.save.{entry}"] if entry else []
         return self._run(["/usr/bin/inkscape", *chosen, f"--export-filename={out}", str(drawing)])
 
     def effect(self, name: str, drawing: Path, out: Path, select: str = "") -> Path:
-        """The drawing as Inkscape saves it after an effect; select: ids with commas between."""
+        """Run an effect and save the drawing; select holds ids with commas between."""
         chosen = f"select-by-id:{select};" if select else ""
         self.batch(drawing, out, f"{chosen}org.brushsvg.{name}.noprefs")
         assert out.exists()
         return out
 
     def batch(self, drawing: Path, out: Path, *actions: str) -> subprocess.CompletedProcess:
-        """Inkscape with a display and nobody before it."""
+        """Run Inkscape with a display and without a user."""
         words = f"--actions={';'.join([*actions, f'export-filename:{out}', 'export-do'])}"
         return self._run(["xvfb-run", "-a", "inkscape", "--batch-process", words, str(drawing)])
 
     def script(
         self, name: str, drawing: Path, *words: str, before: tuple = ()
     ) -> subprocess.CompletedProcess:
-        """The script as Inkscape starts it, to read what its dialog would say; before: words that start it."""
+        """Run the script as Inkscape does, to read the text of its dialog.
+
+        before holds words that start the script.
+        """
         script = str(self.installed / f"brushsvg_{name}.py")
         start = [*before, "/usr/bin/env", f"PYTHONPATH={SHIPPED}", "/usr/bin/python3"]
         return self._run([*start, script, *words, str(drawing)])

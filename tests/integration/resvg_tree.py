@@ -1,4 +1,4 @@
-"""resvg's reading of a drawing: npm's @resvg/resvg-js, and the flattened tree that it prints."""
+"""Read a drawing with resvg: npm's @resvg/resvg-js prints a flattened tree."""
 
 import json
 import re
@@ -12,8 +12,9 @@ from drawings import SVG
 
 PACKAGE = "@resvg/resvg-js"
 PACKAGES = {PACKAGE: "2.6.2"}
-# A tree leaves the root's viewBox to anyone who paints it, so it is read again as a nested svg: then resvg has placed
-# everything itself. Without fonts it drops text, which we do not read either.
+# A tree does not apply the viewBox of its root. So the drawing is read again as a nested svg, where resvg
+# places
+# everything itself. Without fonts, resvg drops text, which we do not read either.
 SCRIPT = """
 const { Resvg } = require(process.argv[1]);
 const read = (svg) => new Resvg(svg, { font: { loadSystemFonts: false } }).toString();
@@ -26,12 +27,15 @@ const drawings = JSON.parse(require("fs").readFileSync(0, "utf8"));
 const trees = Object.entries(drawings).map(([name, svg]) => [name, flattened(svg)]);
 process.stdout.write(JSON.stringify(Object.fromEntries(trees)));
 """
-CURVES = {"L": 1, "Q": 2, "C": 3}  # how many points follow the letter
+CURVES = {"L": 1, "Q": 2, "C": 3}  # number of points after the letter
 
 
 @dataclass(frozen=True)
 class Line:
-    """A sub-path in px of the page, y down: cubics (n, 4, 2), n >= 1, the closing one among them."""
+    """A sub-path in px of the page, y down.
+
+    It has n >= 1 cubics (n, 4, 2), including the closing one.
+    """
 
     cubics: np.ndarray
     closed: bool
@@ -39,9 +43,11 @@ class Line:
 
 @dataclass(frozen=True)
 class Painted:
-    """What is seen of a path. Without a stroke its width is 0, without a fill the rule is "".
+    """The visible parts of a path.
 
-    colour: "#rrggbb" of the stroke, of the fill where there is none; "" for a gradient.
+    Without a stroke, the width is 0. Without a fill, the rule is "".
+
+    colour is "#rrggbb" of the stroke, or of the fill if there is no stroke. It is "" for a gradient.
     """
 
     lines: tuple[Line, ...]
@@ -58,11 +64,11 @@ class Page:
 
 class Resvg:
     def __init__(self, modules: Path):
-        """modules: the folder into which npm has put it."""
+        """Use resvg from modules, the folder of npm's packages."""
         self.package = modules / PACKAGE
 
     def pages(self, drawings: dict[str, str]) -> dict[str, Page]:
-        """Name -> SVG text to name -> what resvg paints of it."""
+        """Return {name: the page that resvg paints} for {name: SVG text}."""
         done = subprocess.run(
             ["node", "-e", SCRIPT, str(self.package)],
             input=json.dumps(drawings),
@@ -80,7 +86,10 @@ def parse_tree(tree: str) -> Page:
 
 
 def _painted(node: ET.Element, above: np.ndarray):
-    """Paths below a node in order; what nobody sees is in resvg's tree, and not in ours."""
+    """Yield the paths below a node in order.
+
+    Invisible paths are in resvg's tree, and not in ours.
+    """
     if (
         node.tag == SVG + "defs"
         or node.get("opacity") == "0"
@@ -119,7 +128,7 @@ def _path(node: ET.Element, matrix: np.ndarray) -> Painted | None:
 
 
 def _lines(d: str, matrix: np.ndarray) -> list[Line]:
-    """The sub-paths of a path of resvg's, which has absolute M, L, Q, C and Z alone."""
+    """Return the sub-paths of a path of resvg, which has only absolute M, L, Q, C, Z."""
     lines, cubics = [], []
     here = start = np.zeros(2)
     for letter, words in re.findall(r"([A-Z])([^A-Z]*)", d):

@@ -1,4 +1,4 @@
-"""Drawings as Chromium shows them, and what we would paint of them, in the same pixels."""
+"""Drawings as Chromium shows them and as we would paint them, in equal pixels."""
 
 import base64
 import subprocess
@@ -11,14 +11,14 @@ from brushsvg import Error
 from brushsvg.read import ReadOptions
 from brushsvg.read.svg import read_svg
 
-SIDE = 200  # px of each drawing
+SIDE = 200  # size of each drawing in px
 SCALE = 2
 PER_ROW, PER_COLUMN = 20, 15
 MM = 25.4 / 96
 
 
 def shown(drawings: list[str], folder) -> list[np.ndarray]:
-    """Darkness (h, w) of each, 0 to 1."""
+    """Return the darkness (h, w) of each drawing, 0 to 1."""
     step = PER_ROW * PER_COLUMN
     found = []
     for first in range(0, len(drawings), step):
@@ -50,7 +50,7 @@ def _shown(drawings: list[str], folder) -> list[np.ndarray]:
 
 
 def painted(text: str, cap: str = "round"):
-    """Darkness (h, w) of what we take a drawing for, and every sentence reported about it."""
+    """Return the darkness (h, w) of our reading of a drawing, and all its notices."""
     try:
         design = read_svg(text.encode(), ReadOptions(lenient=True))
     except Error as refusal:
@@ -105,7 +105,10 @@ def _pixels(mark, height_mm: float) -> np.ndarray:
 
 
 def difference(theirs: np.ndarray, ours: np.ndarray) -> float:
-    """Area of what only one of them shows, of all they show; below 3 px it is an edge smoothed in another way."""
+    """Return the share of the area that only one of them shows.
+
+    Differences below 3 px come from another smoothing of an edge.
+    """
     off = np.abs(theirs - ours)
     off[off < 0.1] = 0
     kept = cv2.morphologyEx((off > 0).astype(np.uint8), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))

@@ -1,7 +1,8 @@
-"""Small drawings, each of one thing that SVG can do, as text. test_resvg.py says what is checked of them.
+"""Small drawings as text, each of one feature of SVG. test_resvg.py checks them.
 
-DRAWINGS: a table of names. ROUND: names of those with arcs, which every reader splits into curves of its own.
-TOLD_OTHERWISE: the same drawing in words that resvg 2.6 knows, for what it does not read.
+DRAWINGS: the drawings by their names.
+ROUND: the names of drawings with arcs, which every reader splits into different curves.
+REPORTED_OTHERWISE: for features that resvg 2.6 does not read, an equal drawing with features that it reads.
 """
 
 XLINK = 'xmlns:xlink="http://www.w3.org/1999/xlink"'

@@ -1,6 +1,7 @@
-"""Small drawings of one thing each that changes what is seen, as text. test_shown.py says what is checked of them.
+"""Small drawings as text, each of one feature that changes the picture.
 
-Page of 200 x 200 px, black lines of 8 px with round ends and corners, no fill.
+test_shown.py checks them. The page has 200 x 200 px. Lines are black, 8 px wide, with round ends and corners,
+no fill.
 """
 
 ATTRIBUTES = (
@@ -577,7 +578,7 @@ def sheets() -> dict[str, str]:
 
 
 def copies() -> dict[str, str]:
-    """Which rules reach what `use` copies."""
+    """Return drawings that show which rules apply to copies of `use`."""
     defined = f'<defs><i/><g id="g"><path id="p" {LINE}/><path id="q" {SHAPE}/></g></defs>'
     selectors = (
         "#p|path|g path|svg path|svg > path|defs path|.here path|use path|use > g|g > path:first-child|path + path|"
@@ -601,7 +602,7 @@ TABLES = {
         *(widths, geometries, dashes, paths, references, sheets, copies),
     )
 }
-# Where Chromium does not do what SVG 2 says: auto and nothing as attributes, CSS on a nested svg, links in links.
+# Here Chromium differs from SVG 2: auto and empty attributes, CSS on a nested svg, links in links.
 CHROMIUMS_OWN = {
     *("rect ry ''", "rect ry 'auto'", "ellipse rx ''", "ellipse rx 'auto'", "pathLength ''"),
     *("requiredExtensions html", "nested a"),
@@ -609,10 +610,10 @@ CHROMIUMS_OWN = {
         "clip-path",
         "clip-path on a group",
         "overflow hidden",
-    ),  # lines are cut at their middle, across, as brushes end
+    ),  # lines are cut across at their middle, as brushes end
     *(name for name in TABLES["geometries"] if name.startswith("CSS svg")),
 }
-# Of them, what must be painted as shown and without a word: a reader that names everything has read nothing.
+# These drawings must be painted as shown and without a notice. Otherwise a reader could report everything.
 PLAIN = [
     *("vector-effect of dashes", "#p of g", "use path of g", "path + path of g"),
     "html style",

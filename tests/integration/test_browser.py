@@ -1,4 +1,4 @@
-"""The page that `preview -o FILE.html` writes, opened in Chromium, paints the predicted marks."""
+"""The page of `preview -o FILE.html` paints the predicted marks in Chromium."""
 
 import json
 import re
@@ -20,17 +20,23 @@ from brushsvg.machine.writer import whole_program
 from brushsvg.show.timeline import timeline
 
 SIZE = (1300, 860)
-COLOUR = "1b1b3a"  # of all strokes of the demo's drawing
+COLOUR = "1b1b3a"  # colour of all strokes of the demo's drawing
 
 
 class Browser:
-    """Chromium without a window, a profile of its own and no network; only messages of the page are kept."""
+    """Chromium without a window and network, in a separate profile.
+
+    Only messages of the page are kept.
+    """
 
     def __init__(self, folder):
         self.folder = folder
 
     def shown(self, page, moment: str, size=SIZE) -> tuple[np.ndarray, list[str]]:
-        """The picture (h, w, 3) at an address after #, and what the page said to the console."""
+        """Return the picture (h, w, 3) at a moment, and the page's console messages.
+
+        The moment is the text after # in the address.
+        """
         picture = self.folder / "shown.png"
         picture.unlink(missing_ok=True)
         said = self._run(page, moment, f"--screenshot={picture}", "--window-size={},{}".format(*size)).stderr
@@ -39,7 +45,7 @@ class Browser:
         return image, re.findall(r"CONSOLE.*", said)
 
     def text(self, page, moment: str) -> str:
-        """The document as it is after its script has run."""
+        """Return the document after its script has run."""
         return self._run(page, moment, "--dump-dom").stdout
 
     def _run(self, page, moment: str, *words):
@@ -76,7 +82,7 @@ def page(tmp_path_factory, drawing):
 
 @pytest.fixture(scope="module")
 def played(drawing):
-    """Work, marks and timeline of the demo's drawing."""
+    """Return work, marks and timeline of the demo's drawing."""
     work = preparation.prepare(drawing("vincent"))
     marks = prediction.predict(work, outlines=False)
     return (
@@ -87,12 +93,15 @@ def played(drawing):
 
 
 def painted(image: np.ndarray) -> np.ndarray:
-    """(h, w) share of the strokes' colour in the pixels of the sheet, the largest white thing there is."""
+    """Return the share (h, w) of the strokes' colour in the pixels of the sheet.
+
+    The sheet is the largest white area.
+    """
     white = (image == 255).all(axis=2)
     rows, columns = (np.flatnonzero(white.mean(axis=1 - axis) > 0.3) for axis in (0, 1))
     sheet = image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].astype(float)
     colour = np.array([int(COLOUR[k : k + 2], 16) for k in (4, 2, 0)])
-    # the share that explains a mixture of white and the colour best
+    # The share by which a mixture of white and the colour fits best.
     return np.clip((255 - sheet) @ (255 - colour) / ((255 - colour) ** 2).sum(), 0, 1)
 
 
@@ -108,7 +117,7 @@ def overlap(image: np.ndarray, marks, work) -> float:
 
 
 def until(marks, number: int, pose: float):
-    """What was painted when the tool came to a pose of a pass."""
+    """Return the paint up to the time when the tool reaches a pose of a pass."""
     cut = json.loads(_core.write_marks(marks))
     cut["passes"] = cut["passes"][: number + 1]
     last = cut["passes"][number]
@@ -141,7 +150,7 @@ def test_in_between_there_is_what_has_been_painted_so_far(page, browser, played,
     near = np.linalg.norm(rows.tcp_mm[part] - poses_mm[pose], axis=1)
     moment = rows.time_s[
         chapter.first_row + int(np.flatnonzero(near < 1e-6)[-1])
-    ]  # where it is twice, the second time
+    ]  # a moment that occurs twice counts the second time
     image, said = browser.shown(page, f"t={moment:.3f}&bare")
     assert said == []
     assert overlap(image, until(marks, number, pose), work) > 0.98
@@ -149,7 +158,10 @@ def test_in_between_there_is_what_has_been_painted_so_far(page, browser, played,
 
 @pytest.mark.parametrize("notch", [0.0, 0.4], ids=["convex", "notched"])
 def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch):
-    """Along a straight line there are few rows. A notched footprint is not the hull of what it sweeps."""
+    """Between rows that are far apart, the page sweeps the footprint.
+
+    A straight line has few rows. The region that a notched footprint sweeps is not a hull.
+    """
     brush = brush_file("round-6")
     for footprint in brush["footprints"]["dragged"]:
         outline = np.array(footprint["outline_mm"])
@@ -198,7 +210,7 @@ def test_words_show_the_stroke_and_the_time(page, browser):
     assert '<output id="clock">0:31.3 / 1:' in text
 
 
-# a browser without a window whose time is virtual shows one frame only
+# A browser without a window and with virtual time shows only one frame.
 FRAMES = "<script>requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 16);</script>"
 KEYS = """<script>
 const reported = [];
@@ -225,7 +237,7 @@ def test_keys_move_and_play(page, browser, played):
     assert float(clocks[3][2:]) == pytest.approx(second_s, abs=0.1)
     assert clocks[5] == f"1:{np.floor((rows.time_s[-1] - 60) * 10) / 10:04.1f}"
     assert clocks[4] == clocks[6] == clocks[7] == "0:00.0"
-    assert 0.5 < float(clocks[8][2:]) < 2  # it has played meanwhile
+    assert 0.5 < float(clocks[8][2:]) < 2  # the animation has played in the meantime
     assert [word.split(":")[0] for word in words] == [first] * 3 + [second, first, last] + [first] * 3
 
 
@@ -251,7 +263,10 @@ def test_a_job_of_hours_has_a_clock_with_hours(tmp_path, browser):
 
 
 def test_names_of_stations_stay_on_a_narrow_page(tmp_path, browser):
-    """They were cut at its edge, and hidden by the next vessel."""
+    """Names of stations are visible on a narrow page.
+
+    They were once cut at its edge, and hidden by the next vessel.
+    """
     cell = (SHIPPED / "linuxcnc-3axis.toml").read_text()
     station = '[[stations]]\nname = "{}"\nplace_mm = [-15, {}]\nby_hand = true\n'
     pictures = []

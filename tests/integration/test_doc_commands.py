@@ -1,6 +1,8 @@
-"""Commands of docs run as they stand, by a shell, each block in a folder of its own. What a block speaks of
-and does not make itself is made for it when it is first named: photographs by the camera of the package, of paint by
-tests/laws."""
+"""The commands of the docs run as they are written.
+
+A shell runs each block in a separate folder. Files that a block uses and does not make itself are made when
+it first names them. The camera of the package takes the photographs, and tests/laws paints.
+"""
 
 import json
 import os
@@ -41,7 +43,7 @@ chart_photo = cache(photo_of)
 
 
 def to_run() -> list[Block]:
-    """Blocks of pages whose commands are held here, in the pages' order."""
+    """Return the blocks whose commands are tested here, in the pages' order."""
     pages = [page for page in PAGES if page not in FOLLOWED and name_of(page) not in ELSEWHERE]
     found = [block for page in pages for block in blocks(page)]
     found = [block for block in found if block.kind == "commands"]
@@ -51,7 +53,7 @@ def to_run() -> list[Block]:
 
 
 class Desk:
-    """The folder in which a block is typed."""
+    """The folder in which a user types a block."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -67,7 +69,7 @@ class Desk:
             self.env.pop(name, None)
 
     def type(self, line: str) -> None:
-        """Run by a shell; it must say that all went well."""
+        """Run a line in a shell; it must succeed."""
         done = subprocess.run(
             ["bash", "-c", line],
             cwd=self.folder,
@@ -79,7 +81,7 @@ class Desk:
         assert done.returncode == 0, (line, done.stderr)
 
     def make(self, name: str) -> None:
-        """What a command speaks of, unless it is there."""
+        """Make a file that a command uses, unless it exists."""
         path = self.folder / name
         if name not in MADE or any(self.folder.glob(name)):
             return
@@ -94,12 +96,15 @@ class Desk:
         assert any(self.folder.glob(name)), name
 
     def make_all(self, line: str, *, replace: bool = True) -> None:
-        """What the commands of a line read; with replace, what they write is removed first."""
+        """Make the files that the commands of a line read.
+
+        With replace, the files that they write are removed first.
+        """
         for command in re.split(r" \| ", line):
             words = shlex.split(re.sub(" > .*", "", command), comments=True)
             if words and words[0] == "brushsvg":
                 written = _written(words[1:])
-                # commands replace no file that might be somebody's own
+                # Commands do not replace a file that may belong to the user.
                 for name in filter(None, written if replace else ()):
                     if (self.folder / name).is_file():
                         (self.folder / name).unlink()
@@ -114,7 +119,7 @@ class Desk:
 
 
 def _written(words: list[str]) -> set[str | None]:
-    """The files that a command writes."""
+    """Return the files that a command writes."""
     args = parse(words)
     names = ["output", "picture", "marks_picture", "page", "report", "corrected_cell"]
     names += ["chart"] if words[0] == "chart" else []
@@ -122,7 +127,10 @@ def _written(words: list[str]) -> set[str | None]:
 
 
 def _photographing(photo: str, words: list[str]) -> str:
-    """The command that takes a photograph of the job which a command reads from it, painted as that job is."""
+    """Return the command that takes a photograph for a command.
+
+    The photograph shows the painted job that this command reads.
+    """
     flags = dict(pair for pair in pairwise(words) if pair[0].startswith("--"))
     job = flags.get("--plan") or next(word for word in words[2:] if word.endswith((".svg", ".json")))
     painted = {"--brush": flags.get("--brush") or flags.get("--prior")}

@@ -1,8 +1,9 @@
-"""Nothing of a DXF is misread without a word: 450 small drawings of one feature each, as ezdxf's own drawing add-on
-shows them, held against what we would paint.
+"""No part of a DXF is misread without a notice.
 
-Where they differ by more than 3 % of the area, something must have been reported about it, and so of what the add-on
-does not show either. Where the add-on itself is simpler than the DXF reference, dxf_features.OWN says in what.
+450 small drawings have one feature each. ezdxf's own drawing add-on shows them, and the test compares the
+result with our painting. If they differ by more than 3 % of the area, brushsvg must report the reason. It
+must also report parts that the add-on does not show. dxf_features.OWN lists where the add-on itself is
+simpler than the DXF reference.
 """
 
 import platform
@@ -17,20 +18,23 @@ from brushsvg.read.dxf.ezdxf_import import ezdxf
 
 import ezdxf.addons.drawing.frontend  # isort: skip  after the library
 
-LEAST = 0.03  # of the area; round ends of wide lines take up to 0.02
+LEAST = 0.03  # share of the area; round ends of wide lines use up to 0.02
 FEATURES = {name: draw for table in dxf_features.TABLES.values() for name, draw in table.items()}
 
 
 @pytest.fixture(scope="module", autouse=True)
 def fonts(tmp_path_factory):
-    """Letters cut in half, so that mirrored ones are other ones, in the only folder where fonts are looked for."""
+    """Put fonts into the only folder where ezdxf searches for fonts.
+
+    Their letters are cut in half, so that a mirrored letter differs.
+    """
     folder = tmp_path_factory.mktemp("fonts")
     save_font(folder / "triangles.ttf", "Triangles", slanted=True)
     save_font(folder / "other.ttf", "Other", 900, slanted=True)
     known = ezdxf.fonts.fonts.font_manager
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(ezdxf.fonts.font_manager.FONT_DIRECTORIES, platform.system(), [str(folder)])
-        # one way to set MTEXT: plain text would be set in another one, whose lines stand elsewhere
+        # Use one layout for all MTEXT. Plain text would get another layout, with lines at other places.
         patch.setattr(ezdxf.addons.drawing.frontend, "is_complex_mtext", lambda mtext: True)
         known.build([str(folder)], support_dirs=False)
         yield
@@ -45,7 +49,7 @@ def written(draw) -> bytes:
 
 
 def off(draw):
-    """How much differs, and what is reported."""
+    """Return the share of the area that differs, and the notices."""
     data = written(draw)
     ours, reported = dxf_shown.painted(data)
     return dxf_shown.difference(dxf_shown.shown(data), ours), reported

@@ -1,4 +1,7 @@
-"""Drawings made to hang a reader or to fill the memory: read or refused within bounded address space and time."""
+"""Hostile drawings are read or refused within bounded address space and time.
+
+They are made to hang a reader or to fill the memory.
+"""
 
 import math
 import resource
@@ -26,7 +29,7 @@ def cycle():
     return f'{LINE}<g id="a"><use id="u" href="#b"/></g><defs><g id="b"><use href="#a"/></g></defs>'
 
 
-# name: (what the drawing holds, exit status of import, what is reported)
+# {name: (content of the drawing, exit status of import, notice)}
 CASES = {
     "100 MB of path data": (
         lambda: f'<path d="M30 30{"l1 1-1-1" * 12_500_000}"/>',
@@ -79,14 +82,14 @@ def ring(points):
 
 
 def around(count, radius, turns=1):
-    """Points about the sheet's middle; radius: of the number of a point."""
+    """Return points around the sheet's middle; radius is by number."""
     for k in range(count):
         angle = 2 * math.pi * turns * k / count
         yield 50 + radius(k) * math.cos(angle), 30 + radius(k) * math.sin(angle)
 
 
 def boxes(count, side):
-    """Little squares all over the sheet."""
+    """Return small squares all over the sheet."""
     across = math.isqrt(count)
     return "".join(
         f"M{5 + 90 * (k % across) / across:.4f} {3 + 54 * (k // across) / across:.4f}h{side}v{side}h-{side}Z"
@@ -117,7 +120,7 @@ def ribbon(count):
 
 
 BAR = "M10 20H60V26H10Z"
-# the same of outlines that are filled; what is left out is named, and the picture has the rest
+# Filled outlines. Parts that are left out are named, and the picture has the rest.
 OUTLINES = {
     "a star that crosses itself 4000 times": (
         lambda: filled(ring(around(91, lambda k: 25, 45)), "evenodd"),
@@ -194,7 +197,10 @@ def test_read_or_refused_within_bounds(name, tmp_path):
 
 @sample("edges", [1500, 6000, 100_000], keep=1)
 def test_rough_discs_are_filled_within_bounds(edges, tmp_path):
-    """A line moved inward of an outline full of teeth crosses itself without end."""
+    """Rough discs are filled within bounds.
+
+    If an outline has many teeth, a line moved inward of it crosses itself very often.
+    """
     body = filled(ring(around(edges, lambda k: 24 + (k * 7919 % 1000) / 1000 * (edges < 1e5))))
     (tmp_path / "rough.svg").write_text(f"{HEAD}{body}</svg>")
     words = ("--messages", "json", "convert", "rough.svg", "-o", "rough.json", "--wide", "passes")

@@ -1,4 +1,7 @@
-"""Convert to strokes in the real Inkscape: filled letters become lines with a width that Inkscape draws as it was."""
+"""Convert to strokes works in the real Inkscape.
+
+Filled letters become lines with a width, and Inkscape draws these lines like the letters.
+"""
 
 import json
 import re
@@ -52,7 +55,7 @@ def lines_of(text: str) -> list:
 
 
 def redrawn(inkscape, file: Path, out: Path) -> Path:
-    """The file with its path effects drawn anew by Inkscape, which it does when a path changes."""
+    """Let Inkscape redraw path effects, as it does when a path changes."""
     ids = ",".join(node.get("id") for node in lines_of(file.read_text()))
     moves = "transform-translate:1,0;transform-translate:-1,0"
     inkscape(f"--actions=select-by-id:{ids};{moves};export-filename:{out};export-do", file)
@@ -84,13 +87,16 @@ def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, ink
 
 
 def assert_painted_alike(letters: Path, strokes: Path) -> None:
-    """The same strokes with the same marks; poses may differ within the tolerance of the mark. A PowerStroke has no
-    slanted cap: where a letter ends in a slanted cut, as an S does, its stroke ends round, 0.13 mm from it."""
+    """Check that both files have equal strokes with equal marks.
+
+    Poses may differ within the tolerance of the mark. A PowerStroke has no slanted cap. At a slanted end of a
+    letter, as in an S, its stroke ends round, 0.13 mm from the cut.
+    """
     plans, marks = [], []
     for drawn in (letters, strokes):
         for command, found in (("convert", plans), ("preview", marks)):
             out = drawn.with_suffix(f".{command}.json")
-            # the search for filled shapes adds strokes to letters, and none to lines
+            # the search for filled shapes adds strokes to letters, but not to lines
             brushsvg(command, drawn, "-o", out, "--corners", "turn", cwd=drawn.parent, status=0)
             found.append(json.loads(out.read_text())["passes"])
     assert len(plans[0]) == len(plans[1])
@@ -144,7 +150,7 @@ def test_a_selection_alone_is_converted(plugin, tmp_path):
 
 
 def test_widths_can_be_edited(plugin, inkscape, tmp_path):
-    """What Inkscape makes of a PowerStroke that it moved is read back by us as the same stroke, moved."""
+    """A PowerStroke that Inkscape has moved is read back as the moved stroke."""
     source = tmp_path / "letters.svg"
     source.write_text(f"{OPEN}{letters('S', 30)}</svg>")
     done = converted(plugin, source, "")
@@ -191,7 +197,10 @@ def test_copies_and_drawings_within_the_drawing(plugin, inkscape, tmp_path):
 
 
 def test_converted_again_next_to_text_lines_stay_lines(plugin, tmp_path):
-    """Inkscape draws text as paths for us, and with it every PowerStroke as an outline."""
+    """A second conversion next to text keeps lines.
+
+    Inkscape draws text as paths for us. It then also draws every PowerStroke as an outline.
+    """
     source = tmp_path / "letters.svg"
     source.write_text(drawing("mm"))
     once = converted(plugin, source)

@@ -1,5 +1,8 @@
-"""KRL as a grammar of other people parses it: a file .g4, or a folder of them, that BRUSHSVG_KRL_GRAMMAR names, such as
-kuka/krl.g4 of antlr/grammars-v4, which is under the LGPL and so none of ours. Parsers are made of it by antlr-ng."""
+"""A foreign grammar parses our programs in KRL.
+
+BRUSHSVG_KRL_GRAMMAR names a file .g4 or a folder of them, such as kuka/krl.g4 of antlr/grammars-v4. This
+grammar is under the LGPL, so it is not part of the project. antlr-ng makes parsers from it.
+"""
 
 import importlib
 import json
@@ -40,7 +43,7 @@ place_mm = [-15.0, 30.0]
 by_hand = true
 colours = ["#ff0000"]
 """
-BROKEN = (  # what no grammar of KRL takes
+BROKEN = (  # no grammar of KRL accepts these
     ("DEF brushsvg()", "DEF ()"),
     ("DECL E6POS here", "DECL E6POS"),
     ("BAS(#INITMOV, 0)", "BAS(#INITMOV, 0"),
@@ -60,7 +63,10 @@ BROKEN = (  # what no grammar of KRL takes
 
 @pytest.fixture(scope="module")
 def errors_of(npm, tmp_path_factory):
-    """A function: the text of a program -> what lexer and parser say of it. Its first rule is what a file is."""
+    """Return a function: the text of a program -> errors of lexer and parser.
+
+    The first rule of the grammar describes a file.
+    """
     antlr4 = pytest.importorskip(
         "antlr4",
         reason="antlr4-python3-runtime is missing: pip install -r tests/integration/requirements.txt",
@@ -92,7 +98,8 @@ def errors_of(npm, tmp_path_factory):
             each.removeErrorListeners()
             each.addErrorListener(reported)
         first = parser.ruleNames[0]
-        getattr(parses, first if hasattr(parses, first) else f"{first}_")()  # where Python has that word
+        # the name has a _ if it is a word of Python
+        getattr(parses, first if hasattr(parses, first) else f"{first}_")()
         return reported.reported
 
     yield errors
@@ -100,7 +107,7 @@ def errors_of(npm, tmp_path_factory):
 
 
 def page(strokes: int) -> dict:
-    """Waves side by side."""
+    """Return waves next to each other."""
     t = np.linspace(0, 1, 20)
     passes = []
     for number in range(strokes):

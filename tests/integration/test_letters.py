@@ -1,6 +1,6 @@
-"""Filled letters become brush strokes: how well on lettering that others drew, as strokes and as paint.
+"""Filled letters of other people become good brush strokes and paint.
 
-The figures below each assertion are what was reached when it was written; -s prints today's.
+The figure after each assertion is the result when the test was written. -s prints today's results.
 """
 
 import string
@@ -30,7 +30,7 @@ from brushsvg.strokes.wide_shapes import within_reach
 
 SEED = 20260
 CHARACTERS = 300
-PAINTED = 40  # of them
+PAINTED = 40  # number of painted characters
 STROKES_OF = dict(
     A={3}, B={2, 3}, C={1}, D={2}, E={3, 4}, F={2, 3}, G={1, 2}, H={3}, I={1, 2, 3}, J={1, 2}, K={2, 3}, L={1, 2},
     M={2, 3, 4}, N={2, 3}, O={1}, P={2}, Q={2}, R={2, 3}, S={1}, T={2}, U={1}, V={1, 2}, W={2, 3, 4}, X={2},
@@ -51,7 +51,7 @@ def characters(lettering):
 
 @pytest.fixture(scope="session")
 def found(characters):
-    """(strokes found, shape, middle line given) of every stroke of every character."""
+    """Return (found strokes, shape, given middle line) of each stroke of a character."""
     rows = []
     for _, each in characters:
         for path_data, middle in zip(each["strokes"], each["medians"], strict=True):
@@ -84,7 +84,11 @@ def test_it_runs_the_way_one_writes(found):
 
 
 def test_a_character_drawn_as_one_shape_is_painted_in_its_order(characters):
-    """Each line found belongs to the stroke given that it follows; pairs of lines of different strokes."""
+    """A character drawn as one shape is painted in its order.
+
+    Each found line belongs to the given stroke that it follows. The test counts pairs of lines of different
+    strokes.
+    """
     right = pairs = 0
     for _, each in characters:
         subpaths = [s for path_data in each["strokes"] for s in outline("s", path_data).subpaths]
@@ -100,7 +104,7 @@ def test_a_character_drawn_as_one_shape_is_painted_in_its_order(characters):
 
 
 def follows(line, given) -> int:
-    """Which of the given lines a line is nearest to."""
+    """Return the index of the given line that a line is nearest to."""
     off = [np.hypot(*(line[:, None] - each[None]).transpose(2, 0, 1)).min(axis=1).mean() for each in given]
     return int(np.argmin(off))
 
@@ -128,7 +132,7 @@ def test_capitals_of_a_sans_have_the_strokes_one_writes(lettering):
 
 
 def painted(design, brush, method="closed", lag_mm=None, wide="clamp") -> float:
-    """Overlap of the predicted paint with the target, on the whole drawing."""
+    """Return the overlap of predicted paint and target of the whole drawing."""
     made, target, _ = within_reach(strokes(design)[0], brush, wide)
     plan = _core.compensate(made, brush, design.sheet_mm, method, 0.05, lag_mm).plan
     marks = _core.simulate(plan, brush)
@@ -138,7 +142,10 @@ def painted(design, brush, method="closed", lag_mm=None, wide="clamp") -> float:
 
 
 def compared(designs, brush) -> dict[str, float]:
-    """Mean overlaps without compensation, with the one best constant lag, and in closed form."""
+    """Return mean overlaps of three compensations.
+
+    These are none, the best constant lag, and the closed form.
+    """
     lags = np.arange(2.0, 10.0, 1.0).tolist()
     constant = {lag: np.mean([painted(each, brush, "constant", lag) for each in designs]) for lag in lags}
     best = max(constant, key=constant.get)
@@ -168,7 +175,10 @@ TEXT = "ABEGKMQRSaegkmnrst"
 
 @pytest.mark.parametrize(("kind", "em_mm"), [("sans", 100.0), ("script", 60.0)])
 def test_fonts_painted(lettering, kind, em_mm):
-    """At 100 mm the script has strokes of 14 mm, where round-6 paints 8.4: see the next test."""
+    """Fonts are painted well.
+
+    At 100 mm, the script has strokes of 14 mm, but round-6 paints at most 8.4 mm: see the next test.
+    """
     brush = find_brush("round-6")
     overlaps = compared([letter(lettering.font(kind), text, em_mm) for text in TEXT], brush)
     print(
@@ -183,7 +193,11 @@ LIMBS = "AEFRTVdefghijklmnrtuyz147"
 
 @pytest.mark.parametrize(("kind", "weight", "em_mm"), [("serif", 700, 55.0), ("script", 400, 60.0)])
 def test_no_limb_is_lost(lettering, kind, weight, em_mm):
-    """Connected pieces of a letter that neither paint nor a disc of any stroke reaches, beyond 3 % of it."""
+    """No limb of a letter is lost.
+
+    A lost limb is a connected piece of more than 3 % of the letter that neither paint nor a disc of any
+    stroke reaches.
+    """
     import shapely
 
     from brushsvg.strokes.swept_areas import region, unpainted_area
@@ -204,7 +218,10 @@ def test_no_limb_is_lost(lettering, kind, weight, em_mm):
 
 
 def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
-    """As drawings are painted: the search paints the sides of strokes, and corners."""
+    """Strokes wider than the brush are painted in several sweeps.
+
+    As for drawings, the search paints the sides of strokes and their corners.
+    """
     brush = find_brush("round-6")
 
     def overlap(design, wide: str) -> float:

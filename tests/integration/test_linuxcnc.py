@@ -1,4 +1,4 @@
-"""What LinuxCNC makes of our programs: the plan, pose by pose, and never too fast or too low."""
+"""LinuxCNC runs our programs pose by pose as planned, never too fast or too low."""
 
 import json
 import math
@@ -34,14 +34,17 @@ BRUSHES = {"rigid pen": "rigid"}
 
 @dataclass
 class Section:
-    """What one stroke's part of a program does: rapids and feeds in order, as LinuxCNC understands them."""
+    """A stroke's section: rapids and feeds in order, as LinuxCNC reads them."""
 
     stroke: str
     events: list = field(default_factory=list)
 
 
 def interpreted(program, tmp_path):
-    """(events before the first stroke, sections); AssertionError with LinuxCNC's words if it refuses."""
+    """Return (events before the first stroke, sections).
+
+    If LinuxCNC refuses the program, raise AssertionError with its message.
+    """
     parameters = tmp_path / "linuxcnc.var"
     parameters.touch()
     done = subprocess.run(
@@ -63,7 +66,10 @@ def in_sections(events):
 
 
 def canonical(program, tmp_path):
-    """The same from the canonical commands that the stand-alone interpreter rs274 prints, to 1e-4 mm."""
+    """Return events and sections from the canonical commands of rs274, to 1e-4 mm.
+
+    rs274 is LinuxCNC's stand-alone interpreter.
+    """
     done = subprocess.run(["rs274", "-g", program], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stdout[-500:] + done.stderr
     events, feed = [], 0.0
@@ -89,7 +95,11 @@ def canonical(program, tmp_path):
 
 
 def check_points(before, sections, passes):
-    """Per stroke: over its start, down, the plan's poses, up where it ends. Nothing else, in this order."""
+    """Check the order of each stroke's moves.
+
+    The tool goes over the stroke's start, down, through the plan's poses, and up at its end. It does nothing
+    else.
+    """
     (first,) = before
     safe = first[3]
     assert first[0] == "rapid"
@@ -120,7 +130,10 @@ def check_points(before, sections, passes):
 
 
 def check_circle(event, poses, centre, turn):
-    """The circle that is run passes all of the arc's poses, in the arc's direction, and goes once round at most."""
+    """Check that a circle passes through all poses of its arc.
+
+    It has the arc's direction and makes at most one turn.
+    """
     *_, x, y, turns = event
     assert (x, y) == pytest.approx(centre, abs=NEAR_MM)
     assert turns == turn, "less than a whole turn, in the arc's direction"
@@ -131,7 +144,10 @@ def check_circle(event, poses, centre, turn):
 
 
 def check_rapids(before, sections):
-    """A rapid ends at safe height, and moves sideways only when it starts there; none begins in the paper."""
+    """Check that rapids are safe.
+
+    A rapid ends at safe height, and moves sideways only if it starts there. None begins in the paper.
+    """
     here = [0.0, 0.0, before[0][3]]
     safe = before[0][3]
     for event in (event for section in sections for event in section.events):
@@ -145,7 +161,10 @@ def check_rapids(before, sections):
 
 
 def check_feeds(sections, passes, limit_mm_s):
-    """No feed faster than the brush endures; each stroke painted at its own speed."""
+    """Check that no feed is faster than the brush allows.
+
+    Each stroke is painted at its own speed.
+    """
     for section, target in zip(sections, passes, strict=True):
         feeds = [event[4] for event in section.events if event[0] != "rapid"]
         assert min(feeds) > 0
@@ -188,7 +207,10 @@ def test_the_stand_alone_interpreter_agrees(made, tmp_path):
 
 @pytest.mark.parametrize("way", ["robot", "constant lag"])
 def test_axes_with_backlash_go_where_others_go(way, drawing, tmp_path):
-    """By places of the stand-alone interpreter, run by the judge's axes."""
+    """Axes with backlash paint where other axes paint.
+
+    The places come from the stand-alone interpreter, and the judge's axes run them.
+    """
     source, flags = WAYS[way]
     cell = find_cell("linuxcnc-3axis")
     backlash_mm = (0.44, 0.28)
@@ -209,7 +231,7 @@ def test_axes_with_backlash_go_where_others_go(way, drawing, tmp_path):
 
 
 def legs_of(events):
-    """Of the judge's, from over the sheet's corner on."""
+    """Return the judge's legs of the events, starting over the sheet's corner."""
     here, legs = (0.0, 0.0, 50.0), []
     for number, (kind, x, y, z, *more) in enumerate(events):
         centre, turn = (tuple(more[1:3]), int(np.sign(more[3]))) if kind == "arc" else (None, 0)
@@ -241,7 +263,7 @@ def simulated(passes, brush):
 
 
 def run_poses(section):
-    """What the machine passes on the paper, circles in small steps."""
+    """Return the machine's places on the paper, with circles in small steps."""
     poses = []
     for kind, x, y, z, *rest in section.events:
         if kind == "arc":
@@ -252,7 +274,7 @@ def run_poses(section):
 
 
 def round_to(start, end, centre, turns):
-    """Poses in small steps between two on a circle."""
+    """Return poses in small steps between two poses on a circle."""
     first, last = (math.atan2(each[1] - centre[1], each[0] - centre[0]) for each in (start, end))
     sweep = (last - first) * turns % (2 * math.pi) * turns
     angle = first + sweep * np.linspace(0, 1, 500)[1:-1]
@@ -270,7 +292,11 @@ def test_the_marks_are_the_plans(way, made, tmp_path):
 
 
 def planned_pass(each):
-    """In the same small steps: edges of thin marks are requested more exactly than the simulator's tolerance."""
+    """Return a planned pass in small steps.
+
+    The edges of thin marks are checked more exactly than the simulator's tolerance, so both passes need equal
+    steps.
+    """
     poses, rows = each["poses_mm"], []
     circle = {k: arc for arc in each.get("arcs", ()) for k in range(arc[0] + 1, arc[1] + 1)}
     for k, pose in enumerate(poses):
@@ -285,14 +311,17 @@ def test_text_is_plain(made):
     data = (made / "program.ngc").read_bytes()
     assert data.isascii()
     for line in data.decode("ascii").splitlines():
-        assert len(line) < 250  # LinuxCNC reads 255
+        assert len(line) < 250  # LinuxCNC reads at most 255 characters
         code = re.sub(r"\(.*\)", "", line)
         assert re.fullmatch(r"([A-Z]-?\d+(\.\d+)? ?)*", code), line
         assert not re.search(r"-0\.0*(?!\d)", code), line
 
 
 def test_names_in_a_drawing_are_not_orders(tmp_path):
-    """LinuxCNC acts on some comments, and a bracket or line end would let a name out of its comment."""
+    """Names in a drawing cannot become commands.
+
+    LinuxCNC acts on some comments. A bracket or line end could end the comment of a name.
+    """
     title = "%;M2) G0 Z-50 (MSG, hi) (PRINT,#1)&#10;G0 Z-5 " + "\u00e9\u66f8x" * 100
     name = "(o100 call) M30&#10;% (debug,#5)"
     (tmp_path / "x.svg").write_text(
@@ -333,7 +362,10 @@ def program_for(change, converted):
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_linuxcnc_refuses_a_broken_program(fault, converted, tmp_path):
-    """So that the acceptance above says something."""
+    """LinuxCNC refuses a broken program.
+
+    So an accepted program in the test above means something.
+    """
     text = (program_for(fault, converted) / "program.ngc").read_text(encoding="ascii")
     broken = FAULTS[fault](text)
     assert broken != text
@@ -345,7 +377,7 @@ def test_linuxcnc_refuses_a_broken_program(fault, converted, tmp_path):
 
 
 def painting_line(lines):
-    """The number of a pose in the middle of the program."""
+    """Return the line number of a pose in the middle of the program."""
     poses = [k for k, line in enumerate(lines) if re.search(r"X.* Z-\d", line)]
     return poses[len(poses) // 2]
 
@@ -369,7 +401,10 @@ def strokes_swapped(text):
 
 
 def without_circles(text):
-    """Or LinuxCNC would refuse those of another radius itself."""
+    """Return the program with lines instead of circles.
+
+    LinuxCNC itself would refuse circles whose ends have different radii.
+    """
     return re.sub(r"(?m)^G[23] (.*) I\S+ J\S+$", r"G1 \1", text)
 
 
@@ -389,7 +424,7 @@ TAMPERED = {
 
 @pytest.mark.parametrize("change", TAMPERED)
 def test_the_checks_see_a_wrong_program(change, converted, tmp_path):
-    """So that what LinuxCNC accepts and is yet wrong is found."""
+    """The checks find a wrong program that LinuxCNC accepts."""
     folder = program_for(change, converted)
     edit, check = TAMPERED[change]
     text = (folder / "program.ngc").read_text(encoding="ascii")

@@ -1,6 +1,7 @@
-"""Damaged programs: what `brushsvg check` allows and refuses, held against a judge that shares no code with it.
+"""`brushsvg check` agrees with the judge about damaged programs.
 
-A sample, a thousand programs a dialect, or 300; benchmarks/mutations.py runs a thousand for each of the ten jobs.
+The judge shares no code with check. The sample has a thousand programs per dialect, or 300;
+benchmarks/mutations.py runs a thousand for each of the ten jobs.
 """
 
 import re
@@ -17,8 +18,9 @@ from sampling import sample
 
 A_JOB = 100
 SEED = 1
-SEEDS = {"urscript": 2}  # by 1, 5 of 248 harmless ones are refused, one more than 2 in 100; of 10,000 fewer
-WHOLE_NUMBERS = ("ebb", "hpgl")  # languages that know no others
+# With seed 1, check refuses 5 of 248 harmless programs, one more than 2 in 100. Of 10,000 it refuses fewer.
+SEEDS = {"urscript": 2}
+WHOLE_NUMBERS = ("ebb", "hpgl")  # languages with only whole numbers
 EVEN_FOR_RS274 = ("a curve", "circles", "corners", "leaning", "paint")
 
 
@@ -46,7 +48,8 @@ def test_check_separates_dangerous_from_harmless(dialect, tmp_path, capsys):
     holds = (
         50 * len(refused) < figures.of(dialect, "harmless"),
         4 * figures.of(dialect, "neither") <= figures.of(dialect),
-        figures.of(dialect, "harmless") > least < figures.of(dialect, "dangerous"),  # both are tried
+        # both kinds are in the sample
+        figures.of(dialect, "harmless") > least < figures.of(dialect, "dangerous"),
     )
     if dialect == "ebb" and not all(holds):
         pytest.xfail(
@@ -57,7 +60,10 @@ def test_check_separates_dangerous_from_harmless(dialect, tmp_path, capsys):
 
 @sample("dialect", [name for name in CELLS if name not in LIKE_GRBL], keep=3)
 def test_the_judge_separates_them(dialect, tmp_path):
-    """What every kind of damage may be, so that the table above says something."""
+    """The judge separates dangerous and harmless damage of every kind.
+
+    Otherwise the table above would mean nothing.
+    """
     whole = made("two lines", dialect, tmp_path).whole
     assert judged(whole.text, whole) == ("harmless", "")
     seen = {name: set() for name in DAMAGES}
@@ -74,7 +80,7 @@ def test_the_judge_separates_them(dialect, tmp_path):
 
 
 def test_a_retract_of_a_hundred_metres_is_judged_without_millions_of_samples(tmp_path, monkeypatch):
-    """It took twenty gigabytes."""
+    """A retract of a hundred metres needs few samples; it once used twenty gigabytes."""
     whole = made("corners", "linuxcnc", tmp_path).whole
     most = 0
 
@@ -92,7 +98,11 @@ def test_a_retract_of_a_hundred_metres_is_judged_without_millions_of_samples(tmp
 
 
 def test_what_shifts_the_next_program_is_not_harmless(tmp_path):
-    """G54 may be another system than the one that holds; G92 and, where no M2 puts it back, G91 stay behind."""
+    """A setting that shifts the next program is not harmless.
+
+    G54 may be a different system from the active one. G92 stays after the program, and so does G91 if no M2
+    resets it.
+    """
     for dialect in ("linuxcnc", "grbl", "grbl-servo"):
         whole = made("two lines", dialect, tmp_path).whole
         first, _, rest = whole.text.partition("\n\n")
@@ -107,7 +117,7 @@ RS274_SILENT = re.compile("compensation|mode|%|return|places|system|length|M2|le
 
 
 def rs274(text, folder):
-    """(refused, legs) as LinuxCNC's own interpreter prints them."""
+    """Return (refused, legs) as LinuxCNC's own interpreter prints them."""
     (folder / "p.ngc").write_bytes(text.encode("latin-1"))
     (folder / "rs274ngc.var").touch()
     done = subprocess.run(
@@ -131,13 +141,13 @@ def rs274(text, folder):
 
 @pytest.mark.parametrize("name", EVEN_FOR_RS274)
 def test_the_judge_reads_as_linuxcnc_does(name, tmp_path):
-    """Whole and damaged programs: the same moves, and the same ones refused."""
+    """The judge and LinuxCNC agree on moves and refusals, also for damaged programs."""
     whole = made(name, "linuxcnc", tmp_path).whole
     compared = 0
     for damage, text in [("", whole.text), *damaged(whole.text, "linuxcnc", 60, 77)]:
         run = whole.job.interpret(text)
         if damage in ("mode", "cut off", "acting comment") or any(map(RS274_SILENT.search, run.acts)):
-            continue  # what the judge warns of, LinuxCNC would do
+            continue  # LinuxCNC would execute an action that the judge reports
         if "G21" not in text or not re.search("(?m)^G0 Z", text):
             continue
         refused, legs = rs274(text, tmp_path)
@@ -146,7 +156,7 @@ def test_the_judge_reads_as_linuxcnc_does(name, tmp_path):
         if not refused:
             assert len(legs) == len(ours)
         compared += 1
-        known = [False] * 3  # where the tool was before the program, nobody knows
+        known = [False] * 3  # nobody knows where the tool is before the program
         for leg, theirs in zip(ours, legs, strict=False):
             assert leg.kind == theirs[0]
             known = [

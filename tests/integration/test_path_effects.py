@@ -1,7 +1,8 @@
-"""Spiro, BSpline, mirrors and PowerStroke next to them: what Inkscape draws and saves, and what we paint of its file.
+"""Path effects are painted as Inkscape draws them.
 
-Each drawing is changed and saved by Inkscape, so that it computes the effects itself; then its picture of the saved
-file is held against what we read of the same file.
+The effects are Spiro, BSpline, mirrors and PowerStroke. Inkscape changes and saves each drawing, so it
+computes the effects itself. The test compares Inkscape's picture of the saved file with our reading of this
+file.
 """
 
 import cv2
@@ -13,8 +14,8 @@ from shapely.ops import polygonize
 from brushsvg.read.svg import read_svg
 
 PX_PER_MM = 10
-FINER = 4  # of each pixel, for its edges
-LEAST = 0.015  # of the area of both: the pixels at the edges
+FINER = 4  # samples along each side of a pixel, for its edges
+LEAST = 0.015  # share of the area of both, for the pixels at the edges
 EFFECTS = {
     "spiro": 'effect="spiro" lpeversion="1"',
     "bspline": 'effect="bspline" lpeversion="1.3" weight="33.333333" steps="2" helper_size="0" uniform="false" '
@@ -51,12 +52,15 @@ def source(kinds, stroked):
 
 @pytest.fixture(scope="module")
 def saved(inkscape, tmp_path_factory):
-    """A table of names: the file that Inkscape wrote after it had moved the line, and its darkness (h, w) there."""
+    """Return {name: (the file, its darkness (h, w))}.
+
+    Inkscape wrote the file after it had moved the line.
+    """
     folder, found = tmp_path_factory.mktemp("effects"), {}
     for number, (name, (kinds, stroked)) in enumerate(DRAWN.items()):
         given, out = folder / f"{number}.svg", folder / f"{number}-saved.svg"
         given.write_text(source(kinds, stroked), encoding="utf-8")
-        # an effect is drawn again only when its path changes
+        # Inkscape draws an effect again only if its path changes.
         inkscape(f"--actions=select-by-id:p;transform-translate:3,4;export-filename:{out};export-do", given)
         alpha = cv2.imread(str(inkscape.paint(out, PX_PER_MM)), cv2.IMREAD_UNCHANGED)[..., 3]
         found[name] = out.read_bytes(), alpha / 255
@@ -64,7 +68,7 @@ def saved(inkscape, tmp_path_factory):
 
 
 def painted(design):
-    """In Inkscape's pixels."""
+    """Return the darkness of our paint in Inkscape's pixels."""
     width, height = np.round(np.array(design.sheet_mm) * PX_PER_MM * FINER).astype(int)
     image = np.zeros((height, width), np.uint8)
     for mark in (mark for element in design.elements for mark in marks(element)):
@@ -77,7 +81,10 @@ def painted(design):
 
 
 def marks(element):
-    """Polygons that an element of one width, or a shape filled nonzero, is painted as."""
+    """Return the painted polygons of an element.
+
+    It has one width, or is a shape filled nonzero.
+    """
     lines = [points(subpath.cubics) for subpath in element.subpaths]
     if not element.fill_rule:
         return [shapely.LineString(line).buffer(element.stroke_width_mm / 2, 32) for line in lines]
@@ -94,7 +101,7 @@ def points(cubics):
 
 
 def turns(lines, place) -> int:
-    """How often all lines together go round a place."""
+    """Return how often all lines together go around a place."""
     count = 0
     for line in lines:
         line = np.vstack([line, line[:1]]) - [place.x, place.y]

@@ -1,9 +1,11 @@
-"""pyright, strict, over all Python that README, docs, examples, notebooks and the article's figures show, and over
-every public name with its members: no error. Mistakes that a user could make in them are found.
+"""pyright, strict, finds no error in shown Python code and in public names.
 
-What is not checked, and why: matplotlib's functions take keywords without types, so members of which a part is unknown
-pass in files that draw (those of brushsvg are held whole by every_name.py); svgpathtools has no types at all; a cell of
-a notebook may end in an expression, which is shown.
+The code is in README, docs, examples, notebooks and the article's figures. Every public name is checked with
+its members. pyright also finds mistakes that a user could make in this code.
+
+Some parts are not checked. matplotlib's functions have keywords without types, so partly unknown members pass
+in files that draw. every_name.py checks all members of brushsvg. svgpathtools has no types. A cell of a
+notebook may end in an expression, which is shown.
 """
 
 import inspect
@@ -23,8 +25,8 @@ import brushsvg
 PACKAGES = {"pyright": "1.1.414"}
 PACKAGE = REPOSITORY / "python" / "brushsvg"
 FIGURES = REPOSITORY / "examples" / "article" / "figures"
-OTHERS = "machines/ebb.md", "machines/ur.md"  # programs that import no brushsvg
-# what a page speaks of without saying where it is from
+OTHERS = "machines/ebb.md", "machines/ur.md"  # these pages show programs that do not import brushsvg
+# Names that a page uses without showing their origin.
 GIVEN = {}
 NOT_REQUESTED = {
     "matplotlib": "reportUnknownMemberType=false",
@@ -45,7 +47,7 @@ measured = brushsvg.calibrate({"lag": [], "width": [], "name": "mine"})
 fits = [law.fit.r_squared for law in measured.fit.laws if law.fit]
 alpha_rad = laws.alpha_after(0.5, [1.0, 2.0], 3.0)
 """
-# (what stands there, what is written instead, what pyright calls it)
+# (original text, replacement, pyright's rule)
 PLANTED = (
     ('read_drawing("a.svg")', "read_drawing(3)", "reportArgumentType"),
     ("drawing.sheet_mm)", "drawing.sheet)", "reportAttributeAccessIssue"),
@@ -65,7 +67,7 @@ PLANTED = (
 
 
 def shown() -> dict[str, str]:
-    """Name of a file -> code as it is shown."""
+    """Return {name of a file: its code as shown}."""
     found = {f"figure {path.stem}": path.read_text() for path in FIGURES.glob("*.py")}
     found |= {f"example {path.stem}": path.read_text() for path in (REPOSITORY / "examples").glob("*.py")}
     found |= {f"notebook {path.stem}": "\n".join(cells(path)) for path in NOTEBOOKS}
@@ -78,7 +80,7 @@ def shown() -> dict[str, str]:
 
 
 def requested(name: str, code: str) -> str:
-    """The code below a line that says what is not checked of it."""
+    """Return the code below a line that names its unchecked rules."""
     spared = [
         rule
         for reason, rule in NOT_REQUESTED.items()
@@ -89,7 +91,7 @@ def requested(name: str, code: str) -> str:
 
 
 def every_name() -> str:
-    """A program that looks at every public name, and at every member of every public class."""
+    """Return a program with every public name and every member of public classes."""
     names = {name for name in brushsvg.__all__ if name not in ("__version__", "laws")}
     lines = ["import brushsvg", ""]
     for number, name in enumerate(sorted(names | {f"laws.{each}" for each in brushsvg.laws.__all__})):
@@ -99,15 +101,17 @@ def every_name() -> str:
             parents = set(dir(Exception if issubclass(thing, Exception) else tuple))
             members = {each for each in [*dir(thing), *inspect.get_annotations(thing)] if each[0] != "_"}
             looks = [f"    print(it.{each})" for each in sorted(members - parents)]
-            of = "[object]" if getattr(thing, "__parameters__", ()) else ""  # a generic class
+            of = "[object]" if getattr(thing, "__parameters__", ()) else ""  # the class is generic
             lines += [f"def look_{number}(it: brushsvg.{name}{of}) -> None:", *(looks or ["    print(it)"])]
     return "\n".join(lines) + "\n"
 
 
 @pytest.fixture(scope="module")
 def reported(tmp_path_factory, npm):
-    """What pyright says of each file: name -> [(rule, line and sentence)]. The package is found where an installed one
-    is, next to others, so that it counts as one that ships its types."""
+    """Return pyright's reports: name -> [(rule, line and sentence)].
+
+    pyright finds the package next to other installed packages, so it counts as a package with its own types.
+    """
     pyright = npm("pyright", PACKAGES) / "pyright" / "index.js"
     folder = tmp_path_factory.mktemp("pyright")
     shutil.copytree(

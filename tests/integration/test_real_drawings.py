@@ -1,4 +1,7 @@
-"""Real drawings end to end: what is planned, predicted and reported; Inkscape renders the target."""
+"""Real drawings are planned, predicted and reported well from end to end.
+
+Inkscape renders the target.
+"""
 
 import json
 import re
@@ -20,7 +23,7 @@ SHEETS_MM = {
     "inkscape": (150, 100),
     "inkscape-plain": (150, 100),
 }
-# Least overlap with compensation, and least gain over none. The small character is 0.8 mm wide where the
+# The smallest overlap with compensation, and the smallest gain over none. The small character is 0.8 mm wide where the
 # footprint is 3 mm long, so its ends weigh most; the large one is nearly all long straight strokes.
 OVERLAP = {"kanji-eternity": (0.93, 0.5), "kanji-write": (0.96, 0.15)}
 PIXELS_ACROSS = 2000
@@ -45,7 +48,10 @@ def test_the_plan_holds_every_stroke_in_order(source, drawing, converted):
 
 
 def test_strokes_are_painted_in_the_direction_they_were_drawn(source, drawing, converted):
-    """Without compensation the tool is set down where the path starts."""
+    """Strokes are painted in their drawn direction.
+
+    Without compensation, the tool is set down where the path starts.
+    """
     plan = json.loads((converted(source, "--compensation", "none") / "plan.json").read_text(encoding="utf-8"))
     page = ET.parse(drawing(source)).getroot()
     height_mm = plan["sheet_mm"][1]
@@ -93,12 +99,15 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
         length_mm = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
         assert row["poses"] == len(path)
         assert row["painted_mm"] == pytest.approx(length_mm, abs=0.01)
-    painting_s = found["total"]["painted_mm"] / 20  # no stroke is faster; dabs, travel and landing add to it
+    painting_s = found["total"]["painted_mm"] / 20  # no stroke is faster; dabs, travel and landing add time
     assert painting_s < found["time_s"] < 3 * painting_s + 5 * len(passes)
 
 
 def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
-    """Numbers next to the strokes of a character, depths the brush was not measured at: nothing else."""
+    """Warnings are only about parts that are left out.
+
+    These are numbers next to the strokes of a character, and depths at which the brush was not measured.
+    """
     words = ("--messages", "json", "convert", drawing(source), "-o", "again.ngc", "--quiet")
     notices = brushsvg(*words, cwd=tmp_path, status=0).reported
     count = 0
@@ -142,7 +151,10 @@ def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp
 
 @pytest.mark.parametrize("compensation", ["closed", "none"])
 def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, reported, inkscape, tmp_path):
-    """Inkscape renders the target, OpenCV fills marks.json: nothing of ours comes between."""
+    """The overlap agrees with Inkscape's rendering of the drawing.
+
+    Inkscape renders the target, and OpenCV fills marks.json. No code of ours is in between.
+    """
     width_mm, height_mm = SHEETS_MM[source]
     px_per_mm = PIXELS_ACROSS / width_mm
     target = cv2.imread(str(inkscape.paint(drawing(source), px_per_mm)), cv2.IMREAD_UNCHANGED)[:, :, 3] / 255
@@ -156,7 +168,7 @@ def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, rep
 
 
 def filled(rings, height_mm, px_per_mm, shape, parts=4):
-    """Coverage of rings by even-odd filling with parts x parts samples to a pixel."""
+    """Return the even-odd coverage of rings, parts x parts samples per pixel."""
     fine = np.zeros((shape[0] * parts, shape[1] * parts), np.uint8)
     scale = px_per_mm * parts
     points = [

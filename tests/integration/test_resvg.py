@@ -1,9 +1,10 @@
-"""Our reading of SVG held against resvg's: every painted path where resvg has it, in its order, width and paint.
+"""brushsvg and resvg read each path with equal place, order, width and paint.
 
-Left out, because our contract differs on purpose: text and markers (named in a notice), dashes (each a stroke of its
-own, see the test of dashes), caps and joins, opacity (all or nothing), what a clip path, a mask or a nested viewport
-cuts off; em and ex, which ask for a font; and, as resvg reads none either, percentages in scale(). Radii stay below
-30 px: resvg draws a quarter of a circle as one cubic, off by 2.7e-4 of the radius.
+Our contract differs on purpose for some features, which are left out: text and markers (named in a notice),
+dashes (each is a separate stroke, see the test of dashes), caps and joins, opacity (all or nothing), and
+parts that a clip path, a mask or a nested viewport cuts off. em and ex need a font and are left out as well.
+So are percentages in scale(), which resvg does not read. Radii stay below 30 px, since resvg draws a quarter
+of a circle as one cubic, off by 2.7e-4 of the radius.
 """
 
 import re
@@ -25,7 +26,7 @@ REPORTED_OTHERWISE = svg_features.REPORTED_OTHERWISE | svg_styles.REPORTED_OTHER
 ROUND = svg_features.ROUND | svg_styles.ROUND
 PX_PER_MM = 96 / 25.4
 NEAR_PX = 0.01
-ALONG_PX = 0.2  # how far two curves may be apart at the same fraction of their lengths: a check of direction
+ALONG_PX = 0.2  # largest distance of two curves at equal fractions of their lengths; checks the direction
 
 
 @pytest.fixture(scope="session")
@@ -39,7 +40,7 @@ def pages(resvg):
 
 
 def read(text: str, folder) -> Page:
-    """What our reader makes of a drawing, in the terms of resvg's page."""
+    """Read a drawing with our reader, and return it as a page of resvg."""
     file = folder / "drawing.svg"
     file.write_text(text, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:  # resvg's tree has whole paths in groups with clips
@@ -65,7 +66,7 @@ def read(text: str, folder) -> Page:
 
 
 def differences(ours: Page, theirs: Page, *, is_round: bool, near_px: float = NEAR_PX) -> list[str]:
-    """What distinguishes two pages, in sentences; is_round: curves may be split differently."""
+    """Return the differences of two pages; is_round: curves may be split differently."""
     found = []
     if not np.allclose(ours.size_px, theirs.size_px, rtol=0, atol=NEAR_PX):
         found.append(f"the page has {ours.size_px}, not {theirs.size_px}")
@@ -105,7 +106,7 @@ def unlike(mine: Line, target: Line, is_round: bool, near_px: float) -> list[str
 
 
 def without_dots(cubics: np.ndarray) -> np.ndarray:
-    """Without the segments that have no length; one of them if there is nothing else."""
+    """Return the cubics without segments of no length, but at least one segment."""
     long = np.ptp(cubics, axis=1).max(axis=1) > 1e-3
     return cubics[long] if long.any() else cubics[:1]
 
@@ -118,7 +119,7 @@ def sampled(cubics: np.ndarray, parts: int = 100) -> np.ndarray:
 
 
 def farthest(points: np.ndarray, line: np.ndarray) -> float:
-    """The greatest distance of a point from a polyline."""
+    """Return the largest distance of a point from a polyline."""
     start, way = line[:-1], np.diff(line, axis=0)
     length2 = np.maximum((way**2).sum(axis=1), 1e-300)
     t = np.clip(((points[:, None] - start) * way).sum(axis=2) / length2, 0, 1)
@@ -130,7 +131,7 @@ def lengths_along(line: np.ndarray) -> np.ndarray:
 
 
 def evenly(line: np.ndarray, count: int = 200) -> np.ndarray:
-    """Points at equal steps along a polyline."""
+    """Return points at equal steps along a polyline."""
     along = lengths_along(line)
     at = np.linspace(0, along[-1], count)
     return np.stack([np.interp(at, along, line[:, axis]) for axis in (0, 1)], axis=1)
@@ -144,7 +145,10 @@ def test_as_resvg_reads_it(name, pages, tmp_path):
 
 @pytest.fixture(scope="module")
 def resaved(resvg, inkscape, tmp_path_factory):
-    """A function: words for Inkscape -> the drawings as it saves them again, and what resvg makes of those."""
+    """Return a function that saves the drawings again with Inkscape.
+
+    Its words are for Inkscape. It returns the saved drawings and resvg's reading of them.
+    """
 
     def save(*words):
         folder = tmp_path_factory.mktemp("resaved")
@@ -179,7 +183,10 @@ def test_as_resvg_reads_what_inkscape_saved(words, resaved, tmp_path):
 
 
 def test_real_drawings_as_resvg_reads_them(source, drawing, resvg, tmp_path):
-    """Radii up to 76 px, where resvg's own quarters are 0.0205 px off."""
+    """Real drawings are read as resvg reads them.
+
+    Their radii are up to 76 px, where resvg's own quarters of circles are 0.0205 px off.
+    """
     text = drawing(source).read_text(encoding="utf-8")
     page = resvg.pages({source: text})[source]
     assert differences(read(text, tmp_path), page, is_round=True, near_px=0.0205) == []
@@ -187,7 +194,7 @@ def test_real_drawings_as_resvg_reads_them(source, drawing, resvg, tmp_path):
 
 @pytest.mark.parametrize("radius", [1, 30, 300, 3000])
 def test_large_circles_are_round(radius, tmp_path):
-    """Where resvg's own circles are too coarse to compare with."""
+    """Large circles are round, for which resvg's circles are too coarse to compare."""
     centre = 2 * radius
     attributes = f'width="{2 * centre}" height="{2 * centre}"'
     drawing = svg_features.page(f'<circle cx="{centre}" cy="{centre}" r="{radius}"/>', attributes)
@@ -210,7 +217,10 @@ DASHED = {
 
 @pytest.mark.parametrize("name", DASHED)
 def test_dashes_are_where_the_pattern_puts_them(name, resvg, tmp_path):
-    """Each is a piece of the line that resvg draws; where it is cut is reckoned here, by hand."""
+    """Dashes are where the pattern puts them.
+
+    Each dash is a piece of the line that resvg draws. The test computes the cuts itself.
+    """
     d, words, pattern, offset = DASHED[name]
     drawing = svg_features.page(f'<path d="{d}" stroke-dasharray="{words}" stroke-dashoffset="{offset}"/>')
     (whole,) = resvg.pages({name: drawing})[name].painted

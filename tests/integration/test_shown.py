@@ -1,8 +1,8 @@
-"""Nothing is lost in reading without a word: small drawings as Chromium shows them, held against what we would paint.
+"""No part of a small drawing is lost without a notice.
 
-Where the pictures differ, something must have been reported about it; and what is plain must be painted as it is shown,
-with nothing reported. Dashes are always reported, so that does not count. Caps and joins are round here: ours always
-are.
+The test compares Chromium's picture of each drawing with our painting. If the pictures differ, brushsvg must
+report the reason. Plain drawings must be painted as shown, without a notice. Dashes are always reported, so
+their notice does not count. Caps and joins are round here, since ours are always round.
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ import pytest
 import shown
 import svg_shown
 
-LEAST = 0.03  # of the area; what a pixel's edge makes of dashes and thin lines stays below 0.02
+LEAST = 0.03  # share of the area; edges of pixels change dashes and thin lines by less than 0.02
 
 
 DRAWINGS = {name: text for table in svg_shown.TABLES.values() for name, text in table.items()}
@@ -33,7 +33,7 @@ def tampered(change: str) -> str:
 
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory):
-    """How dark Chromium shows each drawing, by its text."""
+    """Return the darkness of each drawing in Chromium, by its text."""
     texts = [*dict.fromkeys([*DRAWINGS.values(), *map(tampered, TAMPERED)])]
     return dict(zip(texts, shown.shown(texts, tmp_path_factory.mktemp("shown")), strict=True))
 

@@ -1,4 +1,4 @@
-"""What the tests of journeys share."""
+"""Fixtures for the tests of journeys."""
 
 import shutil
 from collections import Counter
@@ -12,7 +12,7 @@ TABLE = "test_every_combination.py"
 
 
 def pytest_terminal_summary(terminalreporter):
-    """How many combinations ran and how many were refused, by the code of the reason."""
+    """Print how many combinations ran and how many were refused, by code."""
     rows = [
         each
         for each in terminalreporter.stats.get("passed", ())
@@ -28,7 +28,7 @@ def pytest_terminal_summary(terminalreporter):
 
 @pytest.fixture(scope="session")
 def desk(tmp_path_factory):
-    """A folder in which brushes and drawings are made once."""
+    """Return a folder in which brushes and drawings are made once."""
     return tmp_path_factory.mktemp("desk")
 
 
@@ -39,7 +39,10 @@ def user(tmp_path, capsys, monkeypatch):
 
 @pytest.fixture(scope="session")
 def chart_folder(tmp_path_factory):
-    """chart.json and chart.jpg: a small chart, painted and photographed in a studio in which nothing is wrong."""
+    """Make chart.json and chart.jpg.
+
+    A studio without faults paints and photographs a small chart.
+    """
     folder = tmp_path_factory.mktemp("chart")
     plan, chart, photo, studio = (
         folder / name for name in ("plan.json", "chart.json", "chart.jpg", "studio.toml")

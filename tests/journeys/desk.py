@@ -1,4 +1,4 @@
-"""Brush files and drawings of every kind, made by the public commands, as a user makes them."""
+"""Brush files and drawings of every kind, made by the public commands."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def photographed(at: Path) -> None:
 
 
 def photograph(at: Path, *flags: str) -> Path:
-    """A small chart, painted and photographed in a studio in which nothing is wrong."""
+    """Paint and photograph a small chart in a studio without faults."""
     plan, chart, photo, studio = (
         at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg", ".toml")
     )
@@ -64,7 +64,10 @@ def photograph(at: Path, *flags: str) -> Path:
 
 
 def measured_from_depth_0(at: Path) -> None:
-    """As the file of a photographed brush: its laws hold from depth 0 on, where it has no width."""
+    """Write a brush as from a photograph, with laws from depth 0 on.
+
+    At depth 0, the brush has no width.
+    """
     brush = json.loads((SHIPPED / "round-6.json").read_text())
     for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
         brush[law] |= {"calibrated_mm": [0, 10], "source": "Fitted to 49 painted marks.", "assumed": False}
@@ -77,7 +80,7 @@ def from_dabs(at: Path) -> None:
 
 
 def running_dry(at: Path) -> None:
-    """With paint that narrows its mark, as calibrate --paint adds it."""
+    """Write a brush with paint that narrows its mark, as calibrate --paint does."""
     brush = json.loads((SHIPPED / "round-6.json").read_text())
     at.write_text(json.dumps({**brush, "name": at.stem, "paint": {"narrows_per_m": 0.4, "lasts_mm": 700}}))
 
@@ -134,7 +137,7 @@ def gcode(at: Path) -> None:
 
 
 def plan(at: Path) -> None:
-    """One that another brush's convert wrote."""
+    """Write a plan that convert made for another brush."""
     svg(LINE)(at)
     run("convert", at.with_suffix(".svg"), "-o", at.with_suffix(".json"))
     at.with_suffix(".svg").unlink()

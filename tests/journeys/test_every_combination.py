@@ -1,7 +1,7 @@
-"""Brushes x drawings x cells x commands, so that each pair of them is tried, through the public command line.
+"""Every pair of brush, drawing, cell and command works through the command line.
 
-Each row ends in the file that the command promises, or in a refusal whose reason is physical. The rows are a covering
-array (allpairspy). At the end a table shows how many rows were refused, and why.
+Each row ends in the file that the command promises, or in a refusal with a physical reason. The rows are a
+covering array (allpairspy). At the end a table shows how many rows were refused, and why.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def batch(drawing, options, folder):
     shutil.copy(drawing, inputs)
     inputs = (
         inputs if drawing.suffix in (".svg", ".dxf") else inputs / drawing.name
-    )  # G-code is read where it is named
+    )  # G-code is read if the command line names it
     yield ("batch", inputs, "-o", folder / "out", "--jobs", 1, *options), [folder / "out"]
 
 
@@ -92,7 +92,10 @@ COMMANDS = (convert, check, batch, report, predict, animate, border, compare)
 
 
 def as_offered(brush: str, drawing: str, cell: str, command) -> list[tuple[str, str, str, str]]:
-    """The row, or two for it that try the same pairs, where the command takes no plan."""
+    """Return the row, or two rows that try its pairs.
+
+    Two rows are needed if the command cannot use a plan.
+    """
     if drawing == "plan" and command.__name__ in NO_DRAWING:
         return [(brush, drawing, cell, "convert"), (brush, "line", cell, command.__name__)]
     return [(brush, drawing, cell, command.__name__)]
@@ -109,11 +112,14 @@ ROWS = [
     for each in AllPairs([brushes, drawings, cells, COMMANDS])
     for row in as_offered(*each)
 ]
-IN_CI = 60  # rows on each landing
+IN_CI = 60  # rows in each CI run
 
 
 def tried(desk, folder, capsys, record_property, brush, drawing, cell, command) -> None:
-    """One row: it ends in what the command promises, or in a refusal with a physical reason and in no file."""
+    """Try one row.
+
+    It ends in the promised file, or in a refusal with a physical reason and no file.
+    """
     options = ("--brush", brush_file(desk, brush), "--cell", cell)
     [steps] = [each for each in COMMANDS if each.__name__ == command]
     for words, promised in steps(drawing_file(desk, drawing), options, folder):

@@ -1,6 +1,7 @@
-"""Options x options, so that each pair of their values is tried (allpairspy), through the public command line.
+"""Every pair of option values works through the command line (allpairspy).
 
-Each row ends in all the files that it promises, and the next command takes them."""
+Each row ends in all promised files, and the next command can use them.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ DRAWING = f"""<svg {SHEET} xmlns:inkscape="http://www.inkscape.org/namespaces/in
 <g inkscape:groupmode="layer" inkscape:label="Red" id="red">
 <path id="shape" fill="#c00000" d="M20 35H26V60H20Z"/></g></svg>"""
 
-# of each option: not given (""), then its values
+# For each option: not given (""), then its values.
 OPTIONS = {
     "--brush": ["", "round-6-angles"],
     "--cell": ["", "ur5e", "grbl-servo"],
@@ -67,14 +68,14 @@ def words_of(options: dict) -> list[str]:
     return words
 
 
-# Pairs of values that contradict each other, which `--help` says; both given is wrong usage.
+# Pairs of values that contradict each other, as `--help` says. To give both is wrong usage.
 APART = [
     ("--per-colour", "--from-stroke"),
     ("--per-colour", "--colour"),
     ("--per-colour", "--margin-strokes"),
     ("--colour", "--margin-strokes"),
 ]
-# one stroke is left of these: there is no second
+# these options leave one stroke, so there is no second
 SINGLE = [("--from-stroke", "--select"), ("--from-stroke", "--layer"), ("--from-stroke", "--colour")]
 
 
@@ -135,7 +136,7 @@ def test_batch_writes_what_convert_does_with_each_pair_of_options(desk, capsys, 
     run(capsys, "convert", "d.svg", "-o", f"one{suffix}", *words_of(options))
     run(capsys, "batch", "d.svg", "-o", "many", "--jobs", 1, *words_of(options))
     (made,) = (desk / "many/programs").iterdir()
-    assert made.suffix == suffix or options["--cell"] == "grbl-servo"  # which has several endings
+    assert made.suffix == suffix or options["--cell"] == "grbl-servo"  # grbl-servo has several endings
     assert made.read_bytes() == (desk / f"one{suffix}").read_bytes()
 
 
@@ -151,7 +152,7 @@ OF_COMPARE = {
     "--json": ["", True],
     "--margin-strokes": ["", "on"],
 }
-OF_PAINTED = {  # those that a photograph is planned and compared with; one line is too little to compare
+OF_PAINTED = {  # options for planning and comparing a photograph; one line is too little to compare
     name: OPTIONS[name]
     for name in (
         *(
@@ -185,7 +186,7 @@ def test_each_pair_of_options_of_compare_works(desk, capsys, options):
         words = "convert", "d.svg", "-o", f"next{suffix}", *planned
         before, _, _ = in_json(capsys, *words)  # a long round end may leave the sheet
         status, _, reported = in_json(capsys, *words, "--corrections", "fit.json", "--force")
-        # corrected, a stroke may have to be pressed deeper than this servo goes
+        # A corrected stroke may need a larger depth than this servo has.
         is_deep = options["--cell"] == "grbl-servo" and reported and reported[-1][1].code == "too-low"
         assert status == before or is_deep, reported
 

@@ -1,5 +1,8 @@
-"""From a typed brush to the third sheet, without a chart: each sheet is compared and learned from, with any
-plan, and the next brush, corrections and cell fit together."""
+"""A typed brush improves over three sheets without a chart.
+
+Each sheet is compared, and the brush learns from it, with any plan. The next brush, corrections and cell fit
+together.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +39,7 @@ height_mm = -0.1
 
 
 class Desk:
-    """Commands as they are typed in one folder."""
+    """Run commands in one folder, as a user types them."""
 
     def __init__(self, at: Path):
         self.at = at
@@ -59,7 +62,10 @@ def desk(tmp_path):
 
 
 def paint_three_sheets(desk: Desk) -> list[float]:
-    """Overlap with the drawing on each. The brush learns from each sheet; the next is planned with what is left."""
+    """Return the overlap with the drawing on each sheet.
+
+    The brush learns from each sheet. The next sheet is planned with the remaining corrections.
+    """
     overlaps, moved = [], ""
     for sheet in (1, 2, 3):
         planned = f"--brush mine-{sheet}.json --cell cell-{sheet}.toml {moved}"
@@ -100,7 +106,10 @@ def test_three_sheets_without_a_chart(desk, machine):
 
 
 def test_a_sheet_planned_for_another_brush_teaches_with_a_warning(desk, capsys):
-    """The default brush painted it; the brush that was typed afterwards learns from it."""
+    """A sheet planned for another brush teaches with a warning.
+
+    The default brush painted the sheet. A brush that is typed later learns from it.
+    """
     desk.run("convert word.svg -o plan.json --page page.svg")
     desk.run("simulate-photo plan.json -o photo.jpg --studio studio.toml")
     desk.run(

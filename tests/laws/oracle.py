@@ -1,9 +1,9 @@
-"""Slow reference implementations to hold the library against, in plain numpy, scipy and shapely.
+"""Slow reference implementations in plain numpy, scipy and shapely.
 
-Nothing here uses the closed form: the taut law is integrated as the differential equation it is, events are
-bracketed on dense samples, the stepping simulators walk in small steps, marks are unions of many footprints.
-Lengths in mm, angles in radians, paper frame. A law is any callable depth -> value with `.slope(depth)` and
-`.kinks()`, see Law.
+The tests compare the library with these. Nothing here uses the closed form. The taut law is integrated as a
+differential equation, and events are bracketed on dense samples. The stepping simulators walk in small steps.
+Marks are unions of many footprints. Lengths are in mm, angles in radians, places in the paper frame. A law is
+any callable depth -> value with `.slope(depth)` and `.kinks()`, see Law.
 """
 
 import itertools
@@ -16,7 +16,10 @@ from scipy.spatial import cKDTree
 
 
 class Law:
-    """max(floor + floor_slope d, c0 + c1 d + ...) with its derivative; depth scalar or array."""
+    """The law max(floor + floor_slope d, c0 + c1 d + ...) with its derivative.
+
+    The depth d is a scalar or an array.
+    """
 
     def __init__(self, coefficients, floor=-np.inf, floor_slope=0.0):
         self.coefficients = np.asarray(coefficients, float)
@@ -32,7 +35,7 @@ class Law:
         return value if self.floor == -np.inf else np.maximum(value, self.floor + self.floor_slope * depth)
 
     def slope(self, depth):
-        """d(value)/d(depth) at one depth."""
+        """Return d(value)/d(depth) at one depth."""
         value = slope = 0.0
         for c in self._down_slope:
             slope = slope * depth + c
@@ -41,7 +44,7 @@ class Law:
         return slope if value >= self.floor + self.floor_slope * depth else self.floor_slope
 
     def kinks(self):
-        """Depths where the floor takes over."""
+        """Return the depths where the law reaches its floor."""
         if not np.isfinite(self.floor):
             return []
         roots = (self._poly - np.polynomial.Polynomial([self.floor, self.floor_slope])).roots()
@@ -49,9 +52,9 @@ class Law:
 
 
 def taut(law, poses, theta0, at=None):
-    """Integrates the taut law along one straight move (2, 3) x y depth from heading theta0.
+    """Integrate the taut law along a straight move (2, 3) x y depth from theta0.
 
-    Returns (contact (n, 2), heading (n,)) at the fractions `at` of the move (default its end).
+    Return (contact (n, 2), heading (n,)) at the fractions `at` of the move (default its end).
     """
     at = np.array([1.0]) if at is None else np.asarray(at, float)
     velocity, rise = poses[1, :2] - poses[0, :2], poses[1, 2] - poses[0, 2]
@@ -73,7 +76,9 @@ def unit(angle):
 
 
 class Reference:
-    """Event-driven simulation of one pass of poses (n, 3), x y z: solve_ivp while taut, roots between.
+    """Event-driven simulation of one pass of poses (n, 3), x y z.
+
+    It uses solve_ivp while the brush is taut, and finds roots for the events.
 
     `at(pose)` gives (contact, heading, taut, pull) at a fractional pose; contact is nan while lifted and
     heading nan before the first motion.
@@ -81,7 +86,7 @@ class Reference:
 
     def __init__(self, poses, law):
         self.poses, self.law = np.array(poses, float), law
-        self.poses[:, 2] *= -1.0  # depth from here on
+        self.poses[:, 2] *= -1.0  # z becomes depth
         self.phases = []  # (pose from, pose to, kind, contact or solution)
         self.contact, self.heading, self.is_taut = None, np.nan, False
         for i in range(len(self.poses) - 1):
@@ -95,7 +100,7 @@ class Reference:
         return self.poses[i, 2] + t * (self.poses[i + 1, 2] - self.poses[i, 2])
 
     def _move(self, i):
-        """Splits a move where the depth crosses 0 and where the law has a kink, and runs the parts."""
+        """Split a move where the depth crosses 0 or the law has a kink; run the parts."""
         d0, d1 = self.poses[i, 2], self.poses[i + 1, 2]
         cuts = [0.0, 1.0]
         if d1 != d0:
@@ -122,7 +127,7 @@ class Reference:
         step = (t1 - t0) / 2000
         times = t0 + np.concatenate([step * np.geomspace(1e-4, 0.9, 12), step * np.arange(1, 2001)])
         times[-1] = t1
-        above = max(0.0, self._slack(i, t0))  # rounding left by the integration just before
+        above = max(0.0, self._slack(i, t0))  # rounding error of the last integration
         slack = self._slack(i, times) - above
         end = t1
         for k in range(len(times)):
@@ -218,14 +223,15 @@ class Reference:
         return data.copy(), heading, False, length / r if r > 0 else np.nan
 
     def events(self):
-        """Fractional poses where the brush loosens, tightens, touches or lifts."""
+        """Return fractional poses where the brush loosens, tightens, touches or lifts."""
         return [b[0] for a, b in zip(self.phases[:-1], self.phases[1:], strict=True) if a[2] != b[2]]
 
 
 def follow(tcp, velocity, lag, contact, heading, is_taut):
-    """Carries (contact, heading, taut) along any smooth motion at constant lag: tcp(t), velocity(t), t from 0 to 1.
+    """Carry (contact, heading, taut) along any smooth motion at constant lag.
 
-    The taut law is integrated as it stands, events are bracketed. Returns the state at the end and [t] of events.
+    The motion is tcp(t) and velocity(t), t from 0 to 1. The taut law is integrated directly, and events are
+    bracketed. Return the state at the end and [t] of events.
     """
     at, events = 0.0, []
 
@@ -286,11 +292,12 @@ def follow(tcp, velocity, lag, contact, heading, is_taut):
 
 
 def step_all(plans, laws, steps, method="article", epsilon=1e-9):
-    """Slow stepping of many passes at once: plans (m, n, 3) x y z, m laws; contacts (m, n, 2), nan if lifted.
+    """Step through many passes at once.
 
-    "article": section 2.3 of the article with its epsilon far below the step: at rest while the TCP stays
-    nearer than r - epsilon, else equation (7) over the step. "rope": the patch is pulled to within r of the
-    TCP, nothing more; it knows no angle and converges in first order.
+    plans (m, n, 3) x y z have m laws. The result is contacts (m, n, 2), nan while lifted. The method
+    "article" is section 2.3 of the article with its epsilon far below the step. The patch rests while the TCP
+    is nearer than r - epsilon; otherwise equation (7) holds over the step. The method "rope" only pulls the
+    patch to within r of the TCP. It uses no angle and converges in first order.
     """
     plans = np.asarray(plans, float)
     cuts = _cuts_at_kinks(plans, laws)
@@ -331,7 +338,7 @@ def step_all(plans, laws, steps, method="article", epsilon=1e-9):
 
 
 def _all_at_once(laws):
-    """Of m polynomials with floors: depths (m,) -> values (m,)."""
+    """Return a function of m polynomials with floors: depths (m,) -> values (m,)."""
     width = max(len(law.coefficients) for law in laws)
     coefficients = np.array([np.pad(law.coefficients, (0, width - len(law.coefficients))) for law in laws]).T[
         ::-1
@@ -348,7 +355,10 @@ def _all_at_once(laws):
 
 
 def _cuts_at_kinks(plans, laws):
-    """Fractions (moves, cuts, plans) at which to cut moves, so that no step straddles a kink of the law."""
+    """Return the fractions (moves, cuts, plans) at which to cut moves.
+
+    After the cuts, no step crosses a kink of the law.
+    """
     count = max(len(law.kinks()) for law in laws)
     cuts = np.zeros((plans.shape[1] - 1, count + 2, len(plans)))
     cuts[:, -1] = 1.0
@@ -365,7 +375,7 @@ def _cuts_at_kinks(plans, laws):
 
 
 def bezier(cubic, t, order=0):
-    """Point or derivative (n, 2) of one cubic (8,) at parameters t."""
+    """Return the point or derivative (n, 2) of one cubic (8,) at parameters t."""
     p = np.asarray(cubic, float).reshape(4, 2)
     t = np.asarray(t, float)[:, None]
     if order == 0:
@@ -397,7 +407,7 @@ class Middle:
         self.samples = samples
 
     def nearest(self, points, neighbours=4):
-        """Distance (n,) [mm] and arc length (n,) [mm] of the nearest place on the line, to rounding."""
+        """Return distance and arc length (n,) [mm] of the nearest place, to rounding."""
         points = np.atleast_2d(points)
         _, near = self.tree.query(points, k=neighbours)
         best, where = np.full(len(points), np.inf), np.zeros(len(points))
@@ -422,7 +432,7 @@ class Middle:
         return best, where
 
     def at(self, s):
-        """Point (n, 2) and unit tangent (n, 2) at arc lengths s [mm]."""
+        """Return the point (n, 2) and unit tangent (n, 2) at arc lengths s [mm]."""
         s = np.clip(np.atleast_1d(np.asarray(s, float)), 0, self.length)
         points, tangents = np.empty((len(s), 2)), np.empty((len(s), 2))
         piece = np.minimum(np.searchsorted([a[-1] for a in self.s], s), len(self.cubics) - 1)
@@ -449,7 +459,7 @@ class Middle:
 
 
 def chords(poses, arcs, step=0.02):
-    """The same pass (n, 3) with lines only: along its arcs chords no longer than `step` mm."""
+    """Return the pass (n, 3) with chords of at most `step` mm instead of arcs."""
     poses, out = np.asarray(poses, float), []
     on_arc = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
     for k, pose in enumerate(poses):
@@ -466,7 +476,10 @@ def chords(poses, arcs, step=0.02):
 
 
 def subdivide(poses, parts, step=np.inf):
-    """The same pass (n, 3) with every move cut into at least `parts` equal parts no longer than `step` mm."""
+    """Return the pass (n, 3) with every move cut into equal parts.
+
+    There are at least `parts` parts, of at most `step` mm.
+    """
     poses = np.asarray(poses, float)
     length = np.linalg.norm(np.diff(poses, axis=0), axis=1)
     cuts = [np.arange(n) / n for n in np.maximum(parts, np.ceil(length / step).astype(int))]
@@ -478,7 +491,10 @@ def subdivide(poses, parts, step=np.inf):
 
 
 def section_6_outline(widest, half_width, vertices=65):
-    """Tip at 0, straight flanks to the widest section, in front half an ellipse; counter-clockwise (n, 2)."""
+    """Return the footprint of section 6 as a counter-clockwise outline (n, 2).
+
+    The tip is at 0. Straight flanks run to the widest section, and the front is half an ellipse.
+    """
     along = min(half_width, max(7 - widest, 0.25 * half_width))
     angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
     front = np.stack([widest + along * np.cos(angle), half_width * np.sin(angle)], axis=1)
@@ -486,7 +502,7 @@ def section_6_outline(widest, half_width, vertices=65):
 
 
 def footprint_at(dragged, pressed, depth, pull):
-    """Outline (n, 2) from tables [(depth, outline), ...], tip at the origin."""
+    """Return the outline (n, 2) by tables [(depth, outline), ...], tip at the origin."""
 
     def blend(table):
         depths = [d for d, _ in table]
@@ -503,20 +519,24 @@ def footprint_at(dragged, pressed, depth, pull):
 
 
 def placed(outline, contact, heading, tip_gap):
-    """Footprint on the paper: tip at contact - tip_gap u."""
+    """Return the footprint on the paper, with its tip at contact - tip_gap u."""
     u = unit(heading)
     return contact - tip_gap * u + outline @ np.array([u, [-u[1], u[0]]])
 
 
 def union_of(outlines):
-    """Shapely union of polygons (list of (n, 2)); those without area are left out."""
+    """Return the shapely union of polygons (list of (n, 2)) that have an area."""
     polygons = shapely.polygons([np.vstack([o, o[:1]]) for o in outlines])
     polygons = shapely.make_valid(polygons)
     return united(polygons[shapely.area(polygons) > 1e-12])
 
 
 def united(regions):
-    """Of neighbours in pairs, and of these again: a third quicker than all at once where each is on the next."""
+    """Return the union of regions.
+
+    Neighbours are united in pairs, then these results in pairs. For overlapping neighbours this is a third
+    quicker than one union of all.
+    """
     while len(regions) > 1:
         even = len(regions) // 2 * 2
         regions = np.concatenate([shapely.union(regions[0:even:2], regions[1:even:2]), regions[even:]])
@@ -524,11 +544,12 @@ def united(regions):
 
 
 def swept(outlines, convex, unite=shapely.union_all):
-    """Shapely region swept by a moving outline given at close samples, (n, 2) each. unite: decides at which of its
-    vertices a ring begins, too.
+    """Return the region swept by a moving outline, given at close samples (n, 2).
 
-    Hulls of neighbours where the outline is convex and hardly turns, or turns about a point outside (turning about
-    one of its flank it leaves a waist that a hull would fill), else the outlines and what each of their edges sweeps.
+    unite also decides at which of its vertices a ring begins. The region is the union of hulls of neighbours
+    if the outline is convex and hardly turns, or turns about a point outside. A turn about a point of its
+    flank leaves a waist that a hull would fill. In this case the region is the union of the outlines and the
+    regions swept by their edges.
     """
     outlines = np.asarray(outlines)
     axis = (outlines.mean(axis=1) - outlines[:, 0]) @ [1, 1j]
@@ -539,7 +560,7 @@ def swept(outlines, convex, unite=shapely.union_all):
     pairs = np.concatenate([outlines[:-1], outlines[1:]], axis=1)[by_hull]
     first, second = outlines[:-1][~by_hull], outlines[1:][~by_hull]
     quads = [first, np.roll(first, -1, axis=1), np.roll(second, -1, axis=1), second]
-    # an edge that turns about a point of its own sweeps two triangles, not their hull
+    # An edge that turns about its own point sweeps two triangles, not their hull.
     quads = shapely.make_valid(shapely.polygons(np.stack(quads, axis=2).reshape(-1, 4, 2)))
     points = shapely.multipoints(
         pairs.reshape(-1, 2), indices=np.repeat(np.arange(len(pairs)), pairs.shape[1])

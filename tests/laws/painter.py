@@ -1,8 +1,8 @@
-"""Painted calibration sheets from the slow stepping simulator: what a person would hold in hands, with its faults.
+"""Paint calibration sheets with the slow stepping simulator and realistic faults.
 
-Nothing of the library: the patch is pulled to within r of the TCP in small steps, its footprints are united by
-shapely, the edges get noise, the marks displacements, the sheet a place of its own and the paper a height.
-Lengths in mm.
+The simulator uses no code of the library. It pulls the patch to within r of the TCP in small steps, and
+shapely unites the footprints. The edges get noise, the marks get displacements, the sheet gets a place and
+the paper a height. Lengths are in mm.
 """
 
 import itertools
@@ -19,17 +19,20 @@ BRISTLES = (
     ((-0.5, 0.1), 1.4),
     ((0.1, 0.5), 1.25),
     ((0.5, 1.0), 1.5),
-)  # from where to where across a brush, in half widths, and how many times as long paint lasts there
-POSES = 260  # at least, per stroke once it is cut for the stepping: every 0.3 mm or so
+)  # ranges across a brush, in half widths, and the factor by which paint lasts longer there
+POSES = 260  # the least number of poses per stroke for the stepping, about one every 0.3 mm
 CLOSE = (
-    420  # once more where the footprint turns: no point of it goes further than 0.5 mm from one to the next
+    420  # poses of a second pass, more where the footprint turns; no point of it moves over 0.5 mm per pose
 )
 
 
 @dataclass
 class TrueBrush:
-    """A round brush: coefficients in ascending powers of depth; footprints are drops, or eggs where tails are round, or
-    of a shape of their own: depths (n,) -> convex outlines (n, m, 2) from the tip, x towards the tool."""
+    """A round brush with coefficients in ascending powers of depth.
+
+    Footprints are drops, eggs for round tails, or have their own shape: depths (n,) -> convex outlines (n, m,
+    2) from the tip, x towards the tool.
+    """
 
     deepest: float
     lag: np.ndarray
@@ -50,7 +53,7 @@ class TrueBrush:
 
 @dataclass
 class Faults:
-    """How the sheet was painted and read: sigmas."""
+    """The standard deviations of painting and reading a sheet."""
 
     noise: float = 0.1
     noise_length: float = 1.0
@@ -62,7 +65,10 @@ class Faults:
 
 @dataclass
 class Sheet:
-    """Marks as read: (stroke id, plan poses (n, 3), outline rings), and what nobody knows."""
+    """The marks as read, and the hidden truth.
+
+    A mark is (stroke id, plan poses (n, 3), outline rings).
+    """
 
     marks: list = field(default_factory=list)
     height: float = 0.0
@@ -70,7 +76,10 @@ class Sheet:
 
 
 def random_brush(rng):
-    """Lag of third degree that grows from 1 to 4 mm at touch to 6 to 14 at the deepest, a width that bends."""
+    """Return a random brush with a cubic lag and a bending width.
+
+    The lag grows from 1 to 4 mm at touch to 6 to 14 mm at the largest depth.
+    """
     deepest = rng.uniform(4, 10)
     first, last = rng.uniform(1, 4), rng.uniform(6, 14)
     between = np.sort(rng.uniform(0.15, 1.0, 2)) * (last - first) + first
@@ -93,8 +102,11 @@ def random_brush(rng):
 
 
 def of_other_functions(brush: TrueBrush, rng) -> TrueBrush:
-    """The same depths and sizes: a lag that saturates and swings, a width that grows as a root; polynomials of sixth
-    degree that follow them."""
+    """Return a brush of the same depths and sizes with other functions.
+
+    The lag saturates and swings, and the width grows as a root. Polynomials of sixth degree follow these
+    functions.
+    """
     share = np.linspace(0, 1, 60)
     first, last = (brush.law("lag")(share_ * brush.deepest) for share_ in (0.0, 1.0))
     rise = (1 - np.exp(-rng.uniform(1.5, 3.5) * share)) * (1 + 0.05 * np.sin(2 * np.pi * share))
@@ -114,7 +126,7 @@ def of_other_functions(brush: TrueBrush, rng) -> TrueBrush:
 
 @dataclass
 class Curve:
-    """A law of any shape: depth -> value. bends: depths where its slope jumps."""
+    """A law of any shape: depth -> value. bends are depths where its slope jumps."""
 
     value: Callable
     bends: tuple = ()
@@ -128,8 +140,10 @@ class Curve:
 
 @dataclass
 class Stranger(TrueBrush):
-    """A brush whose laws are no polynomials: a table of curves, tip_to_widest among them; front: over the half
-    width."""
+    """A brush whose laws are not polynomials.
+
+    The table of curves includes tip_to_widest. front is a multiple of the half width.
+    """
 
     curves: dict = field(default_factory=dict)
 
@@ -138,7 +152,7 @@ class Stranger(TrueBrush):
 
 
 def outline_of(half, widest, front, vertices=33):
-    """Drops (n, vertices, 2) from half widths, widest sections and fronts (n,)."""
+    """Return drops (n, vertices, 2) from half widths, widest sections, fronts (n,)."""
     angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
     half, widest, front = (
         np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front)
@@ -175,7 +189,7 @@ def _floored(rng):
 
 def _wiggling(rng):
     waves, phase = rng.uniform(1.0, 2.0), rng.uniform(0, 2 * np.pi)
-    size = rng.uniform(0.3, 0.9) / (2 * np.pi * waves)  # it never falls
+    size = rng.uniform(0.3, 0.9) / (2 * np.pi * waves)  # with this size the curve never falls
 
     def value(t):
         return t + size * (np.sin(2 * np.pi * waves * t + phase) - np.sin(phase))
@@ -209,13 +223,13 @@ def _capped(rng):
 
 
 def _drawn(rng):
-    """Through five points of a curve that rises by a different step between each two, as smooth as it can be."""
+    """Return a smooth rising curve through five points with different steps."""
     rise = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 1.0, 5))])
     return PchipInterpolator(np.linspace(0, 1, 6), rise / rise[-1]), ()
 
 
 def _polyline(rng):
-    """Four straight pieces that meet at random depths and rise by random steps."""
+    """Return a curve of four straight pieces with random depths and random rises."""
     at = np.sort(rng.uniform(0.1, 0.9, 3))
     rise = np.cumsum(rng.uniform(0.1, 1.0, 4))
     corners = np.concatenate([[0.0], at, [1.0]])
@@ -223,7 +237,7 @@ def _polyline(rng):
 
 
 def _hyperbolic(rng):
-    """t / (t + c), as enzymes and adsorption saturate."""
+    """Return t / (t + c), the saturation of enzymes and adsorption."""
     half_way = rng.uniform(0.2, 1.0)
     return lambda t: t * (1 + half_way) / (t + half_way), ()
 
@@ -246,13 +260,15 @@ SHAPES = {
     "wiggling": _wiggling,
 }
 MORE_SHAPES = {"stepped": _stepped, "hooked": _hooked, "capped": _capped, "drawn": _drawn}
-# nothing was ever settled on these
+# No choice was ever made with these shapes.
 UNSEEN_SHAPES = {"polyline": _polyline, "hyperbolic": _hyperbolic, "tanh": _tanh}
 
 
 def random_stranger(rng, shape):
-    """As large as random_brush, each law by a shape of its own of this kind. Half width, tip gap and widest section
-    are 0 at the touch: half of them rises straight."""
+    """Return a brush as large as random_brush with random laws of this shape.
+
+    Half width, tip gap and widest section are 0 at the touch. Half of each rises in a straight line.
+    """
     deepest = rng.uniform(4, 10)
     first, last, half = rng.uniform(1, 4), rng.uniform(6, 14), rng.uniform(1.2, 4.0)
     gap, widest = rng.uniform(0.2, 0.6) * deepest, rng.normal(1.8, 0.25) * half
@@ -285,7 +301,7 @@ def random_stranger(rng, shape):
 
 
 def round_6(own):
-    """The shipped brush, from its file: its laws and its outlines as they stand."""
+    """Return the shipped brush with the laws and outlines of its file."""
     curves = {
         name: oracle.Law(
             own[name]["coefficients"], own[name].get("floor", -np.inf), own[name].get("floor_slope", 0.0)
@@ -301,7 +317,10 @@ def round_6(own):
 
 
 def chart_strokes(deepest, depths=5):
-    """[(id, poses (n, 3))]: at each depth a straight stroke, a right angle, an arc and a reversal; and two ramps."""
+    """Return the strokes of a chart as [(id, poses (n, 3))].
+
+    Each depth has a straight stroke, a right angle, an arc and a reversal. Two ramps follow.
+    """
     out, place = [], 0
 
     def add(name, points, depth, landing=8.0):
@@ -322,7 +341,7 @@ def chart_strokes(deepest, depths=5):
 
     for k in range(1, depths + 1):
         d = deepest * k / depths
-        away = 1 if k % 2 else -1  # both ways, that displacement is not taken for lag
+        away = 1 if k % 2 else -1  # both directions, so that the fit does not confuse displacement and lag
         add(f"straight-{k}", line([0, 0], [35 * away, 0]), d)
         add(f"angular-{k}", line([0, 0], [28 * away, 0], [28 * away, 25]), d)
         t = np.linspace(0, 4.2, 60)
@@ -334,9 +353,9 @@ def chart_strokes(deepest, depths=5):
 
 
 def paint(rng, brush, strokes, faults, regions=None):
-    """A Sheet: what this brush paints along the strokes, with faults drawn at random.
+    """Return a Sheet that this brush paints along the strokes, with random faults.
 
-    regions: used in place of swept(), for who has swept these strokes on paper of this height before.
+    regions can hold an earlier result of swept() for these strokes on paper of this height.
     """
     height = rng.normal(0, faults.height)
     shift, turn = rng.normal(0, faults.placement, 2), rng.normal(0, faults.turn)
@@ -359,11 +378,13 @@ def paint(rng, brush, strokes, faults, regions=None):
 
 
 def swept(brush, strokes, height, vertices=33, lasts=None, narrows_per_m=0.0, share=None):
-    """For each stroke the region that the brush paints on paper of this height; None where it does not reach it.
+    """Return the painted region of each stroke on paper of this height.
 
-    lasts: of each stroke after how much way its paint begins to run out; narrows_per_m: of the width, from the first
-    stroke to the last, which are painted with one load; share: of the width, ways since then (n,) -> (n,), by another
-    law."""
+    The region is None if the brush does not reach the paper. lasts is the way of each stroke after which its
+    paint begins to run out. narrows_per_m is the rate at which the width shrinks from the first stroke to the
+    last, with one load of paint. share is another law of the width: ways since the first stroke (n,) ->
+    shares (n,).
+    """
     share = share or (lambda way: np.exp(-narrows_per_m * way / 1000))
     count = max(POSES, *(len(poses) + 4 for _, poses in strokes))
     plans = np.array([_stepped(poses, height, count) for _, poses in strokes])
@@ -384,21 +405,27 @@ def swept(brush, strokes, height, vertices=33, lasts=None, narrows_per_m=0.0, sh
 
 
 def _stepped(poses, height, count):
-    """So many poses along a stroke, come down from above and lifted on the spot; z from the true paper."""
+    """Return count poses along a stroke, with z from the true paper.
+
+    The tool comes straight down and goes straight up.
+    """
     poses = np.vstack([poses[:1], poses, poses[-1:]])
     poses[0, 2] = poses[-1, 2] = 1.0
     poses[:, 2] -= height
     size = np.hypot(*np.diff(poses[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(poses[:, 2]))
     at = np.concatenate([[0.0], np.cumsum(size)])
     places = np.union1d(np.linspace(0, at[-1], count - len(at) + 2), at)
-    while len(places) < count:  # where places fell together: halve the widest gap
+    while len(places) < count:  # some places were equal, so halve the widest gap
         k = int(np.argmax(np.diff(places)))
         places = np.insert(places, k + 1, 0.5 * (places[k] + places[k + 1]))
     return np.column_stack([np.interp(places[:count], at, poses[:, i]) for i in range(3)])
 
 
 def _closer(plan, contact, longest):
-    """CLOSE poses: more are put in where the footprint turns, which a TCP that passes a loose one does at once."""
+    """Return CLOSE poses, with more poses where the footprint turns.
+
+    A loose footprint turns at once when the TCP passes it.
+    """
     lever = np.nan_to_num(plan[:, :2] - contact) @ [1, 1j]
     turn = np.abs(np.angle(lever[1:] * np.conj(lever[:-1]))) * (np.abs(lever[1:] * lever[:-1]) > 1e-12)
     size = np.hypot(*np.diff(plan[:, :2], axis=0).T) + 0.5 * np.abs(np.diff(plan[:, 2])) + longest * turn
@@ -414,7 +441,10 @@ def _down(plan, contact):
 
 
 def _united(regions):
-    """GEOS gives up on slivers once in some hundred sheets; on a grid of 1e-7 mm it does not."""
+    """Return the union of regions.
+
+    GEOS fails on slivers once in a few hundred sheets. On a grid of 1e-7 mm it does not fail.
+    """
     try:
         return shapely.union_all(regions)
     except shapely.GEOSException:
@@ -473,7 +503,10 @@ def _rings(region):
 
 
 def _noisy(rng, ring, faults, step=0.25):
-    """The ring every `step`, moved along its normals by noise that forgets itself within noise_length."""
+    """Return the ring with points every `step`, moved along its normals by noise.
+
+    The noise decorrelates within noise_length.
+    """
     closed = np.vstack([ring, ring[:1]])
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
     n = max(8, round(at[-1] / step))
@@ -488,7 +521,10 @@ def _noisy(rng, ring, faults, step=0.25):
 
 
 def dense(poses, arcs):
-    """Poses of a pass, its arcs in short steps, by the angle between neighbours seen from the centre."""
+    """Return the poses of a pass with its arcs in short steps.
+
+    The angle between neighbours, seen from the centre, gives the steps.
+    """
     arcs = {k: arc for arc in arcs for k in range(arc.first, arc.last)}
     out = [poses[:1]]
     for k in range(len(poses) - 1):

@@ -1,5 +1,7 @@
-"""A studio whose machine, brush and paper are not as they should be, painted in small steps by the simulator of
-`painter`: nothing of the library but the plan that it is given, and the page that it is painted on."""
+"""A studio whose machine, brush and paper have faults.
+
+The simulator of `painter` paints in small steps. It uses nothing of the library but the plan and the page.
+"""
 
 from __future__ import annotations
 
@@ -30,13 +32,15 @@ WORD = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="90mm" vi
 <path id="stem" d="M124 20 L126 52" stroke-width="4"/>
 <path id="knee" d="M70 48 L94 48 L112 24" stroke-width="5.5"/></g></svg>"""
 LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005])
-AIR_MM = 0.9  # higher, no paper is
+AIR_MM = 0.9  # no paper is higher
 WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
 
 
 def known_brush(sure=0.08, lag=1.0, half=1.0):
-    """The brush as its file has it, lag and half width so many times as large: each number known to a share `sure` of
-    it (standard deviation)."""
+    """Return the brush of its file, with lag and half width multiplied by factors.
+
+    Each number is known to a share `sure` of its value (standard deviation).
+    """
     laws = MarkLaws((lag * LAG).tolist(), GAP.tolist(), (half * HALF).tolist(), WIDEST, FRONT)
     numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
     brush = brush_of(laws, "mine", (0.0, DEEPEST), np.diag((sure * numbers) ** 2))
@@ -46,9 +50,13 @@ def known_brush(sure=0.08, lag=1.0, half=1.0):
 
 @dataclass(frozen=True)
 class Faults:
-    """What is: lag and half width times so much; scale - 1, skew (from the work zero, the sheet's corner), lean,
-    backlash of the machine; the paper higher at the sheet's middle, tilted about it; the sheet's place; own: by stroke,
-    always alike; random_mm: sigma; lasts_mm: the way that a load of paint lasts."""
+    """The faults of a studio.
+
+    The brush has factors for lag and half width. The machine has scale - 1, skew (from the work zero, the
+    sheet's corner), lean and backlash. The paper is higher at the sheet's middle and tilted about it. The
+    sheet has a place. own holds the constant displacement of each stroke, random_mm is the sigma of random
+    ones. lasts_mm is the way that a load of paint lasts.
+    """
 
     lag: float = 1.0
     half: float = 1.0
@@ -65,7 +73,7 @@ class Faults:
     lasts_mm: float = np.inf
 
     def corrected(self, cause):
-        """The same without what one cause, by the name that compare has for it, does."""
+        """Return the faults without one cause, named as compare names it."""
         good = Faults()
         keys = {
             "place of the sheet": ("shift", "turn"),
@@ -79,7 +87,11 @@ class Faults:
 
 
 def random_faults(rng, names, sheet_mm):
-    """A brush up to 20 % off, up to 2 mm of tilt over the sheet, 0.5 mm of backlash, 1 % of scale."""
+    """Return random faults.
+
+    The brush is up to 20 % off. The sheet has up to 2 mm of tilt, the machine up to 0.5 mm of backlash and 1
+    % of scale.
+    """
     tilt = rng.uniform(-1, 1, 2) * rng.dirichlet([1, 1]) * 2 / np.array(sheet_mm)
     return Faults(
         *(1 + rng.uniform(-0.2, 0.2, 2)),
@@ -92,8 +104,10 @@ def random_faults(rng, names, sheet_mm):
 
 
 def commanded_by(program, sheet_mm):
-    """The commands of a program for LinuxCNC for each stroke, from the air on: every place that it names, those
-    of circles close together."""
+    """Return the commanded places of each stroke in a program for LinuxCNC.
+
+    They begin in the air. Circles have close places.
+    """
     at, found = np.array([0.0, 0.0, 50.0]), []
     for line in program.splitlines():
         if title := re.match(r"\(stroke \d+ of \d+: (.*)\)", line):
@@ -116,13 +130,13 @@ def commanded_by(program, sheet_mm):
 
 
 def ran(plan, fault_values):
-    """[(stroke, poses)]: where the tool was, z over the true paper."""
+    """Return [(stroke, poses)], the places of the tool, z over the true paper."""
     middle = 0.5 * np.array(plan.sheet_mm)
     play, last, out = np.zeros(2), None, []
     for one in plan.passes:
         poses = painter.dense(np.array(one.poses_mm), one.arcs)
         place = poses[:, :2].copy()
-        for k, here in enumerate(poses[:, :2]):  # the slide stands still while the screw crosses its play
+        for k, here in enumerate(poses[:, :2]):  # the slide stands while the screw crosses its play
             play = np.clip(
                 play + (here - (here if last is None else last)),
                 *np.outer([-0.5, 0.5], fault_values.backlash),
@@ -133,9 +147,7 @@ def ran(plan, fault_values):
         z = poses[:, 2] - fault_values.height - at @ fault_values.tilt
         at = place + place * fault_values.scale + np.outer(place[:, 1], [fault_values.skew, 0.0])
         at += np.outer(np.maximum(-z, 0), fault_values.lean)
-        low = np.flatnonzero(
-            z < AIR_MM
-        )  # a program's way through the air moves the slides and paints nothing
+        low = np.flatnonzero(z < AIR_MM)  # in the air, a program moves the slides and paints nothing
         poses = np.column_stack([at, z])[low[0] : low[-1] + 1]
         poses[[0, -1], 2] = np.minimum(poses[[0, -1], 2], 0.0)
         out.append((one.stroke, poses if len(low) < len(z) else np.column_stack([at, z])))
@@ -143,12 +155,15 @@ def ran(plan, fault_values):
 
 
 def painted(plan, fault_values, seed=0, strokes_a_load=1):
-    """By stroke its region on the sheet."""
+    """Return the painted region of each stroke on the sheet."""
     return laid(swept(plan, fault_values, strokes_a_load), plan, fault_values, seed)
 
 
 def swept(plan, fault_values, strokes_a_load=1):
-    """By stroke its region, as the machine of such a studio paints it without anything of its own or at random."""
+    """Return the region that the machine paints for each stroke.
+
+    Constant and random displacements of strokes are left out.
+    """
     brush = painter.TrueBrush(DEEPEST, fault_values.lag * LAG, GAP, fault_values.half * HALF, WIDEST, FRONT)
     ways, lasts, come = ran(plan, fault_values), [], 0.0
     for k, (_, poses) in enumerate(ways):
@@ -160,7 +175,7 @@ def swept(plan, fault_values, strokes_a_load=1):
 
 
 def laid(regions, plan, fault_values, seed):
-    """Where these are on a sheet."""
+    """Return the regions at their places on a sheet."""
     rng = np.random.default_rng(seed)
     middle = tuple(0.5 * np.array(plan.sheet_mm))
     out = {}
@@ -172,7 +187,7 @@ def laid(regions, plan, fault_values, seed):
 
 
 def photographed(plan, regions, title="", camera=None, seed=1):
-    """JPEG bytes."""
+    """Return a photograph of the sheet as JPEG bytes."""
     page = job_page(plan, title)
     sheet = photograph.page(page.printed)
     for tick in page.ticks:
@@ -192,7 +207,7 @@ def overlap(regions, target):
 
 
 def as_region(rings):
-    """Outer rings counter-clockwise, holes clockwise."""
+    """Return a region from rings: outer rings counter-clockwise, holes clockwise."""
     shapes = [Polygon(ring) for ring in rings]
     outer, holes = (
         unary_union([shape.buffer(0) for shape in shapes if shape.exterior.is_ccw == side])

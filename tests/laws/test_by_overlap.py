@@ -1,4 +1,7 @@
-"""The aim that predicts best finds no other brush than the true one; the slow stepping simulator paints."""
+"""The aim overlap finds the true brush.
+
+The slow stepping simulator paints.
+"""
 
 import re
 from copy import copy
@@ -28,12 +31,15 @@ NUMBER = re.compile(r"[+-]\d+\.\d+")
 
 @cache
 def sheet():
-    """Marks of a round tail displaced by 1.5 mm by chance, as those of real robots do."""
+    """Return marks of a round tail, displaced at random by 1.5 mm as by real robots."""
     return painted(DISPLACED_MM)
 
 
 def painted(displaced_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **faults):
-    """A brush, and the marks of a machine that leans and runs ways by a map, as a file of them."""
+    """Return a brush, and a file of the marks of a machine.
+
+    The machine leans, and runs ways by a map.
+    """
     rng = np.random.default_rng(3)
     brush = painter.random_brush(rng)
     brush.round_tail, brush.widest_per_half = True, brush.widest_per_half - 0.8
@@ -90,7 +96,7 @@ def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
 
 
 def test_lean_that_edges_did_not_look_for_comes_back():
-    # a simplex alone held lean for lag: 0.06 and -0.18
+    # a simplex alone confused lean and lag: 0.06 and -0.18
     _, marks = painted(DISPLACED_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
     as_run = machine_added(brushsvg.calibrate(marks, "b").fit).offsets
     assert as_run.lean_mm_per_mm == pytest.approx((0.3, -0.2), abs=0.08)
@@ -109,7 +115,10 @@ def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
 
 
 def machine_added(made, fit=None):
-    """As for the largest overlap, of edges that held the machine for one without errors."""
+    """Add the machine's errors to a fit, as for the largest overlap.
+
+    The fit by edges assumed a machine without errors.
+    """
     options = copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
     machine_found.ask_for(options, ("lean", "axes"))
@@ -144,7 +153,7 @@ def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
 
 
 def targets_of(strokes, brush, displaced=lambda k: np.zeros(2)):
-    """What the brush paints, each mark moved, without faults of edges."""
+    """Return the marks of the brush, each moved, without faults of edges."""
     faults = painter.Faults(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     sheet = painter.paint(np.random.default_rng(1), brush, strokes, faults, painter.swept)
     out = []
@@ -176,14 +185,18 @@ def reported(brush) -> object:
 
 @pytest.mark.thorough
 def test_at_one_depth_the_lag_at_the_touch_comes_back_from_how_marks_end():
-    # a lift draws the mark on by 4 mm; held to the lag of the depth, it drew none
+    # A lift lengthens the mark by 4 mm. With the lag held to the lag of the depth, a lift did not lengthen
+    # it.
     found = by_one_depth(round_brush([2.0, 1.0]))
     assert found(0.0) == pytest.approx(2.0, abs=0.8)
     assert found(4.0) == pytest.approx(6.0, abs=0.3)
 
 
 def by_one_depth(brush):
-    """The lag by marks painted at the greatest depth, set down and lifted on the spot."""
+    """Return the lag from marks at the largest depth.
+
+    The brush is set down and lifted on the spot.
+    """
     strokes = [
         (name, np.column_stack([poses[:, :2], np.full(len(poses), -brush.deepest)]))
         for name, poses in painter.chart_strokes(brush.deepest, 2)
@@ -195,7 +208,7 @@ def by_one_depth(brush):
 
 @pytest.mark.thorough
 def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_says_so():
-    # lean that the fit by edges holds at 0: laws alone cannot make up for it on marks left out
+    # The fit by edges keeps lean at 0. On marks that are left out, laws alone cannot replace the lean.
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
     lean, moved = np.array([0.9, -0.7]), np.random.default_rng(4).normal(0, 0.3, (len(strokes), 2))
     as_run = [(name, poses + np.pad(-poses[:, 2:] * lean, ((0, 0), (0, 1)))) for name, poses in strokes]

@@ -1,4 +1,7 @@
-"""Calibration gives back the brush that made the measurements; these come from the slow stepping simulator."""
+"""Calibration gives back the brush that made the measurements.
+
+The measurements come from the slow stepping simulator.
+"""
 
 import itertools
 import json
@@ -46,9 +49,10 @@ WIDTHS = values(DEPTHS, 2 * HALF * DEPTHS)
 
 @cache
 def corner(depth):
-    """TCP along +x to (0, 0), settled, then 8 mm along +y at one depth: TCP and contact (17, 2), every 0.5 mm.
+    """Return TCP and contact (17, 2) every 0.5 mm after a corner.
 
-    The patch is pulled to within r of the TCP, nothing more, in steps of 0.001 mm after the corner.
+    The TCP runs along +x to (0, 0) until the brush is settled, then 8 mm along +y, all at one depth. The
+    simulator only pulls the patch to within r of the TCP, in steps of 0.001 mm after the corner.
     """
     start = np.array([[[-80.0, 0.0, -depth], [0.0, 0.0, -depth]]])
     tcp = np.array([[0.0, 0.5 * k] for k in range(17)])
@@ -65,7 +69,10 @@ def corner(depth):
 
 
 def series(depth, rng=None, noise_deg=0.0):
-    """What a camera under the glass sees of it: angles between motion and heading, and where the tip went."""
+    """Return the view of a camera under the glass.
+
+    It sees the angles between motion and heading, and the way of the tip.
+    """
     tcp, contact = corner(depth)
     heading = tcp - contact
     heading /= np.hypot(*heading.T)[:, None]
@@ -107,7 +114,10 @@ def test_angle_series_with_a_degree_of_noise():
 
 
 def noisy_series(rng, degrees, first_degrees):
-    """Five readings at each depth, over the same share of the lag, from the formulas; all angles with noise."""
+    """Return five readings at each depth from the formulas.
+
+    They cover an equal share of the lag. All angles have noise.
+    """
     rows = []
     for d in DEPTHS:
         s = np.linspace(0.25, 1.2, 5) * lag(d)
@@ -127,7 +137,11 @@ def noisy_series(rng, degrees, first_degrees):
 
 @pytest.mark.parametrize(("degrees", "first_degrees"), [(1.0, 1.0), (2.0, 0.0)])
 def test_intervals_of_angle_series_cover_the_truth(degrees, first_degrees):
-    """The scatter of lag and tip gap grows with the lag: unweighted, the tip gap's interval held 85 to 90 %."""
+    """Intervals of angle series contain the truth.
+
+    The scatter of lag and tip gap grows with the lag. Without weights, the tip gap's interval held only 85 to
+    90 %.
+    """
     rng = np.random.default_rng(3)
     gap, lags = [], []
     for _ in range(200):
@@ -157,7 +171,10 @@ def test_the_scatter_of_a_series_is_that_of_repeated_readings():
 
 
 def middle_line(depth, rng, mm):
-    """Of the mark of a turn by 90 degrees, by formula; e = x_w - b may have any sign."""
+    """Return the middle line of the mark of a turn by 90 degrees, by formula.
+
+    e = x_w - b may have any sign.
+    """
     r, e = lag(depth), SHALLOW(depth) - GAP * depth
     s = np.linspace(0, 2.2 * r, 30)
     after = np.column_stack([s - (r - e) * np.tanh(s / r), -(r - e) / np.cosh(s / r)])
@@ -179,7 +196,11 @@ def centre_lines_and_footprints(rng, from_depth=2.0):
 
 
 def test_other_depths_decide_with_which_sign_of_e_a_centre_line_is_read():
-    """Each line was compared with laws that had been fitted to it: the widest section at depth 1 was 0.4 mm off."""
+    """Other depths decide the sign of e with which a centre line is read.
+
+    Once each line was compared with laws fitted to that line, and the widest section at depth 1 was 0.4 mm
+    off.
+    """
     rng = np.random.default_rng(2)
     off, held, said = [], [], []
     for _ in range(4):
@@ -194,14 +215,19 @@ def test_other_depths_decide_with_which_sign_of_e_a_centre_line_is_read():
 
 
 def test_centre_lines_are_weighed_by_the_scatter_of_their_own_points():
-    """Their scatter was drawn towards that of footprints, which is ten times larger: intervals of the lag held 99 %."""
+    """Centre lines are weighted by the scatter of their own points.
+
+    Their scatter was once pulled towards the scatter of footprints, which is ten times larger. Intervals of
+    the lag then held 99 %.
+    """
     rng = np.random.default_rng(6)
     measured = centre_lines_and_footprints(rng)
     [lag_fit] = [each.fit for each in calibrate(measured, "b").laws if each.name == "lag"]
     own = [read_turn(row.numbers["points_mm"]).covariance_mm2[0, 0] for row in measured.rows["centre_line"]]
     powers = np.vander(DEPTHS, 5, increasing=True)
     deviation = np.sqrt(np.mean(np.diag(powers @ np.array(lag_fit.covariance) @ powers.T)))
-    assert deviation < 1.35 * np.sqrt(np.mean(own) * 5 / len(own))  # of a fit weighed by own scatter: 1
+    # a fit with weights by own scatter gives 1
+    assert deviation < 1.35 * np.sqrt(np.mean(own) * 5 / len(own))
 
 
 def test_laws_fitted_together_are_of_the_type_of_laws_fitted_alone():
@@ -224,7 +250,7 @@ def test_laws_fitted_together_are_of_the_type_of_laws_fitted_alone():
 
 
 def test_the_angular_stroke_is_read_with_e():
-    """The middle of the mark starts to turn r - e from the TCP's second line."""
+    """The middle of an angular stroke turns r - e from the TCP's second line."""
     readings = []
     for depth in DEPTHS:
         _, contact = corner(depth)
@@ -233,14 +259,18 @@ def test_the_angular_stroke_is_read_with_e():
     rows = {"tip_to_widest": values(DEPTHS, widest(DEPTHS)), "tip_gap": values(DEPTHS, GAP * DEPTHS)}
     made = calibrate(from_dict(angular=values(DEPTHS, readings), width=WIDTHS, **rows), "b")
     np.testing.assert_allclose([made.brush.lag(d) for d in DEPTHS], lag(DEPTHS), atol=0.005)
-    # taken for the lag itself, as the article reads it, it is short by e
+    # The article reads this distance as the lag itself, which is too short by e.
     as_printed = calibrate(from_dict(lag=values(DEPTHS, readings), width=WIDTHS, **rows), "b")
     assert lag(10) - as_printed.brush.lag(10) == pytest.approx(widest(10) - GAP * 10, abs=0.01)
 
 
 def test_side_view_and_straight_stroke_give_the_tip_gap():
-    """(18) counts from first touch; (17) as printed lacks the lag. A straight slow landing: the tip begins to mark at
-    0 and is r + b behind the TCP, which has gone s_L; D is from the mark's start to its widest place."""
+    """Side view and straight stroke give the tip gap.
+
+    (18) counts from the first touch. (17) as printed lacks the lag. In a straight slow landing, the tip
+    begins to mark at 0. It is r + b behind the TCP, which has gone s_L. D is the distance from the mark's
+    start to its widest place.
+    """
     known = {
         "lag": values(DEPTHS, lag(DEPTHS)),
         "tip_to_widest": values(DEPTHS, widest(DEPTHS)),
@@ -260,7 +290,7 @@ def test_side_view_and_straight_stroke_give_the_tip_gap():
 
 @sample("kind", ["angular", "side_view"], keep=1)
 def test_intervals_cover_the_truth_through_corrections(kind):
-    """What a law inherits from those it was corrected by is part of its interval."""
+    """The interval of a law includes the errors of the laws that corrected it."""
     rng = np.random.default_rng(11)
     depths = np.repeat(DEPTHS, 2)
     covered = []
@@ -270,7 +300,7 @@ def test_intervals_cover_the_truth_through_corrections(kind):
             "tip_to_widest": values(depths, widest(depths) + rng.normal(0, 0.1, depths.size)),
             "width": WIDTHS,
         }
-        if kind == "angular":  # the lag from the sum, corrected by a tip gap that is badly known
+        if kind == "angular":  # the lag comes from the sum, corrected by a poorly known tip gap
             rows["tip_gap"] = values(depths, GAP * depths + rng.normal(0, 0.6, depths.size))
             sums = scale * lag(depths) + GAP * depths - widest(depths)
             law_name, truth = "lag", scale * LAG
@@ -292,7 +322,10 @@ def test_intervals_cover_the_truth_through_corrections(kind):
 
 @pytest.mark.thorough
 def test_the_covariance_is_that_of_repeated_calibrations():
-    """Against the scatter of 600 calibrations, correlations between laws included."""
+    """The covariance agrees with the scatter of 600 calibrations.
+
+    It includes the correlations between laws.
+    """
     rng = np.random.default_rng(2)
     depths = np.repeat(DEPTHS, 2)
     found, reported = [], []
@@ -308,7 +341,7 @@ def test_the_covariance_is_that_of_repeated_calibrations():
         found.append(np.concatenate([each.coefficients for each in laws]))
         reported.append(np.array(made.brush.covariance)[:11, :11])
     reported, seen = np.mean(reported, axis=0), np.cov(np.array(found).T)
-    # of the laws' values at depths, not of coefficients, whose sizes differ by thousands
+    # Compare the laws' values at depths, because the sizes of coefficients differ by thousands.
     at = np.array([2.0, 5.0, 9.0])
     values_of = np.zeros((9, 11))
     for k, (first, count) in enumerate(((0, 5), (5, 2), (7, 4))):
@@ -320,7 +353,7 @@ def test_the_covariance_is_that_of_repeated_calibrations():
 
 @pytest.mark.parametrize("total", [False, True])
 def test_check_values_of_the_model(total):
-    """The page of check values: r = 3, b = 1, alpha0 = 90 degrees."""
+    """The page of check values holds for r = 3, b = 1 and alpha0 = 90 degrees."""
     s = [0.3, 1, 3, 6, 12]
     alpha = [1.470962578, 1.243469712, 0.705026844, 0.269035991, 0.036627182]
     beta = [2.942418246, 2.502940052, 1.603727440, 0.940211420, 0.448761937]

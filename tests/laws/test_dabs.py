@@ -1,5 +1,8 @@
-"""A photograph of dabs gives a brush the outlines that it has: painted by brushes whose footprints are no drops, in
-small steps by another simulator, with faults of paint and sheet, photographed by a camera of its own kind."""
+"""A photograph of dabs gives a brush its true outlines.
+
+The footprints of the painting brushes are not drops. A separate simulator paints in small steps, with faults
+of paint and sheet. The renderer has its own camera model.
+"""
 
 import json
 from dataclasses import replace
@@ -49,12 +52,12 @@ TURN = 2 * np.pi * np.arange(128) / 128
 
 
 def half(depth):
-    """No polynomial: bristles splay less and less."""
+    """Return a half width without polynomials: bristles splay less and less."""
     return 3.4 * (1 - np.exp(-depth / 5.0))
 
 
 def oval(depth, behind, ahead, left, right):
-    """From the tip: half axes in half widths."""
+    """Return an oval from the tip, with half axes in half widths."""
     h = np.maximum(half(depth), 1e-6)[:, None]
     x = behind - np.where(np.cos(TURN) > 0, behind, ahead) * np.cos(TURN)
     y = -np.where(np.sin(TURN) > 0, right, left) * np.sin(TURN)
@@ -66,7 +69,7 @@ def ellipse(depth):
 
 
 def egg(depth):
-    """Blunt behind, and long ahead the deeper it is pressed."""
+    """Return an egg, blunt behind and longer ahead at larger depths."""
     return oval(depth, 1.1, (1.0 + 0.1 * depth)[:, None], 1.0, 1.0)
 
 
@@ -83,7 +86,7 @@ def truth(shape):
 
 @cache
 def assumed():
-    """As it is known before: its lag to 2 %, widths, drops for outlines."""
+    """Return the brush as known before: lag to 2 %, widths, drops for outlines."""
     depths = (1.6, 3.0, 5.0, DEEPEST)
     brush = new_brush("before", 5.0, [(depth, round(2 * half(depth), 2)) for depth in depths])
     brush.lag = core.Profile((1.02 * LAG).tolist())
@@ -114,7 +117,7 @@ def photographed(name):
 
 
 def calibrated(folder, capsys, photo, *words, before=None):
-    """Status, report, what was reported, and the brush's path."""
+    """Calibrate and return status, report, messages and the brush's path."""
     (folder / "photo.jpg").write_bytes(photo)
     (folder / "dabs.json").write_text(write_chart(printed()))
     save_brush(before or assumed(), folder / "before.json")
@@ -135,7 +138,7 @@ def calibrated(folder, capsys, photo, *words, before=None):
 
 
 def outline_off(found, true):
-    """Distances (n,) of closely spaced points of an outline from another."""
+    """Return distances (n,) of closely spaced points of an outline from another."""
     line = shapely.LinearRing(found)
     points = shapely.line_interpolate_point(line, np.arange(0, line.length, 0.05))
     return shapely.distance(points, shapely.LinearRing(true))
@@ -152,7 +155,10 @@ def wide_at(outline, x):
     keep=1,
 )
 def test_outlines_and_widths_come_back(name, tmp_path, capsys):
-    """Of drops that were assumed with the true widths, outlines are 0.2 to 0.7 mm off."""
+    """Outlines and widths come back.
+
+    With assumed drops of the true widths, outlines would be 0.2 to 0.7 mm off.
+    """
     status, report, reported, path = calibrated(tmp_path, capsys, photographed(name))
     assert status == 0 and not [notice for file, notice in reported if file.endswith("photo.jpg")], reported
     found = find_brush(path)
@@ -166,10 +172,10 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
         )
         assert off < 0.1 < 0.2 < was, (depth, off, was)
         assert abs(2 * found.half_width(depth) - np.ptp(contour[:, 1])) < 0.05, depth
-        # the top is flat: the answer is a place that is as wide
+        # the top is flat, so any place of this width is right
         assert np.ptp(contour[:, 1]) - wide_at(contour, found.tip_to_widest(depth)) < 0.05, depth
         assert abs(found.tip_gap(depth) - GAP[1] * depth) < 0.25, depth
-    # the front is behind that of depth 6.7 on the way; of the egg by too little to see
+    # Here the front is behind the front of depth 6.7. For the egg, this difference is too small to see.
     if name != "egg":
         assert gives(report, "8 mm")
     about = json.loads(path.read_text())["footprints"]
@@ -177,19 +183,19 @@ def test_outlines_and_widths_come_back(name, tmp_path, capsys):
 
 
 def painted_word(plan, shape):
-    """What the true brush paints of each stroke."""
+    """Return the paint of the true brush for each stroke."""
     strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in plan.passes]
     return [whole(region) for region in painter.swept(truth(shape), strokes, 0.0)]
 
 
 def whole(region):
-    """Without what is bare inside of it."""
+    """Return the region without holes."""
     largest = max(getattr(region, "geoms", [region]), key=lambda part: part.area)
     return shapely.Polygon(largest.exterior)
 
 
 def predicted_overlap(plan, brush, painted):
-    """Mean over strokes."""
+    """Return the mean predicted overlap over strokes."""
     marks = core.simulate(plan, brush)
     core.trace_outlines(marks, brush)
     reported = [
@@ -212,8 +218,11 @@ def with_lag(brush, coefficients):
     keep=1,
 )
 def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
-    """By a brush of the same lag and of the true widths, whose outlines are drops: so far right, and no further. How
-    far a lopsided dab is to the side is known to 0.03 mm."""
+    """The outlines from dabs predict a word better than drops do.
+
+    A brush with drops has the true lag and widths, and its prediction is limited. The sideways place of a
+    lopsided dab is known to 0.03 mm.
+    """
     _, _, _, path = calibrated(tmp_path, capsys, photographed(name))
     before, own = with_lag(assumed(), LAG), with_lag(find_brush(path), LAG)
     plan = prepare(WORD, Options(brush=before)).plan
@@ -229,9 +238,12 @@ def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys)
     keep=1,
 )
 def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys):
-    """The whole way: lag, and eggs for outlines, from a chart of strokes; then the brush's own outlines from dabs, and
-    by these the lag of the strokes anew. An egg is as good from the strokes, since its widest section may move with
-    depth; next to a lopsided brush an egg's lag is 0.3 mm too short."""
+    """Strokes and dabs together predict a word.
+
+    A chart of strokes gives lag, and eggs for outlines. Dabs then give the brush's own outlines, and with
+    these the strokes give a new lag. For an egg the strokes are enough, since its widest section may move
+    with depth. For a lopsided brush, the lag by eggs is 0.3 mm too short.
+    """
     made = chart(assumed(), A5, "few")
     strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in made.plan.passes]
     faults = replace(FAULTS, height=0.05)
@@ -263,7 +275,10 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
 
 
 def test_the_same_from_below_through_glass(tmp_path, capsys):
-    """On a clear sheet; a picture that is mirrored, and one that is not, are refused where the other was given."""
+    """A photograph from below through glass gives the outlines as well.
+
+    The sheet is clear. A mirrored picture is refused if it is given as a normal one, and the reverse.
+    """
     photo = photo_of(painted(lopsided), mirrored=True)
     status, _, reported, path = calibrated(tmp_path, capsys, photo, "--mirrored")
     assert status == 0, reported

@@ -1,5 +1,7 @@
-"""A flatbed's scan of strokes on plain paper: its place is found by the strokes themselves, however the sheet is on
-the glass, or it is refused in a sentence that says what to do."""
+"""A flatbed scan of strokes on plain paper is read by the strokes themselves.
+
+The sheet may be anywhere on the glass. An unreadable scan is refused with a sentence that says what to do.
+"""
 
 import re
 from functools import cache, lru_cache
@@ -55,15 +57,18 @@ def sheet(paper=0.85, colour=tuple(BLUE)):
 
 
 def placed(points_mm, turn_deg):
-    """Places of the sheet on the glass, both y up: the sheet's middle is near the glass's."""
+    """Return places of the sheet on the glass, both y up.
+
+    The sheet's middle is near the middle of the glass.
+    """
     turn = np.radians(turn_deg)
     to = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     return (np.asarray(points_mm) - np.array(A5) / 2) @ to + np.array(GLASS) / 2 + [2.0, -3.0]
 
 
-@lru_cache(maxsize=1)  # of hundreds of megabytes
+@lru_cache(maxsize=1)  # one result needs hundreds of megabytes
 def blurred(dpi, **how):
-    """The sheet as the scanner's lens has it, in any pose."""
+    """Return the sheet as the scanner's lens shows it, for any pose."""
     made = sheet(**how)
     return cv2.GaussianBlur(made.shown, None, 0.4 * photograph.TEXELS * 25.4 / dpi)
 
@@ -73,10 +78,12 @@ def grain(shape):
     return np.random.default_rng(3).standard_normal(size=shape, dtype=np.float32) * np.float32(0.006)
 
 
-@lru_cache(maxsize=1)  # what is refused is refused of the same scan; more would be hundreds of megabytes
+@lru_cache(maxsize=1)  # all refusals use one scan; more scans would need hundreds of megabytes
 def scanned(dpi=300, turn_deg=0.0, **how):
-    """Pixels as a scanner writes them, red first: the mean light over each, some noise, a grey lid next to the "
-    "sheet."""
+    """Return the pixels of a scan, red first.
+
+    Each pixel is the mean light over its area with some noise. A grey lid is next to the sheet.
+    """
     made, fine = blurred(dpi, **how), dpi / 25.4
     texels = np.array([(0, 0), (made.shape[1], 0), (0, made.shape[0])], float)
     corners = placed([(0, A5[1]), A5, (0, 0)], turn_deg)
@@ -106,7 +113,10 @@ def shape(rings):
 
 
 def similarity_off(found) -> tuple[float, float, float]:
-    """Turn [degrees], scale and shift [mm] by which marks are where they were painted, and how well, rms mm."""
+    """Return turn [degrees], scale and shift [mm] from painted to read marks.
+
+    The last value is the rms distance [mm] that remains.
+    """
     both = [stroke for stroke in marks() if stroke in found.marks.outlines_mm]
     was, seen = (
         np.array([complex(*shape(rings[stroke]).centroid.coords[0]) for stroke in both])
@@ -124,7 +134,10 @@ def similarity_off(found) -> tuple[float, float, float]:
     keep=2,
 )
 def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
-    """Rigidly: a turn and shift of the whole sheet are the fit's to find, as on any sheet."""
+    """Marks are found for any pose of the sheet.
+
+    They are found up to a turn and shift of the whole sheet, which the fit finds on any sheet.
+    """
     found = read(scanned(dpi, turn_deg), dpi)
     assert not found.marks.missing and not found.marks.joined and not remarks(found)
     turn, scale, shift, left = similarity_off(found)
@@ -139,7 +152,10 @@ def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
 
 @pytest.mark.parametrize("margin_mm", [0, 10, 20])
 def test_light_paint_on_dark_paper_is_read_however_much_of_it_is_bare(margin_mm):
-    """With 10 mm of bare paper around, what is dark between marks was taken for the paint."""
+    """Light paint on dark paper is read, however much paper is bare.
+
+    With 10 mm of bare paper around, the dark paper between marks was once read as paint.
+    """
     fine = 300 / 25.4
     light = blurred(300, paper=0.06, colour=(0.5, 0.5, 0.5))
     light = cv2.resize(light, None, fx=fine / photograph.TEXELS, fy=fine / photograph.TEXELS)
@@ -154,7 +170,10 @@ def test_light_paint_on_dark_paper_is_read_however_much_of_it_is_bare(margin_mm)
 
 @pytest.mark.parametrize("at_mm", [(12, 10), (150, 10), (12, 150), (150, 140)])
 def test_a_small_sheet_is_found_anywhere_on_a_large_glass(at_mm):
-    """Shifts further than half of what the match repeats over are no shifts back."""
+    """A small sheet is found anywhere on a large glass.
+
+    The match is periodic. A shift of more than half of its period is not a shift back.
+    """
     ways = [np.array(points, float) for points in ([(0, 0), (38, 0), (38, 30)], [(5, 22), (20, 22)])]
     paint = np.zeros((600, 600), np.uint8)
     for way in ways:
@@ -173,14 +192,17 @@ def test_light_paint_on_dark_paper_is_read():
 
 
 def test_paper_that_is_nearly_black_is_refused():
-    """Marks were found on it, 0.4 mm from where they were painted."""
+    """Paper that is nearly black is refused; its marks were once 0.4 mm off."""
     code, sentence = code_of(scanned(paper=0.03, colour=(0.8, 0.8, 0.75)))
     assert code == "photo-too-dark" and "3.5" in sentence
 
 
 @pytest.mark.parametrize("paper", [0.85, 1.05])
 def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
-    """White paper on the glass is as white as can be: that was reported as overexposed."""
+    """A user who forgets the resolution of a scan is reminded.
+
+    White paper on the glass has the largest values, which was once reported as overexposed.
+    """
     with pytest.raises(Error) as refusal:
         read(scanned(paper=paper), dpi=None)
     assert refusal.value.code == ("photo-markers-missing" if paper < 1 else "photo-overexposed")
@@ -218,7 +240,10 @@ def test_another_chart_is_refused():
 
 
 def test_the_mirrored_scan_of_another_chart_is_one_of_another_chart():
-    """It once was said to be mirrored, as any picture was in one of two cases."""
+    """The mirrored scan of another chart is refused as another chart.
+
+    It was once reported as mirrored, like every second picture.
+    """
     other = chart(find_brush("round-6"), A5, "few", deepest_mm=9.0)
     assert code_of(np.ascontiguousarray(scanned()[:, ::-1]), made=other)[0] == "photo-paint-elsewhere"
 

@@ -1,4 +1,7 @@
-"""The forward law against its differential equation, slow stepping, printed values and its symmetries."""
+"""The forward law agrees with references.
+
+These are its differential equation, slow stepping, printed values and its symmetries.
+"""
 
 import itertools
 
@@ -21,7 +24,7 @@ def rows_of(poses, brush, tolerance_mm=0.02):
 
 
 def at_poses(rows):
-    """Row numbers that stand at the poses themselves."""
+    """Return the numbers of the rows at the poses."""
     whole = np.flatnonzero(rows.pose == np.round(rows.pose))
     _, first = np.unique(rows.pose[whole], return_index=True)
     return whole[first]
@@ -141,7 +144,10 @@ def test_the_two_slow_simulators_and_the_reference_agree():
 
 
 def test_pressing_fast_loosens_inside_a_move():
-    """Settled at depth 2, then pressed at 1 mm per mm: the patch rests, then is dragged again."""
+    """Fast pressing loosens the brush inside a move.
+
+    The brush is settled at depth 2, then pressed at 1 mm per mm. The patch rests, then is dragged again.
+    """
     poses = np.array([[0, 0, 0], [9, 0, -2], [60, 0, -2], [67, 0, -9], [110, 0, -9], [110, 0, 0.0]])
     rows, reference = rows_of(poses, make_brush()), oracle.Reference(poses, ROUND)
     inside = (rows.pose > 2) & (rows.pose < 3)
@@ -158,7 +164,10 @@ def test_pressing_fast_loosens_inside_a_move():
 
 
 def test_brush_tightens_and_loosens_again_within_one_move():
-    """f is negative at both ends of the move and positive in between: found only by isolating all roots."""
+    """A brush can tighten and loosen again within one move.
+
+    f is negative at both ends of the move and positive between them. Only isolating all roots finds this.
+    """
     lag = oracle.Law([6.0, -2.2, 0.3])  # 6 at depth 0, 2.0 at depth 4, 7.8 at depth 8
     poses = np.array([[0, 0, 0.0], [2.5, 0, -0.2], [5.0, 1.0, -8.0], [5.0, 1.0, 0.0]])
     reference, rows = (
@@ -210,7 +219,10 @@ def test_rigid_pen_follows_the_tcp():
 
 @pytest.mark.parametrize("tolerance", [0.2, 0.02, 0.002])
 def test_rows_are_as_close_as_the_tolerance_asks(tolerance):
-    """Half way between two rows no point of the footprint is further from the line between them."""
+    """Rows are as close as the tolerance requires.
+
+    Half way between two rows, no point of the footprint is further from the line between them.
+    """
     rng = np.random.default_rng(11)
     outlines = core.footprint_at
     for name in ("round", "constant"):
@@ -364,7 +376,10 @@ def poses_from(steps):
 
 
 def patch_at_poses(poses, brush):
-    """Contact and lever (n, 4) at every pose: the lever stays continuous where the heading does not."""
+    """Return contact and lever (n, 4) at every pose.
+
+    The lever stays continuous where the heading jumps.
+    """
     rows = rows_of(poses, brush)
     k = at_poses(rows)
     reach = np.hypot(*(rows.tcp_mm[k] - rows.contact_mm[k]).T)
@@ -378,7 +393,8 @@ def test_splitting_a_move_changes_nothing(steps, name, parts):
     assert patch_at_poses(oracle.subdivide(poses, parts), brush)[::parts] == pytest.approx(whole, abs=2e-9)
 
 
-@example([(8.0, 0.0, 7.0)], "small near 0", 2.0, 2.0, False)  # begins without a lag, its first way a rounding
+# begins without a lag, and its first way is a rounding error
+@example([(8.0, 0.0, 7.0)], "small near 0", 2.0, 2.0, False)
 @given(moves, names, st.floats(-3, 3), st.floats(-200, 200), st.booleans())
 def test_turning_mirroring_and_shifting_the_sheet(steps, name, angle, shift, mirror):
     poses, brush = poses_from(steps), make_brush(LAGS[name])
@@ -393,7 +409,10 @@ def test_turning_mirroring_and_shifting_the_sheet(steps, name, angle, shift, mir
 
 
 def test_lifted_on_the_spot_a_brush_keeps_its_heading():
-    """Its lever falls to nothing there, and no move says where it heads."""
+    """A brush that is lifted on the spot keeps its heading.
+
+    Its lever shrinks to 0 there, and no move gives a heading.
+    """
     poses = np.array([[0, 0, 0], [0, 0, -3.0], [0, 1e-10, -3.0], [0, 1e-10, -1e-9], [0, 1e-10, 0]])
     heading = rows_of(poses, make_brush(LAGS["small near 0"])).heading_rad
     assert heading[-1] == pytest.approx(np.pi / 2)
@@ -413,9 +432,12 @@ def test_scaling_everything_scales_the_mark(steps, name, scale):
 
 @given(moves, names, st.floats(-2, 2), st.floats(-2, 2))
 def test_patches_never_drift_apart(steps, name, dx, dy):
-    """The patch is pulled into a moving disc, so two patches under one TCP path only come nearer."""
+    """Patches never drift apart.
+
+    The patch is pulled into a moving disc, so two patches under one TCP path only come nearer.
+    """
     poses, brush = poses_from(steps), make_brush(LAGS[name])
-    if name == "small near 0":  # at depth 0 nothing is left of a first difference
+    if name == "small near 0":  # at depth 0 a first difference vanishes
         return
     poses[0, 2] = -1.0
     one = rows_of(np.vstack([[[0.4, 0, -1]], poses]), brush)
@@ -438,7 +460,7 @@ def test_poses_above_the_paper_are_refused_unless_they_are_a_machines_motion():
     assert caught.value.value == 0.5
     ran = core.simulate(plan, brush, may_rise=True).passes[0]
     assert ran.depth_mm.min() == -0.5
-    # rounding is no rise: plans are written to 1e-7 mm
+    # Plans are written to 1e-7 mm, so a rise by rounding does not count.
     flat = [[0, 0, 0], [8, 0, -4], [20, 0, -4], [40, 0, 1e-7]]
     assert core.simulate(make_plan(np.array(flat, float)), brush).passes[0].depth_mm[-1] <= 1e-7
 
@@ -451,7 +473,7 @@ def test_each_pose_has_its_row_also_where_a_pass_begins_or_ends_on_the_paper(fir
     assert rows.pose[at] == pytest.approx(np.arange(4), abs=1e-9)
     assert rows.tcp_mm[at] == pytest.approx(poses[:, :2], abs=1e-9)
     assert rows.depth_mm[at] == pytest.approx(-poses[:, 2], abs=1e-9)
-    # the patch trails the last pose by the lag; the rows that follow it are those of the lift on the spot
+    # The patch trails the last pose by the lag. The rows after it belong to the lift on the spot.
     end = at[-1]
     assert np.hypot(*(rows.contact_mm[end] - poses[-1, :2])) == pytest.approx(ROUND(-last), abs=1e-3)
     assert (len(rows.pose) > end + 1) == (last < 0)

@@ -1,4 +1,8 @@
-"""Compensate, then simulate finely: the widest point must run along the middle line, and P must come back."""
+"""Compensated strokes paint their middle lines.
+
+The tests simulate each compensated stroke finely. The widest point must run along the middle line, and P must
+come back.
+"""
 
 import itertools
 import multiprocessing
@@ -22,12 +26,12 @@ LAG = oracle.Law(*LAGS["round"])
 
 
 def lever(depth):
-    """e = x_w - b of the article's brush."""
+    """Return e = x_w - b of the article's brush."""
     return WIDEST(depth) - 0.52 * depth
 
 
 def line(*points):
-    """Straight cubics through points."""
+    """Return straight cubics through points."""
     p = np.array(points, float)
     return np.array(
         [np.concatenate([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b]) for a, b in itertools.pairwise(p)]
@@ -40,7 +44,10 @@ def corner(degrees, arm=30.0):
 
 
 def arc(radius, sweep, start=(0.0, 0.0), pieces_per_turn=48):
-    """Cubics along a circle from `start`, heading along +x, turning left; off the circle by 1e-10 radius."""
+    """Return cubics along a circle from `start`, heading along +x and turning left.
+
+    They deviate from the circle by 1e-10 of the radius.
+    """
     count = max(1, int(np.ceil(sweep / (2 * np.pi) * pieces_per_turn)))
     knots = np.linspace(-np.pi / 2, -np.pi / 2 + sweep, count + 1)
     k = 4 / 3 * np.tan(sweep / count / 4)
@@ -56,7 +63,7 @@ def arc(radius, sweep, start=(0.0, 0.0), pieces_per_turn=48):
 
 
 def smooth(rng, pieces, turn=1.2):
-    """Cubics that join without a corner."""
+    """Return cubics that join without a corner."""
     xy, heading, out = np.zeros(2), rng.uniform(-np.pi, np.pi), []
     for _ in range(pieces):
         length, turned = rng.uniform(8, 18), heading + rng.uniform(-turn, turn)
@@ -79,7 +86,10 @@ def zigzag(rng, corners):
 
 
 def widths(rng, length, least=0.125):
-    """Half widths that change by at most 0.13 mm per mm; half of the strokes taper down to 0.25 mm."""
+    """Return half widths that change by at most 0.13 mm per mm.
+
+    Half of the strokes taper to 0.25 mm.
+    """
     count = int(length // 9) + 1
     step = 0.13 * length / count
     h = [rng.uniform(0.3, 2.5)]
@@ -96,7 +106,10 @@ def stroke_of(middle, half_width, closed=False):
 
 
 def as_far_as_a_round_cap(stroke):
-    """The middle line and half a width more: a footprint with a blunt front has to go beyond the drawn end."""
+    """Return the middle line, longer by half a width.
+
+    A footprint with a blunt front has to go beyond the drawn end.
+    """
     cubics = np.asarray(stroke.middle_mm)
     end = cubics[-1, 6:]
     behind = next(
@@ -107,7 +120,10 @@ def as_far_as_a_round_cap(stroke):
 
 
 class Painted:
-    """A compensated stroke, simulated with every move cut in parts: where the widest point really goes."""
+    """The true way of the widest point of a compensated stroke.
+
+    The simulation cuts every move into parts.
+    """
 
     def __init__(self, stroke, tolerance_mm, brush=ROUND, parts=6, step=0.25, **options):
         found = core.compensate([stroke], brush, (200.0, 200.0), tolerance_mm=tolerance_mm, **options)
@@ -123,7 +139,7 @@ class Painted:
         self.taut = np.flatnonzero(self.rows.taut & (depth >= 0))
 
     def once_taut(self):
-        """Distances from the first taut row to the last, resting rows in between included."""
+        """Return distances from the first taut row to the last, with rows between."""
         return self.distance[self.taut[0] : self.taut[-1] + 1]
 
 
@@ -138,7 +154,7 @@ def assert_follows(painted, tolerance_mm):
     )
     assert painted.tracking_error.mean_mm <= painted.tracking_error.largest_mm
     forward = np.maximum.accumulate(painted.s[painted.taut]) - painted.s[painted.taut]
-    assert forward.max() <= max(tolerance_mm, 1e-6)  # the way it was drawn
+    assert forward.max() <= max(tolerance_mm, 1e-6)  # the point runs in the drawn direction
     poses = painted.poses
     assert poses[0, 2] == 0
     assert poses[-1, 2] == 0
@@ -201,7 +217,10 @@ def test_widest_point_stays_within_the_tolerance(middle, half_width, tolerance):
 
 @pytest.mark.parametrize("half_width", [0.25, 1.0, 1.68, 2.5])
 def test_taut_rows_reach_from_the_landing_to_the_end(half_width):
-    """The tolerance would mean little if the brush hung loose most of the way."""
+    """The brush is taut from the landing to the end of a stroke.
+
+    If the brush hung loose most of the way, the tolerance would mean little.
+    """
     painted = Painted(stroke_of(smooth(np.random.default_rng(6), 4), [(0.0, half_width)]), 1e-3, step=0.01)
     s = np.sort(painted.s[painted.taut])
     depth = half_width / 0.42
@@ -220,7 +239,8 @@ def test_any_lag_law(name):
         if name != "small near 0":
             assert_follows(painted, 1e-3)
             continue
-        # r = 0.8 d hangs between taut and loose all through landing and lift: look at the stroke proper
+        # With r = 0.8 d the brush is between taut and loose during landing and lift, so only the stroke
+        # itself counts.
         drawn = np.interp(painted.s / painted.middle.length, *zip(*stroke.half_width, strict=True)) / 0.42
         proper = painted.taut[np.abs(painted.rows.depth_mm - drawn)[painted.taut] < 1e-3]
         assert len(proper) > 100
@@ -236,7 +256,10 @@ def _compensated_in_a_process(half_width, results):
 
 @pytest.mark.parametrize("thick", [2.0, 2.5, 3.0])
 def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
-    """From 0.25 mm to 5 mm within 7.5 mm the lever e grows faster than the widest point advances."""
+    """Compensation of a taper from 0.25 mm to 5 mm within 7.5 mm terminates.
+
+    In this taper, the lever e grows faster than the widest point advances.
+    """
     for half_width in (
         [(0.0, 0.125), (0.25, thick), (1.0, thick)],
         [(0.0, thick), (0.25, 0.125), (0.5, thick), (1.0, thick)],
@@ -270,8 +293,11 @@ def test_sharper_turns_report_what_remains(degrees, remains, tolerance):
 
 
 def contact_behind(parts, depth_at, s, points):
-    """P where m has run s along parts (length, curvature, corner before it) to `points`: what m drags on the
-    lever e > 0, started along the middle line."""
+    """Return P after m has run s along parts to `points`.
+
+    A part is (length, curvature, corner before it). m drags P on the lever e > 0, starting along the middle
+    line.
+    """
     heading, psi, begin, found = 0.0, 0.0, 0.0, np.full((len(s), 2), np.nan)
     for length, curvature, corner_before in parts:
         heading, psi = heading + corner_before, psi - corner_before
@@ -323,11 +349,14 @@ def test_contact_comes_back(bend, wide):
 
 @sample("half_width", [0.25, 0.4, 1.0, 2.0], keep=2)
 def test_contact_settles_on_its_own_circle(half_width):
-    """m on a circle of radius R, lever e: P runs at sqrt(R^2 - e^2), ahead of m where e is negative."""
+    """With m on a circle of radius R and the lever e, P runs at sqrt(R^2 - e^2).
+
+    P is ahead of m if e is negative.
+    """
     radius, depth = 12.0, half_width / 0.42
     painted = Painted(stroke_of(arc(radius, 4.0), [(0.0, half_width)]), 1e-6, parts=2, step=1.0)
     e = float(lever(depth))
-    far = 20 * abs(e)  # the start, for e < 0 the end, is forgotten by exp(-s/|e|)
+    far = 20 * abs(e)  # the effect of the start (for e < 0, of the end) decays as exp(-s/|e|)
     s = painted.s[painted.taut]
     length = painted.middle.length
     rows = (
@@ -342,7 +371,7 @@ def test_contact_settles_on_its_own_circle(half_width):
 
 
 def test_tcp_is_a_lag_ahead_along_the_heading():
-    """q = P + r T where the brush is taut, at the poses themselves."""
+    """Where the brush is taut, q = P + r T holds at the poses."""
     painted = Painted(stroke_of(smooth(np.random.default_rng(8), 3), [(0.0, 0.8), (1.0, 2.0)]), 1e-3, parts=1)
     rows, k = painted.rows, painted.taut
     ahead = LAG(rows.depth_mm[k])[:, None] * oracle.unit(rows.heading_rad[k])
@@ -357,7 +386,7 @@ def test_tcp_is_a_lag_ahead_along_the_heading():
 
 
 def reach(painted, point, direction, rows):
-    """How far the footprints of some rows reach beyond a point [mm]."""
+    """Return how far the footprints of some rows reach beyond a point [mm]."""
     marks, farthest = painted.rows, -np.inf
     for k in rows:
         if marks.depth_mm[k] > 0:
@@ -372,7 +401,10 @@ def reach(painted, point, direction, rows):
 @pytest.mark.parametrize("half_width", [0.25, 0.5, 1.0, 1.68, 2.5, 4.0])
 @sample("seed", [11, 12], keep=1)
 def test_ends_of_the_mark(half_width, seed):
-    """No tail after the lift, nothing before the requested start; the patch rests while the brush is lifted."""
+    """A mark has no tail after the lift and no paint before the requested start.
+
+    The patch rests while the brush is lifted.
+    """
     painted = Painted(
         stroke_of(smooth(np.random.default_rng(seed), 3), [(0.0, half_width)]), 1e-3, parts=12, step=0.5
     )
@@ -381,7 +413,7 @@ def test_ends_of_the_mark(half_width, seed):
     halves = [
         rows[np.hypot(*(painted.widest[rows] - p).T) < 12] for rows, p in zip(near, (start, end), strict=True)
     ]
-    beyond = 2e-3 if half_width < 3 else 0.01  # a blunt front's corner, where the line bends
+    beyond = 2e-3 if half_width < 3 else 0.01  # a corner of a blunt front sticks out where the line bends
     depth = half_width / 0.42
     assert half_width - 0.06 <= reach(painted, end, last, halves[1]) <= half_width + beyond
     least = min(half_width, WIDEST(depth)) - 0.06
@@ -395,7 +427,7 @@ def test_ends_of_the_mark(half_width, seed):
 
 
 def test_a_plain_lift_would_leave_a_tail():
-    """The same measure does find the tail of an uncompensated stroke."""
+    """The measure of test_ends_of_the_mark finds the tail of an uncompensated stroke."""
     painted = Painted(
         stroke_of(line((0, 0), (40, 0)), [(0.0, 1.68)]), 1e-3, method="none", parts=12, step=0.5
     )
@@ -462,7 +494,8 @@ def test_constant_runs_a_constant_lag_ahead(lag, tolerance):
             turn = np.linspace(0, np.pi / 2, 4001)
             target = np.vstack([target, [20, 0] + r0 * oracle.unit(turn)])
         near, _ = oracle.cKDTree(target).query(oracle.subdivide(poses[1:-1], 4)[:, :2])
-        assert near.max() <= tolerance + 2e-3  # 2e-3: spacing of the samples, rounding of the median
+        # 2e-3 is for the spacing of the samples and the rounding of the median
+        assert near.max() <= tolerance + 2e-3
         far, _ = oracle.cKDTree(oracle.subdivide(poses[1:-1], 1, 1e-2)[:, :2]).query(target[::20])
         assert far.max() <= tolerance + 8e-3
 
@@ -500,7 +533,11 @@ def test_strokes_keep_their_order_and_names():
 
 
 def test_compensation_turns_with_the_sheet():
-    """Two plans of this stroke, of 12 and of 13 poses, are equally good: the last bits of its coordinates decide."""
+    """A turned stroke gives the turned plan.
+
+    This stroke has two equally good plans, of 12 and of 13 poses. The last bits of its coordinates decide
+    between them.
+    """
     middle, plans = smooth(np.random.default_rng(9), 3), {}
     for angle in 0.37 * np.arange(16):
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
@@ -515,15 +552,19 @@ def test_compensation_turns_with_the_sheet():
 
 
 def every(poses, step):
-    """Instants of a pass (fractional poses): each pose, and none further than `step` [mm] from the next."""
+    """Return fractional poses of a pass, with every pose among them.
+
+    They are at most `step` [mm] apart.
+    """
     counts = np.maximum(1, np.ceil(np.linalg.norm(np.diff(poses, axis=0), axis=1) / step)).astype(int)
     return np.append(np.concatenate([k + np.arange(n) / n for k, n in enumerate(counts)]), len(poses) - 1.0)
 
 
 def painted_region(poses, step=0.25, from_x=-np.inf):
-    """The mark by the slow reference: footprints placed along its events and between them, swept. from_x: of P.
+    """Return the mark by the slow reference.
 
-    Steps of 0.25 mm miss less than a ten thousandth of the area of a dot, and 0.02 mm at an edge.
+    Footprints are placed at its events and between them, and swept. from_x is the least x of P. Steps of 0.25
+    mm miss less than a ten thousandth of the area of a dot, and 0.02 mm at an edge.
     """
     reference = oracle.Reference(poses, LAG)
     dragged = [
@@ -544,8 +585,11 @@ def painted_region(poses, step=0.25, from_x=-np.inf):
 
 
 def beginning(middle, half_width, start):
-    """Overlap of mark and target mark within two half widths of the path's first point, and the greatest distance of
-    paint beyond the target mark there."""
+    """Compare the beginning of a mark with its target.
+
+    Return the overlap within two half widths of the path's first point, and the largest distance of paint
+    beyond the target mark there.
+    """
     import shapely
 
     found = core.compensate([stroke_of(middle, [(0.0, half_width)])], ROUND, (200.0, 200.0), start=start)
@@ -578,9 +622,9 @@ def test_the_rear_of_a_wide_footprint_is_covered_too(half_width):
     pointed, _ = beginning(middle, half_width, "pointed")
     rounded, _ = beginning(middle, half_width, "round")
     assert pointed < 0.8
-    assert rounded > 0.88  # its front is blunt
+    assert rounded > 0.88  # the front of the footprint is blunt
     reaches = painted_region(poses_of(middle, [(0.0, half_width)], start="round")).bounds[0]
-    assert reaches > 20.0 - half_width - 0.1  # a thorn of 1.9 mm where it went on as wide as it came
+    assert reaches > 20.0 - half_width - 0.1  # a constant width would leave a thorn of 1.9 mm
 
 
 def poses_of(middle, half_width, **options):
@@ -606,7 +650,7 @@ def test_what_cannot_be_round_is_pointed(middle, half_width):
     [
         (arc(6.0, 1.2), [(0.0, 3.0), (0.5, 2.0), (1.0, 0.5)], 0.96),  # a comma
         (arc(14.0, 1.0), [(0.0, 3.5), (0.2, 2.8), (0.5, 1.2), (1.0, 1.2)], 0.96),  # the ball of an f
-        (line((20, 20), (22, 20), (22, 50)), [(0.0, 3.0)], 0.94),  # the tip would come out beyond the corner
+        (line((20, 20), (22, 20), (22, 50)), [(0.0, 3.0)], 0.94),  # the tip would stick out beyond the corner
     ],
     keep=1,
 )
@@ -700,7 +744,10 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
     keep=1,
 )
 def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
-    """As in Arabic letters. None fills 0.92 of a rectangle, so that they were discs."""
+    """Dots with other corners keep them, as in Arabic letters.
+
+    None of these dots fills 0.92 of a rectangle, so they were once painted as discs.
+    """
     import shapely
 
     drawn = shapely.Polygon(np.add(corners, 50.0)).buffer(-rounded_mm).buffer(rounded_mm)
@@ -756,7 +803,10 @@ def test_a_dot_without_corners_stays_round(corners):
     ],
 )
 def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
-    """Without room they began pointed: 0.94 of what was drawn."""
+    """A wide line begins round, however it bends.
+
+    Lines without space for this once began pointed, with an overlap of 0.94.
+    """
     stroke = stroke_of(np.array([cubic], float), [(0.0, half_width)])
     drawn = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.02)])
 
@@ -774,7 +824,10 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
 
 @pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 3.9, 4.1])
 def test_bars_of_all_widths_begin_alike(half_width):
-    """Wide ones began pointed next to round ones: a roof on every stem of a sans."""
+    """Bars of all widths begin alike.
+
+    Wide bars once began pointed next to round ones, which gave every stem of a sans a roof.
+    """
     bar = line((60, 90), (60, 40))
     rounded = poses_of(bar, [(0.0, half_width)], start="round")
     np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), rounded)
@@ -785,7 +838,7 @@ def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
     pointed, rounded = poses_of(bar, [(0.0, 2.0)]), poses_of(bar, [(0.0, 2.0)], start="round")
     assert len(rounded) > len(pointed)
     np.testing.assert_array_equal(poses_of(bar, [(0.0, 2.0)], start="auto"), rounded)
-    # drawn as the footprint is behind, pointed by 3.8 mm: nothing to hide
+    # This beginning is drawn like the footprint's tail, pointed by 3.8 mm, so there is nothing to hide.
     points = [[18, 20], [21.8, 18], [60, 18], [60, 22], [21.8, 22]]
     sharp = stroke_of(bar, [(0.0, 2.0)])
     sharp.wanted_mm = [np.array(points, float)]
@@ -815,14 +868,20 @@ def test_a_pointed_end_is_a_pointed_beginning_mirrored(middle, half_width):
 
 
 def cut_bar(half_width, slope):
-    """A bar whose end is cut half a width beyond its path's, and so much further back on its left."""
+    """Return a bar whose end is cut half a width beyond the end of its path.
+
+    slope moves the cut further back on the left.
+    """
     x, displaced = 40 + half_width, slope * half_width
     low, high = 20 - half_width, 20 + half_width
     return [(20.0, low), (x + displaced, low), (x - displaced, high), (20.0, high)]
 
 
 def end_of_bar(half_width, slope, **options):
-    """Overlap of mark and bar in its end, the greatest distance of paint beyond the bar there, and the poses."""
+    """Compare the end of a mark with its bar.
+
+    Return the overlap, the largest distance of paint beyond the bar there, and the poses.
+    """
     import shapely
 
     stroke = stroke_of(line((20, 20), (40, 20)), [(0.0, half_width)])
@@ -858,13 +917,16 @@ def mirrored(outline):
 
 
 def begun_bar(half_width, slope):
-    """A bar that begins at 20 mm where it is cut, and runs on to the right."""
+    """Return a bar that begins with a cut at 20 mm and runs to the right."""
     start, *_, end = mirrored(cut_bar(half_width, slope))
     return [(80.0, start[1]), *mirrored(cut_bar(half_width, slope))[1:3], (80.0, end[1])]
 
 
 def plan_of_bar(half_width, slope, **options):
-    """A bar of which the beginning is cut, and its plan; one touch, and no deeper than its line asks for."""
+    """Return a bar with a cut beginning, and its plan.
+
+    The plan has one touch and is no deeper than its line requires.
+    """
     stroke = stroke_of(line((20, 20), (80, 20)), [(0.0, half_width)])
     stroke.wanted_mm = [np.array(begun_bar(half_width, slope))]
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
@@ -881,8 +943,11 @@ def plan_of_bar(half_width, slope, **options):
 
 
 def beginning_of_bar(half_width, slope, poses):
-    """Overlap of mark and bar in its beginning, up to where all of the stroke's width has begun, and the greatest
-    distance of paint beyond the bar there."""
+    """Compare the beginning of a mark with its bar.
+
+    The beginning ends where the stroke has its full width. Return the overlap there, and the largest distance
+    of paint beyond the bar.
+    """
     import shapely
 
     target = shapely.Polygon(begun_bar(half_width, slope))
@@ -977,7 +1042,10 @@ def test_what_begins_with_no_cut_is_round(half_width, target):
 
 @pytest.mark.parametrize("middle", [line((20, 20), (28, 20)), line((20, 20), (25, 20), (25, 50))])
 def test_a_beginning_without_room_for_the_way_back_is_round(middle):
-    """Too short for the tip that is set down inside, or it would come out next to a corner."""
+    """A beginning without space for the way back is round.
+
+    It is too short for a tip that is set down inside, or the tip would stick out next to a corner.
+    """
     rounded = poses_of(middle, [(0.0, 3.0)], start="round")
     np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="butt"), rounded)
 

@@ -1,5 +1,8 @@
-"""A painted word updates the brush that painted it: painted in small steps by another simulator with a brush that
-differs from its file, photographed by a camera of its own kind."""
+"""A painted word updates its brush.
+
+The true brush differs from its file. A separate simulator paints in small steps, and the renderer has its own
+camera model.
+"""
 
 import json
 from dataclasses import replace
@@ -51,7 +54,10 @@ DEPTHS = np.linspace(1, DEEPEST, 10)
 
 
 def known_brush(sure):
-    """The brush as its file has it: each number known to a share `sure` of it (standard deviation)."""
+    """Return the brush of its file.
+
+    Each number is known to a share `sure` of its value (standard deviation).
+    """
     laws = core.MarkLaws(LAG.tolist(), GAP.tolist(), HALF.tolist(), WIDEST, FRONT)
     numbers = np.array([*LAG, GAP[1], *HALF[1:], WIDEST, FRONT, 1e-9, 1e-9, 1e-9, 1e-9])
     covariance = np.diag((sure * numbers) ** 2)
@@ -62,7 +68,10 @@ def known_brush(sure):
 
 
 class Studio:
-    """A folder with a drawing, a brush file, the plan, and the photograph of what another brush painted of it."""
+    """A folder with a drawing, a brush file, the plan and a photograph.
+
+    The photograph shows the drawing, painted by another brush.
+    """
 
     def __init__(self, folder, drawing=WORD, sure=0.08):
         self.folder = folder
@@ -112,7 +121,8 @@ def deepest(plan):
     return max(float(-np.array(one.poses_mm)[:, 2].min()) for one in plan.passes)
 
 
-# seed: truth, and how sure the file is: the second is five standard deviations from what it says
+# {seed: (true brush, relative accuracy of the file)}. The second brush is five standard deviations from its
+# file.
 STUDIOS = {1: (true_brush(1.18, 0.9), 0.08), 2: (true_brush(0.83, 0.86), 0.03)}
 
 
@@ -161,7 +171,11 @@ def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, c
 
 
 def test_one_depth_says_less_of_others(tmp_path, capsys):
-    """What is learned at one depth and above it leaves what is far below it open, and the truth within."""
+    """One depth shows little of other depths.
+
+    Marks at one depth and above leave the values far below uncertain. The intervals there still contain the
+    truth.
+    """
     studio = Studio(tmp_path, ONE_DEPTH, 0.08)
     studio.paint(3, true_brush(1.06, 0.96))
     assert in_json(capsys, *studio.words())[0] == 0

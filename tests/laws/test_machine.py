@@ -1,4 +1,7 @@
-"""Machines come back from the marks that they painted; the slow stepping simulator paints along the ways they run."""
+"""Machines come back from their painted marks.
+
+The slow stepping simulator paints along the true ways of the machines.
+"""
 
 import re
 import sys
@@ -33,10 +36,10 @@ FIELD = ((0.8, -0.5, 0.6), (-0.7, 0.4, 0.9))
 
 
 def run(poses, centre, height, lean, axes, tilt, displaced=None):
-    """Come down on the first pose and gone up from the last one, too."""
+    """Return the machine's way, from coming down to going up."""
     up = poses[[0, -1]] * (1, 1, 0) + (0, 0, 1)
     poses = np.vstack([up[:1], poses, up[1:]])
-    if displaced:  # lines are none any more
+    if displaced:  # straight lines become curved
         parts = [a + np.linspace(0, 1, 12)[1:, None] * (b - a) for a, b in pairwise(poses)]
         poses = np.vstack([poses[:1], *parts])
     at = poses[:, :2] - centre
@@ -47,7 +50,10 @@ def run(poses, centre, height, lean, axes, tilt, displaced=None):
 
 
 def displacement_of(strokes):
-    """(n, 2) places to how far FIELD displaces the tool there, over the box of all strokes."""
+    """Return a function from places (n, 2) to displacements by FIELD.
+
+    FIELD covers the box of all strokes.
+    """
     places = np.concatenate([poses[:, :2] for _, poses in strokes])
     low, high = places.min(axis=0), places.max(axis=0)
 
@@ -59,7 +65,7 @@ def displacement_of(strokes):
 
 
 def painted_by(seed, parts, one_way=False):
-    """Brush, and what was read of its sheet."""
+    """Return a brush and the marks of its sheet."""
     rng = np.random.default_rng(seed)
     brush = painter.random_brush(rng)
     strokes = painter.chart_strokes(brush.deepest, 3)
@@ -162,8 +168,11 @@ def test_without_the_machine_the_lag_is_off():
 
 @pytest.mark.parametrize("seed", [54, 2005])
 def test_no_lag_that_looks_like_lean_is_where_the_fit_begins(seed):
-    """Machines that lean by 1 and 0.8 mm per mm. Where lags are tried with the machine held, the first comes back with
-    a lag 314 % off, a lag that does as the lean does; with it free, the second one 99 %."""
+    """The fit does not begin with a lag that looks like lean.
+
+    The machines lean by 1 and 0.8 mm per mm. If lags are tried with a fixed machine, the first lag comes back
+    314 % off, because this lag acts like the lean. With a free machine, the second lag is 99 % off.
+    """
     found = machine_recovery.recover(seed, ("lean", "axes", "backlash", "tilt"))
     assert np.abs(found["lag"][True]).max() < 0.03
     for name, (error, half) in found["numbers"].items():
@@ -194,8 +203,11 @@ def test_an_exact_machine_is_found_to_be_exact():
 
 @pytest.mark.parametrize("seed", [5, 6])
 def test_no_lean_is_known_no_better_than_some(seed):
-    """A brush that is pressed on the spot points to where a lean of micrometres takes the tool: of such a lean the
-    marks seem to determine everything, of none at all another thing."""
+    """The absence of lean is known no better than a real lean.
+
+    A brush that is pressed on the spot points where a lean of micrometres moves the tool. With this lean, the
+    marks seem to determine everything. Without lean, they seem to determine something else.
+    """
     _, upright = painted_by(seed, ())
     _, leaning = painted_by(seed, ("lean",))
     known = {}
@@ -209,7 +221,10 @@ def test_no_lean_is_known_no_better_than_some(seed):
 
 
 def test_a_machine_runs_circles_by_their_chords():
-    """Half a circle through three poses: its chords alone would be another stroke."""
+    """A machine runs circles by their chords.
+
+    The test has half a circle through three poses, whose chords alone would be another stroke.
+    """
     poses = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, -2.0], [20.0, -10.0, -2.0], [30.0, 0.0, -2.0]])
     arc = core.Arc(1, 3, (20.0, 0.0), 1)
     ring = np.array([[0.0, -1.0], [30.0, -1.0], [30.0, 1.0], [0.0, 1.0]])

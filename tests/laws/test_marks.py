@@ -1,4 +1,7 @@
-"""Outline rings and coverage against a dense shapely union of footprints, and what rows promise."""
+"""Outline rings and coverage agree with a dense shapely union of footprints.
+
+Rows keep their tolerance.
+"""
 
 import functools
 import itertools
@@ -16,7 +19,10 @@ LEAST = 2.0  # the crescent is measured from here on; below it is scaled
 
 
 def crescent(depth, slim=1.0):
-    """Concave in front: two horns at the widest section, the hollow between half as deep as the patch."""
+    """Return a footprint that is concave in front.
+
+    It has two horns at the widest section. The hollow between them is half as deep as the patch.
+    """
     long, half = 0.75 * depth, 0.42 * depth * slim
     t = np.linspace(0, 1, 8)
     outer = np.stack([long * t**2, -half * np.sin(np.pi / 2 * t)], axis=1)
@@ -26,12 +32,18 @@ def crescent(depth, slim=1.0):
 
 
 def few_vertices():
-    """Every third vertex of the round brush, tip and both flanks kept: as convex, and quicker to unite."""
+    """Return every third vertex of the round brush, with tip and both flanks.
+
+    The outline is still convex, and quicker to unite.
+    """
     return [(d, np.vstack([o[:1], o[1::3]])) for d, o in section_6_footprints()]
 
 
 def round_footprints():
-    """The round brush pressed straight down: rounder and shorter than dragged, same vertex count."""
+    """Return the round brush pressed straight down.
+
+    It is rounder and shorter than the dragged footprint, with as many vertices.
+    """
     return [(d, o * [0.7, 1.1]) for d, o in few_vertices()]
 
 
@@ -93,11 +105,15 @@ def target_mark(name, shape):
 
 
 def dense_union(poses, shape, lag="round", close_mm=2e-4):
-    """Region painted, from the event-driven reference: outlines sampled until half way between two of them
-    no vertex is further than `close_mm` from the line between, and none moves far. Where the TCP passes
-    exactly over the patch the heading jumps and nothing is swept."""
+    """Return the painted region of the event-driven reference.
+
+    Outlines are sampled closely: half way between two of them, every vertex is within `close_mm` of the line
+    between, and no vertex moves far. If the TCP passes exactly over the patch, the heading jumps and nothing
+    is swept.
+    """
     dragged, pressed = BRUSHES[shape]
-    poses = np.array(poses, float)  # set down and lifted on the spot where they do not begin and end at z = 0
+    # poses that do not begin and end at z = 0 are set down and lifted on the spot
+    poses = np.array(poses, float)
     poses = np.vstack([poses[:1] * [1, 1, 0], poses, poses[-1:] * [1, 1, 0]])
     reference = oracle.Reference(poses, law(lag))
     moves = np.arange(len(poses))
@@ -115,7 +131,7 @@ def dense_union(poses, shape, lag="round", close_mm=2e-4):
     pieces, convex = [], not shape.startswith("crescent")
 
     def sample(p0, p1, a, b):
-        """All outlines after a up to b; None where there is a break."""
+        """Return all outlines after a up to b, and None where there is a break."""
         middle = 0.5 * (p0 + p1)
         between = outline(middle)
         if a is None or b is None or between is None:
@@ -146,7 +162,7 @@ def dense_union(poses, shape, lag="round", close_mm=2e-4):
 
 
 def region_of(rings):
-    """Shapely region of rings as marks.json has them, and their areas with sign."""
+    """Return the shapely region of rings of marks.json, and their signed areas."""
     signed = [0.5 * np.sum(r[:, 0] * np.roll(r[:, 1], -1) - r[:, 1] * np.roll(r[:, 0], -1)) for r in rings]
     outer = shapely.union_all([shapely.Polygon(r) for r, a in zip(rings, signed, strict=True) if a > 0])
     holes = shapely.union_all([shapely.Polygon(r) for r, a in zip(rings, signed, strict=True) if a < 0])
@@ -167,7 +183,8 @@ def test_outline_area_against_a_dense_union(name, shape):
     region, signed = region_of(rings)
     assert all(len(r) >= 3 and not np.array_equal(r[0], r[-1]) for r in rings)
     assert all(shapely.Polygon(r).is_simple for r in rings)
-    assert signed.sum() == pytest.approx(region.area, rel=1e-9)  # holes are inside, outer rings apart
+    # holes are inside, and outer rings do not overlap
+    assert signed.sum() == pytest.approx(region.area, rel=1e-9)
     assert core.area(rings) == pytest.approx(signed.sum(), rel=1e-9)
     assert signed.sum() == pytest.approx(target.area, rel=2e-4)
     assert region.symmetric_difference(target).area < 4e-4 * target.area + 1e-3 * target.length
@@ -179,7 +196,10 @@ def holes_of(region):
 
 
 def test_outline_at_the_default_tolerance():
-    """Chords of rows 0.02 mm off the curve: no edge is further off than that."""
+    """At the default tolerance, no edge of the outline is more than 0.02 mm off.
+
+    Chords of rows are up to 0.02 mm off the curve.
+    """
     for name, shape in CASES:
         target = target_mark(name, shape)
         region, _ = region_of(marks_of(PASSES[name], brush_of(shape)).outline_mm)
@@ -205,7 +225,8 @@ def test_coverage_against_rings_and_union(name, shape):
     marks = marks_of(PASSES[name], brush, 2e-4)
     left, bottom, right, top = core.painted_bounds(marks.passes[0], brush)
     assert (left, bottom, right, top) == pytest.approx(target.bounds, abs=0.01)
-    px = 40.0 if name == "two dabs" else 20.0  # small marks: an edge is as wide as a pixel
+    # small marks need small pixels, since an edge is as wide as a pixel
+    px = 40.0 if name == "two dabs" else 20.0
     size = np.ceil((np.array([right - left, top - bottom]) + 1) * px) / px
     window = (left - 0.5, bottom - 0.5, *size)
     image = core.coverage(marks, brush, window, px)
@@ -240,7 +261,10 @@ def test_coverage_of_a_window_inside_the_mark():
 
 
 def test_union_over_passes():
-    """A cross of two passes: the whole is the union, each pass keeps its own outline."""
+    """The mark of two crossing passes is their union.
+
+    Each pass keeps its own outline.
+    """
     brush = brush_of("round")
     plan = make_plan(
         np.array([[0, 0, 0], [4, 0, -4], [30, 0, -4], [30, 0, 0.0]]),

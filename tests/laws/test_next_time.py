@@ -1,4 +1,7 @@
-"""Corrections from a painted sheet: on a machine that leads each stroke elsewhere, the next sheets come nearer."""
+"""Corrections from a painted sheet improve the next sheets.
+
+The machine paints each stroke at a wrong place.
+"""
 
 import json
 import os
@@ -38,7 +41,10 @@ BRUSH = find_brush("round-6")
 
 
 class Studio:
-    """A machine that is out of square and leads each stroke elsewhere, always alike; every sheet is laid anew."""
+    """A machine that is out of square and displaces each stroke.
+
+    The displacement of a stroke is constant. Every sheet has a new place.
+    """
 
     def __init__(self, folder, seed):
         self.folder, self.rng = folder, np.random.default_rng(seed)
@@ -48,7 +54,7 @@ class Studio:
         self.grown, self.cut = (
             {},
             {},
-        )  # by stroke: how much further from the middle its edges are; where its paint ends
+        )  # for each stroke: how far its edges move outwards, and where its paint ends
 
     def plan(self, *flags):
         path = self.folder / "plan.json"
@@ -62,12 +68,15 @@ class Studio:
         return {mark.stroke: [np.array(ring) for ring in mark.outline_mm] for mark in marks.passes}
 
     def painted(self, plan):
-        """The rings of each stroke on the sheet that was laid straight: where the tool went by its own error."""
+        """Return the rings of each stroke on a straight sheet.
+
+        The tool's own error displaces the strokes.
+        """
         found = {}
         for name, rings in self.rings(plan).items():
             own = self.own.setdefault(name, self.rng.normal(0, 0.35, 2))
             shape = area(rings).buffer(self.grown.get(name, 0.0))
-            if name in self.cut:  # its paint ends by so many mm before its tip, along a direction
+            if name in self.cut:  # its paint ends this many mm before its tip, along a direction
                 way, mm = self.cut[name]
                 far = np.array(shape.exterior.coords) @ way
                 displaced = 90 * np.array([-way[1], way[0]])
@@ -101,7 +110,7 @@ class Studio:
         return path
 
     def reported(self, plan, cell):
-        """The commands of a machine that undoes what this cell says."""
+        """Return the commands of a machine that corrects the errors of this cell."""
         passes = [commanded_pass(with_chords(each), find_cell(cell)) for each in plan.passes]
         return _core.Plan("", "", plan.sheet_mm, passes)
 
@@ -119,13 +128,16 @@ def area(rings):
 
 
 def outlines(shape):
-    """Outer rings counter-clockwise, holes clockwise."""
+    """Return the rings of a shape: outer rings counter-clockwise, holes clockwise."""
     parts = [orient(part) for part in getattr(shape, "geoms", [shape])]
     return [np.array(ring.coords)[:-1] for part in parts for ring in (part.exterior, *part.interiors)]
 
 
 def apart(painted, target):
-    """Of each stroke 1 - intersection over union, by shapely; the sheet shifted and turned as its strokes fit best."""
+    """Return 1 - intersection over union of each stroke, by shapely.
+
+    The sheet is shifted and turned so that its strokes fit best.
+    """
     ours, theirs = ([area(rings[name]) for name in target] for rings in (painted, target))
     a, b = (np.array([each.centroid.coords[0] for each in some]) for some in (ours, theirs))
     turn = Rotation.align_vectors(*(np.column_stack([c - c.mean(axis=0), 0 * c[:, 0]]) for c in (b, a)))[0]
@@ -193,8 +205,10 @@ def test_corrections_are_those_of_this_job(tmp_path, capsys):
 
 
 def sheet_with_the_bar_elsewhere(folder):
-    """Corrections of a first sheet, and a photograph of one painted with them, on which the machine leads the bar
-    elsewhere."""
+    """Return the corrections of a first sheet, and a second photograph.
+
+    The second sheet is painted with these corrections. On it, the machine paints the bar at another place.
+    """
     studio = Studio(folder, 7)
     first = studio.compared(studio.photographed(studio.plan()))
     plan = studio.plan("--corrections", first)
@@ -204,7 +218,10 @@ def sheet_with_the_bar_elsewhere(folder):
 
 @pytest.mark.thorough
 def test_strokes_that_are_displaced_more_are_reported(tmp_path, capsys):
-    """A stroke that the machine leads elsewhere on the second sheet, and no other."""
+    """A stroke with a larger displacement is reported.
+
+    The machine moves one stroke on the second sheet. No other stroke is reported.
+    """
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     out = tmp_path / "second.json"
     words = ("compare", "--force", photo, tmp_path / "five.svg", "--corrections", first, "-o", out)
@@ -220,7 +237,10 @@ def test_strokes_that_are_displaced_more_are_reported(tmp_path, capsys):
 
 
 def test_corrections_are_read_once(tmp_path, capsys):
-    """From a pipe, which is empty then. A row without a name gives no displacement of a stroke."""
+    """Corrections are read once, because they may come from a pipe.
+
+    A row without a name gives no displacement of a stroke.
+    """
     first, photo = sheet_with_the_bar_elsewhere(tmp_path)
     made = json.loads(first.read_text())
     made["strokes"].append({"stroke": ["bow"], "aside_mm": 1.0, "correction": None})
@@ -235,10 +255,14 @@ def test_corrections_are_read_once(tmp_path, capsys):
 
 
 def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, capsys):
-    """Corrected again its strokes go no further, and it is compared as the drawing with these corrections is."""
+    """A corrected plan holds its corrections and the original plan.
+
+    A second correction moves its strokes no further. compare treats the plan like the drawing with these
+    corrections.
+    """
     studio = Studio(tmp_path, 6)
     found = studio.compared(studio.photographed(studio.plan()))
-    photo = studio.photographed(studio.plan("--corrections", found))  # leaves plan.json
+    photo = studio.photographed(studio.plan("--corrections", found))  # writes plan.json
     plan, again = tmp_path / "plan.json", tmp_path / "again.json"
     assert in_json(capsys, "convert", plan, "-o", again, "--corrections", found)[0] == 0
     for one, other in zip(read_plan(plan).passes, read_plan(again).passes, strict=True):
@@ -254,7 +278,8 @@ def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, ca
     status, _, reported = in_json(capsys, "compare", photo, plan, "--corrections", found)
     assert status == 1 and is_reported(reported, "corrections-twice"), reported
     assert in_json(capsys, "convert", plan, "-o", tmp_path / "a.ngc")[0] == 0
-    assert main(["check", str(tmp_path / "a.ngc"), "--corrections", str(found)]) == 2  # of which drawing?
+    # check does not know of which drawing the corrections are
+    assert main(["check", str(tmp_path / "a.ngc"), "--corrections", str(found)]) == 2
 
 
 @pytest.mark.parametrize(
@@ -269,7 +294,10 @@ def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, ca
     ],
 )
 def test_damaged_corrections_in_a_plan_are_refused(tmp_path, capsys, change, code):
-    """5: how many strokes were corrected, which is all that plans said once."""
+    """Damaged corrections in a plan are refused.
+
+    Old plans held only the number of corrected strokes, such as 5.
+    """
     studio = Studio(tmp_path, 6)
     photo = studio.photographed(studio.plan())
     found = studio.compared(photo)
@@ -312,7 +340,7 @@ def test_damaged_corrections_are_refused(tmp_path, capsys, change, code):
 
 
 def longer_lag(folder):
-    """round-6 with a lag 12 % longer, as a file."""
+    """Write round-6 with a lag 12 % longer, and return its file."""
     brush = _core.read_brush(_core.write_brush(BRUSH))
     law = brush.lag
     brush.lag = _core.Profile([1.12 * each for each in law.coefficients], source="a test")
@@ -321,8 +349,10 @@ def longer_lag(folder):
 
 
 def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
-    """What the brush explains is not corrected as well: the photograph is compared again with it, by the plan that was
-    painted."""
+    """A new brush and corrections in one round do not correct an error twice.
+
+    The photograph is compared again with the new brush, by the painted plan.
+    """
     studio = Studio(tmp_path, 8)
     studio.axes = np.eye(2)
     plan = studio.plan()
@@ -359,7 +389,10 @@ def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planne
 
 
 def test_two_strokes_show_no_corrections(tmp_path, capsys):
-    """Their places are not separated from the sheet's."""
+    """Two strokes show no corrections.
+
+    Their places cannot be separated from the place of the sheet.
+    """
     few = DRAWING[: DRAWING.index('<path id="cross"')] + "</g></svg>"
     studio = Studio(tmp_path, 5)
     (tmp_path / "five.svg").write_text(few)
@@ -377,7 +410,10 @@ def test_two_strokes_show_no_corrections(tmp_path, capsys):
 
 @pytest.fixture(scope="module")
 def stretched(tmp_path_factory):
-    """A machine that goes 2 % too far, compared: the studio, the target rings, the file, the corrected cell."""
+    """Compare the sheet of a machine that goes 2 % too far.
+
+    Return the studio, the target rings, the file of corrections and the corrected cell.
+    """
     studio = Studio(tmp_path_factory.mktemp("stretched"), 12)
     studio.axes = np.diag([1.02, 0.985])
     plan = studio.plan()
@@ -388,8 +424,11 @@ def stretched(tmp_path_factory):
 
 
 def test_a_corrected_cell_and_corrections_in_one_round(stretched):
-    """With the corrected cell, strokes are moved by what it leaves alone; either file alone is right for its own
-    cell."""
+    """A corrected cell and corrections work in one round.
+
+    With the corrected cell, strokes move only by the errors that the cell leaves. Each file alone is right
+    for its cell.
+    """
     studio, target, found, corrected_cell = stretched
     plan = studio.plan()
     with_both = studio.plan("--cell", corrected_cell, "--corrections", found)
@@ -433,7 +472,10 @@ def test_corrections_of_another_cell_are_refused(stretched, capsys):
 
 @pytest.mark.parametrize("by_mm", [-0.4, 0.3])
 def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
-    """Each edge is so much further from the middle, by shapely: middle line and ends stay."""
+    """A width is corrected where it is wrong.
+
+    shapely moves each edge away from the middle. The middle line and the ends stay.
+    """
     studio = Studio(tmp_path, 13)
     plan = studio.plan()
     before = studio.rings(plan)
@@ -451,7 +493,10 @@ def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
 
 
 def test_widths_are_corrected_from_a_photograph(tmp_path, capsys):
-    """A brush that paints one stroke wider than another; one that is wider than any depth paints is reported."""
+    """Widths are corrected from a photograph.
+
+    The brush paints one stroke wider than another. A stroke that is wider than any depth paints is reported.
+    """
     studio = Studio(tmp_path, 14)
     plan = studio.plan()
     rings = studio.rings(plan)
@@ -499,7 +544,7 @@ def test_a_width_that_no_depth_paints_is_refused(tmp_path, capsys):
 
 
 def measured_between(folder, least_mm, deepest_mm):
-    """round-6, known at these depths alone, as a file."""
+    """Write round-6, known only at these depths, and return its file."""
     brush = _core.read_brush(_core.write_brush(BRUSH))
     law = brush.half_width
     brush.half_width = _core.Profile(
@@ -510,7 +555,10 @@ def measured_between(folder, least_mm, deepest_mm):
 
 
 def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
-    """Strokes that begin 1.5 mm late, end 1 mm late, or end 2 mm early, where the sheet is."""
+    """The places where strokes begin and end are reported.
+
+    Strokes begin 1.5 mm late, end 1 mm late, or end 2 mm early at the place of the sheet.
+    """
     studio = Studio(tmp_path, 16)
     plan = studio.plan()
     rings = studio.rings(plan)
@@ -539,7 +587,10 @@ def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
 
 @pytest.mark.thorough
 def test_a_stroke_that_ran_dry_moves_no_other(tmp_path, capsys):
-    """Where half of a stroke has no paint, the sheet's place comes from the others."""
+    """A stroke that runs out of paint moves no other stroke.
+
+    If half of a stroke has no paint, the sheet's place comes from the other strokes.
+    """
     studio = Studio(tmp_path, 17)
     plan = studio.plan()
     studio.own = {each.stroke: np.zeros(2) for each in plan.passes}

@@ -1,6 +1,6 @@
-"""Brushes whose laws are none of the fit's polynomials: the intervals hold what they may be off.
+"""Intervals hold the truth of brushes whose laws are not the fit's polynomials.
 
-The stepping simulator paints; nothing of the library's polynomials is in what it paints with.
+The stepping simulator paints, and uses none of the library's polynomials.
 """
 
 import json
@@ -26,7 +26,10 @@ SHARES = {"lag": (0.4, 0.7, 1.0), "tip_gap": (1.0,), "half_width": (0.4, 0.7, 1.
 
 
 def fitted(brush, seed, ways=None, **faults):
-    """[(what, error, half of the 95 % interval)], mm, and the fit. seed: a number, or a Generator that goes on."""
+    """Return [(name, error, half of the 95 % interval)] in mm, and the fit.
+
+    seed is a number, or a Generator that continues.
+    """
     rng, faults = np.random.default_rng(seed), painter.Faults(**faults)
     sheet = painter.paint(rng, brush, ways or painter.chart_strokes(brush.deepest), faults)
     options = core.MarkOptions()
@@ -65,21 +68,30 @@ def strangers():
 
 
 def test_intervals_outside_of_the_family_hold_the_truth(strangers):
-    """Of 36 values of four brushes. Laws that may not depart hold 10 or so."""
+    """Intervals outside of the family hold the truth of 36 values of four brushes.
+
+    Intervals of laws that may not depart from the family hold about 10.
+    """
     missed = [row for row, good in zip(strangers, held(strangers), strict=True) if not good]
     assert len(missed) <= 7, missed
 
 
 def test_a_brush_that_marks_hardly_separate_from_the_family():
-    """Hooked near the touch, where another form looks like paper of another height: laws that were held to their few
-    numbers unless departing is plainly likelier held 4 of 9."""
+    """A brush that marks hardly separate from the family has right intervals.
+
+    Its law has a hook near the touch, where another form looks like paper of another height. Laws once kept
+    to their few numbers unless a departure was clearly likelier. Their intervals held 4 of 9 values.
+    """
     found, _ = fitted(painter.random_stranger(np.random.default_rng(2), "hooked"), 2)
     assert held(found).sum() >= 8, found
 
 
 def test_a_height_that_marks_hardly_determine_is_in_all_intervals():
-    """Powers of depth look nearly the same from paper 0.17 mm lower. Where departures were expected to be as small as
-    the marks let them be, that chose the height, and 2 of 9 were held."""
+    """A height that marks hardly determine widens all intervals.
+
+    Powers of depth look nearly equal on paper 0.17 mm lower. Departures were once expected to be as small as
+    the marks allow. This expectation chose the height, and the intervals held 2 of 9 values.
+    """
     rng = np.random.default_rng(38)
     found, _ = fitted(painter.random_stranger(rng, "power"), rng)
     assert held(found).sum() >= 8, found
@@ -87,7 +99,7 @@ def test_a_height_that_marks_hardly_determine_is_in_all_intervals():
 
 
 def chart_ways(brush):
-    """As who knows roughly what lag and width the brush has prints a chart."""
+    """Return the chart of a user who roughly knows lag and width of the brush."""
     depths = np.linspace(0.0, brush.deepest, 30)
     lag = np.polynomial.polynomial.polyfit(depths, brush.law("lag")(depths), 2)
     half = np.linalg.lstsq(np.stack([depths, depths**2], 1), brush.law("half_width")(depths), rcond=None)[0]
@@ -98,8 +110,11 @@ def chart_ways(brush):
 
 @pytest.mark.thorough
 def test_widths_that_rise_as_roots_from_the_touch_on():
-    """Two charts. Five numbers of a half width and departures that are smooth at the touch held 12 of 18: they took the
-    paper for 0.07 and 0.13 mm higher."""
+    """Widths that rise as roots from the touch have right intervals on two charts.
+
+    With five numbers of a half width and departures that are smooth at the touch, intervals held 12 of 18
+    values. The paper came out 0.07 and 0.13 mm too high.
+    """
     found = []
     for seed in (75, 76):
         rng = np.random.default_rng(seed)
@@ -111,7 +126,10 @@ def test_widths_that_rise_as_roots_from_the_touch_on():
 
 @pytest.mark.thorough
 def test_round_6_paints_its_own_chart():
-    """Without noise on its edges: the lag was off by nine half-intervals, the paper by six."""
+    """round-6 comes back from its own chart without noise on its edges.
+
+    The lag was once off by nine half-intervals, and the paper by six.
+    """
     found, fit = fitted(round_6(), 1, noise=0.0)
     assert len(fit.laws.lag) > 4 and len(fit.laws.widest_by_depth) > 1
     assert held(found).mean() >= 0.6, found

@@ -1,5 +1,7 @@
-"""How marks narrow comes back from sheets painted with one load, with the freshly dipped brush; the slow stepping
-simulator paints."""
+"""One load of paint gives back the freshly dipped brush and its narrowing.
+
+The slow stepping simulator paints.
+"""
 
 import json
 from functools import cache
@@ -28,7 +30,7 @@ pytestmark = pytest.mark.long
 
 @cache
 def sheet(seed, narrows_per_m, mixed=False):
-    """The true brush, and what a measurement file holds of its sheet."""
+    """Return the true brush, and its sheet as a measurement file has it."""
     rng = np.random.default_rng(seed)
     brush = painter.random_brush(rng)
     strokes = painter.chart_strokes(brush.deepest, 3)
@@ -61,7 +63,8 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
     for depth in np.linspace(0.2, 1.0, 5) * brush.deepest:
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
     laws = made.fit.laws
-    terms = len(laws.half_width) - 1  # behind those of lag and tip gap, that of no depth left out
+    # these terms follow those of lag and tip gap; the constant term is left out
+    terms = len(laws.half_width) - 1
     at = slice(len(laws.lag) + len(laws.tip_gap) - 1, len(laws.lag) + len(laws.tip_gap) - 1 + terms)
     powers = brush.deepest ** np.arange(1, terms + 1)
     known, alone = (
@@ -72,8 +75,10 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
 
 @cache
 def chart_sheet(seed, law):
-    """Of a chart made for one load: the brush, what the chart reported beforehand, what calibrates, and the way in "
-    "mm."""
+    """Paint a chart for one load.
+
+    Return the brush, the chart's report, the data for calibration, and the way in mm.
+    """
     rng = np.random.default_rng(1000 + seed)
     brush = painter.random_brush(rng)
     laws = core.MarkLaws(
@@ -121,7 +126,11 @@ def test_a_chart_for_one_load_shows_laws_and_paint_at_once(seed, rate):
 
 @pytest.mark.thorough
 def test_paint_that_runs_out_by_another_law_is_reported():
-    """Fast at first, then hardly: the one rate makes the freshly dipped brush too narrow, by more than its interval."""
+    """Paint that runs out by another law is reported.
+
+    The marks narrow fast at first, then hardly. A constant rate makes the freshly dipped brush too narrow, by
+    more than its interval.
+    """
     brush, _, made = chart_sheet(1, lambda way, whole: 0.7 + 0.3 * np.exp(-way / (0.25 * whole)))
     assert made.paint_bends > 3
     half = law_band(made.brush, "half_width", np.array([brush.deepest]))[0][0]
@@ -141,12 +150,15 @@ def test_paint_that_does_not_run_out_is_not_said_to():
 
 @pytest.mark.thorough
 def test_marks_that_seem_to_widen_a_little_are_marks_that_do_not_narrow():
-    """Strokes of the greatest depth have other shapes early and late on a chart; of this brush that feigns 0.042 per
-    metre, five deviations of what is left of the edges."""
+    """Marks that seem to widen a little do not narrow.
+
+    On a chart, early and late strokes of the largest depth have different shapes. For this brush, they
+    imitate 0.042 per metre, which is five standard deviations of the edges' residuals.
+    """
     brush, _, made = chart_sheet(6, lambda way, _: np.exp(-0.0 * way))
     found, half = rate_of(made)
     assert found == 0.0 and 0.03 < half < 0.06
-    deepest = made.brush.depth_range_mm[1]  # of the marks: by the height that was found for the paper
+    deepest = made.brush.depth_range_mm[1]  # the marks' depth range, by the fitted height of the paper
     assert deepest == pytest.approx(brush.deepest, abs=0.05)
     band = law_band(made.brush, "half_width", np.array([deepest]))[0][0]
     assert abs(made.brush.half_width(deepest) - brush.law("half_width")(deepest)) < band
@@ -163,7 +175,7 @@ def test_the_command_writes_it(tmp_path, capsys):
 
 
 def test_marks_that_get_wider_are_refused():
-    """Listed in another order than painted."""
+    """Marks that get wider are refused, since they are listed in another order."""
     _, reported = sheet(6, 0.8, True)
     with refused("paint-undetermined"):
         calibrate(
@@ -174,7 +186,11 @@ def test_marks_that_get_wider_are_refused():
 
 
 def test_an_order_by_depth_alone_is_refused():
-    """Of each depth one stroke, the deeper the later, drawn out so that the way within a stroke says little."""
+    """An order by depth alone is refused.
+
+    Each depth has one stroke, and deeper strokes come later. The strokes are stretched, so the way within a
+    stroke shows little.
+    """
     _, reported = sheet(1, 0.5)
     arcs = [each for each in reported["plan"]["passes"] if not each["stroke"].startswith("ramp")]
     apart = [
@@ -190,8 +206,11 @@ def test_an_order_by_depth_alone_is_refused():
 
 
 def run_dry(lasts_mm, gone=()):
-    """What a measurement file holds of a sheet whose load lasts so long, without the marks of some strokes, and the way
-    to the end of each stroke."""
+    """Return the measurement file of a sheet whose load ends too early.
+
+    Also return the way to the end of each stroke. The load lasts for lasts_mm. The marks of the strokes in
+    gone are missing.
+    """
     rng = np.random.default_rng(6)
     brush = painter.random_brush(rng)
     strokes = painter.chart_strokes(brush.deepest, 3)
@@ -217,7 +236,10 @@ def run_dry(lasts_mm, gone=()):
 
 @sample("share", [0.0, 0.4], keep=1)
 def test_marks_that_end_dry_show_how_long_a_load_lasts(share):
-    """The load ends between two strokes or within one; a mark that is missing earlier says nothing of it."""
+    """Marks that end dry show how long a load lasts.
+
+    The load ends between two strokes or within a stroke. A mark that is missing earlier does not count.
+    """
     _, ends = run_dry(1e6)
     strokes, way = list(ends), list(ends.values())
     whole, dry = way[-4], way[-3]

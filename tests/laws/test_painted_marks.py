@@ -1,4 +1,7 @@
-"""Whole painted marks give back the brush that painted them; the slow stepping simulator paints."""
+"""Whole painted marks give back their brush.
+
+The slow stepping simulator paints the marks.
+"""
 
 import re
 from functools import cache
@@ -40,7 +43,7 @@ def sheet(seed, depths=3, round_tail=False, **faults):
         brush.round_tail, brush.widest_per_half = True, brush.widest_per_half - 0.8
     strokes = painter.chart_strokes(brush.deepest, depths)
 
-    def regions(brush, strokes, height):  # sheets that differ in other faults alone are swept once
+    def regions(brush, strokes, height):  # sheets that differ only in other faults are swept once
         key = (seed, depths, round_tail, height)
         if key not in SWEPT:
             SWEPT[key] = painter.swept(brush, strokes, height)
@@ -68,7 +71,7 @@ def calibrated(seed, **faults):
 
 @pytest.mark.parametrize("seed", [3, 4])
 def test_the_brush_comes_back_with_honest_intervals(seed):
-    # from 4 the fit once went to footprints without a front, with the lag 12 % off
+    # From seed 4 the fit once found footprints without a front, and a lag 12 % off.
     brush, painted, made = calibrated(seed)
     found, first, z = made.brush, 0, []
     covariance = np.array(found.covariance)
@@ -86,7 +89,7 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
                 assert found.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.03)
     assert np.sqrt(np.mean(np.square(z))) < 2.2 and np.abs(z).max() < 4
     sure = np.sqrt(np.array(made.fit.covariance)[-4, -4])
-    assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # 1.2 is what was known before
+    assert abs(made.fit.height_mm - painted.height) < 4 * sure < 0.4  # the height was known to 1.2 before
     assert made.fit.noise_mm == pytest.approx(0.1, rel=0.25), "the noise that was put on"
     assert made.fit.effective_samples < 0.5 * made.fit.samples, "neighbours are correlated"
     assert made.round_tail_gain < -40 and not made.fit.laws.round_tail
@@ -94,7 +97,10 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
 
 @sample("seed", [2, 5], keep=1)
 def test_a_round_tail_is_seen_in_the_marks(seed):
-    """Taken for a pointed one it left lag or width off by more than two standard deviations."""
+    """A round tail shows in the marks.
+
+    Read as a pointed tail, it left lag or width off by more than two standard deviations.
+    """
     brush, _, made = calibrated(seed, round_tail=True)
     assert made.round_tail_gain > 40 and made.fit.laws.round_tail
     assert made.fit.laws.widest_per_half == pytest.approx(brush.widest_per_half, abs=0.15)
@@ -106,7 +112,10 @@ def test_a_round_tail_is_seen_in_the_marks(seed):
 
 
 def test_a_sheet_scanned_at_another_scale_is_refused():
-    """Once it passed, with the lag off by 7 % and the tip gap by 27 % at a scale of 0.97."""
+    """A sheet scanned at another scale is refused.
+
+    The sheet once passed. At a scale of 0.97, the lag was off by 7 % and the tip gap by 27 %.
+    """
     _, strokes, painted = sheet(3)
     plan, marks = as_file(strokes, painted)
     for mark in marks:
@@ -120,7 +129,7 @@ def test_displacements_come_back():
     _, painted, made = calibrated(3)
     found = np.array([residual.displacement_mm for residual in made.fit.marks])
     off = found - np.array(painted.displacements)
-    off -= off.mean(axis=0)  # which the sheet's own shift may take
+    off -= off.mean(axis=0)  # the shift of the sheet may include this mean
     assert np.sqrt(np.mean(off**2)) < 0.15 < np.sqrt(np.mean(np.square(painted.displacements)))
 
 
@@ -133,7 +142,7 @@ def test_more_displacement_than_expected_is_said():
 
 
 def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
-    """What a report is made of, as far as it reports the unexpected."""
+    """Return the input of a report about unexpected results."""
     marks = [SimpleNamespace(displacement_mm=moved) for moved in displacements or [(0.1, 0.0)] * 4]
     fit = SimpleNamespace(marks=marks, shift_mm=shift, height_mm=height, turn_rad=turn)
     painted = SimpleNamespace(marks=[SimpleNamespace(stroke=f"s{k}") for k in range(len(marks))])
@@ -179,7 +188,10 @@ def test_marks_unlike_their_predictions_are_said(monkeypatch):
 
 @pytest.mark.parametrize("widths", [1.0, 1.3])
 def test_a_mark_displaced_by_its_width_is_found(widths):
-    """Once its near edge was taken for the far one, and half of the mark was masked."""
+    """A mark that is displaced by its width is found.
+
+    Its near edge was once taken for the far edge, and half of the mark was masked.
+    """
     brush, strokes, painted = sheet(5)
     plan, marks = as_file(strokes, painted)
     k = [name for name, _ in strokes].index("straight-3")
@@ -218,14 +230,17 @@ def test_a_law_that_is_left_open_is_refused_with_its_number():
     laws = core.MarkLaws([2.0, 1.0, 0.0, 0.0], [0.0, 0.4], [0.0, 0.5, 0.0], 1.8, 1.0)
 
     def open_by(share):
-        """The lag's cubic is open, by this share of the lag at the deepest, 10 mm."""
+        """Make the cubic term of the lag uncertain.
+
+        The uncertainty is this share of the lag at the largest depth, 10 mm.
+        """
         covariance = np.zeros((13, 13))
         covariance[3, 3] = (share * 12.0 / 1000.0 / 1.96) ** 2
         _refuse_undetermined(brush_of(laws, "b", (0.0, 10.0), covariance), SimpleNamespace(remarks=[]))
 
     with refused("law-undetermined '12.0 +- 14.4 mm' 10", "lag"):
         open_by(1.2)
-    open_by(0.7)  # open in the last tenth alone
+    open_by(0.7)  # the lag is uncertain only in the last tenth
 
 
 def intervals(made, law="lag"):
@@ -233,7 +248,7 @@ def intervals(made, law="lag"):
 
 
 def drawn_towards(brush, painted, noise=0.1):
-    """The fit that is none: the painted marks against those that the true brush paints, each where it was painted."""
+    """Compare the painted marks with the marks of the true brush, each at its place."""
     options = core.MarkOptions()
     options.deepest_mm, options.height_mm = brush.deepest, core.Prior(painted.height, 0.2)
     options.noise_mm = noise
@@ -247,7 +262,7 @@ STILL = {"displacement": 0.0, "placement": 0.0, "turn": 0.0}
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_an_uncertain_edge_is_as_far_off_as_it_was_moved(seed):
-    # edges were once thought 0.01 mm outside where brushes are narrow, and a way out of the mark 5 mm long
+    # Narrow brushes once had edges 0.01 mm too far outside, and ways out of the mark were 5 mm long.
     brush, _, clean = sheet(seed, noise=1e-9, **STILL)
     straight = drawn_towards(brush, clean).marks[0]
     np.testing.assert_allclose(np.median(straight.distance_mm), 0.0, atol=1e-3)
@@ -259,7 +274,10 @@ def test_an_uncertain_edge_is_as_far_off_as_it_was_moved(seed):
 
 
 def test_a_height_just_below_0_is_not_surer_than_the_paper_above_allows():
-    """Landings on a slope from height 0 move with paper that is lower, and not with paper that is higher."""
+    """A height just below 0 is as uncertain as the paper above allows.
+
+    Landings on a slope from height 0 move with lower paper. They do not move with higher paper.
+    """
     brush, _, clean = sheet(11, noise=1e-9, height=1e-9, **STILL)
 
     def sure(height):
@@ -272,7 +290,7 @@ def test_a_height_just_below_0_is_not_surer_than_the_paper_above_allows():
 
 
 def widths_of(rings, spacing=0.5):
-    """How wide a painted mark is across, at points of its outline."""
+    """Return the width of a painted mark at points of its outline."""
     mark, found = shapely.Polygon(rings[0], rings[1:]), []
     for ring in map(shapely.LinearRing, rings):
         at = np.linspace(0, ring.length, round(ring.length / spacing), endpoint=False)
@@ -289,8 +307,11 @@ def widths_of(rings, spacing=0.5):
 
 @pytest.mark.parametrize("noise", [0.4, 3.0])
 def test_ends_hardly_wider_than_the_noise_are_masked(noise):
-    """Drawn out by their noise, they made the paper of strokes that are lifted while moving seem nearer to where it was
-    expected. Where the noise is wide as the marks are, ends narrower than half of these."""
+    """Ends that are hardly wider than the noise are masked.
+
+    Noise lengthened these ends. Strokes that lift while moving then put the paper too near its expected
+    height. If the noise is as wide as the marks, ends narrower than half of the marks are masked.
+    """
     brush, _, clean = sheet(11, noise=1e-9, **STILL)
     widths = np.concatenate([widths_of(rings) for _, _, rings in clean.marks])
     least = min(3 * noise, 0.5 * np.median(widths))
@@ -300,7 +321,7 @@ def test_ends_hardly_wider_than_the_noise_are_masked(noise):
 
 
 def test_without_noise_the_brush_comes_back_as_it_is():
-    # the paper once seemed 0.012 mm higher and the brush 0.01 mm narrower than they were
+    # The paper once came out 0.012 mm too high, and the brush 0.01 mm too narrow.
     brush, strokes, painted = sheet(11, noise=1e-3)
     fit = calibrate_marks(read_painted(*as_file(strokes, painted), None), "b").fit
     assert fit.height_mm == pytest.approx(painted.height, abs=0.005)
@@ -310,8 +331,11 @@ def test_without_noise_the_brush_comes_back_as_it_is():
 
 @pytest.mark.parametrize("seed", [3, 5])
 def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
-    """Its points once counted among those over which the noise is spread, which made intervals 9 % too short; and it
-    once drew the lag of brush 5 from 2.7 mm at touch to 5.7."""
+    """A foreign ring does not make the intervals of the rest shorter.
+
+    Its points once counted in the noise, which made intervals 9 % too short. It also changed the lag of brush
+    5 at touch from 2.7 mm to 5.7 mm.
+    """
     _, strokes, painted = sheet(seed)
     _, _, alone = calibrated(seed)
     plan, marks = as_file(strokes, painted)
@@ -324,7 +348,7 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     assert "[0, 10] %" not in report(alone).text(True)
     if (
         seed == 3
-    ):  # how far brush 5 departs from the usual laws is found in one of two sizes, by the last bits
+    ):  # the departure of brush 5 from the usual laws has one of two sizes, which the last bits decide
         for law in ("lag", "tip_gap", "half_width"):
             np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
     np.testing.assert_allclose(framed.fit.laws.lag, alone.fit.laws.lag, atol=0.05)
@@ -338,7 +362,10 @@ def test_points_never_count_as_more_than_there_are():
 
 
 def test_paper_that_is_millimetres_higher_than_it_was_taught():
-    """The fit once stood before a wall at 2 mm."""
+    """Paper that is millimetres higher than taught is found.
+
+    The fit once stopped at a limit of 2 mm.
+    """
     brush, _, painted = sheet(3)
     marks = [
         core.PaintedMark(name, poses + np.array([0, 0, 2.8]), rings)
@@ -354,7 +381,7 @@ def test_paper_that_is_millimetres_higher_than_it_was_taught():
 
 
 def test_what_to_expect_is_what_comes():
-    """The intervals promised before painting are those of the fit afterwards."""
+    """The intervals predicted before painting agree with the intervals of the fit."""
     _brush, strokes, _ = sheet(3)
     _, _, made = calibrated(3)
     plan = core.Plan("b", "", (300.0, 300.0), [core.Pass(name, poses) for name, poses in strokes])
@@ -368,13 +395,16 @@ def test_what_to_expect_is_what_comes():
 
 
 def test_laws_that_are_known_add_their_information():
-    """Inverse covariances add up, exactly where edges err independently and laws keep to their numbers."""
+    """Known laws add their information.
+
+    Inverse covariances add up. The sum is exact if edges err independently and laws keep to their numbers.
+    """
     _, _, made = calibrated(3)
     options = core.MarkOptions()
     options.departing = False
     options.deepest_mm, options.noise_mm, options.noise_length_mm = made.painted.deepest_mm, 0.1, 1e-3
     options.lag_terms, options.half_width_terms = len(made.fit.laws.lag), len(made.fit.laws.half_width) - 1
-    options.height_mm = core.Prior(0.1, 0.3)  # beyond the touch, where intervals are those of both sides
+    options.height_mm = core.Prior(0.1, 0.3)  # above the touch, where an interval covers both sides
     alone = core.fit_marks(made.painted.marks, made.fit.laws, options)
     known = options.lag_terms + 1 + options.half_width_terms + 1
     rows = np.random.default_rng(8).normal(0, 40.0, (known, known))

@@ -1,5 +1,8 @@
-"""One photograph makes a brush: a chart painted by a brush that nobody knows, in small steps by another simulator, with
-faults of paint and sheet, photographed by a camera of its own kind. Its lag comes back."""
+"""One photograph gives back the lag of an unknown brush.
+
+A separate simulator paints the chart in small steps, with faults of paint and sheet. The renderer has its own
+camera model.
+"""
 
 import json
 import re
@@ -48,14 +51,14 @@ def printed():
 
 @cache
 def marks():
-    """Rings by stroke."""
+    """Return the rings of each stroke."""
     strokes = [(one.stroke, np.array(one.poses_mm)) for one in printed().plan.passes]
     painted = painter.paint(np.random.default_rng(4), TRUTH, strokes, FAULTS)
     return {stroke: rings for stroke, _, rings in painted.marks}
 
 
 def photo_of(painted, *things, camera=CAMERA):
-    """things: rings and their colour, that are on the paint."""
+    """Photograph painted marks, with things (rings and their colour) on the paint."""
     sheet = photograph.page(printed())
     for rings in painted.values():
         sheet.paint(rings, BLUE)
@@ -115,7 +118,7 @@ def test_one_photograph_gives_the_brush_back(desk, capsys):
 
 
 def calibrating(folder):
-    """Words of the command that reads photo.jpg by chart.json."""
+    """Return words of the command that reads photo.jpg by chart.json."""
     return [
         "calibrate",
         "--force",
@@ -128,8 +131,11 @@ def calibrating(folder):
 
 
 def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
-    """By 0.4 mm the brush comes back; by 0.8 mm the markers only hint at it, and marks are displaced so far that the
-    sheet seems to be of another scale: it is reported that paper which bulges does that, too."""
+    """Bulging paper gives the brush or a warning.
+
+    With a bulge of 0.4 mm the brush comes back. With 0.8 mm the markers hardly show the bulge, and the
+    displaced marks look like another scale of the sheet. The report says that bulging paper also does this.
+    """
     (tmp_path / "chart.json").write_text(write_chart(printed()))
     words = calibrating(tmp_path)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.4)))
@@ -150,8 +156,11 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
 
 @pytest.mark.thorough
 def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):
-    """By itself the fit finds the height within 0.03 mm. The outlines are then taken for measured ones: they are the
-    drops with which this brush paints, so the lag stays what it was."""
+    """A known height is kept, and outlines give the lag.
+
+    Without the height, the fit finds it within 0.03 mm. The outlines then count as measured. They are the
+    drops with which this brush paints, so the lag does not change.
+    """
     photo = ["calibrate", "--force", str(desk / "photo.jpg"), "--chart", str(desk / "chart.json")]
     assert main([*photo, "-o", str(desk / "surer.json"), "--height", "0.005"]) == 0
     reported = re.search(r"(0\.\d+) \+- (0\.\d+) mm [a-z]", capsys.readouterr().out)
@@ -194,7 +203,10 @@ def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
 
 
 def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, capsys):
-    """The fit masks the points of such marks; it once gave the brush without a word of it."""
+    """Marks that are covered or displaced are named and left out.
+
+    The fit masks their points. It once gave the brush without reporting them.
+    """
     coin = np.vstack(marks()["straight-3"]).mean(axis=0) + np.array([0.0, 2.5])
     turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     disc = coin + 3.0 * np.column_stack([np.cos(turn), np.sin(turn)])
@@ -220,7 +232,7 @@ def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, ca
 
 
 def fitted(count, astray):
-    """Marks displaced at random; astray: number of one and by what."""
+    """Return a fit of randomly displaced marks; astray moves one mark further."""
     rng = np.random.default_rng(1)
     rows = [
         SimpleNamespace(
@@ -257,7 +269,10 @@ def test_many_marks_astray_are_refused():
 
 
 def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_path, capsys):
-    """Printed at 103 %, a page ends within what its markers span: the table was read as the mark of arc-4."""
+    """The table around paper that is smaller than the print is not a mark.
+
+    A page printed at 103 % ends within the span of its markers. The table was once read as the mark of arc-4.
+    """
     middle = np.array(printed().plan.sheet_mm) / 2
 
     def larger(points):

@@ -1,4 +1,7 @@
-"""Programs of random plans, cells and brushes: what is written is safe to run. Read by a reader of the tests' own."""
+"""Programs of random plans, cells and brushes are safe to run.
+
+The tests have their own reader of programs.
+"""
 
 import re
 from dataclasses import replace
@@ -47,7 +50,7 @@ LANGUAGES = {
     "fr3": ".csv",
     "axidraw-ebb": ".ebb",
 }
-SERVOS = {  # with the values of a table that reaches far enough
+SERVOS = {  # with the values of a table that has a large enough range
     "grbl-servo": ((-12.0, 100.0), (0.0, 500.0), (25.0, 900.0)),
     "axidraw-ebb": ((-12.0, 10000.0), (0.0, 16000.0), (25.0, 30000.0)),
 }
@@ -55,7 +58,7 @@ SHEET = (400.0, 400.0)
 
 
 def random_cell(rng, name):
-    """A cell of a language with heights, speeds, paper and paint of its own."""
+    """Return a random cell of a language: heights, speeds, paper and paint."""
     cell = find_cell(name)
     safe = rng.uniform(6, 20)
     if name in SERVOS:
@@ -65,7 +68,7 @@ def random_cell(rng, name):
     cell = replace(
         cell, speeds=replace(cell.speeds, press_mm_s=rng.uniform(2, 30), approach_mm_s=rng.uniform(5, 60))
     )
-    if name not in SERVOS:  # whose values know no paper that leans
+    if name not in SERVOS:  # values of a servo do not support leaning paper
         paper = Paper(
             tuple(rng.uniform(-300, 300, 3)),
             (*rng.uniform(-1, 1, 2) * rng.integers(0, 2), rng.uniform(0, 360)),
@@ -100,7 +103,10 @@ def random_plan(rng, brush, lowest):
 
 
 def gcode_moves(text, cell):
-    """(rapid, point, mm/s, in a visit) of every move; circles as their ends."""
+    """Return (rapid, point, mm/s, in a visit) of every move.
+
+    A circle counts by its end.
+    """
     at, feed, visit, word = [np.nan] * 3, 0.0, False, ""
     table = np.array(sorted(cell.servo.table, key=lambda row: row[1])) if cell.servo else None
     for line in text.splitlines():
@@ -130,7 +136,7 @@ def gcode_moves(text, cell):
 
 
 def moves_on_paper(text, remark, speed, unit_mm=1.0):
-    """Of languages whose places are on_paper(x, y, z)."""
+    """Return the moves of languages whose places are on_paper(x, y, z)."""
     visit = False
     for line in text.splitlines():
         if line.startswith(remark):
@@ -175,7 +181,10 @@ def krl_moves(text):
 
 
 def ebb_moves(text, cell):
-    """Steps of two motors of a 2x2 table, each slice with the speed that its time makes; a servo is set before."""
+    """Return the moves of two motors with a 2x2 table.
+
+    The duration of a slice gives its speed. A servo is set before.
+    """
     rows, table = (
         np.array(cell.motors.steps_per_mm),
         np.array(sorted(cell.servo.table, key=lambda row: row[1])),
@@ -208,7 +217,7 @@ ROBOTS = {
     "kr6-r900": krl_moves,
     "cr5": lambda text: moves_on_paper(text, "-- ", r"speed = (\d+)"),
 }
-ON_PAPER = ("ur5e", "irb120", "kr6-r900", "cr5")  # whose points are the paper's
+ON_PAPER = ("ur5e", "irb120", "kr6-r900", "cr5")  # their points are in the paper's frame
 
 
 def in_paper_frame(moves, cell, name, z_offset):
@@ -235,12 +244,12 @@ def test_all_that_is_written_is_safe(name, seed):
     assert text == again and text.isascii() and text.endswith("\n")
     assert text.count("\r\n") == text.count("\r") in (0, text.count("\n"))
     robot = ROBOTS.get(name)
-    code = re.sub(r"\b9E9\b" if robot else r"\(.*\)|[#;].*", "", text)  # as RAPID calls an axis that is none
+    code = re.sub(r"\b9E9\b" if robot else r"\(.*\)|[#;].*", "", text)  # RAPID writes 9E9 for a missing axis
     assert not re.search(r"\d[eE][-+]?\d|nan|inf\b|-0\.0+(?![\d])", code)
     moves = robot(text) if robot else ebb_moves(text, cell) if cell.motors else gcode_moves(text, cell)
     slack = {"grbl-servo": 0.15, "axidraw-ebb": 0.02}.get(name, 2e-3)
     fastest = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s)
-    # what leans and is rounded in the robot's frame is off by as much in the paper's
+    # Rounding in the robot's frame of leaning paper gives an equal error in the paper's frame.
     last = None
     for rapid, point, speed, visit in in_paper_frame(moves, cell, name, z_offset):
         assert np.isnan(point[2]) or point[2] >= cell.heights.lowest_mm - slack
@@ -259,7 +268,8 @@ def test_all_that_is_written_is_safe(name, seed):
 
 
 def test_every_language_is_tried():
-    # anything a user's own post writes; and a pen, which draws no plan of this kind: test_hpgl, test_marlin_servo
+    # A user's own post may write anything. A pen draws no plan of this kind: see test_hpgl and
+    # test_marlin_servo.
     posts = set(POSTS) - {"robodk", "hpgl", "marlin-servo"}
     assert {find_cell(name).language for name in LANGUAGES} == posts
 

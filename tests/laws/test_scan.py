@@ -1,5 +1,8 @@
-"""Photographs of charts, rendered by a camera of its own kind: read back to the marks that were painted, or refused in
-a sentence that says what to do."""
+"""Rendered photographs of charts give back the painted marks.
+
+An unreadable photograph is refused with a sentence that says what to do. The renderer has its own camera
+model.
+"""
 
 import itertools
 import json
@@ -65,7 +68,7 @@ def sheet():
 
 @cache
 def small():
-    """Pixels of one photograph that many tests spoil in their own way."""
+    """Return the pixels of one photograph, which many tests damage."""
     return photograph.exposed(sheet(), SMALL)
 
 
@@ -78,7 +81,10 @@ def shape(rings):
 
 
 def off_mm(read_rings, rings):
-    """Signed mean distance of the read outline from the painted one, and its rms without the tips."""
+    """Return the signed mean distance of the read outline from the painted one.
+
+    The second value is its rms without the tips.
+    """
     was = shape(rings)
     points = shapely.points(np.vstack(read_rings))
     distance = shapely.distance(points, was.boundary)
@@ -132,7 +138,7 @@ def test_three_markers_are_enough():
         (SMALL, BLUE, 0.03),
         (replace(SMALL, shadow=0.5, light=(0.5, 0.3)), BLUE, 0.03),
         (SMALL, np.array([0.75, 0.12, 0.08]), 0.03),
-        (SMALL, np.array([0.82, 0.66, 0.06]), 0.06),  # JPEG keeps the colour of four pixels as one
+        (SMALL, np.array([0.82, 0.66, 0.06]), 0.06),  # JPEG stores one colour for four pixels
         (SMALL, np.array([0.5, 0.5, 0.5]), 0.03),
     ],
     ids=["blue", "shadow", "red", "yellow", "pale grey"],
@@ -148,7 +154,10 @@ def test_outlines_are_where_paint_ends(camera, colour, most_mm):
 
 
 def test_paint_that_is_lighter_than_the_paper_is_read():
-    """On coloured paper, whose markers are printed black as ever; it once was no paint."""
+    """Paint that is lighter than coloured paper is read.
+
+    The markers are printed black. Light paint once did not count as paint.
+    """
     marks = painted_marks()
     card = photograph.Sheet.__new__(photograph.Sheet)
     card.size_mm, card.shown = A5, page().shown * np.float32([0.45, 0.3, 0.35])
@@ -163,7 +172,10 @@ def test_paint_that_is_lighter_than_the_paper_is_read():
 
 @pytest.mark.parametrize("is_lighter", [False, True], ids=["dark paint", "light paint"])
 def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
-    """Most of what differs from the rest of the sheet is then shadow."""
+    """A soft shadow over a few narrow marks is not read as paint.
+
+    Most pixels that differ from the rest of the sheet are then shadow.
+    """
     fine, size = 5.0, (210.0, 297.0)
     y, x = np.mgrid[0 : round(size[1] * fine), 0 : round(size[0] * fine)] / fine
     number = np.where(is_lighter, 0.35, 0.8) * (1 - 0.3 / (1 + np.exp(-(x / 210 - y / 297 + 0.1) * 25)))
@@ -178,7 +190,11 @@ def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
 
 
 def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
-    """Blur takes from the middle of a narrow mark, too: half way up to what is left there once was 0.05 mm outside."""
+    """Narrow marks of a blurred picture have their painted width.
+
+    Blur also weakens the middle of a narrow mark. The edge at half of this weaker value was once 0.05 mm
+    outside.
+    """
     marks = dict(painted_marks())
     for stroke, width in (("auxiliary-1", 0.7), ("straight-1", 0.9)):
         left, bottom, right, top = shape(marks[stroke]).bounds
@@ -198,7 +214,7 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
     nearer = below.difference(
         boxes["straight-4"].buffer(boxes["straight-4"].distance(boxes["straight-3"]) / 2)
     )
-    assert nearer.area > 3  # its own box is not the nearest everywhere
+    assert nearer.area > 3  # the mark's own box is not the nearest one everywhere
     one, other = "reference-1", "reference-2"
     apart = shape(marks[one]).distance(shape(marks[other]))
     for each, way in ((one, 1), (other, -1)):
@@ -214,7 +230,10 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
 
 
 def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
-    """As by a tool that leans: a quarter of it is where the next one should, which does so, too."""
+    """A mark that is displaced into the next box stays whole.
+
+    A tool that leans does this. A quarter of each mark is in the box of the next one.
+    """
     fine, sheet_mm = 5, (170, 50)
     lefts = {"a": 10, "b": 21} | {str(k): 30 + 15 * k for k in range(1, 9)}
     stroke_boxes = [StrokeBox(name, (left, 10, left + 10, 40)) for name, left in lefts.items()]
@@ -232,7 +251,10 @@ def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
 
 @pytest.mark.parametrize("lean", [(-0.6, 0.5), (0.0, 0.8)])
 def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
-    """So much that they are in the boxes of others: every mark is that of its stroke, and none is lost."""
+    """Marks of a strongly leaning tool belong to their own strokes.
+
+    They are so far displaced that they are in the boxes of others. No mark is lost.
+    """
     depth = {one.id: one.depth_mm for one in a5().strokes}
     marks = {
         name: [ring + np.multiply(lean, depth[name]) for ring in rings]
@@ -299,7 +321,7 @@ def test_other_formats_and_cameras_held_on_their_side_read_the_same():
         assert [row["stroke"] for row in marks] == [row["stroke"] for row in there]
         for ours, theirs in zip(marks, there, strict=True):
             assert _core.overlap(*(list(map(np.array, row["outline_mm"])) for row in (ours, theirs))) > 0.95
-    # only EXIF says which way up: without it the page is read all the same, from its markers
+    # Only EXIF has the orientation. Without EXIF, the page is still read by its markers.
     assert read_photo(held).shape == (*SMALL.size_px[::-1], 3) != read_photo(photograph.encoded(side)).shape
 
 
@@ -320,7 +342,10 @@ def test_what_is_no_picture_is_refused(data, said):
 @pytest.mark.parametrize("depth", [np.uint8, np.uint16])
 @pytest.mark.parametrize("suffix", [".png", ".tif"])
 def test_what_is_seen_through_is_on_white(suffix, depth):
-    """The black that stands below what is seen through was taken for paint."""
+    """Transparent pixels are read as white.
+
+    The black colour below transparent pixels was once read as paint.
+    """
     full = np.iinfo(depth).max
     picture = np.zeros((40, 30, 4), depth)
     picture[:20, :, 3] = full
@@ -333,7 +358,7 @@ def test_what_is_seen_through_is_on_white(suffix, depth):
 
 
 def part_way(data: bytes, harm) -> bytes:
-    """What comes of `harm` done to what is left from the middle on."""
+    """Return the data with `harm` applied to everything after the middle."""
     return data[: len(data) // 2] + harm(data[len(data) // 2 :])
 
 
@@ -391,7 +416,7 @@ def test_a_picture_is_read_by_a_process_without_standard_error(tmp_path):
 
 
 def hide(pixels, corners_mm, camera=SMALL, margin=1.5):
-    """A piece of paper over a marker."""
+    """Cover a marker with a piece of paper."""
     corners = np.array(corners_mm)
     middle = corners.mean(axis=0)
     around = photograph.corners_seen(camera, A5, middle + (corners - middle) * margin)
@@ -400,7 +425,7 @@ def hide(pixels, corners_mm, camera=SMALL, margin=1.5):
 
 
 def twice(pixels):
-    """The first marker once more, in the middle of the sheet."""
+    """Copy the first marker to the middle of the sheet."""
     around = photograph.corners_seen(SMALL, A5, np.array(a5().markers[0].corners_mm))
     (left, top), (right, bottom) = around.min(axis=0).astype(int) - 8, around.max(axis=0).astype(int) + 8
     pixels[600 : 600 + bottom - top, 300 : 300 + right - left] = pixels[top:bottom, left:right]
@@ -515,7 +540,10 @@ def test_photographs_of_one_sheet_are_averaged_and_must_agree():
 
 
 def printed_at(size, about):
-    """The chart's page with everything printed on it scaled about a point; the robot paints in true mm as ever."""
+    """Return the chart's page, printed at another scale about a point.
+
+    The robot still paints in true mm.
+    """
 
     def scaled(points):
         return tuple(map(tuple, (np.array(points) - about) * size + about))
@@ -533,7 +561,10 @@ def photo_of(printed, marks=None):
 
 
 def test_a_page_printed_at_another_size_is_read_by_its_bar():
-    """Everything printed at 97 % about the middle of the sheet; the robot paints as long as ever."""
+    """A page printed at 97 % is read by its bar.
+
+    It is scaled about the middle of the sheet. The robot still paints in true mm.
+    """
     made, size = a5(), 0.97
     printed = printed_at(size, np.array(A5) / 2)
     pixels = photo_of(printed)
@@ -551,7 +582,10 @@ def test_a_page_printed_at_another_size_is_read_by_its_bar():
 
 @pytest.mark.parametrize("size", [0.97, 1.03])
 def test_a_page_printed_about_its_corner_names_its_scale_and_is_read_by_its_bar(size):
-    """Its upper end is then 6 mm from where the paint expects it."""
+    """A page printed about its corner is refused with its scale, and read by its bar.
+
+    The upper end of the page is then 6 mm from its expected place.
+    """
     pixels = photo_of(printed_at(size, np.zeros(2)))
     bar_mm = a5().bar.length_mm
     with refused(f"page-scale --bar {bar_mm:g}") as caught:
@@ -578,7 +612,7 @@ PAIRS = list(itertools.combinations(range(len(a5().markers)), 2))
 
 
 def painted_over(pixels, numbers, camera=SMALL):
-    """Paint from beyond one edge of each of these markers, slanting a little way into it."""
+    """Paint over one edge of each of these markers, at a slant."""
     for number in numbers:
         corners = np.array(a5().markers[number].corners_mm)
         a, b = corners[[number % 4, (number + 1) % 4]]
@@ -597,7 +631,10 @@ def view_of(pixels):
 
 @sample("pair", PAIRS, keep=4)
 def test_markers_that_paint_covers_in_part_are_left_out(pair):
-    """Two of them once had the page refused as not flat."""
+    """Markers that paint covers in part are left out.
+
+    Two covered markers once had the page refused as not flat.
+    """
     view = view_of(painted_over(small().copy(), pair))
     covered = {a5().markers[number].id for number in pair}
     assert not covered & set(view.seen) and len(view.seen) == len(a5().markers) - 2

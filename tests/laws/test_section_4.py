@@ -1,5 +1,8 @@
-"""Section 4 of the article as it runs it: footprints, then angular strokes by their centre lines or pictures, then
-straight strokes or a video from the side; all laws in one fit. Marks come from the slow stepping simulator."""
+"""The method of section 4 of the article gives back all laws in one fit.
+
+It uses footprints, then angular strokes by their centre lines or pictures, then straight strokes or a video
+from the side. The slow stepping simulator makes the marks.
+"""
 
 import json
 from pathlib import Path
@@ -24,13 +27,16 @@ FOOTPRINTS = {"tip_to_widest": values(DEPTHS, widest(DEPTHS)), "width": WIDTHS}
 
 
 def middle(depth, widest=widest):
-    """Of the mark, around the corner: the second line along +x, the first along +y; (n, 2)."""
+    """Return the middle (n, 2) of the mark around the corner.
+
+    The second line is along +x, the first along +y.
+    """
     tcp, contact = corner(depth)
     heading = (tcp - contact) / np.hypot(*(tcp - contact).T)[:, None]
     e = widest(depth) - GAP * depth
     seen = contact + e * heading
     before = [[-lag(depth) - k, 0.0] for k in (3.0, 2.0, 1.0)]
-    seen = np.vstack([before, seen])  # the handle goes along +x to the origin, then along +y
+    seen = np.vstack([before, seen])  # the handle moves along +x to the origin, then along +y
     return seen @ np.array([[0.0, 1.0], [1.0, 0.0]])
 
 
@@ -43,7 +49,10 @@ def lines(depths=DEPTHS, rng=None, noise=0.0, widest=widest):
 
 
 def test_footprints_and_centre_lines_alone_give_lag_and_tip_gap():
-    """The beginning of the turn reads r - e, its decay r: single values of either are refused."""
+    """Footprints and centre lines alone give lag and tip gap.
+
+    The beginning of the turn shows r - e, and its decay shows r. A single value of either is refused.
+    """
     made = calibrate(from_dict(centre_line=lines(), **FOOTPRINTS), "b")
     for depth in np.linspace(1, 10, 19):
         assert made.brush.lag(depth) == pytest.approx(lag(depth), abs=0.03)
@@ -54,7 +63,10 @@ def test_footprints_and_centre_lines_alone_give_lag_and_tip_gap():
 
 
 def test_the_sign_of_a_shallow_lever_is_decided_by_all_lines():
-    """Of the article's brush e < 0 at depth 1; in noise one line allows -e as well, 0.7 mm off."""
+    """All lines together decide the sign of a shallow lever.
+
+    The article's brush has e < 0 at depth 1. With noise, one line also allows -e, which is 0.7 mm off.
+    """
 
     def of_article(depth):
         return np.maximum(0.0, np.polynomial.polynomial.polyval(depth, [-2.35, 2.75, -0.42, 0.024]))
@@ -87,7 +99,10 @@ def test_a_line_says_how_sure_it_is():
 
 
 def test_a_line_read_from_about_the_right_lengths_scatters_as_its_points_say():
-    """A short lever (0.9 mm at a lag of 12.2 mm): read alone, r - e scatters 1.5 times as much."""
+    """A line read with nearly right lengths scatters as its points show.
+
+    The lever is short (0.9 mm at a lag of 12.2 mm). Without known lengths, r - e scatters 1.5 times as much.
+    """
     rng, lag_mm, turning_mm = np.random.default_rng(1), 12.2, 11.3
     exact = middle_of_turn(lag_mm, turning_mm, np.linspace(0, 2.2 * lag_mm, 30))
     exact = np.vstack([np.column_stack([np.zeros(4), -turning_mm - np.array([6, 4.5, 3, 1.5])]), exact])
@@ -103,7 +118,10 @@ def test_a_line_read_from_about_the_right_lengths_scatters_as_its_points_say():
 
 @pytest.fixture(scope="module")
 def picture() -> bytes:
-    """An angular stroke of round-6 at depth 6 as a scanner sees it, 0.08 mm a pixel; the corner is pixel 900, 800."""
+    """Return the scan of an angular stroke of round-6 at depth 6.
+
+    A pixel is 0.08 mm, and the corner is pixel 900, 800.
+    """
     brush = painter.round_6(json.loads((SHIPPED / "round-6.json").read_text()))
     poses = np.array([[-70, 0, 0], [-60, 0, -6], [0, 0, -6], [0, 45, -6], [0, 45, 0.0]])
     exact = painter.Faults(noise=0, displacement=0, placement=0, turn=0, height=0)
@@ -160,12 +178,15 @@ def test_pictures_stand_next_to_their_file(picture, tmp_path):
 
 
 def video(way=1.0, up=120.0, noise=0.0, rng=None):
-    """Ferrule and tip, frame by frame: three in the air, straight, first touch, then lower by 0.25 mm a frame."""
+    """Return ferrule and tip frame by frame.
+
+    Three frames are in the air with a straight brush. After the first touch, each frame is 0.25 mm lower.
+    """
     depth = np.concatenate([[-3.0, -2.0, -1.0], np.arange(0, 10.01, 0.25)])
     pressed = np.maximum(depth, 0.0)
     behind = np.where(depth >= 0, lag(pressed) + GAP * pressed, 0.0)
     x = 5.0 + way * np.arange(len(depth)) * 2.0
-    tip = x - way * (behind - 0.7)  # the tip was not quite below the ferrule
+    tip = x - way * (behind - 0.7)  # the tip is not exactly below the ferrule
     shaken = rng.normal(0, noise, len(depth)) if rng else 0.0
     return {
         "ferrule_mm": np.column_stack([x, up - depth]).tolist(),
@@ -181,7 +202,7 @@ def test_a_video_from_the_side_gives_the_tip_gap(way):
 
 
 def whole(rng, n=10):
-    """All of section 4 with the article's scatter: 0.5 mm and more, from stroke to stroke."""
+    """Return data of section 4 with the article's scatter: 0.5 mm and more."""
     shifts = rng.normal(0, 0.3, DEPTHS.size)
     d = DEPTHS
     return {
@@ -199,7 +220,10 @@ def whole(rng, n=10):
 
 
 def test_in_one_fit_all_that_was_measured_counts():
-    """Sums sharpen laws that were measured each; the intervals stay honest."""
+    """In one fit, all measurements count.
+
+    Measured sums improve laws that were also measured alone. The intervals still contain the truth.
+    """
     rng, at = np.random.default_rng(5), np.array([2.0, 5.0, 9.0])
     truth = {"lag": lag, "tip_gap": lambda d: GAP * d, "tip_to_widest": widest}
     held, alone, together, outlying = [], [], [], 0

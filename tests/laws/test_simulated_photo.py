@@ -1,4 +1,7 @@
-"""simulate-photo: the faults of its studio are what compare finds, and it cannot be taken for a photograph."""
+"""compare finds the faults of the studio in a picture of simulate-photo.
+
+The picture cannot be confused with a photograph.
+"""
 
 import json
 import re
@@ -12,7 +15,7 @@ from diagnostics import gives, in_json, is_reported
 from brushsvg.cli import main
 from brushsvg.model.library import find_brush
 
-pytestmark = pytest.mark.long  # sheets are rendered and read
+pytestmark = pytest.mark.long  # these tests render and read sheets
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">
 <title>six</title><g fill="none" stroke="#000" stroke-width="3">
 <path id="a" d="M20 20 L50 16"/><path id="b" d="M100 20 L70 24"/><path id="c" d="M20 40 C30 60 40 60 50 40"/>
@@ -28,7 +31,7 @@ def drawing(tmp_path):
 
 
 def shown(drawing, capsys, toml, *flags):
-    """What compare says of the photograph of a studio."""
+    """Return the result of compare for the photograph of a studio."""
     folder = drawing.parent
     (folder / "studio.toml").write_text(HEAD + toml)
     words = [
@@ -95,10 +98,13 @@ def test_the_same_seed_is_the_same_photograph_and_its_studio_is_reported(drawing
 
 
 def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys, monkeypatch):
-    """It presses to the end of the brush's range, and half of the seeds had the paper higher than it was taught."""
+    """No seed gives paper on which a chart cannot be painted.
+
+    A chart presses to the end of the brush's range. Half of the seeds once had paper higher than taught.
+    """
     monkeypatch.chdir(tmp_path)
     assert main(["chart", "-o", "c.ngc", "--sheet", "a5", "--chart", "c.json", "--quiet"]) == 0
-    for seed in (2, 3):  # refused, and not, as it was
+    for seed in (2, 3):  # seed 2 was once refused, and seed 3 was not
         assert main(["simulate-photo", "c.json", "-o", "p.jpg", "--seed", str(seed)]) == 0, (
             capsys.readouterr().err
         )
@@ -108,7 +114,10 @@ def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys,
 
 
 def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
-    """Bold ones are wider than measured: the title of an A5 chart ran into a marker."""
+    """Letters of the page end where its layout puts them.
+
+    Bold letters are wider than once measured, and the title of an A5 chart ran into a marker.
+    """
     from brushsvg.calibration.chart.layout import chart
     from brushsvg.calibration.chart.page import label_box
     from brushsvg.comparison.job_page import JobPage
@@ -130,7 +139,7 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
 
 
 def test_it_says_that_it_is_simulated(drawing):
-    """White letters on a dark red strip, from edge to edge."""
+    """A strip shows that the picture is simulated, white on dark red, edge to edge."""
     folder = drawing.parent
     assert main(["simulate-photo", str(drawing), "-o", str(folder / "p.jpg"), "--quiet"]) == 0
     strip = cv2.imread(str(folder / "p.jpg"))[-30:].astype(int)
@@ -166,7 +175,10 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
 
 @pytest.mark.thorough
 def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, capsys):
-    """simulate-photo prints the page of a job round the chart's plan: its markers are not those of chart.json."""
+    """The advice in the refusal calibrates the plan of a chart.
+
+    simulate-photo prints the page of a job around the chart's plan. Its markers are not those of chart.json.
+    """
     plan, chart, photo, found = (
         str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "mine.json")
     )
@@ -185,7 +197,7 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
 
 @pytest.fixture(scope="module")
 def letters(tmp_path_factory):
-    """A word whose strokes touch each other, its plan, and two sheets of studios with many faults."""
+    """Return a word with touching strokes, its plan, and two sheets with many faults."""
     folder = tmp_path_factory.mktemp("letters")
     for words in (
         ("convert", EXAMPLE, "-o", folder / "word.json"),
@@ -198,7 +210,10 @@ def letters(tmp_path_factory):
 
 @pytest.mark.thorough
 def test_where_no_stroke_is_alone_a_chart_is_advised(letters, drawing, capsys):
-    """Never what would be refused: from the same photograph no brush is learnt."""
+    """If no stroke is alone, a chart is advised.
+
+    compare never advises a step that would be refused: no brush can be learnt from this photograph.
+    """
     words = ("--plan", letters / "word.json", "--prior", "round-6", "-o", letters / "u.json")
     status, _, reported = in_json(capsys, "calibrate", letters / "3.jpg", *words)
     assert status == 1 and is_reported(reported, "marks-touch 9 7 2 30"), reported
@@ -249,8 +264,10 @@ def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):
 
 
 def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
-    """Of a studio without faults the brush that was named comes back; from the plan alone it would be
-    another page."""
+    """A chart is photographed as its own page.
+
+    A studio without faults gives back the named brush. From the plan alone, the page would be different.
+    """
     plan, chart, photo, found = (
         str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")
     )

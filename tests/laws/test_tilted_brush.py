@@ -1,4 +1,7 @@
-"""A tilted brush: a simulation in small steps, which knows nothing of the package's own, and what geometry says."""
+"""A tilted brush agrees with geometry and with a simulation in small steps.
+
+The simulation shares no code with the package.
+"""
 
 import numpy as np
 import oracle
@@ -8,11 +11,11 @@ from scipy.spatial.transform import Rotation
 
 core = pytest.importorskip("brushsvg._core")
 
-STEPS = 2000  # of each move
+STEPS = 2000  # number of steps of each move
 
 
 def unit_axes(lean):
-    """Axes of unit length that go sideways by `lean` (n, 2) for each mm up."""
+    """Return unit axes that go sideways by `lean` (n, 2) per mm of height."""
     up = np.column_stack([lean, np.ones(len(lean))])
     return up / np.linalg.norm(up, axis=1, keepdims=True)
 
@@ -23,7 +26,10 @@ def simulated(tips, depths, axes, brush, **how):
 
 
 def axis_on_paper(tip, depth, axis):
-    """From the tip, `depth` below the paper, up along the axis to the paper's height."""
+    """Return the place of the axis at the paper's height.
+
+    The tip is `depth` below the paper.
+    """
     return (np.array([*tip, -depth]) + depth / axis[2] * axis)[:2]
 
 
@@ -32,8 +38,11 @@ def axes_on_paper(tips, depths, axes):
 
 
 def stepped(places, depths, lag):
-    """Contact, way from it to the axis, and depth, in small steps: the patch is pulled to within lag(depth) of where
-    the axis meets the paper, a place that goes straight from pose to pose."""
+    """Simulate in small steps; return contact, way from contact to axis, and depth.
+
+    The patch is pulled to within lag(depth) of the place where the axis meets the paper. This place moves
+    straight from pose to pose.
+    """
     contact, rows = places[0], [(places[0], np.full(2, np.nan), depths[0])]
     for k in range(len(places) - 1):
         for t in np.linspace(0, 1, STEPS + 1)[1:]:
@@ -50,7 +59,7 @@ WAYS = [  # tips, depths, lean
     ([[0, 0], [10, 0], [50, 0]], [0, 4, 4], [[0.2, 0.0]] * 3),
     ([[0, 0], [10, 0], [50, 0]], [0, 4, 4], [[-0.2, 0.0]] * 3),
     ([[0, 0], [10, 0], [50, 0]], [0, 4, 4], [[0.0, 0.3]] * 3),
-    # the handle swings while the tip stays
+    # here the handle swings while the tip stays
     ([[0, 0], [20, 0], [20, 0], [20, 0]], [0, 5, 5, 5], [[0, 0], [0, 0], [0.5, 0], [0, 0.5]]),
     (
         [[0, 0], [9, 3], [20, 18], [5, 30], [-9, 21]],
@@ -92,8 +101,11 @@ def test_turning_the_sheet_turns_the_mark():
 
 
 def section(outline, axis):
-    """Bristles that cross a plane square to the brush in the points of `outline` (n, 2), seen from its axis; where they
-    cross the paper when the brush is turned about a line in the paper until it points along `axis`."""
+    """Return where the bristles of a tilted brush cross the paper.
+
+    The bristles cross a plane at a right angle to the brush in the points of `outline` (n, 2), seen from its
+    axis. The brush then turns about a line in the paper until it points along `axis`.
+    """
     up = np.array([0.0, 0.0, 1.0])
     about = np.cross(up, axis)
     sine = np.linalg.norm(about)
@@ -103,9 +115,9 @@ def section(outline, axis):
 
 
 def oracle_mark(tips, depths, lean, brush, dragged):
-    """The swept area of the stepped simulation."""
+    """Return the swept area of the stepped simulation."""
     places = axes_on_paper(tips, depths, unit_axes(lean))
-    # lifted on the spot, where it ends
+    # The brush is lifted on the spot at the end.
     contact, away, depth = stepped([*places, places[-1]], [*depths, 0.0], law("round"))
     lean = np.vstack([lean, lean[-1:]])
     whole = np.arange(len(contact)) / STEPS
@@ -123,8 +135,8 @@ def oracle_mark(tips, depths, lean, brush, dragged):
 @pytest.mark.parametrize(
     "lean",
     [
-        [[0.5, 0.0]] * 3,  # along the way: longer
-        [[0.0, 0.5]] * 3,  # across it: wider
+        [[0.5, 0.0]] * 3,  # tilted along the way, the mark is longer
+        [[0.0, 0.5]] * 3,  # tilted across the way, the mark is wider
         [[0.3, -0.4]] * 3,
         [[0.0, 0.0], [0.3, 0.3], [-0.4, 0.3]],
     ],
@@ -173,7 +185,7 @@ def test_set_down_on_the_spot_the_patch_is_under_the_axis_and_the_tip_stays():
 def test_leaning_by_nothing_to_speak_of_is_standing_upright(depths, spot):
     brush, tips = make_brush(), np.array([[0, 0], [0.0 if spot else 20, 0], [40, 15.0]])
     if depths[-1] == 0.0 and spot:
-        tips[2] = tips[1]  # a dab
+        tips[2] = tips[1]  # the third pose makes a dab
     areas, ends = [], []
     for lean in ([0, 0], [1e-7, 0], [-1e-7, 0], [0, 1e-7]):
         marks = simulated(tips, depths, unit_axes(np.array([lean] * 3, float)), brush)

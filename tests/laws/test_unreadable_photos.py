@@ -1,5 +1,7 @@
-"""Photographs that cannot be read, or not whole, in twenty ways: each is refused, or reported, with the code of
-its cause, and what is read of the others is where it was painted."""
+"""Unreadable photographs are refused or reported with the code of their cause.
+
+They are damaged in twenty ways, wholly or in part. Marks that are still read are at their painted places.
+"""
 
 from functools import cache
 
@@ -69,7 +71,7 @@ def with_a_marker_twice():
 
 
 def noise(pixels, deviation: float):
-    """Gaussian, each colour of each pixel on its own."""
+    """Add Gaussian noise, independent for each colour of each pixel."""
     rng = np.random.default_rng(7)
     return np.uint8(np.clip(pixels + rng.normal(0, deviation, pixels.shape), 0, 255))
 
@@ -168,7 +170,10 @@ def test_what_can_be_read_in_part_is_reported(kind):
 
 
 def test_something_over_the_edge_of_one_marker_does_not_bend_the_sheet():
-    """It once was paper that is not flat."""
+    """An object over the edge of one marker does not bend the sheet.
+
+    It was once reported as paper that is not flat.
+    """
     x, y = np.mean(a5().markers[2].corners_mm, axis=0)
     found = read_chart_photos(
         a5(), [("", photograph.encoded(shot(things=[(photograph.box(x - 12, y - 3, x - 4.5, y + 3), BLUE)])))]
@@ -180,7 +185,10 @@ def test_something_over_the_edge_of_one_marker_does_not_bend_the_sheet():
 
 @pytest.mark.parametrize("deg", [8, 30])
 def test_white_round_a_picture_that_was_turned_is_no_light_of_the_page(deg):
-    """As programs fill it up: it was called overexposed."""
+    """White around a turned picture does not count as light of the page.
+
+    Programs fill the corners with white, which was once reported as overexposed.
+    """
     rows, columns = good().shape[:2]
     wide = int(np.hypot(rows, columns))
     turn = cv2.getRotationMatrix2D((columns / 2, rows / 2), deg, 1)
@@ -200,7 +208,10 @@ def test_white_round_a_picture_that_was_turned_is_no_light_of_the_page(deg):
     keep=1,
 )
 def test_a_picture_that_was_cut_on_one_side_is_not_paper_that_bulges(cut, sag_mm, code):
-    """All markers are on it still, and the lens's middle is no more in its own."""
+    """A picture that was cut on one side is not reported as bulging paper.
+
+    All markers are still on it, but the middle of the lens is not in the picture's middle.
+    """
     a4 = chart(find_brush("round-6"), (210.0, 297.0))
     corners = {marker.id: np.array(marker.corners_mm) for marker in a4.markers}
     printed = Printed((210.0, 297.0), corners, a4.dictionary)

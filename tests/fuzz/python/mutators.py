@@ -1,4 +1,4 @@
-"""Changes to an input that know what it is made of: words and numbers, lines, pixels."""
+"""Mutators that know the parts of an input: words and numbers, lines, pixels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_CHANGES = 4
 
 
 def change_parts(data: bytes, target: Target, seeds: list[bytes], choose: random.Random) -> bytes:
-    """One word, number or character out, doubled, elsewhere, or another in its place."""
+    """Remove, double, move or replace one word, number or character."""
     parts = PART.findall(data)
     others = PART.findall(choose.choice(seeds))
     for _ in range(choose.randint(1, MOST_CHANGES)):
@@ -51,7 +51,7 @@ def change_parts(data: bytes, target: Target, seeds: list[bytes], choose: random
 
 
 def change_lines(data: bytes, seeds: list[bytes], choose: random.Random) -> bytes:
-    """Some lines out, doubled, elsewhere, or those of a seed between them."""
+    """Remove, double or move some lines, or insert lines of a seed."""
     lines = data.split(b"\n")
     others = choose.choice(seeds).split(b"\n")
     at, start = choose.randrange(len(lines) + 1), choose.randrange(len(lines))
@@ -72,7 +72,7 @@ def change_lines(data: bytes, seeds: list[bytes], choose: random.Random) -> byte
 
 
 def change_json(data: bytes, target: Target, seeds: list[bytes], choose: random.Random) -> bytes:
-    """A value of a JSON document out, doubled, or another in its place."""
+    """Remove, double or replace a value of a JSON document."""
     document = _parsed(data, choose.choice(seeds), json.loads)
     for _ in range(choose.randint(1, MOST_CHANGES)):
         holders = [value for value in _values(document) if value and isinstance(value, (dict, list))]
@@ -117,7 +117,7 @@ def change_json(data: bytes, target: Target, seeds: list[bytes], choose: random.
 
 
 def _values(document):
-    """The document and all that it holds."""
+    """Yield the document and all values in it."""
     waiting = [document]
     while waiting:
         value = waiting.pop()
@@ -126,7 +126,7 @@ def _values(document):
 
 
 def change_xml(data: bytes, target: Target, seeds: list[bytes], choose: random.Random) -> bytes:
-    """An element or attribute of an XML document out, doubled, elsewhere, or with another value."""
+    """Remove, double, move or change an element or attribute of an XML document."""
     root = _parsed(data, choose.choice(seeds), ElementTree.fromstring)
     other = _parsed(choose.choice(seeds), choose.choice(seeds), ElementTree.fromstring)
     for _ in range(choose.randint(1, MOST_CHANGES)):
@@ -154,7 +154,7 @@ def change_xml(data: bytes, target: Target, seeds: list[bytes], choose: random.R
 
 
 def _parsed(data: bytes, seed: bytes, parse):
-    """What the data says, or the seed where it says nothing, or nothing but a text."""
+    """Parse the data, otherwise the seed, otherwise an empty document."""
     for each in (data, seed):
         try:
             found = parse(each)
@@ -165,7 +165,10 @@ def _parsed(data: bytes, seed: bytes, parse):
 
 
 def change_pixels(data: bytes, seeds: list[bytes], choose: random.Random) -> bytes:
-    """What a picture shows: bytes of a compressed one hardly ever lead to another picture."""
+    """Change the pixels of a picture.
+
+    Changed bytes of a compressed picture hardly ever give another valid picture.
+    """
     import cv2
     import numpy as np
 
@@ -201,7 +204,7 @@ def change_pixels(data: bytes, seeds: list[bytes], choose: random.Random) -> byt
 
 
 def change_bytes(data: bytes, choose: random.Random) -> bytes:
-    """A few bytes changed, added or taken out: for where libFuzzer is not there to do it."""
+    """Change, add or remove a few bytes where libFuzzer is not available."""
     changed = bytearray(data)
     for _ in range(choose.randint(1, 2 * MOST_CHANGES)):
         at, kind = choose.randrange(len(changed) + 1), choose.randrange(4)
@@ -217,7 +220,7 @@ def change_bytes(data: bytes, choose: random.Random) -> bytes:
 
 
 def structured(data: bytes, target: Target, seeds: list[bytes], choose: random.Random) -> bytes:
-    """One change of a kind that suits the target."""
+    """Make one change that suits the target."""
     if target.form == "picture":
         return change_pixels(data, seeds, choose)
     if target.form == "lines" and choose.random() < 0.4:

@@ -1,7 +1,9 @@
-"""The fuzz targets of the Python package: for each what reads its bytes, files to begin with, and how they are changed.
+"""The fuzz targets of the Python package.
 
-A target may end in an answer that its judge accepts, or in `brushsvg.errors.Error` with a code and one line of text.
-Anything else that leaves it is a finding.
+Each has a function that reads its bytes, seed files, and the words and form for the mutators.
+
+A target may end in an answer that its judge accepts, or in `brushsvg.errors.Error` with a code and one line
+of text. Anything else that leaves it is a finding.
 """
 
 from __future__ import annotations
@@ -30,9 +32,14 @@ Seeds = Callable[[], Iterator[bytes]]
 
 @dataclass(frozen=True)
 class Target:
-    """read: the code under test with its judge; seeds: sound files and odd ones; words: what the format is written in,
-    for the mutators; most_bytes: of an input; form: what an input is made of: "text", "lines", "json", "xml" or
-    "picture"."""
+    """A fuzz target.
+
+    read: the code under test with its judge.
+    seeds: sound files and unusual ones.
+    words: the words of the format, for the mutators.
+    most_bytes: the largest size of an input.
+    form: the parts of an input: "text", "lines", "json", "xml" or "picture".
+    """
 
     read: Callable[[bytes], None]
     seeds: Seeds
@@ -42,7 +49,7 @@ class Target:
 
 
 class PropertyBrokenError(AssertionError):
-    """An answer that no input may have."""
+    """The code gave a result that no input may have."""
 
 
 def require(holds: bool, sentence: str) -> None:
@@ -51,7 +58,7 @@ def require(holds: bool, sentence: str) -> None:
 
 
 def judged(target: Target, data: bytes) -> None:
-    """Reads the data; a refusal is fine as long as it can be printed on one line."""
+    """Read the data; a refusal is allowed if it can be printed on one line."""
     try:
         target.read(data)
     except Error as refusal:
@@ -129,7 +136,7 @@ SVG_WORDS = (
 
 
 def _read_css(data: bytes) -> None:
-    """A style sheet, and a selector that a user gives: the first line."""
+    """Read a style sheet; the first line is a selector that a user gives."""
     from brushsvg.read import ReadOptions
     from brushsvg.read.svg import read_svg
 
@@ -160,7 +167,7 @@ CSS_WORDS = (
 
 
 def _read_path(data: bytes) -> None:
-    """What stands in d, and behind its first line what stands in points and transform."""
+    """Read the first line as d, the second as points and the rest as transform."""
     from brushsvg.read.svg.paths.path_data import parse_path, parse_points
     from brushsvg.read.svg.paths.path_to_cubics import trace
     from brushsvg.read.svg.transform import parse_transform
@@ -417,7 +424,7 @@ def _cell_seeds() -> Iterator[bytes]:
     for path in sorted((DATA / "cells").glob("*.toml")):
         text = path.read_text(encoding="utf-8")
         yield "\n".join(line for line in text.splitlines() if not line.startswith("#")).encode()
-    # each key that there is, with the shipped words
+    # Every key, with the shipped words.
     yield write_cell(parse_cell((DATA / "cells" / "grbl-3axis.toml").read_text(encoding="utf-8"))).encode()
 
 
@@ -464,7 +471,7 @@ def _chart_seeds() -> Iterator[bytes]:
 
 
 def _read_manifest(data: bytes) -> None:
-    """A manifest from a stranger: what it names outside of its folder stays there."""
+    """Read a foreign manifest, which must not reach files outside of its folder."""
     from brushsvg.jobs.batch.manifest import Manifest, Row
 
     with tempfile.TemporaryDirectory() as above:
@@ -507,7 +514,7 @@ def _manifest_seeds() -> Iterator[bytes]:
 # Programs read back
 
 
-READ_BACK = {  # cell: a program of it among the golden ones
+READ_BACK = {  # {cell: one of its golden programs}
     "linuxcnc-3axis": "two_strokes.ngc",
     "grbl-3axis": "two_strokes_grbl.ngc",
     "grbl-servo": "two_strokes_servo.ngc",
@@ -540,7 +547,7 @@ def _read_back(name: str) -> Callable[[bytes], None]:
 
         cell = find_cell(name)
         text = text_of_file(data)
-        with contextlib.suppress(Error):  # a program without our header is read all the same
+        with contextlib.suppress(Error):  # a program without our header is still read
             read_header(text)
         found = read_program(text, POSTS[cell.language].extensions[0], cell)
         for section in found.sections:
@@ -602,11 +609,11 @@ MARKERS_PX = (
     (20, 344),
     (180, 20),
     (180, 344),
-)  # upper left corners, 36 pixels wide
+)  # the upper left corners of the markers, which are 36 pixels wide
 
 
 def _read_chart_photo(data: bytes) -> None:
-    """A small photograph of a page with markers."""
+    """Read a small photograph of a page with markers."""
     from brushsvg.photo.markers import Printed, find_view
     from brushsvg.photo.photo import read_photo
 
@@ -665,7 +672,7 @@ TARGETS: dict[str, Target] = {
 
 
 def seeds_of(name: str) -> list[bytes]:
-    """What a target begins with; too long ones are left out."""
+    """Return the seeds of a target without the ones that are too long."""
     target = TARGETS[name]
     found = [data for data in target.seeds() if len(data) <= target.most_bytes]
     if not found:

@@ -1,5 +1,6 @@
-"""A judge of programs that shares nothing with what writes or checks them.
+"""A judge of programs that shares no code with their writers and with `check`.
 
-`gcode` and `urscript` run a program's text as the controllers' manuals say, into `moves.Run`; `verdict` holds what is
-run against a cell's limits and against a plan; `damage` makes damaged programs; `checked` asks `brushsvg check`.
+`gcode`, `urscript` and others run a program's text as the controllers' manuals say, into `moves.Run`.
+`verdict` compares the run with a cell's limits and with a plan. `damage` makes damaged programs, and
+`checked` runs `brushsvg check`.
 """

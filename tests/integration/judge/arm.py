@@ -1,5 +1,8 @@
-"""A robot's arm as every interpreter needs it: where the real brush's tip comes when the controller believes its tool
-to be at a pose, legs that are gone, circles through three points."""
+"""The robot arm that all interpreters use.
+
+It computes where the real brush's tip is when the controller moves its tool to a pose. It records the legs,
+and finds circles through three points.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +13,11 @@ from .places import angle_rad, frame
 
 
 class Arm:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them.
+    """A robot's arm with its place and the legs so far.
 
-    by_radius: blends begin so far before a corner, and circles are given in the paper's frame, where they are level.
-    tcp: (4, 4) the tool as the program has set it, the flange where it has not.
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    by_radius: blends begin at a radius before a corner, and circles are level in the paper's frame. tcp (4,
+    4) is the tool that the program has set, or the flange.
     """
 
     def __init__(self, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, by_radius: bool):
@@ -23,13 +27,13 @@ class Arm:
         self.tcp = np.eye(4)
 
     def believed(self) -> np.ndarray:
-        """(4, 4) the pose of the tool as the controller believes it to be, in the robot's frame."""
+        """Return the pose (4, 4) that the controller believes, in the robot's frame."""
         true = self.paper @ frame((0, 0, 0), self.down)
         true[:3, 3] = self.at
         return true @ np.linalg.inv(self.true_tool) @ self.tcp
 
     def tip(self, target: np.ndarray) -> tuple[np.ndarray, float]:
-        """Where the real brush's tip comes, and how far it leans."""
+        """Return the place of the real brush's tip, and the angle by which it leans."""
         tip = target @ np.linalg.inv(self.tcp) @ self.true_tool
         return tip[:3, 3], angle_rad(tip[:3, :3], self.paper[:3, :3] @ self.down)
 
@@ -43,7 +47,7 @@ class Arm:
         self.leg(Leg(number, kind, tuple(self.at), tuple(self.at), seconds=seconds))
 
     def line(self, number: int, target: np.ndarray, speed: float, acceleration: float, cut_mm: float) -> None:
-        """Straight to a pose (4, 4) in the robot's frame."""
+        """Move straight to a pose (4, 4) in the robot's frame."""
         self._checked(number, speed, acceleration, cut_mm)
         tip, tilt = self.tip(target)
         at = tuple(self.at)
@@ -69,7 +73,7 @@ class Arm:
         acceleration: float,
         cut_mm: float,
     ) -> None:
-        """Through a pose to a pose, both (4, 4) in the robot's frame."""
+        """Move on a circle through a pose to a pose, both (4, 4) in the robot's frame."""
         self._checked(number, speed, acceleration, cut_mm)
         (via, _), (end, tilt) = self.tip(via), self.tip(target)
         back = np.linalg.inv(self.paper) if self.run.blends_by_radius else np.eye(4)

@@ -1,4 +1,7 @@
-"""`brushsvg check` and `convert`, run in this process: the commands' own code, a drawing prepared once."""
+"""Run `brushsvg check` and `convert` in this process.
+
+Both run the commands' own code. A drawing is prepared only once.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ CRASHED = "this should not happen"
 
 
 def converted(source, program, *words) -> list[str]:
-    """The sentences with which `brushsvg convert` refuses; empty when it has written."""
+    """Return the refusals of `brushsvg convert`; empty if it wrote a program."""
     try:
         convert_file(parse(["convert", str(source), "-o", str(program), *map(str, words)]))
     except RefusedError as refused:
@@ -31,9 +34,10 @@ def converted(source, program, *words) -> list[str]:
 
 @contextmanager
 def quick_check():
-    """A function: words of `brushsvg check` -> the sentences with which it refuses; CRASHED for anything else.
+    """Yield a function that runs `brushsvg check` and returns its refusals.
 
-    What it prepares of a drawing is kept, its figures are not made: neither decides what it refuses.
+    The result holds CRASHED after any other error. The function keeps prepared drawings and writes no
+    figures. Neither changes what check refuses.
     """
     known: dict[tuple, Work] = {}
     cells: dict[str, object] = {}
@@ -53,7 +57,7 @@ def quick_check():
         if key not in known:
             known[key] = preparation.prepare(source, options, stage)
         work, plan = known[key], known[key].plan
-        work = copy.copy(work)  # a plan may be put in another order
+        work = copy.copy(work)  # check may reorder a plan
         object.__setattr__(
             work, "plan", _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, plan.passes, plan.extra)
         )

@@ -1,4 +1,7 @@
-"""Damaged programs: what slips of an editor, a sender or a hand make of a sound one. Same seed, same damage."""
+"""Damage a sound program as a slip of an editor, a sender or a hand would.
+
+The same seed gives the same damage.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +15,19 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
 class Script(NamedTuple):
-    """What a robot's language looks like, for who damages it.
+    """The parts of a robot's language that a damage needs.
 
-    remark: what a comment begins with; moves: where a line that moves begins; words: for others of the same kind;
-    modes: what sets frames and tools; offsets: lines whose numbers shift what follows, and by how much, in so many
-    decimals; more: lines that do something else; says: a line that only says something; rates: numbers of speed,
-    acceleration and blend, the number as second group; after: lines of code behind the last stroke; first: lines
-    before which no remark may stand.
+    remark: the beginning of a comment.
+    moves: a pattern for the beginning of a line that moves.
+    words: pairs of a word and another one of its kind that replaces it.
+    modes: pairs of a word that sets frames or tools and its replacement.
+    offsets: a pattern for lines whose numbers shift all later moves.
+    shifts: the amounts of a shift, written with the given decimals.
+    more: lines that do something else.
+    says: a line that only shows a message.
+    rates: patterns for speeds, accelerations and blends; their second group is the number.
+    after: the number of lines of code after the last stroke.
+    first: the number of lines before which no remark may stand.
     """
 
     remark: str
@@ -451,7 +460,7 @@ HEADS = ("COMMENT", "PROTECT", "DEFAULT_GROUP")
 
 
 class Page:
-    """A program's lines, by what they are. Their ends are put back by `damaged`."""
+    """The lines of a program, sorted by kind. `damaged` adds the line ends again."""
 
     def __init__(self, text: str, dialect: str):
         self.dialect, self.script = dialect, SCRIPTS.get(dialect)
@@ -473,7 +482,7 @@ class Page:
         return not self.lines[k].startswith(("def ", "MODULE ", "&", "DEF ", "/", *HEADS))
 
     def sections(self) -> list[tuple[int, int]]:
-        """First and last line behind of what stands under each title."""
+        """Return the line of each title and the line after its section."""
         last = self.code[-1] + (self.dialect in ("jaka", "xarm", "dobot", "doosan", "ros2", "ebb"))
         last = min(last - (self.script.after if self.script else 0), self.data)
         ends = [*self.titles[1:], last]
@@ -498,7 +507,7 @@ def _with(page: Page, k: int, *instead: str) -> list[str]:
 
 
 def _at_number(page: Page, random, lines, change: Callable[[str], str]) -> list[str] | None:
-    """One number of one of the lines changed; half of the time one of a move."""
+    """Change one number in one of the given lines."""
     k = _pick(random, lines)
     found = list(NUMBER.finditer(page.lines[k]))
     if not found:
@@ -525,7 +534,7 @@ def digit(page, random):
 
 
 def last_digit(page, random):
-    """One more or less in the last place, as rounding would have it."""
+    """Add or subtract one in the last decimal, as rounding could."""
 
     def change(number: str) -> str:
         decimals = len(number.partition(".")[2])
@@ -580,7 +589,7 @@ def lines_swapped(page, random):
 
 
 def line_moved(page, random):
-    """A line to another place, of another stroke where there is one."""
+    """Move a line to another place."""
     k = _pick(random, page.code)
     lines = _with(page, k)
     at = int(random.integers(len(lines) + 1))
@@ -593,7 +602,7 @@ def lines_lost(page, random):
 
 
 def line_of_another_stroke(page, random):
-    """A line overwritten by one of elsewhere."""
+    """Overwrite a moving line with another moving line."""
     return _with(page, _pick(random, page.moves), page.lines[_pick(random, page.moves)])
 
 
@@ -630,13 +639,13 @@ def cut_off(page, random):
 
 
 def feed(page, random):
-    """Faster or slower; also a robot's acceleration and blend."""
+    """Change a speed, or the acceleration or blend of a robot."""
     word = r"(F|G64 P)(\d+\.\d+)"
     if page.script:
         rates = page.script.rates
         word = rates[int(random.integers(len(rates)))] if len(rates) > 1 else rates[0]
     if random.random() < 0.2 and not page.script:
-        word = r"(P)(\d+\.\d+)"  # a dwell
+        word = r"(P)(\d+\.\d+)"  # the time of a dwell
     lines = [k for k in page.code if re.search(word, page.lines[k])]
     if not lines:
         return None
@@ -657,7 +666,7 @@ def word_lost(page, random):
 
 
 def word_changed(page, random):
-    """Letters of words: one axis or code for another."""
+    """Replace the letters of a word: one axis or code for another."""
     pairs = (
         page.script.words
         if page.script
@@ -688,7 +697,7 @@ MODES = {
 
 
 def mode(page, random):
-    """Units, absolute places, planes, the path's mode: another, or none."""
+    """Change or remove units, absolute places, planes or the path mode."""
     if page.script:
         return _word(page, random, *_pick(random, page.script.modes))
     old = _pick(random, list(MODES))
@@ -705,7 +714,7 @@ def _word(page, random, old: str, new: str):
 
 
 def offset(page, random):
-    """A line more that shifts, scales or turns all that follows; or a robot's paper and tool."""
+    """Shift, scale or turn all later moves, or change a robot's paper or tool."""
     if script := page.script:
         k = _pick(random, [k for k in page.code if re.search(script.offsets, page.lines[k])])
         return _at_number(
@@ -748,7 +757,7 @@ def m_code(page, random):
 
 
 def header_fact(page, random):
-    """A number or a letter of the header."""
+    """Change a number or a letter of the header."""
     k = _pick(random, page.header)
     line = page.lines[k]
     at = _pick(random, [n for n, letter in enumerate(line) if letter.isalnum()] or [0])
@@ -761,7 +770,7 @@ def header_lost(page, random):
 
 
 def title(page, random):
-    """A letter of a section's title."""
+    """Change a letter of a section's title."""
     k = _pick(random, page.titles)
     line = page.lines[k]
     at = int(random.integers(len(page.remark) + bool(page.script), len(line) - 1))
@@ -781,11 +790,11 @@ WORDS = (
 
 
 def remark(page, random):
-    """A comment more, of somebody's own."""
+    """Add a comment, as a user could."""
     at = int(random.integers(min(len(page.lines), page.data + 1)))
     at = max(at, page.script.first if page.script else 0)
     while re.match(r" : !\+| :  P", page.lines[at] if at < len(page.lines) else ""):
-        at += 1  # not within what goes on in another line
+        at += 1  # not inside a statement that continues on the next line
     return [*page.lines[:at], page.made(_pick(random, WORDS)), *page.lines[at:]]
 
 
@@ -810,7 +819,7 @@ ACTING = {
 
 
 def acting(page, random):
-    """A comment that the controller acts on, or cannot read."""
+    """Add a comment that the controller acts on, or cannot read."""
     kind = "linuxcnc" if page.dialect == "linuxcnc" else "grbl"
     words = _pick(random, ACTING[kind])
     which = random.random()
@@ -882,7 +891,7 @@ DAMAGES: dict[str, tuple[Damage, float]] = {
 
 
 def damaged(text: str, dialect: str, count: int, seed) -> list[tuple[str, str]]:
-    """(which damage, text) of so many damaged programs, no two alike."""
+    """Return (damage, text) of count damaged programs, no two alike."""
     random = np.random.default_rng(seed)
     end = "\r\n" if "\r\n" in text else "\n"
     page, names = Page(text.replace(end, "\n"), dialect), list(DAMAGES)

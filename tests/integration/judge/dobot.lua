@@ -1,11 +1,11 @@
--- Dobot's commands as its manual for controller 4 describes them, for an arm that is where it is told to be.
+-- Dobot's commands as its manual for controller 4 describes them, for an arm without errors.
 --
--- lua5.4 dobot.lua FLANGE ... < program: each FLANGE is "x,y,z,rx,ry,rz" of where a run begins, in mm and degrees. Of the
--- first one all is told, of the others how they begin and how many moves there are. A line for each thing that is
--- done: kind, line, numbers; a place is twelve numbers, rows of the flange's frame in the base.
+-- lua5.4 dobot.lua FLANGE ... < program: each FLANGE "x,y,z,rx,ry,rz" [mm, degrees] is where a run begins.
+-- The first run prints all its actions. The others print how they begin and how many moves they have. Each action is
+-- one line: kind, line, numbers. A place is twelve numbers, the rows of the flange's frame in the base.
 
 local FASTEST, HARDEST, LEAST_SPEED, WIDEST = 2000.0, 5000.0, 1, 100
-local LISTED = {[0] = true, [1] = true} -- frames that somebody has added
+local LISTED = {[0] = true, [1] = true} -- frames that a user has added
 local KEYS = {user = true, tool = true, a = true, v = true, speed = true, cp = true, r = true, stopcond = true}
 local STEPS = 1000000000
 

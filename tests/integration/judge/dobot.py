@@ -1,8 +1,10 @@
-"""A program for Dobot, run by Debian's Lua against a stub of the arm, dobot.lua, which was made from the manual.
+"""Run a program for Dobot in Debian's Lua with a stub of the arm, dobot.lua.
 
-What Lua itself refuses to load never begins. The manual says that a user frame or a tool which is not in the
-controller's list stops the project; that a move without a speed has the fastest one; that `speed` is at least 1 mm/s;
-that `r` is the radius about a point within which the path may leave it.
+The stub follows Dobot's manual. A program that Lua refuses to load never begins. The manual says:
+
+- A user frame or a tool that is not in the controller's list stops the project.
+- A move without a speed has the highest speed, and `speed` is at least 1 mm/s.
+- `r` is a radius around a point. Within this radius the path may leave the point.
 """
 
 from __future__ import annotations
@@ -19,14 +21,17 @@ from .places import frame, moved
 
 STUB = Path(__file__).with_suffix(".lua")
 LUA = shutil.which("lua5.4")
-# heights over the paper from which a rise is tried
+# The heights over the paper at which runs begin, to test that the program rises first.
 LOWER_MM = (-3.0, 5.0, 15.0, 19.0, 20.1, 20.5, 21.0, 25.0, 50.0, 300.0)
 MOVES = ("line", "arc")
 REMARK = "--"
 
 
 def run_dobot(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
+    """Run a program for Dobot.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    """
     arm = Arm(start, paper, down, tool, by_radius=True)
     at = moved(np.linalg.inv(paper), np.array([start], dtype=float))[0]
     others = [tuple(moved(paper, np.array([[*at[:2], height]]))[0]) for height in LOWER_MM]
@@ -52,7 +57,7 @@ def run_dobot(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.nd
 
 
 def _flange(tip, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> str:
-    """Where the flange is when the real brush's tip is there, upright on the paper."""
+    """Return the flange's pose for the brush's tip, upright on the paper."""
     true = paper @ frame((0, 0, 0), down)
     true[:3, 3] = tip
     m = true @ np.linalg.inv(tool)
@@ -84,7 +89,7 @@ def _done(arm: Arm, kind: str, number: int, words: list[str]) -> None:
 
 
 def _first(said: list[list[str]], start: np.ndarray, tool: np.ndarray, back: np.ndarray) -> str:
-    """How a run begins: straight up to a height over the robot's table, or elsewhere."""
+    """Describe how a run begins: straight up to a height, or elsewhere."""
     move = next((words for words in said if words[0] in MOVES), None)
     if move is None:
         return "goes nowhere"
@@ -95,7 +100,7 @@ def _first(said: list[list[str]], start: np.ndarray, tool: np.ndarray, back: np.
 
 
 def _commented(text: str, run: Run) -> None:
-    """Comments between the lines that move, by the legs that were gone before."""
+    """Add the comments to the run, each with the number of legs before it."""
     lines = text.split("\n")
     code = [k for k, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith(REMARK)]
     first = min(code, default=0)

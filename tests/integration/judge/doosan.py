@@ -1,8 +1,13 @@
-"""A program for Doosan, compiled and run by Python itself against a stub of the arm, made from DRL's manual.
+"""Run a program for Doosan in Python, with a stub of the arm after DRL's manual.
 
-The manual says: set_tcp takes a name of the pendant's list; a user coordinate system has a number from 101 on; angles
-are those about z, the new y and the newest z; a move without a speed takes set_velx's; radius is that of the blend
-about the end, and is an error from half of the way on; a popup of kind 1 waits for Resume.
+The manual says:
+
+- set_tcp needs a name from the pendant's list.
+- A user coordinate system has a number from 101 on.
+- Angles turn about z, the new y and the newest z.
+- A move without a speed has the speed of set_velx.
+- radius is the radius of the blend around the end. A radius of half of the move or more is an error.
+- A popup of kind 1 waits for Resume.
 """
 
 from __future__ import annotations
@@ -27,7 +32,10 @@ EXITED = "exits"
 
 
 def run_doosan(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
+    """Run a program for Doosan.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    """
     arm = _Doosan(start, paper, down, tool)
     run = arm.run
     try:

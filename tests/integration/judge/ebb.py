@@ -1,8 +1,11 @@
-"""An EBB, made from its published command set (firmware 2.6.0 to 2.8.1): SM moves both motors evenly for so many
-milliseconds, or waits where no steps are given; it refuses less than 1.31 and more than 25,000 steps in a second. S2
-sets a servo's pulse, at once where no rate is given, and may hold the next command back. SR and EM take effect at once.
+"""Run a program for an EBB.
 
-Lines that begin with # are taken out by anyone who sends the file. Every other command counts as one that acts.
+The interpreter follows the published command set of firmware 2.6.0 to 2.8.1. SM moves both motors evenly for
+a number of milliseconds. Without steps, SM waits. It refuses less than 1.31 and more than 25,000 steps per
+second. S2 sets a servo's pulse, at once if it has no rate, and may delay the next command. SR and EM take
+effect at once.
+
+The program that sends the file removes lines that begin with #. Every other command counts as one that acts.
 """
 
 from __future__ import annotations
@@ -23,8 +26,11 @@ KNOWN = (
 
 
 def run_ebb(text: str, start, motors: dict, table) -> Run:
-    """start: where the brush is before the program, of which the height alone is checked: it must be over the origin.
-    motors: of the cell; table: rows (height, value) of its servo."""
+    """Run a program for an EBB.
+
+    start is the place of the brush before the program. It must be over the origin, and only its height is
+    used. motors come from the cell. table holds rows (height, value) of the cell's servo.
+    """
     board = _Board(start[2], motors, table)
     try:
         for number, line in enumerate(text.split("\n"), 1):
@@ -48,7 +54,7 @@ class _Board:
         self.number = number
         if line.startswith("#"):
             words = line.removeprefix("#").removeprefix(" ").rstrip()
-            if words.startswith("feed "):  # what the moves keep that follow
+            if words.startswith("feed "):  # the feed that the next moves keep
                 self.run.frame.append(f"{len(self.run.legs)} {words}")
             elif self.has_begun:
                 self.run.titles.append((words, len(self.run.legs)))

@@ -1,8 +1,9 @@
-"""The part of TP that a program of moves needs, run as FANUC's operator's manual says.
+"""Run the TP that a program of moves needs, as FANUC's operator's manual says.
 
-Every program is translated first: one line that is no TP, and nothing runs. A place that was recorded in another user
-frame or tool than the chosen ones stops the program, as does another configuration on a straight line. With CNT100 the
-next move begins when the arm begins to slow down, with CNT0 when it has slowed down, between them in proportion.
+Every program is translated first. If one line is not TP, nothing runs. The program stops at a place that was
+recorded in a different user frame or tool. It also stops if the configuration changes on a straight line.
+With CNT100 the next move begins when the arm begins to slow down. With CNT0 it begins when the arm has slowed
+down. Between both, the time is in proportion.
 """
 
 from __future__ import annotations
@@ -61,7 +62,10 @@ class _Program:
 
 
 def run_fanuc(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, ramp_s=0.5) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
+    """Run a program for FANUC.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    """
     robot = _Robot(start, paper, down, tool, ramp_s)
     try:
         found = _translated(text.replace("\r\n", "\n"))

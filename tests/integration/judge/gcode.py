@@ -1,9 +1,13 @@
-"""LinuxCNC's, grbl 1.1's and FluidNC's G-code, run as their manuals say: strict, and with everything that could be
-damaged.
+"""Run G-code of LinuxCNC, grbl 1.1 and FluidNC as strictly as their manuals do.
 
-LinuxCNC: RS274/NGC of its manual, lines of 252 letters, G64 P, comments that act. grbl 1.1: its own list of commands,
-real-time letters at any place, lines of 79 letters; with a servo in laser mode ($32=1). FluidNC (its wiki):
-the same, with lines of 255 letters, comments that act, and circles whose ends are as far from their centre to 0.005 mm.
+The interpreters cover everything that a damage could write.
+
+- LinuxCNC follows RS274/NGC of its manual: lines of 252 letters, G64 P, comments that act. - grbl 1.1 has its
+own list of commands, real-time letters anywhere and lines of 79 letters. A servo needs laser
+  mode ($32=1).
+- FluidNC follows its wiki. It is like grbl, but has lines of 255 letters and comments that act. Both ends of
+a circle
+  must be equally far from its centre, to 0.005 mm.
 """
 
 from __future__ import annotations
@@ -69,19 +73,21 @@ KNOWN = {
     for dialect, groups in GROUPS.items()
 }
 USUAL = {"units": 21.0, "distance": 90.0, "centres": 91.1, "plane": 17.0, "radius": 40.0, "feed": 94.0}
-PUT_BACK = {"distance", "plane", "radius", "feed"}  # by M2 and M30
+PUT_BACK = {"distance", "plane", "radius", "feed"}  # M2 and M30 reset these
 AXES = "XYZ"
 OTHER_AXES = "ABCUVW"
 LONGEST = {
     "linuxcnc": 252,
     "grbl": 79,
     "fluidnc": 255,
-}  # rs274 stops at 253; grbl counts no blanks and no comments
+}  # rs274 stops at 253; grbl counts neither blanks nor comments
 
 
 def run_gcode(text: str, dialect: str, start, servo=None, travel_mm_s: float = math.inf) -> Run:
-    """dialect: linuxcnc, grbl or fluidnc; start: where the tool is before; servo: rows (height, value) of a brush on
-    M3 S."""
+    """Run G-code of a dialect: linuxcnc, grbl or fluidnc.
+
+    start is the place of the tool before the program. servo holds rows (height, value) of a brush on M3 S.
+    """
     controller = _Controller(dialect, start, servo, travel_mm_s)
     lines = text.split("\n")
     if lines and not lines[-1]:
@@ -108,8 +114,8 @@ class _Controller:
         self.firmware, self.servo, self.travel_mm_s = dialect, servo, travel_mm_s
         self.dialect = "linuxcnc" if dialect == "linuxcnc" else "grbl"
         self.at = list(start)
-        self.shift = [0.0, 0.0, 0.0]  # of G92
-        # the state before is that of any last program or hand: the worst of each
+        self.shift = [0.0, 0.0, 0.0]  # the offset that G92 sets
+        # Any program or person may have left the state before. Here each setting has its worst value.
         self.motion: float | None = None
         self.mm = 25.4
         self.absolute = False
@@ -131,7 +137,7 @@ class _Controller:
         if self.dialect == "grbl":
             self._at_once(line)
         if line.endswith("\r"):
-            line = line[:-1]  # as a file of Windows ends its lines
+            line = line[:-1]  # the line end of a Windows file
         if "\r" in line:
             self._act("a return within a line")
             for part in line.split("\r"):
@@ -163,7 +169,7 @@ class _Controller:
 
     def behind_the_end(self, number: int, line: str) -> None:
         self.number = number
-        if self.dialect == "grbl":  # a sender goes on sending, or takes it for the end
+        if self.dialect == "grbl":  # a sender may send the rest, or take this for the end
             before = len(self.run.legs)
             self.line(number, line)
             if len(self.run.legs) > before:
@@ -172,8 +178,10 @@ class _Controller:
             self.run.titles.append((line.strip(), len(self.run.legs)))
 
     def leave(self) -> None:
-        """What this program leaves otherwise than it is used to for anyone who comes next, or goes on by hand. Its end
-        puts some of that back, but no offset."""
+        """Record the settings that the program changes for the next program or user.
+
+        The program's end resets some settings, but no offset.
+        """
         holds = set(USUAL) - (PUT_BACK if self.ended else set())
         left = [f"G{code:g}" for name, code in self.chosen.items() if name in holds and code != USUAL[name]]
         self.run.frame += [f"leaves {word}" for word in left + ["G92"] * any(self.shift)]
@@ -310,7 +318,7 @@ class _Controller:
             self._act("a tool's length")
         if codes.get("system", 54.0) != 54.0:
             self._act("another coordinate system")
-        elif "system" in codes:  # in another one the sound program would run where that is: nobody knows
+        elif "system" in codes:  # in another system, the sound program would run at an unknown place
             self.run.frame.append("chooses the coordinate system")
         if "distance" in codes:
             self.absolute = codes["distance"] == 90.0
@@ -320,7 +328,7 @@ class _Controller:
             self._act("a lathe's mode")
 
     def _before(self, codes, m_codes, values, used) -> None:
-        """What is done before a move: dwell, path mode, a servo's value."""
+        """Execute the words that act before a move: dwell, path mode, servo value."""
         if codes.get("still") == 4.0:
             if values.get("P", -1.0) < 0:
                 raise RefusedError(f"line {self.number}: a dwell without time")
@@ -333,7 +341,7 @@ class _Controller:
         if path == 64.0:
             if values.get("P", 0) < 0:
                 raise RefusedError(f"line {self.number}: a negative tolerance")
-            self.cut_mm = values.get("P", 0) * self.mm or math.inf  # 0 is what rs274 makes of none
+            self.cut_mm = values.get("P", 0) * self.mm or math.inf  # rs274 reads a missing P as 0
             used |= {"P", "Q"} & set(values)
         elif path is not None:
             self.cut_mm = 0.0
@@ -344,7 +352,7 @@ class _Controller:
                 self.shift[k] = self.at[k] - values[axis] * self.mm
 
     def _light(self) -> None:
-        """What the servo holds after this line."""
+        """Set the value that the servo holds after this line."""
         if self.servo is None:
             return
         on = self.spindle == 3 and self.motion in (1.0, 2.0, 3.0)
@@ -441,7 +449,10 @@ class _Controller:
 
 
 def _between(rows, value: float) -> float:
-    """Height at a value, from rows (height, value) that rise in value; beyond them the end's."""
+    """Return the height at a value, from rows (height, value) with rising values.
+
+    Values beyond the rows get the height of the nearest end.
+    """
     if value <= rows[0][1]:
         return rows[0][0]
     for (low, first), (high, last) in itertools.pairwise(rows):

@@ -1,7 +1,10 @@
-"""HP-GL run as the manuals of HP's pen plotters say, of which hp2xx is a second opinion: units of 0.025 mm, the pen up
-or down, IN sets all back and lifts it, parameters behind PU, PD and PA are places, absolute after PA, else after PR.
+"""Run HP-GL as the manuals of HP's pen plotters say; hp2xx is a second opinion.
 
-What writes, scales, turns or asks counts as text that acts; what no plotter knows sets its error light.
+A unit is 0.025 mm, and the pen is up or down. IN resets everything and lifts the pen. Parameters after PU, PD
+and PA are places, absolute after PA and relative after PR.
+
+Instructions that write, scale, turn or ask count as text that acts. An unknown instruction sets the error
+light.
 """
 
 from __future__ import annotations
@@ -12,15 +15,19 @@ import re
 from .moves import Leg, RefusedError, Run
 
 UNIT_MM = 0.025
-DROPPED_MM_S = 10.0  # how fast a pen is let down no program says
+DROPPED_MM_S = 10.0  # speed of a falling pen, which no program sets
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 WORD = re.compile(rf'\s*(?:CO\s*"([^"]*)"|([A-Za-z]{{2}})\s*((?:{NUMBER}[\s,]*)*))\s*;?')
-GREATEST = 32767  # plotter units
+GREATEST = 32767  # the largest coordinate, in plotter units
 FASTEST_CM_S = 127
 
 
 def run_hpgl(text: str, start, down_mm: float, up_mm: float, travel_mm_s: float) -> Run:
-    """start: where the pen is before; down_mm, up_mm: its heights; travel_mm_s: how fast it is carried."""
+    """Run a program in HP-GL.
+
+    start is the place of the pen before the program. down_mm and up_mm are its heights, and travel_mm_s is
+    the speed of the lifted pen.
+    """
     plotter = _Plotter(start, down_mm, up_mm, travel_mm_s)
     plotter.run.acts += ["a return, which a plotter may take for the end of a text"] if "\r" in text else []
     at = 0

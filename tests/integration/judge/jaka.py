@@ -1,7 +1,8 @@
-"""The part of JAKA script that a program of moves needs, run as the script manual says.
+"""Run the part of JAKA script that a program of moves needs, as the manual says.
 
-One statement a line, names in any case, poses of six numbers in millimetres and degrees held by variables; the angles
-turn about the fixed axes. The whole file is compiled first: one line that is no statement, and nothing runs.
+Each line is one statement. Names may be in any case. Variables hold poses of six numbers in millimetres and
+degrees, and the angles turn about the fixed axes. The whole file is compiled first. If one line is not a
+statement, nothing runs.
 """
 
 from __future__ import annotations
@@ -33,7 +34,10 @@ PATTERNS = {
 
 
 def run_jaka(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
+    """Run a program for JAKA.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    """
     robot = _Robot(start, paper, down, tool)
     try:
         robot.block(_compiled(text, robot.run))
@@ -43,7 +47,10 @@ def run_jaka(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.nda
 
 
 def _compiled(text: str, run: Run) -> list:
-    """(line, what, found) of every statement, an if with its block as (line, "if", found, block)."""
+    """Return (line, what, found) of each statement.
+
+    An if with its block is (line, "if", (found, block)).
+    """
     blocks: list[list] = [[]]
     opened = []
     for number, raw in enumerate(text.split("\n"), 1):
@@ -135,7 +142,10 @@ class _Robot(Arm):
         self.tcp = frame(values[:3], turned_deg(*values[3:]))
 
     def _here(self, number: int, found) -> None:
-        """The pose of the TCP as the controller believes it to be; of its angles a program of ours asks nothing."""
+        """Store the place of the TCP as the controller believes it.
+
+        Our programs do not use its angles.
+        """
         self.names[found[1].lower()] = np.array([*self.believed()[:3, 3], 0.0, 0.0, 0.0])
 
     def _target(self, number: int, values: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
-"""The part of KRL that a program of moves needs, run as KUKA's programming manual says.
+"""Run the KRL that a program of moves needs, as KUKA's programming manual says.
 
-Each module is compiled first: one line that is no KRL, or a name that is not declared in it, and nothing runs. A
-routine that is called runs with what was set before. Then BAS(#INITMOV, 0) sets what holds before a program sets
-anything: the fastest that the robot can, no tool, no base; how far a blend reaches, a program must say itself.
+Each module is compiled first. If one line is not KRL, or a name is not declared in the module, nothing runs.
+A called routine keeps all settings. BAS(#INITMOV, 0) sets the defaults: the robot's highest speed, no tool
+and no base. The program itself must set how far a blend reaches.
 """
 
 from __future__ import annotations
@@ -42,7 +42,10 @@ FASTEST_MM_S, HARDEST_M_S2 = 3000.0, 10.0
 
 
 def run_krl(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
+    """Run a program for KUKA.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    """
     robot = _Robot(start, paper, down, tool)
     try:
         robot.load(text)
@@ -58,13 +61,13 @@ class _Robot(Arm):
         self.names: dict[str, dict | None] = {}
         self.modules: dict[str, tuple[list, dict]] = {}
         self.done: set[str] = set()
-        self.is_set = self.has_begun = False  # by BAS, by a PTP
+        self.is_set = self.has_begun = False  # is_set: after BAS; has_begun: after a PTP
         self.speed_mm_s, self.acceleration = 0.0, 0.0
         self.apart_mm: float | None = None
         self.last: dict[str, float] = {}
 
     def load(self, text: str) -> None:
-        """All modules, of which the first one is run."""
+        """Load all modules and run the first one."""
         lines = text.split("\n")
         begins = [k for k, line in enumerate(lines) if PATTERNS["def"].fullmatch(line.strip().lower())]
         for first, last in zip([0, *begins[1:]], [*begins[1:], len(lines)], strict=True):
@@ -93,8 +96,10 @@ class _Robot(Arm):
         self.routine(found[1])
 
     def compiled(self, text: str, before: int, is_main: bool) -> list:
-        """(line, what, found) of each statement of the routine, an if as (line, "if", (found, block)); before: lines
-        of other modules."""
+        """Return (line, what, found) of each statement of the routine.
+
+        An if is (line, "if", (found, block)). before is the number of lines of earlier modules.
+        """
         blocks: list[list] = [[]]
         opened: list = []
         state, has_code = "before", False

@@ -1,4 +1,4 @@
-"""What a controller does with a program: legs in the robot's frame, and what went wrong or acts in addition."""
+"""A controller's run: legs in the robot's frame, errors and side effects."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ import numpy as np
 
 
 class Leg(NamedTuple):
-    """One thing that a machine does.
+    """One action of a machine.
 
-    kind: rapid, feed, process (a robot's move at an even speed), arc, jump (a servo's value, at once), wait or stop
-    (until a person starts again). Ends [mm] in the robot's frame. cut_mm: how far from its end the corner may
-    be passed, or, for robots, how far before its end the blend begins. tilt_rad: how far the tool leans from where it
-    should at the end. takes_up: the tool stands, since what goes is the play of its axes.
+    kind is rapid, feed, process (a robot's move at an even speed), arc, jump (a servo's value, at once), wait
+    or stop (until a person starts the machine again). start and end [mm] are in the robot's frame. cut_mm is
+    how far from the leg's end the tool may pass. For robots, it is how far before the end the blend begins.
+    tilt_rad is the angle between the tool and its target direction at the end. takes_up: the tool stands
+    while the axes take up their play.
     """
 
     line: int
@@ -34,9 +35,14 @@ class Leg(NamedTuple):
 
 @dataclass
 class Run:
-    """refused: the controller's error, after which nothing runs; acts: what the program does in addition to moving a
-    brush; titles: (words, number of legs before) of comments behind the header; header: lines of comment before; frame:
-    what decides how the program begins and ends, for any state of the machine."""
+    """The run of a program.
+
+    refused: the controller's error, after which nothing runs.
+    acts: actions of the program other than moving a brush.
+    titles: (words, number of legs before) of each comment after the header.
+    header: the lines of comment at the beginning.
+    frame: facts that decide how the program begins and ends, for any state of the machine.
+    """
 
     legs: list[Leg] = field(default_factory=list)
     refused: str = ""
@@ -48,14 +54,17 @@ class Run:
 
 
 class RefusedError(Exception):
-    """The controller stops here with an error."""
+    """The controller stops with an error at this line."""
 
 
 CHORD_RAD, CHORD_MM = 0.05, 1e-4
 
 
 def arc_points(leg: Leg) -> np.ndarray:
-    """(n, 3) places along an arc behind its start; where its ends have other radii, a spiral between them."""
+    """Return places (n, 3) along an arc, without its start.
+
+    If its ends have different radii, the places are on a spiral between them.
+    """
     (x, y), (a, b, c), (d, e, f) = leg.centre, leg.start, leg.end
     first, last = math.atan2(b - y, a - x), math.atan2(e - y, d - x)
     sweep = (last - first) * leg.turn % math.tau

@@ -1,4 +1,4 @@
-"""Frames of the judge's own: (4, 4) from poses as cells and URScript have them."""
+"""The judge's own frames, (4, 4), from poses of cells and of URScript."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 
 def turned_deg(x_deg: float, y_deg: float, z_deg: float) -> np.ndarray:
-    """(3, 3) about the fixed x, then y, then z axis."""
+    """Return the rotation (3, 3) about the fixed x, then y, then z axis."""
     (a, b, c), (s, t, u) = zip(
         *((math.cos(math.radians(v)), math.sin(math.radians(v))) for v in (x_deg, y_deg, z_deg)), strict=True
     )
@@ -21,7 +21,10 @@ def turned_deg(x_deg: float, y_deg: float, z_deg: float) -> np.ndarray:
 
 
 def turned_vector(vector) -> np.ndarray:
-    """(3, 3) about an axis by its length [rad], as URScript has rotations (Rodrigues)."""
+    """Return the rotation (3, 3) about a vector by its length [rad], after Rodrigues.
+
+    URScript writes rotations as rotation vectors.
+    """
     angle = float(np.linalg.norm(vector))
     if angle == 0:
         return np.eye(3)
@@ -37,7 +40,7 @@ def frame(origin, rotation) -> np.ndarray:
 
 
 def paper_of(cell: dict, z_offset_mm: float) -> np.ndarray:
-    """The paper's frame in the robot's, from a cell's TOML as a dictionary."""
+    """Return the paper's frame in the robot's frame, from a cell's TOML dictionary."""
     paper = cell["paper"]
     if paper.get("taught_mm"):
         origin, along, near_by = (np.array(point, dtype=float) for point in paper["taught_mm"][:3])
@@ -54,7 +57,7 @@ def paper_of(cell: dict, z_offset_mm: float) -> np.ndarray:
 
 
 def down_of(cell: dict) -> np.ndarray:
-    """(3, 3) how the tool is turned in the paper's frame: its z into the paper."""
+    """Return the tool's rotation (3, 3) in the paper's frame, z into the paper."""
     return np.diag([1.0, -1.0, -1.0]) @ turned_deg(0, 0, cell["tool"].get("spin_deg", 0.0))
 
 
@@ -68,8 +71,10 @@ def moved(by: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def true_of(commanded: np.ndarray, machine: dict | None) -> np.ndarray:
-    """(n, 3) where a machine takes the tool that is commanded to go there, in the paper's frame, from a cell's "
-    "table."""
+    """Return the true places (n, 3) of commanded places, in the paper's frame.
+
+    machine is the table of the cell that describes the machine's errors.
+    """
     if not machine or not len(commanded):
         return commanded
     along, across = machine.get("scale", (1.0, 1.0))
@@ -83,14 +88,17 @@ def true_of(commanded: np.ndarray, machine: dict | None) -> np.ndarray:
 
 
 def paper_height(commanded: np.ndarray, machine: dict) -> np.ndarray:
-    """(n,) how much higher the paper is where the tool is commanded to go than it was taught."""
+    """Return the paper's height (n,) at commanded places above the taught plane."""
     tilts = machine.get("tilt_mm_per_mm", (0.0, 0.0))
     on = on_map(commanded, machine.get("map_mm", ()))
     return machine.get("height_mm", 0.0) + commanded[:, 0] * tilts[0] + commanded[:, 1] * tilts[1] + on
 
 
 def highest_paper(x: float, y: float, machine: dict | None) -> float:
-    """The most by which paper around a place may be higher than it was taught: travel is as much higher."""
+    """Return the largest height of the paper around a place above the taught plane.
+
+    Travel moves are higher by this height.
+    """
     if not machine:
         return 0.0
     flat = {key: value for key, value in machine.items() if key != "map_mm"}
@@ -99,7 +107,10 @@ def highest_paper(x: float, y: float, machine: dict | None) -> float:
 
 
 def bent(place, machine: dict) -> np.ndarray:
-    """(2,) by how much the machine's field displaces the tool: for x and for y half a quadratic form's value."""
+    """Return the displacement (2,) of the tool by the machine's field.
+
+    For x and for y, it is half of the value of a quadratic form.
+    """
     if "field_mm" not in machine:
         return np.zeros(2)
     reach = np.array(machine["field_reach_mm"])
@@ -109,7 +120,7 @@ def bent(place, machine: dict) -> np.ndarray:
 
 
 def on_map(commanded: np.ndarray, rows) -> np.ndarray:
-    """(n,) the height of a map of the paper at places."""
+    """Return the height (n,) of a map of the paper at places."""
     if not len(rows):
         return np.zeros(len(commanded))
     xs, ys = (sorted({row[k] for row in rows}) for k in range(2))
@@ -119,8 +130,10 @@ def on_map(commanded: np.ndarray, rows) -> np.ndarray:
 
 
 def commanded_in_air(place, height: float, machine: dict | None) -> np.ndarray:
-    """(3,) the command with which the tool is that high over the paper at a place: there it leans
-    nowhere."""
+    """Return the command (3,) that takes the tool over a place of the paper.
+
+    In the air, the tool does not lean.
+    """
     if not machine:
         return np.array([*place[:2], height])
     along, across = machine.get("scale", (1.0, 1.0))
@@ -135,5 +148,5 @@ def commanded_in_air(place, height: float, machine: dict | None) -> np.ndarray:
 
 
 def angle_rad(one: np.ndarray, other: np.ndarray) -> float:
-    """Between two rotations."""
+    """Return the angle between two rotations."""
     return 2 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / math.sqrt(8)))

@@ -1,4 +1,7 @@
-"""A run on a machine whose axes have play: each slide stands until its screw comes to its other side."""
+"""Simulate a run on a machine whose axes have play.
+
+When an axis reverses, its slide stands until the screw has crossed the play.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,10 @@ STEP_MM = 0.01
 
 
 def with_play(run: Run, backlash_mm) -> Run:
-    """The run as the slides go, circles as chords; from any place, here each on another side."""
+    """Return the run of the slides, with chords instead of circles.
+
+    The slides may start anywhere in their play. Here x and y start on opposite sides.
+    """
     half = np.array([*backlash_mm, 0.0]) / 2
     lag, legs, first = half * (1, -1, 0), [], []
     for leg in run.legs:
@@ -33,7 +39,10 @@ def with_play(run: Run, backlash_mm) -> Run:
 
 
 def _small_steps(start: np.ndarray, end: np.ndarray, lag: np.ndarray, half: np.ndarray):
-    """Of a straight way: as long as not all slides that go are pushed, then the rest."""
+    """Split a straight way into small steps until all moving slides are pushed.
+
+    The last step is the rest of the way.
+    """
     pushed, here = np.sign(end - start) * half, start
     count = int(np.ceil(np.abs(end - start)[:2].max() / STEP_MM))
     for k in range(1, count):

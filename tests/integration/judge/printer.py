@@ -1,8 +1,11 @@
-"""Marlin 2's and Klipper's G-code, run as their documentation says: one word of command on a line, nothing holds but
-the feed, G0 is no faster than G1, what is not known is passed over while the rest runs on.
+"""Run G-code of Marlin 2 and Klipper as their documentation says.
 
-Sources: marlinfw.org/docs/gcode (G0-G1, G2-G3, G4, G20-G21, G90-G92, M0, M400) and klipper3d.org/G-Codes.html, its
-section on gcode_arcs. What firmware may be built with or without counts as text that acts.
+A line has one command. Only the feed holds for the next lines. G0 is no faster than G1. The firmware skips
+unknown commands and runs the rest.
+
+Sources: marlinfw.org/docs/gcode (G0-G1, G2-G3, G4, G20-G21, G90-G92, M0, M400) and
+klipper3d.org/G-Codes.html, its section on gcode_arcs. Commands that a firmware may be built without count as
+text that acts.
 """
 
 from __future__ import annotations
@@ -16,13 +19,17 @@ from .moves import Leg, RefusedError, Run
 LONGEST = {"marlin": 95, "klipper": math.inf}
 WORD = re.compile(r"\s*([A-Z])\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*")
 STOPS = {"marlin": ("M0", "M1"), "klipper": ("PAUSE",)}
-IDLE = ("M400", "M105", "M114", "M115")  # wait for the moves, or report
+IDLE = ("M400", "M105", "M114", "M115")  # these wait for the moves, or report
 AXES = "XYZ"
 
 
 def run_printer(text: str, firmware: str, start, has_arcs: bool, pen: Pen | None = None) -> Run:
-    """firmware: marlin or klipper; start: where the tool is before; has_arcs: whether it was built with G2 and G3; pen:
-    of a Marlin with a servo, which is set as soon as its line is read, even while moves are still held."""
+    """Run G-code of a firmware: marlin or klipper.
+
+    start is the place of the tool before the program. has_arcs: the firmware was built with G2 and G3. pen
+    belongs to a Marlin with a servo. The servo moves as soon as the firmware reads its line, even before
+    waiting moves end.
+    """
     machine = _Machine(firmware, start, has_arcs, pen)
     try:
         for number, line in enumerate(text.split("\n"), 1):
@@ -34,15 +41,19 @@ def run_printer(text: str, firmware: str, start, has_arcs: bool, pen: Pen | None
 
 
 class Pen(NamedTuple):
-    """number: of its servo; heights: by the servo's values [mm]; least_s: what it needs to get there."""
+    """A pen on a servo.
+
+    number is the servo's number. heights [mm] are by the servo's values. least_s is the time that the servo
+    needs.
+    """
 
     number: int
     heights: dict[float, float]
     least_s: float
 
 
-DROPPED_MM_S = 10.0  # of a pen that is let down
-KNOWN_S = 0.01  # how closely anybody knows what a servo takes
+DROPPED_MM_S = 10.0  # speed of a falling pen
+KNOWN_S = 0.01  # accuracy to which the duration of a servo's move is known
 
 
 class _Machine:
@@ -50,7 +61,7 @@ class _Machine:
         self.pen, self.is_still, self.moved_s = pen, True, math.inf
         self.run, self.firmware, self.has_arcs = Run(), firmware, has_arcs
         self.at, self.shift = list(start), [0.0, 0.0, 0.0]
-        self.absolute, self.mm = False, 25.4  # any state that the last program left
+        self.absolute, self.mm = False, 25.4  # the last program may have left any state
         self.feed_mm_s = 200.0
         self.number, self.has_code = 0, False
 

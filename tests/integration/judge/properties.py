@@ -1,4 +1,4 @@
-"""Random drawings x brush files of every kind x cells x options: one case, and what must hold for it."""
+"""Random cases of drawing, brush file, cell and options, and their properties."""
 
 from __future__ import annotations
 
@@ -23,15 +23,19 @@ from .random_jobs import REQUESTED, judged, said_of
 from .random_works import SHEET, random_brush, random_cell, random_flags, random_svg
 from .works import CELLS, PENS
 
-EDGE_MM = 0.02  # of the sheet: marks are followed in steps
+EDGE_MM = 0.02  # marks may leave the sheet by this much, because they are followed in steps
 STEP_MM = 0.1
-MOST_OFF = 0.05, 0.02  # share and mm by which a tracking error may be larger than it is reported
-STEPPED = 8  # one in so many cases is stepped through, one in as many written twice
+MOST_OFF = 0.05, 0.02  # share and mm by which a tracking error may exceed its reported value
+STEPPED = 8  # one in 8 cases runs in the stepping simulator, and one in 8 is written twice
 
 
 @dataclass(frozen=True)
 class Case:
-    """What was tried, and how it ended. refused: why no program was written; wrong: what does not hold."""
+    """A tried case and its outcome.
+
+    refused: why brushsvg wrote no program.
+    wrong: the properties that do not hold.
+    """
 
     number: int
     drawing: str
@@ -50,7 +54,7 @@ def sheet_of(body: str) -> str:
 
 
 def ring(random, middle, reach: tuple[float, float], count: int) -> str:
-    """A star-shaped polygon or a closed curve about a point."""
+    """Return a star-shaped polygon or a closed curve around a point."""
     angles = np.sort(random.uniform(0, 2 * np.pi, count))
     points = middle + (random.uniform(*reach, count) * np.exp(1j * angles)).view(float).reshape(-1, 2)
     said = [f"{x:.3f} {y:.3f}" for x, y in points]
@@ -60,7 +64,7 @@ def ring(random, middle, reach: tuple[float, float], count: int) -> str:
 
 
 def outlines(random, at: Path) -> Path:
-    """Bars, stars, blobs with and without a hole: what letters are made of."""
+    """Write the parts that letters have: bars, stars, blobs with and without a hole."""
     body = []
     for _ in range(int(random.integers(1, 4))):
         middle, reach = random.uniform((20, 18), (60, 42)), random.uniform(1.0, 14.0)
@@ -120,7 +124,7 @@ def dxf(random, at: Path) -> Path:
 
 
 def gcode(random, at: Path) -> Path:
-    """A pen plotter's program."""
+    """Write a program of a pen plotter."""
     text = ["G21", "G90"]
     for _ in range(int(random.integers(1, 5))):
         points = random.uniform((15, 15), (60, 40), (int(random.integers(2, 7)), 2))
@@ -130,7 +134,7 @@ def gcode(random, at: Path) -> Path:
 
 
 def plan(random, at: Path) -> Path:
-    """What convert makes of lines for the brush that comes along."""
+    """Write the plan that convert makes from lines with the shipped brush."""
     source = lines(random, at)
     return at.with_suffix(".json") if not converted(source, at.with_suffix(".json")) else source
 
@@ -139,11 +143,11 @@ DRAWINGS = {"lines": lines, "outlines": outlines, "dots": dots, "dxf": dxf, "gco
 WEIGHTS = {"lines": 3, "outlines": 4, "dots": 1, "dxf": 1, "gcode": 1, "plan": 1}
 
 
-LAYOUT = ("--wide", "--width", "--fit")  # which check needs again, as --corners
+LAYOUT = ("--wide", "--width", "--fit")  # check needs these options as well, like --corners
 
 
 def more_flags(random, kind: str) -> tuple[str, ...]:
-    """Options next to those of random_flags."""
+    """Return options in addition to the options of random_flags."""
     flags: tuple[str, ...] = ()
     if kind == "plan":
         return flags
@@ -162,13 +166,16 @@ def more_flags(random, kind: str) -> tuple[str, ...]:
 
 
 def one(number: int, folder: Path, shelf: Path, check: Callable, dialects: Sequence[str] = ()) -> Case:
-    """check: of `checked.quick_check`; shelf: a folder in which brush files are kept; dialects: by default all of them.
-    All depends on the number and the dialects."""
+    """Try one case. It depends on the number and the dialects alone.
+
+    check comes from `checked.quick_check`. shelf is a folder for brush files. An empty dialects means all
+    dialects.
+    """
     random = np.random.default_rng([number, 53])
     dialect, kind = str(random.choice(list(dialects or CELLS))), _kind(random)
     cell = random_cell(random, dialect)
     brush, name = _brush(random, dialect, folder, shelf)
-    if dialect in PENS and kind == "plan":  # it presses a brush
+    if dialect in PENS and kind == "plan":  # a plan presses a brush, which a pen cannot
         kind = "lines"
     folder.mkdir(parents=True, exist_ok=True)
     tried = Case(number, kind, name, dialect)
@@ -192,7 +199,7 @@ def _ended(case: Case, refused: str, wrong: list[str]) -> Case:
 
 
 def _brush(random, dialect: str, folder: Path, shelf: Path) -> tuple[str, str]:
-    """(what --brush takes, its kind); a pen has one height."""
+    """Return the value of --brush and its kind. A pen has one height."""
     if dialect in PENS:
         return "rigid", "rigid"
     kind = str(random.choice([*BRUSHES, "random"]))
@@ -231,7 +238,7 @@ def too_deep(plan: dict, brush) -> list[str]:
 
 
 class Lag:
-    """A brush's lag as the stepping simulator asks for it."""
+    """A brush's lag with the interface that the stepping simulator needs."""
 
     def __init__(self, brush):
         self.brush = brush
@@ -244,10 +251,11 @@ class Lag:
 
 
 def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
-    """Marks off the sheet, and tracking errors that are reported too small."""
+    """Return marks off the sheet, and tracking errors reported too small."""
     wrong = []
     work = None
-    # butt ends, corners that are turned and refined strokes leave their line on purpose: their marks are judged
+    # Butt ends, turned corners and refined strokes leave their line on purpose. For these, only marks are
+    # checked.
     if said_of(flags, "--start")[1:] in (("pointed",), ("round",)) and not {"--corners", "refined"} & set(
         flags
     ):
@@ -290,7 +298,8 @@ def _untrue(work, k: int, has_way, reach, lag, widest) -> list[str]:
     reported, stroke = work.tracking_errors[k], work.strokes[k]
     if reported is None or len(np.asarray(stroke.middle_mm)) == 0:
         return []
-    # where the brush turns over between two taut parts it hardly touches, which no tracking error counts
+    # Between two taut parts the brush turns over and hardly touches. Tracking errors do not count these
+    # places.
     taut = np.flatnonzero((reach >= lag - 1e-3)[has_way])
     if len(taut) == 0:
         return []
@@ -302,7 +311,10 @@ def _untrue(work, k: int, has_way, reach, lag, widest) -> list[str]:
 
 
 def _beyond_its_ends(stroke) -> np.ndarray:
-    """The middle line, and half a width more at both ends: a blunt footprint has to go beyond them."""
+    """Return the middle line, longer by half a width at both ends.
+
+    A blunt footprint has to go beyond both ends.
+    """
     cubics = np.asarray(stroke.middle_mm)
     points = cubics.reshape(-1, 2)
 
@@ -316,7 +328,7 @@ def _beyond_its_ends(stroke) -> np.ndarray:
 
 
 def batches_differ(sources: list[Path], folder: Path) -> list[str]:
-    """What a batch of two processes writes that one process writes differently."""
+    """Return the files that one and two processes write differently."""
     made = {}
     for jobs in (1, 2):
         out = folder / f"jobs-{jobs}"

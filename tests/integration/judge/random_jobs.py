@@ -1,4 +1,4 @@
-"""Random drawings on random machines: what is written, judged and checked."""
+"""Convert random drawings for random machines, then judge and check the programs."""
 
 from __future__ import annotations
 
@@ -22,8 +22,12 @@ from .works import CELLS, PENS, job_for
 
 @dataclass(frozen=True)
 class Tried:
-    """One random job. refused: why no program was written; else wrong: what the judge says of it, and denied: what
-    check says of it."""
+    """One random job and its outcome.
+
+    refused: why brushsvg wrote no program.
+    wrong: the errors that the judge found in the program.
+    denied: the errors that `brushsvg check` reported.
+    """
 
     dialect: str
     number: int
@@ -33,7 +37,10 @@ class Tried:
 
 
 def tried(dialect: str, number: int, folder: Path, check) -> Tried:
-    """check: of `checked.quick_check`. Everything hangs on dialect and number alone."""
+    """Try one random job, which depends on the dialect and the number alone.
+
+    check comes from `checked.quick_check`.
+    """
     random = np.random.default_rng([number, *dialect.encode()])
     cell, svg, flags = random_cell(random, dialect), random_svg(random), random_flags(random, dialect)
     folder.mkdir(parents=True, exist_ok=True)
@@ -46,7 +53,10 @@ def tried(dialect: str, number: int, folder: Path, check) -> Tried:
 
 @dataclass(frozen=True)
 class Judged:
-    """What became of a drawing on a machine, as in Tried. job: what was requested, where a program was written."""
+    """The outcome of a drawing on a machine, with the fields of Tried.
+
+    job is the requested job if brushsvg wrote a program.
+    """
 
     refused: tuple[str, ...] = ()
     wrong: tuple[str, ...] = ()
@@ -54,7 +64,7 @@ class Judged:
     job: Job | None = None
 
 
-REQUESTED = ("--brush", "--corners")  # which check needs again
+REQUESTED = ("--brush", "--corners")  # check needs these options as well
 
 
 def judged(
@@ -66,7 +76,10 @@ def judged(
     check,
     requested: tuple = REQUESTED,
 ) -> Judged:
-    """A drawing converted to mine.toml, a program and plan.json in the folder, run by the judge and by check."""
+    """Convert a drawing, then run the program through the judge and `brushsvg check`.
+
+    The folder gets mine.toml, a program and plan.json.
+    """
     suffix = CELLS[dialect][1]
     toml = put(folder / "mine.toml", write_cell(cell))
     program, plan = folder / f"program{suffix}", folder / "plan.json"
@@ -82,9 +95,9 @@ def judged(
         return Judged(tuple(said), wrong)
     planned = [word for word in flags if word not in said_of(flags, "--z-offset")]
     text = _whole(program)
-    # the plan's own file is written without the machine's limits, which the program has passed
+    # convert writes the plan's file without the limits of the machine. The program has passed these limits.
     if said := converted(source, plan, "--cell", toml, *planned):
-        if "--z-offset" in flags:  # the plan's paper is lower, which may be out of reach
+        if "--z-offset" in flags:  # the paper of the plan is lower and may be out of reach
             return Judged(tuple(said))
         return Judged((), (f"no plan: {said}",))
     job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
@@ -95,7 +108,8 @@ def judged(
     wrong += broken(way, job)
     is_counted = bool(cell.reload) and cell.reload.when == "length"
     if not is_counted and max(job.servo_mm) <= 0.1 and not (cell.servo and has_steep_ways(job)):
-        wrong += unlike(way, job)  # a stroke in loads is another plan, and a coarse servo another path
+        # A stroke that is split into loads has another plan, and a coarse servo has another path.
+        wrong += unlike(way, job)
     if any((job.machine or {}).get("backlash_mm", ())):
         exact = put(folder / "exact.toml", write_cell(without_backlash(cell)))
         twin = folder / f"exact{suffix}"
@@ -115,7 +129,10 @@ def judged(
 
 
 def _parts(program: Path) -> list[Path]:
-    """The files that a long program goes on in; a Fanuc's have names of eight letters and digits."""
+    """Return the files in which a long program continues.
+
+    The files of a Fanuc have names of eight letters and digits.
+    """
     if program.suffix == ".ls":
         return sorted(program.parent.glob("[A-Z]*[0-9][0-9][0-9].ls"))
     found = program.parent.glob(f"{program.stem}-part*{program.suffix}")
@@ -127,8 +144,11 @@ def _whole(program: Path) -> str:
 
 
 def has_steep_ways(job: Job) -> bool:
-    """Whether a way of the plan changes the height by more than twice its length: a servo, whose height goes in steps
-    along a way, presses the brush before it or lifts it after it instead."""
+    """Return whether a move of the plan is steeper than 2 : 1.
+
+    A servo changes its height in steps along a move. It presses the brush before a steep move, or lifts it
+    after.
+    """
     ways = np.vstack([np.abs(np.diff(each["poses_mm"], axis=0))[:, :3] for each in job.plan["passes"]])
     flat_mm = np.hypot(ways[:, 0], ways[:, 1])
     return bool(((flat_mm > 1e-6) & (ways[:, 2] > 2 * flat_mm)).any())
@@ -139,10 +159,14 @@ def without_backlash(cell):
 
 
 def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
-    """What a machine with backlash paints elsewhere than one without that runs its own program. A brush that stands in
-    one place while play is taken up is in that place in both."""
-    # half of the backlash is rounded; in both programs a circle's centre is rounded, and the start that it counts from;
-    # a servo's parts are those of a way whose ends are rounded; and a rounded height displaces a tool that leans
+    """Find where a machine with backlash paints elsewhere than a machine without it.
+
+    Each machine runs a program of its own. While a machine takes up play, the brush stands in one place. It
+    is in that place on both machines.
+    """
+    # Half of the backlash is rounded. Both programs round the centre of a circle, and the start that the
+    # centre
+    # counts from. A servo splits a way with rounded ends. A rounded height displaces a tool that leans.
     leans = np.abs(cell.machine.lean_mm_per_mm)
     units = 2.0 if has_circles else 1.5 if cell.servo else 1.0
     near_mm = unit_mm(cell) * (units * 2**0.5 + np.hypot(*leans)) + CHORDS_MM
@@ -158,10 +182,10 @@ def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
     return []
 
 
-CHORDS_MM = 2e-4  # of the judge's own chords of circles
+CHORDS_MM = 2e-4  # error of the judge's own chords of circles
 
 
 def said_of(flags: tuple[str, ...], name: str) -> tuple[str, ...]:
-    """A flag with its value, where it was given."""
+    """Return a flag and its value, or nothing if it was not given."""
     at = flags.index(name) if name in flags else len(flags)
     return flags[at : at + 2]

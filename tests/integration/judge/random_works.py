@@ -1,4 +1,7 @@
-"""Small drawings and cells at random: leaning paper, boxes and reach rings, stations, servos of any table, blends."""
+"""Random small drawings and cells.
+
+The cells have leaning paper, boxes and reach rings, stations, servos with any table, and blends.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,10 @@ SHEET = (80.0, 60.0)
 
 
 def random_svg(random) -> str:
-    """One to four strokes: lines, corners, curves, dabs, closed ones, ways that turn back on themselves, some of them
-    tiny; in two colours and layers."""
+    """Return a drawing of one to four strokes in two colours and layers.
+
+    The strokes are lines, corners, curves, dabs, closed paths and paths that turn back, some of them tiny.
+    """
     drawn = []
     for number in range(int(random.integers(1, 5))):
         x, y = random.uniform(14, 66), random.uniform(14, 46)
@@ -61,7 +66,7 @@ def random_svg(random) -> str:
 
 
 def random_cell(random, dialect: str):
-    """A cell of the dialect's language; it may be one that `read_cell` refuses."""
+    """Return a cell of the dialect's language; `read_cell` may refuse it."""
     cell = find_cell(CELLS[dialect][0])
     safe = round(float(random.uniform(4, 25)), 2)
     clear = round(float(random.uniform(0.3, 2.5)), 2)
@@ -97,7 +102,7 @@ def random_cell(random, dialect: str):
         paper = Paper(
             tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360)))
         )
-    if dialect == "ebb" and paper.rotation_deg[2]:  # its motors begin over the sheet
+    if dialect == "ebb" and paper.rotation_deg[2]:  # the motors begin over the sheet
         turn = np.radians(paper.rotation_deg[2])
         x, y = random.uniform((0, 0), SHEET)
         place = (-x * np.cos(turn) + y * np.sin(turn), -x * np.sin(turn) - y * np.cos(turn), 0.0)
@@ -111,13 +116,14 @@ def random_cell(random, dialect: str):
     if dialect == "ebb":
         cell = replace(cell, blending=Blending(0.01, float(random.uniform(0.2, 5))))
     cell = _with_space(random, cell)
-    if dialect == "ebb":  # whose motors begin at the robot's origin
+    if dialect == "ebb":  # the motors begin at the robot's origin
         cell = replace(cell, workspace=replace(cell.workspace, reach_mm=()))
     if random.random() < 0.3:
         cell = _with_a_clip(random, cell)
     if random.random() < 0.5 and dialect != "hpgl":
         cell = _with_paint(random, cell)
-    (apart,) = random.spawn(1)  # so that all else is as it is on machines that go where they are commanded to
+    # Separate random numbers keep the rest of the cell equal to a cell without machine errors.
+    (apart,) = random.spawn(1)
     if apart.random() < 0.5:
         cell = replace(cell, machine=_machine(apart, dialect))
     (apart,) = apart.spawn(1)
@@ -131,11 +137,14 @@ NEVER_SLOWER = (
     "approach_mm_s",
     "press_mm_s",
     "paint_mm_s",
-)  # than a centimetre in a second, by a pen plotter
+)  # a pen plotter is never slower than a centimetre per second
 
 
 def _machine(random, dialect: str) -> Machine:
-    """One that goes elsewhere: little, or as far as a cell may say; of a servo, no depth hangs on it."""
+    """Return a machine with errors, small ones or as large as a cell allows.
+
+    A machine with a servo gets no errors that change the depth.
+    """
     much, is_servo = random.random() < 0.3, dialect in FLAT
 
     def pair(little: float, large: float) -> tuple:
@@ -147,7 +156,7 @@ def _machine(random, dialect: str) -> Machine:
     if random.random() < 0.5:
         found = replace(found, scale=tuple(1 + off for off in pair(0.01, 0.09)), skew=pair(0.01, 0.09)[0])
     elif random.random() < 0.5:
-        found = replace(found, scale=(1 + pair(0.02, 0.09)[0],) * 2)  # circles stay round
+        found = replace(found, scale=(1 + pair(0.02, 0.09)[0],) * 2)  # equal scales keep circles round
     if random.random() < 0.5:
         found = found if dialect in PENS else replace(found, height_mm=pair(0.4, 2.0)[0])
         found = found if is_servo else replace(found, tilt_mm_per_mm=pair(0.005, 0.03))
@@ -159,7 +168,7 @@ def _machine(random, dialect: str) -> Machine:
 
 
 def _field(random, most_mm: float) -> dict:
-    """A field whose place need not be the sheet's; no steeper than a cell may say."""
+    """Return an error field anywhere, at most as steep as a cell allows."""
     reach = random.uniform(30.0, 150.0, 2)
     most_mm = min(most_mm, 0.1 * reach.min() / 3)
     numbers = random.uniform(-most_mm, most_mm, (2, 3)).tolist()
@@ -172,18 +181,21 @@ def _field(random, most_mm: float) -> dict:
 
 
 def _map(random, most_mm: float) -> tuple:
-    """Heights of a grid that need not cover the sheet."""
+    """Return the heights of a grid that need not cover the sheet."""
     xs, ys = (np.cumsum(random.uniform(5.5, 60.0, random.integers(2, 5))) - 40.0 for _ in range(2))
     rows = [(x, y, random.uniform(-most_mm, most_mm)) for x in xs.tolist() for y in ys.tolist()]
     random.shuffle(rows)
     return tuple(rows)
 
 
-ABOUT = 0.25  # of flatness_mm, which says nothing of a pose: marks a paper around the robot
+ABOUT = 0.25  # this flatness_mm marks a paper around the robot, since flatness does not affect a pose
 
 
 def _about_the_robot(random) -> Paper:
-    """The robot's origin over or under the sheet: ways between strokes lead past it, too close for its reach."""
+    """Return a paper with the robot's origin over or under the sheet.
+
+    Moves between strokes then pass too close to the robot for its reach.
+    """
     from .places import turned_deg
 
     rotation = (*random.uniform(-1.2, 1.2, 2).tolist(), float(random.uniform(0, 360)))
@@ -192,7 +204,7 @@ def _about_the_robot(random) -> Paper:
 
 
 def _servo(random, lowest: float, safe: float) -> Servo:
-    """Rising or falling, of any bends, some of them steep."""
+    """Return a servo with a rising or falling table of any shape, in part steep."""
     low, high = lowest - random.uniform(0, 3), safe + random.uniform(0, 4)
     count = int(random.integers(2, 7))
     heights = np.sort(np.r_[low, high, random.uniform(low, high, count - 2)])
@@ -207,7 +219,10 @@ def _servo(random, lowest: float, safe: float) -> Servo:
 
 
 def _with_space(random, cell):
-    """Boxes and reach rings that end somewhere near the sheet, so that ways and dips come close to them."""
+    """Return the cell with boxes and reach rings that end near the sheet.
+
+    Moves and dips then come close to these limits.
+    """
     from .places import moved, paper_of
 
     if random.random() < 0.3:
@@ -236,7 +251,10 @@ def _with_space(random, cell):
 
 
 def _with_a_clip(random, cell):
-    """Something that stands on the sheet or next to it, up to above the safe height or not."""
+    """Return the cell with an object on the sheet or next to it.
+
+    The object may be higher than the safe height.
+    """
     from .places import moved, paper_of
 
     pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}
@@ -282,7 +300,7 @@ def _with_paint(random, cell):
 
 
 def random_brush(random) -> _core.Brush:
-    """One that comes along, or a pen, a brush that hardly trails, one that trails far."""
+    """Return round-6, a rigid pen, or a new brush that trails little or far."""
     if random.random() < 0.5:
         return find_brush(str(random.choice(("round-6", "round-6", "rigid"))))
     lag_mm = float(random.choice((0.0, 0.3, 3.0, 8.0, 12.0)))

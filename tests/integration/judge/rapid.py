@@ -1,7 +1,7 @@
-"""The part of RAPID that a program of moves needs, run as ABB's reference manuals say.
+"""Run the RAPID that a program of moves needs, as ABB's reference manuals say.
 
-The module is loaded first: one thing that is no RAPID, or a name that nobody declared, and nothing runs. The routine is
-then run from its first instruction, with the program pointer put on it. Blanks and line ends mean nothing.
+The module is loaded first. If a part of it is not RAPID, or a name is not declared, nothing runs. Then the
+routine runs from its first instruction, as with the program pointer on it. Blanks and line ends mean nothing.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ TOKEN = re.compile(
     r'\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z]\w*)|(?P<text>"[^"]*")'
     r"|(?P<sign>:=|<=|>=|<>|[-+*/\\\[\]\(\),;.<>=]))"
 )
-FIELDS = {  # of records, by type: names and types
+FIELDS = {  # the fields of each record type: names and types
     "pos": (("x", "num"), ("y", "num"), ("z", "num")),
     "orient": (("q1", "num"), ("q2", "num"), ("q3", "num"), ("q4", "num")),
     "pose": (("trans", "pos"), ("rot", "orient")),
@@ -50,7 +50,7 @@ FIELDS = {  # of records, by type: names and types
     ),
 }
 FINE = [True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
-NOT_NORMAL = 1e-4  # of an orientation, at which the controller stops
+NOT_NORMAL = 1e-4  # the controller stops if the norm of an orientation is off by more
 OTHERS = {
     "setdo",
     "set",
@@ -79,7 +79,10 @@ class Routine(NamedTuple):
 
 
 def run_rapid(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them."""
+    """Run a program for ABB.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    """
     robot = _Robot(start, paper, down, tool)
     try:
         robot.load(_Parser(_tokens(text, robot.run)))
@@ -92,7 +95,7 @@ def run_rapid(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.nd
 
 
 class _DoneError(Exception):
-    """EXIT, or the end."""
+    """The program ends, by EXIT or after its last instruction."""
 
 
 def _tokens(text: str, run: Run) -> list[Token]:
@@ -122,7 +125,10 @@ def _tokens(text: str, run: Run) -> list[Token]:
 
 
 class _Parser:
-    """Tokens to a tree; comments are kept among statements, elsewhere they say only what a header says."""
+    """Parse tokens to a tree.
+
+    Comments between statements stay in the tree. Comments elsewhere belong to the header.
+    """
 
     def __init__(self, tokens: list[Token]):
         self.comments = [token for token in tokens if token.kind == "comment"]
@@ -160,7 +166,10 @@ class _Parser:
         return token.text
 
     def module(self) -> tuple[dict, dict]:
-        """Data as {name: (type, expression or None, kind)}, routines by their names."""
+        """Return the data and the routines of the module.
+
+        Data is {name: (type, expression or None, kind)}, and routines are {name: routine}.
+        """
         self._want("module")
         self.name = self._name()
         data: dict = {}
@@ -251,7 +260,10 @@ class _Parser:
         return ("call", token.line, name, arguments)
 
     def _arguments(self, end: str) -> list:
-        """(name of an optional one or "", expression or None for a switch)."""
+        """Return a list of (name, expression).
+
+        The name is "" for a required argument. The expression is None for a switch.
+        """
         out: list = []
         while self._peek().text != end:
             if out and self._peek().text != "\\":
@@ -312,7 +324,7 @@ class _Parser:
 
 
 def _said(node):
-    """An expression without the lines that it stands in."""
+    """Return an expression without its line numbers."""
     if isinstance(node, list):
         return [_said(each) for each in node]
     if not isinstance(node, tuple):
@@ -376,7 +388,7 @@ class _Robot(Arm):
         self.run.header = [token.text for token in parser.comments if token.line < first]
 
     def _linked(self, node, local: set) -> None:
-        """Every name must be one that is declared: else the module does not load."""
+        """Check that every name is declared, since otherwise the module does not load."""
         if isinstance(node, list):
             for each in node:
                 self._linked(each, local)
@@ -596,7 +608,7 @@ class _Robot(Arm):
         return self.data[name][1]
 
     def _part(self, number: int, node) -> tuple[str, object]:
-        """The type and the value of data, or of a field of it."""
+        """Return the type and the value of data, or of a field of the data."""
         if node[0] == "name":
             return self.data[node[2]][0] if node[2] in self.data else "", self._named(number, node[2])
         sort, value = self._part(number, node[2])
@@ -624,7 +636,7 @@ class _Robot(Arm):
         return value
 
     def _crobt(self, number: int, options: dict) -> list:
-        """Where the tool is in the work object, with a turn that the robot has there."""
+        """Return the pose of the tool in the work object."""
         if set(options) - {"tool", "wobj"} or None in options.values():
             raise RefusedError(f"line {number}: CRobT of something else")
         if "tool" in options:
@@ -638,7 +650,7 @@ class _Robot(Arm):
 
 
 def _quaternion(turned: np.ndarray) -> list[float]:
-    """By the eigenvector of Bar-Itzhack's matrix, in doubles."""
+    """Return the quaternion of a rotation: the eigenvector of Bar-Itzhack's matrix."""
     m = turned
     k = np.array(
         [

@@ -1,5 +1,8 @@
-"""A table of poses with times as a controller follows it: straight and evenly from row to row, the tip carried by the
-flange. The arm is brought to the first row before, so there is no way to it. Remarks begin with #."""
+"""Run a table of poses with times as a controller follows it.
+
+The flange carries the tip straight and evenly from row to row. A user moves the arm to the first row before,
+so no way to it is checked. Remarks begin with #.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +20,16 @@ N = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")
 
 
 def run_ros2(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray) -> Run:
-    """start: nothing, the arm is brought to the first row; paper, down, tool: what the cell says of them."""
+    """Run a table of poses.
+
+    start is not used, since the arm is already at the first row. paper, down and tool come from the cell.
+    """
     arm = Arm(start, paper, down, tool, by_radius=True)
     try:
         _followed(text, arm)
     except RefusedError as refusal:
         arm.run.refused = str(refusal)
-        arm.run.legs.clear()  # a trajectory is looked at as a whole before anything moves
+        arm.run.legs.clear()  # a controller checks the whole trajectory before it moves
     return arm.run
 
 
@@ -55,7 +61,7 @@ def _followed(text: str, arm: Arm) -> None:
         if cells[9] not in ("pose", "way", "rest"):
             raise RefusedError(f"line {number}: a row of no kind")
         flange = frame((1e3 * x, 1e3 * y, 1e3 * z), _turned(number, qx, qy, qz, qw))
-        target = flange  # of the flange, for arm.tcp is none
+        target = flange  # the pose of the flange, because arm.tcp is not set
         if not begun:
             arm.at, begun, now = arm.tip(target)[0], True, time
             if time != 0:

@@ -1,4 +1,4 @@
-"""Damaged programs judged and checked: the figures by dialect, and every disagreement."""
+"""Judge and check damaged programs; count results by dialect, list disagreements."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Case:
 
 @dataclass
 class Figures:
-    """counts: by (dialect, verdict, refused)."""
+    """The results. counts are by (dialect, verdict, refused)."""
 
     counts: Counter = field(default_factory=Counter)
     cases: list[Case] = field(default_factory=list)
@@ -42,7 +42,7 @@ class Figures:
         )
 
     def table(self) -> str:
-        """As docs/evidence/trust.md has it."""
+        """Return the table of docs/evidence/trust.md."""
         lines = [
             "| dialect | damaged programs | dangerous | of them allowed | harmless | of them refused | neither |",
             "|---|---|---|---|---|---|---|",
@@ -61,19 +61,19 @@ class Figures:
 
 
 def changed(before: str, after: str, most: int = 6) -> tuple[str, ...]:
-    """The lines that differ."""
+    """Return the lines that differ."""
     differing = difflib.unified_diff(before.split("\n"), after.split("\n"), lineterm="", n=0)
     return tuple(line for line in differing if line[:2] not in ("--", "++", "@@"))[:most]
 
 
-# What a brush does between places, of which the judge knows nothing: blends of KRL, a servo's steps and its waits.
+# The judge does not know how the brush moves between places: blends of KRL, and a servo's steps and waits.
 BLENDED = re.compile(r"^(?:LIN|CIRC) .*?(C_DIS)?[ \t]*$", re.MULTILINE)
 STEP_OR_WAIT = re.compile(r"^((?:M3|M280|G4|SP|S2|SM)\b[^\d\n]*)(\d*)", re.MULTILINE)
-SAME_STEP = 2  # whole values of a servo, some hundredths of a millimetre
+SAME_STEP = 2  # servo values up to this far apart count as equal: a few hundredths of a millimetre
 
 
 def is_paced_alike(text: str, other: str) -> bool:
-    """Whether two programs blend, stop, step and wait in the same order."""
+    """Return whether two programs blend, stop, step and wait in the same order."""
     if BLENDED.findall(text) != BLENDED.findall(other):
         return False
     ours, theirs = STEP_OR_WAIT.findall(text), STEP_OR_WAIT.findall(other)
@@ -88,7 +88,7 @@ def is_paced_alike(text: str, other: str) -> bool:
 
 
 def measure(made: Made, count: int, seed: int, figures: Figures) -> None:
-    """So many damaged programs of one job, judged and checked."""
+    """Judge and check count damaged programs of one job."""
     with quick_check() as check:
         for damage, text in damaged(made.whole.text, made.dialect, count, [seed, *made.name.encode()]):
             verdict, why = judged(text, made.whole)

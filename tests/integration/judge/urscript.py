@@ -1,8 +1,8 @@
-"""The part of URScript that a program of moves needs, run as the script manual says.
+"""Run the URScript that a program of moves needs, as the script manual says.
 
-The whole file is compiled first: one line that is no statement, and nothing runs. Of a job in several files each runs
-with nothing set, behind the one that says so. Poses are metres and rotation
-vectors; movel stops at its end unless it has a blend radius; movep keeps its speed; movec passes a point.
+The whole file is compiled first. If one line is not a statement, nothing runs. In a job of several files,
+each file names the next one and starts with nothing set. Poses are metres and rotation vectors. movel stops
+at its end unless it has a blend radius, movep keeps its speed, and movec passes through a point.
 """
 
 from __future__ import annotations
@@ -55,8 +55,11 @@ MAIN = "brushsvg"
 def run_urscript(
     text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, force_n: float = 0.0
 ) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; force_n: at
-    which the program has to end by itself, 0 where nothing is requested."""
+    """Run a program in URScript.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell. At
+    force_n the program has to end by itself; 0 means that the cell requests no limit.
+    """
     robot = _Robot(start, paper, down, tool, force_n)
     run = robot.run
     try:
@@ -78,7 +81,7 @@ def run_urscript(
 
 
 def _compiled(text: str, run: Run) -> list:
-    """(line, indent, what, found) of every statement; comments go to the run."""
+    """Return (line, indent, what, found) of each statement; comments go to the run."""
     out = []
     for number, raw in enumerate(text.split("\n"), 1):
         line = raw.rstrip("\r").strip()
@@ -109,7 +112,11 @@ def _without_comment(line: str) -> str:
 
 
 class _Robot(Arm):
-    """threads: what each ends the program at [N]; watches: the name of the one that runs, with its own."""
+    """The robot with its state.
+
+    threads: the force [N] at which each thread ends the program.
+    watches: the name and the force of the running thread.
+    """
 
     def __init__(self, start, paper, down, tool, force_n):
         super().__init__(start, paper, down, tool, by_radius=True)
@@ -121,7 +128,7 @@ class _Robot(Arm):
         self.here: np.ndarray | None = None
         self.here_tip = self.at
         self.had_code = False
-        self.following = 0  # the part that is run next
+        self.following = 0  # the number of the part that runs next
 
     # Blocks ------------------------------------------------------------------------------------------
 
@@ -237,7 +244,10 @@ class _Robot(Arm):
             raise RefusedError(f"line {number}: {what} has no place here")
 
     def _newtons(self, number: int, lines) -> float:
-        """Of a thread that does nothing but end the program where the tool is pressed harder than that."""
+        """Return the force at which a thread ends the program.
+
+        The thread must do nothing else.
+        """
         lines = [each for each in lines if each[1] != "comment"]
         lines = [each for each in lines if each[1] != "acts" or not each[2][0].startswith("textmsg")]
         if [what for _, what, _ in lines] != ["while", "pressed", "acts", "end", "sync", "end"]:
@@ -268,7 +278,10 @@ class _Robot(Arm):
         return self.names[name]
 
     def _look(self, number: int, name: str) -> None:
-        """The pose of the TCP, as the controller believes it to be, in the paper that the program has set."""
+        """Store the pose of the TCP in the paper that the program has set.
+
+        The pose is the controller's belief, not the true one.
+        """
         seen = np.linalg.inv(self._known(number, name)) @ self.believed()
         self.here = np.array([*(seen[:3, 3] * 1e-3), 0.0, 0.0, 0.0])
         self.here_turned = seen[:3, :3]

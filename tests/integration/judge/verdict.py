@@ -1,6 +1,8 @@
-"""A run held against a cell's limits along the whole way and against a plan; a damaged one against the sound one.
+"""Judge the run of a program.
 
-A brush touches where its tip is at most LAST_MM over the paper. Lengths in mm, the paper's frame unless said otherwise.
+The judge compares a run with the limits of its cell, along the whole way, and with a plan. It compares the
+run of a damaged program with the run of the sound program. A brush touches where its tip is at most LAST_MM
+over the paper. Lengths are in mm, and places are in the paper's frame unless a docstring says otherwise.
 """
 
 from __future__ import annotations
@@ -31,14 +33,15 @@ from .ros2 import run_ros2
 from .urscript import run_urscript
 from .xarm import run_xarm
 
-OFF_MM = 0.1  # what the mark of a brush shows
-STEP_MM = 0.04  # of samples where the brush may touch: how exactly OFF_MM is known
+OFF_MM = 0.1  # a larger deviation shows in the mark of a brush
+# The distance between samples where the brush may touch. It limits how exactly OFF_MM is checked.
+STEP_MM = 0.04
 AIR_STEP_MM = 1.0
 LAST_MM = 0.01
 ROUNDING_MM = 0.002  # two units of the last decimal of the coarsest dialect
-LEVER_MM = 10.0  # a tool that leans is as wrong as a brush's length makes it
-SLACK_MM = 0.01  # of limits: what is rounded may be beyond by so much
-MOST = 4000  # samples of one leg
+LEVER_MM = 10.0  # length of a brush: a leaning tool displaces the tip by its angle times this length
+SLACK_MM = 0.01  # rounded numbers may exceed a limit by this much
+MOST = 4000  # the largest number of samples in one leg
 
 
 ROBOTS = {
@@ -59,7 +62,7 @@ SERVOS = ("grbl-servo", "ebb")
 
 @dataclass
 class Job:
-    """What was requested: a cell as its file has it, a plan.json, the brush's fastest, the paper's height."""
+    """A job: the cell file, plan.json, the brush's top speed, the paper's height."""
 
     cell: dict
     plan: dict
@@ -86,7 +89,7 @@ class Job:
 
     @cached_property
     def servo_mm(self) -> tuple[float, float]:
-        """Of a servo: the height of one value at most, and the step; else nothing."""
+        """Return a servo's largest height per value and its step, else zeros."""
         servo = self.cell.get("servo")
         if self.language not in SERVOS:
             return 0.0, 0.0
@@ -99,7 +102,10 @@ class Job:
 
     @cached_property
     def near_mm(self) -> float:
-        """To the way of a visit: a servo goes it in steps."""
+        """Return the largest distance from the way of a visit.
+
+        A servo moves along this way in steps, so its steps are added.
+        """
         return 1.5 * OFF_MM + sum(self.servo_mm) / 2
 
     @cached_property
@@ -108,13 +114,16 @@ class Job:
 
     @cached_property
     def passes(self) -> list[np.ndarray]:
-        """The plan's passes from the first stroke on, sampled, round where it has circles: lines that a machine runs in
-        their place, on paper that leans and by a servo, are as near."""
+        """Return the sampled passes of the plan from the first stroke on.
+
+        Circles of the plan stay round. On leaning paper and with a servo, a machine runs lines instead of
+        circles. These lines are near enough to the circles.
+        """
         return [_sampled(_round(each)) for each in self.plan["passes"][self.first_stroke - 1 :]]
 
     @cached_property
     def stations(self) -> list[np.ndarray]:
-        """The way of each visit."""
+        """Return the way of each visit to a station."""
         safe, clear = self.cell["heights"]["safe_mm"], self.cell["heights"]["clearance_mm"]
         ways = []
         for station in self.cell.get("stations", ()):
@@ -132,18 +141,22 @@ class Job:
             ]
             if station.get("by_hand"):
                 way = [(x, y, high), (x, y, high)]
-            # commanded as it stands in the cell, on a machine that may lean: bent where it meets the paper
+            # The way is commanded as the cell has it. A machine that leans bends the way where it meets the
+            # paper.
             ways.append(places.true_of(_sampled(np.array(way, dtype=float)), self.machine))
         return ways
 
     @cached_property
     def start(self) -> tuple:
-        """Where the tool is before: over the end of the job, low, so that a missing rise is seen."""
+        """Return the place of the tool before the job.
+
+        It is low over the end of the job, so that a missing rise shows.
+        """
         end, height = self.plan["passes"][-1]["poses_mm"][-1], self.cell["heights"]["safe_mm"] / 2
         return tuple(places.moved(self.paper, places.commanded_in_air(end, height, self.machine)[None])[0])
 
     def interpret(self, text: str) -> Run:
-        """As the tool goes, on axes that have play."""
+        """Return the run of the tool on the machine's axes, with their play."""
         run = self._interpreted(text)
         backlash_mm = (self.machine or {}).get("backlash_mm", (0.0, 0.0))
         return with_play(run, backlash_mm) if any(backlash_mm) else run
@@ -202,9 +215,13 @@ def _sampled(points: np.ndarray) -> np.ndarray:
 
 @dataclass
 class Way:
-    """A run in the paper's frame, as the machine goes. starts, ends (n, 3), speeds (n,) of its legs, circles as chords;
-    leg: which leg each belongs to; samples (m, 3) with the row that each belongs to, and as they are commanded;
-    touches: of the samples, those of each touch; commanded_touches: where the tool was commanded to go for them."""
+    """A run in the paper's frame, as the machine moves.
+
+    starts and ends (n, 3) belong to straight moves; a circle is split into chords. leg holds the index of
+    each move's leg. samples (m, 3) are places along the moves, row holds the index of each sample's move, and
+    commanded holds the commanded places. touches holds the samples of each touch, and commanded_touches the
+    commanded places.
+    """
 
     run: Run
     starts: np.ndarray
@@ -263,7 +280,7 @@ def way_of(run: Run, job: Job) -> Way:
 
 
 def broken(way: Way, job: Job) -> list[str]:
-    """A sentence for each limit that the run breaks, anywhere along the way, and for all that is fast or low."""
+    """Return a sentence for each broken limit and for each move too fast or too low."""
     if not len(way.starts):
         return []
     return [*_beyond(way, job), *_fast(way, job), *_low(way, job), *_leaning(way)]
@@ -274,7 +291,7 @@ def _beyond(way: Way, job: Job):
     cell, points = job.cell, way.commanded[first:]
     if not len(points):
         return
-    # how low, of the strokes as they are painted and of vessels as they stand
+    # The limit of the height applies to strokes as they are painted, and to vessels as they stand.
     heights = points[:, 2] if job.machine is None else np.maximum(points[:, 2], way.samples[first:, 2])
     workspace = cell["workspace"]
     slack = SLACK_MM + job.servo_mm[0] / 2
@@ -303,7 +320,10 @@ def _beyond(way: Way, job: Job):
 
 
 def _first_place(way: Way) -> int:
-    """The first sample behind the way to the first place that the run names, from any place."""
+    """Return the first sample after the way to the first place of the run.
+
+    That way may begin anywhere.
+    """
     if not len(way.row):
         return 0
     sideways = np.linalg.norm((way.ends - way.starts)[:, :2], axis=1) > SLACK_MM
@@ -321,7 +341,7 @@ def _fast(way: Way, job: Job):
     low = np.minimum(way.starts[:, 2], way.ends[:, 2]) <= job.touch_mm
     still = np.linalg.norm(way.ends - way.starts, axis=1) < 1e-6
     still &= ~np.array([legs[k].takes_up for k in way.leg], dtype=bool)
-    # of a program that says when the tool is where, places are rounded
+    # A program with times (ros2) has rounded places, so its speeds are rounded as well.
     lengths = np.maximum(np.linalg.norm(way.ends - way.starts, axis=1), 1e-9)
     rounded = 2e-5 * speeds / lengths if job.language == "ros2" else 0.0
     fast = (
@@ -330,7 +350,8 @@ def _fast(way: Way, job: Job):
         & (kinds != "jump")
         & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01 + rounded))
     )
-    for k in np.flatnonzero(fast):  # a vessel may stand where the paper's map has it lower than the paper
+    # By the map of the paper, a vessel may stand lower than the paper.
+    for k in np.flatnonzero(fast):
         ends = np.array([way.starts[k], way.ends[k]])[:, :2]
         fast[k] = not any(_to_path(ends, visit[:, :2]).max() < job.near_mm for visit in job.stations)
     if fast.any():
@@ -345,7 +366,10 @@ def _fast(way: Way, job: Job):
 
 
 def _jumps(way: Way, job: Job):
-    """A servo's heights over time: nowhere more than two steps ahead of the fastest while it touches."""
+    """Find where a servo's height changes too fast while the brush touches.
+
+    The height may be at most two steps ahead of the height that the top speed allows.
+    """
     heights, times, lines, now = [], [], [], 0.0
     value, step = job.servo_mm
     for leg in way.run.legs:
@@ -362,7 +386,7 @@ def _jumps(way: Way, job: Job):
         rise = heights[apart:] - heights[:-apart]
         allowed = 2 * step + value + SLACK_MM + job.fastest_mm_s * 1.1 * (times[apart:] - times[:-apart])
         on = np.minimum(heights[apart:], heights[:-apart]) <= job.touch_mm
-        # up to the paper it is in the air; beyond the clearance above the paper nothing bends
+        # Only the part of a rise below touch_mm counts: above this height the brush is in the air.
         rise = np.minimum(np.abs(rise), job.touch_mm - np.minimum(heights[apart:], heights[:-apart]) + 1e-9)
         if (bad := on & (rise > allowed)).any():
             k = int(bad.argmax())
@@ -371,7 +395,7 @@ def _jumps(way: Way, job: Job):
 
 
 def _low(way: Way, job: Job):
-    """Sideways in the air below the safe height, but on the way of a visit."""
+    """Find a sideways move in the air below the safe height, except during visits."""
     safe, legs = job.cell["heights"]["safe_mm"], way.run.legs
     low, high = np.minimum(way.starts[:, 2], way.ends[:, 2]), np.maximum(way.starts[:, 2], way.ends[:, 2])
     sideways = np.linalg.norm(way.ends[:, :2] - way.starts[:, :2], axis=1)
@@ -383,7 +407,7 @@ def _low(way: Way, job: Job):
     for k in np.flatnonzero(bad):
         a, b = legs[way.leg[k]].start, legs[way.leg[k]].end
         if b[2] >= a[2] and max(abs(a[0] - b[0]), abs(a[1] - b[1])) < 1e-6:
-            continue  # straight up for the robot, though the paper leans
+            continue  # the robot moves straight up, and the paper leans
         ends = np.array([way.starts[k], way.ends[k]])
         if any(_to_path(ends, visit).max() < job.near_mm for visit in job.stations):
             continue
@@ -398,7 +422,7 @@ def _leaning(way: Way):
 
 
 def _to_path(points: np.ndarray, path: np.ndarray) -> np.ndarray:
-    """(n,) distance of points from straight moves."""
+    """Return the distance (n,) of points from a path of straight moves."""
     path = path if len(path) > 1 else np.vstack([path, path])
     starts, steps = path[:-1], np.diff(path, axis=0)
     squares = np.maximum((steps**2).sum(axis=1), 1e-18)
@@ -411,8 +435,10 @@ def _to_path(points: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
-    """The touches that are no visits to a vessel. A vessel's place is commanded as it stands in the cell, so that it is
-    off the sheet where it is commanded."""
+    """Return the touches that are not visits to a vessel.
+
+    A vessel's place is commanded as the cell has it, so the commanded place of a vessel is off the sheet.
+    """
     width, height = job.plan["sheet_mm"]
     found = []
     for touch, commanded in zip(way.touches, way.commanded_touches, strict=True):
@@ -424,9 +450,11 @@ def strokes_of(way: Way, job: Job) -> list[np.ndarray]:
 
 
 def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[str]:
-    """Parts of the plan that are not painted once, in order, in its direction, within OFF_MM and no deeper by that.
+    """Return a sentence for each way in which the run does not paint the plan.
 
-    sound: the touches of a program that is known to paint the plan: what is the same needs no second look.
+    Each stroke must be painted once, in order and in its direction, at most OFF_MM off in place and depth.
+    sound holds the touches of a program that is known to paint the plan. Touches that are equal to these are
+    not checked.
     """
     strokes = strokes_of(way, job)
     said = []
@@ -442,10 +470,13 @@ def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[st
 
 
 def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> float:
-    """OFF_MM at most when both can be walked from end to end, never back, without ever being further apart (Frechet);
-    else how far the one is from the other at the worst place, but more than OFF_MM."""
+    """Return how far a stroke is from its target, by the Frechet distance.
+
+    The result is at most OFF_MM if both can be walked from end to end, never back, and never further apart
+    than that. Otherwise the result is the distance at the worst place, and always more than OFF_MM.
+    """
     near = OFF_MM + STEP_MM / 2
-    if sound is not None:  # only where it was changed could it be far
+    if sound is not None:  # only the changed part can be far from the target
         n = min(len(sound), len(stroke))
         same = np.flatnonzero((sound[:n] != stroke[:n]).any(axis=1))
         first = int(same[0]) if len(same) else n
@@ -465,7 +496,7 @@ def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> 
 
 
 def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:
-    """Whether two paths of points can be walked together, neither of them back, never further apart."""
+    """Return whether two paths can be walked together, near_mm apart and never back."""
     if len(one) < len(other):
         one, other = other, one
     if max(np.linalg.norm(one[0] - other[0]), np.linalg.norm(one[-1] - other[-1])) > near_mm:
@@ -474,7 +505,8 @@ def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:
     reached = np.zeros(len(other), dtype=bool)
     reached[0] = True
     for k, point in enumerate(one):
-        # only what can be reached from here on: from the first that was reached to the first that is far behind it
+        # Only points that can still be reached count: from the first reached point to the first one that is
+        # far.
         high = min(len(other), high + 64)
         while True:
             free = ((other[low:high] - point) ** 2).sum(axis=1) <= square
@@ -489,7 +521,7 @@ def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:
             from_before[0] = True
         enter = free & from_before
         runs = np.cumsum(~free)
-        # within a run of free places everything behind an entrance can be reached
+        # Within a run of free places, everything after an entrance can be reached.
         index = np.where(enter, np.arange(len(free)), -1)
         last_enter = np.maximum.accumulate(index)
         ok = free & (last_enter >= 0)
@@ -506,7 +538,10 @@ def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:
 
 
 def cuts(way: Way, job: Job) -> np.ndarray:
-    """(n,) how far each leg's end may be passed at, corners cut as the controller may cut them at most."""
+    """Return the largest distance (n,) between each leg's end and the tool's way.
+
+    The distance is zero unless the controller may cut the corner.
+    """
     legs = way.run.legs
     if not len(legs):
         return np.zeros(0)
@@ -536,7 +571,7 @@ def cuts(way: Way, job: Job) -> np.ndarray:
         if not cut[a] > 0 or not moving[a : b + 1].all():
             continue
         u, v = reaching[a] / np.linalg.norm(reaching[a]), leaving[b] / np.linalg.norm(leaving[b])
-        turn = np.arctan2(np.linalg.norm(v - u), np.linalg.norm(v + u))  # half the angle
+        turn = np.arctan2(np.linalg.norm(v - u), np.linalg.norm(v + u))  # half of the angle
         half = min(lengths[a], lengths[b]) / 2
         if way.run.blends_by_radius:
             out[a] = min(cut[a], 2 * half) * np.tan(turn / 2)
@@ -558,7 +593,10 @@ def _corners(way: Way, job: Job) -> list[str]:
 
 
 def _overlapping(way: Way, ends: np.ndarray, job: Job) -> list[str]:
-    """The manual of URScript: a move whose blend overlaps with that of the one before or after it is skipped."""
+    """Find overlapping blends on the paper.
+
+    The manual of URScript says that the robot skips a move whose blend overlaps with a blend next to it.
+    """
     rests = ("wait", "stop")
     for (a, b), end in zip(itertools.pairwise(way.run.legs), ends[1:], strict=True):
         if a.kind in rests or b.kind in (*rests, "arc") or a.cut_mm <= 0 or end[2] > job.touch_mm:
@@ -576,7 +614,10 @@ TITLE = re.compile(r"(stroke \d+ of |paint: |end: |stop: |border |height )")
 
 
 def facts(run: Run) -> tuple[dict, list]:
-    """What the header says, and after how many mm sections begin: who resumes a job goes by their titles."""
+    """Return the facts of the header, and after how many mm each section begins.
+
+    A user who resumes a job relies on the titles of the sections.
+    """
     said: dict[str, set] = {}
     for line in run.header:
         if found := FACT.fullmatch(line.strip()):
@@ -587,8 +628,8 @@ def facts(run: Run) -> tuple[dict, list]:
     return said, [(words, float(done[at])) for words, at in run.titles if TITLE.match(words)]
 
 
-FASTER_MM_S = 0.01  # what rounding makes of a feed
-LIFT_S = 0.05  # what one step more or less of a servo's lift takes
+FASTER_MM_S = 0.01  # rounding changes a feed by at most this much
+LIFT_S = 0.05  # duration of one step of a servo's lift
 
 
 def same_facts(one: tuple[dict, list], other: tuple[dict, list]) -> bool:
@@ -598,12 +639,15 @@ def same_facts(one: tuple[dict, list], other: tuple[dict, list]) -> bool:
     return all(abs(a - b) < SAME_PLACE_MM for (_, a), (_, b) in zip(titles, others, strict=True))
 
 
-SAME_PLACE_MM = 0.5  # of a title along the way: what rounding adds up to, less than any move between strokes
+# A title may be displaced along the way by this much. Rounding adds up to less, and every move between
+# strokes is
+# longer.
+SAME_PLACE_MM = 0.5
 
 
 @dataclass
 class Sound:
-    """The undamaged program as it is run: what damaged ones are held against."""
+    """The run of the undamaged program, which damaged programs are compared with."""
 
     job: Job
     text: str
@@ -620,7 +664,10 @@ class Sound:
 
 
 def sound(text: str, job: Job) -> Sound:
-    """AssertionError with what is wrong with a program that should be sound."""
+    """Return the run of a program that must be sound.
+
+    Raise AssertionError with the reasons if it is not.
+    """
     run = job.interpret(text)
     assert not run.refused and not run.acts, (run.refused, run.acts)
     way = way_of(run, job)
@@ -630,7 +677,7 @@ def sound(text: str, job: Job) -> Sound:
 
 
 def dangers(text: str, whole: Sound) -> tuple[list[str], Way]:
-    """Why nobody should run this program."""
+    """Return the reasons why nobody should run this program, and its run."""
     job = whole.job
     run = job.interpret(text)
     way = way_of(run, job)
@@ -643,7 +690,7 @@ def dangers(text: str, whole: Sound) -> tuple[list[str], Way]:
 
 
 def judged(text: str, whole: Sound) -> tuple[str, str]:
-    """(dangerous, harmless or neither; why)."""
+    """Return "dangerous", "harmless" or "neither", and the reason."""
     said, way = dangers(text, whole)
     if said:
         return "dangerous", "; ".join(said[:3])
@@ -660,9 +707,11 @@ def judged(text: str, whole: Sound) -> tuple[str, str]:
 
 
 def _commanded(way: Way, job: Job) -> list:
-    """Legs that move, waits and stops, in order, each with how far its corner may be cut; what a servo does on the spot
-    as one lift: its steps are but the rounding of a ramp. What a tolerance of JAKA script bounds, its manual does not
-    say: there it counts as it is written."""
+    """Return moves, waits and stops in order, each with its corner's largest cut.
+
+    The steps of a servo in one place become one lift, because they only round a ramp. The manual of JAKA
+    script does not say what a tolerance bounds, so there the tolerance counts as it is written.
+    """
     cut = [leg.cut_mm for leg in way.run.legs] if job.language == "jaka" else cuts(way, job)
     out: list = []
     for k, leg in enumerate(way.run.legs):
@@ -676,14 +725,17 @@ def _commanded(way: Way, job: Job) -> list:
         moves = leg.kind not in ("wait", "stop")
         if moves and leg.kind != "arc" and np.linalg.norm(np.subtract(leg.end, leg.start)) < 1e-9:
             if leg.cut_mm > 0 and way.run.blends_by_radius:
-                out.append((leg._replace(kind="stop"), 0.0))  # a blend of nothing: here a robot stops
+                out.append((leg._replace(kind="stop"), 0.0))  # a blend over no distance makes a robot stop
             continue
         out.append((leg, cut[k]))
     return [each for each in out if each[0].kind != "lift" or each[0].start != each[0].end or each[0].seconds]
 
 
 def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
-    """Two parts of a lift as one; cut_mm: how far it went at once on the paper, or back on the way."""
+    """Join two parts of a lift.
+
+    cut_mm of the result is the largest single step on the paper, or the largest step back.
+    """
     rise, more = before.end[2] - before.start[2], leg.end[2] - leg.start[2]
     on = min(leg.start[2], leg.end[2]) <= job.touch_mm
     back = max(before.cut_mm, abs(more) if on or rise * more < 0 else 0.0)
@@ -692,7 +744,7 @@ def _lifted(before: Leg, leg: Leg, job: Job) -> Leg:
 
 
 def _same(ours: list, theirs: list, job: Job) -> bool:
-    """Whether a list of legs is another within rounding, and nowhere faster."""
+    """Return whether legs agree within rounding, and ours are nowhere faster."""
     near = ROUNDING_MM if job.language not in SERVOS else max(ROUNDING_MM, 1.01 * job.servo_mm[0])
     first = 0
     while first < min(len(ours), len(theirs)) and _alike(ours[first], theirs[first], near, job):
@@ -712,17 +764,18 @@ def _same(ours: list, theirs: list, job: Job) -> bool:
         return False
     if max(leg.acceleration for leg, _ in ours) > min(leg.acceleration for leg, _ in theirs) * 1.001:
         return False
-    # a row less between two with times: the same way in the same time
+    # In ros2, rows have times. A missing row between two others changes neither the way nor the total time.
     commanded = (max if job.language == "ros2" else min)(leg.speed_mm_s for leg, _ in theirs)
     if max(leg.speed_mm_s for leg, _ in ours) > commanded + FASTER_MM_S:
         return False
     if max(cut for _, cut in ours) > max(cut for _, cut in theirs) + ROUNDING_MM:
         return False
-    flat = (1.0, 1.0, ROUNDING_MM / near)  # a servo's heights are rounded to values, its places are not
+    # A servo's heights are rounded to values. Its places are not.
+    flat = (1.0, 1.0, ROUNDING_MM / near)
     both = [np.array([each[0][0].start] + [leg.end for leg, _ in each]) for each in (ours, theirs)]
     boxes = [np.vstack([points.min(axis=0), points.max(axis=0)]) * flat for points in both]
     if np.abs(boxes[0] - boxes[1]).max() > ROUNDING_MM:
-        return False  # without its samples, which may be millions: up to a height of ten metres, say
+        return False  # needs no samples, which may be millions, for example for a height of ten metres
     one, other = (_sampled(points) * flat for points in both)
     both = max(_to_path(one, other).max(), _to_path(other, one).max())
     return both <= ROUNDING_MM and walkable(one, other, ROUNDING_MM + STEP_MM)

@@ -1,4 +1,4 @@
-"""Ten small jobs for every dialect: what is drawn, how it is requested, and on which machine."""
+"""Ten small jobs for every dialect: drawing, options and machine."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ CELLS = {
     "ebb": ("axidraw-ebb", ".ebb"),
     "hpgl": ("hpgl-plotter", ".hpgl"),
 }
-PENS = ("hpgl", "marlin-servo")  # which have one height
-FLAT = ("grbl-servo", "ebb", *PENS)  # on paper that is level, at z 0
-LIKE_GRBL = ("klipper", "fluidnc")  # share writer, reader and judge with others
-FEWER = ("marlin", *LIKE_GRBL, "ebb", *PENS)  # tried less often
+PENS = ("hpgl", "marlin-servo")  # a pen has one height
+FLAT = ("grbl-servo", "ebb", *PENS)  # these need level paper at z 0
+LIKE_GRBL = ("klipper", "fluidnc")  # these share writer, reader and judge with other dialects
+FEWER = ("marlin", *LIKE_GRBL, "ebb", *PENS)  # these have fewer tests
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50"><title>small</title>'
 
 
@@ -60,7 +60,12 @@ def lines(*paths: str, width="2") -> str:
 
 @dataclass(frozen=True)
 class Work:
-    """flags of convert; check_flags: those of them that check needs again; change: of the cell, by its language."""
+    """A job.
+
+    flags: the options of convert.
+    check_flags: the flags that check needs as well.
+    change: a function that changes the cell by its language.
+    """
 
     svg: str
     flags: tuple[str, ...] = ()
@@ -78,14 +83,16 @@ def _with_arcs(cell):
 
 
 def _turned(cell):
-    """On paper that is askew, and higher; arms that can feel stop where the tool is pressed, other axes have
-    backlash."""
+    """Return the cell with turned and higher paper.
+
+    Arms with a contact setting stop where the tool is pressed. Machines that can have backlash get backlash.
+    """
     if not reason_for_no_backlash(cell):
         cell = replace(cell, machine=Machine(backlash_mm=(0.4, 0.25)))
     if by := CONTACT_KEYS.get(cell.language):
         cell = replace(cell, contact=Contact(**{by: 3 if by == "sensitivity" else 12.5}))
     if cell.language in FLAT:
-        near = (15.0, 10.0, 0.0) if cell.motors else (40.0, 30.0, 0.0)  # to where motors begin
+        near = (15.0, 10.0, 0.0) if cell.motors else (40.0, 30.0, 0.0)  # motors begin near the paper's origin
         return replace(cell, paper=Paper(origin_mm=near, rotation_deg=(0.0, 0.0, 30.0)))
     paper = Paper(origin_mm=(-30.0, -450.0, 12.5), rotation_deg=(0.0, 0.0, 30.0))
     return replace(cell, paper=paper)
@@ -96,7 +103,7 @@ def _leaning(cell):
         return replace(
             cell, servo=replace(cell.servo, table=((-10.0, 900.0), (-2.0, 660.0), (0.0, 600.0), (5.0, 400.0)))
         )
-    if cell.language == "ebb":  # each axis with a motor, the servo the other way round
+    if cell.language == "ebb":  # each axis has its own motor, and the servo is reversed
         table = ((-10.0, 25000.0), (-2.0, 18000.0), (0.0, 16000.0), (6.0, 11000.0))
         motors = replace(cell.motors, steps_per_mm=((80.0, 0.0), (0.0, -100.0)), servo_pin=5)
         return replace(cell, servo=replace(cell.servo, table=table), motors=motors)
@@ -107,7 +114,7 @@ def _leaning(cell):
 
 
 def _higher(cell):
-    """A servo that can lift the brush over paper that is higher than thought."""
+    """Return the cell with a servo that can lift the brush over higher paper."""
     if cell.language == "grbl-servo":
         return replace(cell, servo=replace(cell.servo, table=((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0))))
     if cell.language == "ebb":
@@ -118,9 +125,9 @@ def _higher(cell):
 
 
 def _painted(cell):
-    if cell.language == "marlin-servo":  # stops for another one
+    if cell.language == "marlin-servo":  # a pen on a Marlin stops for another colour
         return cell
-    if cell.pen:  # takes pens
+    if cell.pen:  # a plotter changes its pen
         return replace(cell, pen=replace(cell.pen, colours=("#000000", "#ff0000")))
     safe = cell.heights.safe_mm
     rim = min(2.0, safe - cell.heights.clearance_mm)
@@ -154,7 +161,11 @@ WORKS = {
 
 @dataclass(frozen=True)
 class Made:
-    """A job that was written. words: the arguments of check; program: where damaged ones go."""
+    """A written job.
+
+    words: the arguments of check.
+    program: the file for damaged programs.
+    """
 
     name: str
     dialect: str
@@ -167,7 +178,7 @@ def cell_of(dialect: str, change=None):
     cell = find_cell(CELLS[dialect][0])
     if (
         dialect == "dobot" and change is None
-    ):  # else no corner of small works has a blend that could be damaged
+    ):  # otherwise no corner of small jobs has a blend that a damage could change
         change = _finely_blended
     if dialect == "klipper" and change is None:
         change = _with_arcs
@@ -176,7 +187,7 @@ def cell_of(dialect: str, change=None):
 
 
 def flags_for(flags: tuple[str, ...], dialect: str) -> tuple[str, ...]:
-    """Of a pen, which has one height: without the features of others."""
+    """Return the flags, for a pen without the flags that need several heights."""
     if dialect not in PENS:
         return flags
     pairs = zip(flags[::2], flags[1::2], strict=True)
@@ -192,7 +203,7 @@ def job_for(cell_toml: str, plan_json: str, brush_name: str, flags=()) -> Job:
 
 
 def make(name: str, dialect: str, folder: Path) -> Made:
-    """Converted by the command, and judged sound."""
+    """Convert a job with the command, and check that the judge finds it sound."""
     work, suffix = WORKS[name], CELLS[dialect][1]
     folder.mkdir(parents=True, exist_ok=True)
     cell_toml = write_cell(cell_of(dialect, work.change))

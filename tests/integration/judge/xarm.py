@@ -1,7 +1,8 @@
-"""A program for xArm, run by Python itself against a stub of the vendor's SDK: an ideal arm.
+"""Run a program for xArm in Python with a stub of the vendor's SDK, an ideal arm.
 
-The SDK's own manual says what a call does: codes other than 0 are errors, an arm that is not enabled, in mode 0 and
-state 0 takes no moves, a radius of None or below 0 is a line that stops at its end, angles turn about fixed axes.
+The stub follows the manual of the SDK. Codes other than 0 are errors. An arm moves only if it is enabled, in
+mode 0 and in state 0. A radius of None or below 0 is a line that stops at its end. Angles turn about fixed
+axes.
 """
 
 from __future__ import annotations
@@ -25,13 +26,16 @@ FILE = "<program>"
 def run_xarm(
     text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, sensitivity: int = 0
 ) -> Run:
-    """start: where the brush's tip is [mm, robot's frame]; paper, down, tool: what the cell says of them; sensitivity:
-    that the arm has to have, 0 where nothing is requested."""
+    """Run a program for xArm.
+
+    start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
+    sensitivity is the setting that the arm must have; 0 means any.
+    """
     return executed(text, XArmAPI(start, paper, down, tool, sensitivity)).run
 
 
 def executed(text: str, arm: XArmAPI) -> XArmAPI:
-    """The arm, when the program has ended or was stopped."""
+    """Run the program and return the arm after the program ends or stops."""
     run = arm.run
     try:
         code = compile(text, FILE, "exec")
@@ -57,7 +61,7 @@ def executed(text: str, arm: XArmAPI) -> XArmAPI:
 
 
 def _commented(text: str, run: Run) -> None:
-    """Comments between the lines that move, by the legs that were gone before."""
+    """Add the comments to the run, each with the number of legs before it."""
     lines = text.split("\n")
     code = [k for k, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
     first = min(code, default=0)
@@ -74,7 +78,7 @@ def _commented(text: str, run: Run) -> None:
 
 
 def _line() -> int:
-    """Of the program, outside of its functions."""
+    """Return the current line of the program, outside of its functions."""
     at = sys._getframe(1)
     while at and not (at.f_code.co_filename == FILE and at.f_code.co_name == "<module>"):
         at = at.f_back
@@ -88,14 +92,17 @@ def _rpy_deg(turned: np.ndarray) -> list[float]:
 
 
 class XArmAPI(Arm):
-    """Calls with the parameters that the SDK's have; calls: (name, positional, keywords) of all of them."""
+    """The SDK's class, whose calls have the SDK's parameters.
+
+    calls holds (name, positional, keywords) of all calls.
+    """
 
     def __init__(self, start, paper, down, tool, sensitivity=0):
         super().__init__(start, paper, down, tool, by_radius=True)
         self.target_sensitivity, self.sensitivity = sensitivity, 0
         self.calls: list[tuple[str, tuple, dict]] = []
         self.is_enabled = self.is_closed = False
-        self.mode, self.state = 2, 4  # as somebody may have left it
+        self.mode, self.state = 2, 4  # a user may have left this state
         self.is_waiting = False
         self.world: np.ndarray | None = None
         self.last: list[float] = []
@@ -131,7 +138,7 @@ class XArmAPI(Arm):
         return 0
 
     def set_mode(self, mode=0, detection_param=0):
-        if mode != 0:  # in mode 2 an arm gives way to hands
+        if mode != 0:  # in mode 2 a person can move the arm by hand
             self.run.acts.append(f"line {_line()}: mode {mode}")
         self.mode, self.state = mode, 4
         return 0
@@ -194,7 +201,7 @@ class XArmAPI(Arm):
         given = [x, y, z, roll, pitch, yaw]
         self.is_waiting = wait
         if given == [None] * 6:
-            if self.run.legs and self.run.legs[-1].cut_mm > 0:  # stands still where it should go on
+            if self.run.legs and self.run.legs[-1].cut_mm > 0:  # the arm stops where it should blend
                 self.rest(number, "wait", 0.0)
             return 0
         if relative or is_radian or mvtime:
@@ -227,7 +234,7 @@ SDK = (
 
 
 class _Recorded:
-    """What a program holds: the calls alone."""
+    """The arm as the program sees it: only the SDK's calls."""
 
     def __init__(self, arm: XArmAPI):
         self._arm = arm
