@@ -47,9 +47,7 @@ class Law:
 
     def shape(self, norm=SQUARES):
         degree = len(self.coefficients) - 1
-        return _core.LawShape(
-            (0.0, 10.0), degree, through_zero=self.through_zero, floor=self.floor, norm=norm
-        )
+        return _core.LawShape((0.0, 10.0), degree, through_zero=self.through_zero, floor=self.floor, norm=norm)
 
 
 LAG = Law("r", (3.1, 0.86, 0.31, -5.0e-2, 2.1e-3), (0.9, 1.57, 0.68, 0.103, 0.0051), 0.58, CANVASES)
@@ -241,9 +239,7 @@ def main() -> None:
     print("Laws (24) to (26), coefficients ascending in powers of depth: +- 95 %")
     for law in (LAG, TIP_GAP, WIDEST):
         back = come_back(law, args.repeats, rng)
-        print(
-            f"  {law.name}: noise {law.rmse_mm:g}, RMSE of the fits {back.rmse_mm:.2f}, {back.off_mm:.2f} off"
-        )
+        print(f"  {law.name}: noise {law.rmse_mm:g}, RMSE of the fits {back.rmse_mm:.2f}, {back.off_mm:.2f} off")
         print(f"     +- in the article     {_row(law.half_interval_95, '.2g')}")
         print(f"     +- of the fits, mean  {_row(back.half_interval_95, '.2g')}")
         print(f"     within the article's  {_row(back.in_article, '.1%')}")

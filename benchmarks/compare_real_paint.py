@@ -82,9 +82,7 @@ def searched(stroke, predicted):
     """Return displacement, wider and overlap by a search."""
     shift = real_paint.best_shift(predicted, stroke.mask, stroke.px, real_paint.FARTHEST_MM)[1]
     columns, rows = np.round(shift / stroke.px * [1, -1]).astype(int)
-    moved = cv2.warpAffine(
-        np.uint8(predicted), np.float32([[1, 0, columns], [0, 1, rows]]), predicted.shape[::-1]
-    )
+    moved = cv2.warpAffine(np.uint8(predicted), np.float32([[1, 0, columns], [0, 1, rows]]), predicted.shape[::-1])
     away = away_mm(moved, stroke.px)
     by = [real_paint.overlap(away < grown, stroke.mask) for grown in GROWN_MM]
     return shift, float(GROWN_MM[int(np.argmax(by))]), real_paint.overlap(predicted, stroke.mask)

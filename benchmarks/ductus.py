@@ -79,9 +79,7 @@ def judged(painted: list[np.ndarray], reference: list[np.ndarray]) -> tuple[list
 
     Return whether each stroke runs right, and whether each pair of strokes is in the right order.
     """
-    runs, middles, _ = timed(
-        boxed([evenly(line) for line in painted]), boxed([evenly(line) for line in reference])
-    )
+    runs, middles, _ = timed(boxed([evenly(line) for line in painted]), boxed([evenly(line) for line in reference]))
     return runs, followed(middles)
 
 
@@ -89,9 +87,7 @@ def followed(middles: list[float]) -> list[bool]:
     return [middles[i] <= middles[k] + 0.05 for k in range(len(middles)) for i in range(k)]
 
 
-def timed(
-    painted: list[np.ndarray], reference: list[np.ndarray]
-) -> tuple[list[bool], list[float], list[np.ndarray]]:
+def timed(painted: list[np.ndarray], reference: list[np.ndarray]) -> tuple[list[bool], list[float], list[np.ndarray]]:
     """Compare each stroke with the times of the reference.
 
     Return for each stroke whether it runs right, its middle time, and the share of its places that are
@@ -168,9 +164,7 @@ def characters(folder: Path, script: str) -> str:
         reference = written(files[k].stem)
         if len(reference) != len(drawn["strokes"]):
             continue
-        document = (
-            '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1024 1024" width="100mm" height="100mm">'
-        )
+        document = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1024 1024" width="100mm" height="100mm">'
         document += f'<path transform="matrix(1 0 0 -1 0 900)" d="{" ".join(drawn["strokes"])}"/></svg>'
         found, _ = strokes(read_svg(document.encode()), script=script)
         lines = [evenly(np.asarray(_core.flatten(each, 0.05))[:, :2]) / 100 for each in found]
@@ -200,14 +194,10 @@ def summary(title: str, rows: list[tuple[list[bool], list[bool]]]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fonts", nargs="*", type=Path)
     parser.add_argument("--characters", type=Path, metavar="FOLDER")
-    parser.add_argument(
-        "--script", default="cjk", help="of the characters; auto: as in a drawing of unknown script"
-    )
+    parser.add_argument("--script", default="cjk", help="of the characters; auto: as in a drawing of unknown script")
     parser.add_argument("--size", type=float, default=50.0, help="mm to the em")
     options = parser.parse_args()
     if options.characters:

@@ -40,12 +40,8 @@ def painted(seed: int):
     brush, faults = painter.random_brush(rng), painter.Faults()
     strokes = truth_recovery.strokes_of(rng, brush, (210.0, 297.0))
     sheet = painter.paint(rng, brush, strokes, faults)
-    plan = {
-        "passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
-    }
-    marks = [
-        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in sheet.marks
-    ]
+    plan = {"passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]}
+    marks = [{"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in sheet.marks]
     return brush, faults, read_painted(plan, marks, None)
 
 
@@ -90,9 +86,7 @@ def one_sheet(seed: int, parts: tuple[str, ...], rounds: int) -> dict:
     for machine in (False, True):
         suffix = " with machine" if machine else ""
         fit_options = options(machine)
-        used, took, fit = least_time(
-            lambda options=fit_options: _core.fit_marks(sheet.marks, None, options), rounds
-        )
+        used, took, fit = least_time(lambda options=fit_options: _core.fit_marks(sheet.marks, None, options), rounds)
         out["rows"]["one fit" + suffix] = (used, took, fit.iterations)
         out["values"]["one fit" + suffix] = values_of(fit, brush.deepest)
         used, took, made = least_time(
@@ -115,9 +109,7 @@ def table(found: list[dict]) -> str:
     lines = [f"{len(found)} sheets of {found[0]['marks']} marks; s of processors, s on the clock, iterations"]
     for name in found[0]["rows"]:
         rows = np.array([one["rows"][name] for one in found])
-        lines.append(
-            f"  {name:34s} {rows[:, 0].mean():7.2f} {rows[:, 1].mean():7.2f} {rows[:, 2].mean():6.0f}"
-        )
+        lines.append(f"  {name:34s} {rows[:, 0].mean():7.2f} {rows[:, 1].mean():7.2f} {rows[:, 2].mean():6.0f}")
     return "\n".join(lines)
 
 
@@ -140,9 +132,7 @@ def main():
     arguments.add_argument("--sheets", type=int, default=3)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--rounds", type=int, default=2)
-    arguments.add_argument(
-        "--parts", type=lambda text: tuple(text.split(",")), default=tuple(machine_found.PARTS)
-    )
+    arguments.add_argument("--parts", type=lambda text: tuple(text.split(",")), default=tuple(machine_found.PARTS))
     arguments.add_argument("--save", type=Path)
     arguments.add_argument("--against", type=Path)
     args = arguments.parse_args()

@@ -325,9 +325,7 @@ def in_order(weights: list[np.ndarray], samples: list[np.ndarray]) -> tuple[floa
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="where npm puts PACKAGES")
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--count", type=int, default=3600, help="characters drawn as one shape")
@@ -342,25 +340,18 @@ def main() -> None:
     table = {letter: [line * SIZE for line in table_strokes(lines)] for letter, lines in LETTERS.items()}
     lettering = [*(letters(font) for font in fonts(modules)), table]
     latin = [sample for each in lettering for sample in words(each, rng)]
-    print(
-        f"{len(merged)} characters drawn as one shape, {len(plain)} by middle lines, {len(latin)} words and letters"
-    )
+    print(f"{len(merged)} characters drawn as one shape, {len(plain)} by middle lines, {len(latin)} words and letters")
     known, others, latin = (
-        [pair_features(*sample).astype(np.float32) for sample in samples]
-        for samples in (merged, plain, latin)
+        [pair_features(*sample).astype(np.float32) for sample in samples] for samples in (merged, plain, latin)
     )
     print(f"read in {time.monotonic() - began:.0f} s", flush=True)
     weights = fit([*known[KEPT_BACK:], *others, *latin], options.epochs, rng)
     pairs, whole = in_order(weights, known[:KEPT_BACK])
-    print(
-        f"{pairs:.4f} of the pairs of {KEPT_BACK} characters kept back are in order, {whole:.3f} of the characters"
-    )
+    print(f"{pairs:.4f} of the pairs of {KEPT_BACK} characters kept back are in order, {whole:.3f} of the characters")
     print(f"done in {time.monotonic() - began:.0f} s")
     table = {"source": SOURCE}
     for name, each in zip(("hidden", "bias", "output"), weights, strict=True):
-        table[name] = json.loads(
-            json.dumps(each.tolist()), parse_float=lambda text: float(f"{float(text):.4g}")
-        )
+        table[name] = json.loads(json.dumps(each.tolist()), parse_float=lambda text: float(f"{float(text):.4g}"))
     text = json.dumps(table).replace("], [", "],\n[").replace(', "', ',\n"')
     options.output.write_text(text + "\n", encoding="utf-8")
 

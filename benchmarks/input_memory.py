@@ -68,9 +68,7 @@ FORMATS = {
     ),
     "program to check": (
         ".ngc",
-        lambda size: repeated(
-            "G21 G90\nG0 X1 Y1 Z9\n", "G1 X1.5 Y9.5 Z5 F90\nG1 X9.5 Y1.5 Z5\n", "M2\n", size
-        ),
+        lambda size: repeated("G21 G90\nG0 X1 Y1 Z9\n", "G1 X1.5 Y9.5 Z5 F90\nG1 X9.5 Y1.5 Z5\n", "M2\n", size),
         CHECK,
     ),
     "plan.json": (".json", plan, PLAN),

@@ -92,8 +92,7 @@ def straight(rng) -> list[dict]:
     """Return straight strokes of 60 mm, by (17) with its missing lag."""
     sums = LAG(DEPTHS) + GAP(DEPTHS) - WIDEST(DEPTHS) + rng.normal(0, LENGTH_MM, DEPTHS.size)
     return [
-        {"depth_mm": float(d), "path_mm": 60.0, "distance_mm": float(60 - v)}
-        for d, v in zip(DEPTHS, sums, strict=True)
+        {"depth_mm": float(d), "path_mm": 60.0, "distance_mm": float(60 - v)} for d, v in zip(DEPTHS, sums, strict=True)
     ]
 
 
@@ -199,9 +198,7 @@ def main() -> None:
     arguments.add_argument("--count", type=int, default=200, help="calibrations of each kind (200)")
     arguments.add_argument("--marks", type=int, default=20, help="sheets of painted marks (20; 0: none)")
     arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument(
-        "--kinds", help=f"some of: {'; '.join([*KINDS, 'marks'])}, separated by semicolons"
-    )
+    arguments.add_argument("--kinds", help=f"some of: {'; '.join([*KINDS, 'marks'])}, separated by semicolons")
     args = arguments.parse_args()
     chosen = [each.strip() for each in args.kinds.split(";")] if args.kinds else [*KINDS, "marks"]
     print(f"{'measured by':36s} {'law':14s} {'held':>8s}  {'error':>8s}  {'worst depth':>8s}")

@@ -50,12 +50,8 @@ GROUPS = {
     "programs of others: G-code that crashed": ["tests/python/test_foreign.py"],
     "every brush paints every drawing": ["tests/journeys/test_brush_and_drawing.py"],
     "every pair of brush, drawing, cell and command": ["tests/journeys/test_every_combination.py"],
-    "each shipped cell: calibrate, convert, check, compare, convert": [
-        "tests/journeys/test_shipped_cells.py"
-    ],
-    "sheet after sheet: brush, corrections and cell learned together": [
-        "tests/journeys/test_sheet_after_sheet.py"
-    ],
+    "each shipped cell: calibrate, convert, check, compare, convert": ["tests/journeys/test_shipped_cells.py"],
+    "sheet after sheet: brush, corrections and cell learned together": ["tests/journeys/test_sheet_after_sheet.py"],
     "five stories": ["tests/journeys/test_stories.py"],
     "drawings of tablets, design tools and other programs": ["tests/python/test_drawings_in_the_wild.py"],
     "forty clip paths and ten masks against Chromium": ["tests/integration/test_clips_shown.py"],

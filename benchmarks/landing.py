@@ -132,9 +132,7 @@ def chosen(by_offset) -> tuple[int, np.ndarray]:
     for k in range(FOLDS):
         taught, out = fold != k, fold == k
         places = [best_place(tables[taught]) for tables in by_offset]
-        means = [
-            fixed_and_shift(tables[taught], at).mean() for tables, at in zip(by_offset, places, strict=True)
-        ]
+        means = [fixed_and_shift(tables[taught], at).mean() for tables, at in zip(by_offset, places, strict=True)]
         for row, tables, at in zip(held, by_offset, places, strict=True):
             row[out] = fixed_and_shift(tables[out], at).mean(axis=1)
         won[out] = held[int(np.argmax(means)), out] - held[0, out]
@@ -202,10 +200,7 @@ def tried(strokes, name, aim, plant):
     for frame in FRAMES:
         even, odd = axes[frame][::2], axes[frame][1::2]
         by_offset = np.array(
-            [
-                by_displacement(all_landed(seen, even, offset, fit, options), fit, options)
-                for offset in OFFSETS
-            ]
+            [by_displacement(all_landed(seen, even, offset, fit, options), fit, options) for offset in OFFSETS]
         )
         best, won = chosen(by_offset)
         offset = OFFSETS[best]
@@ -213,9 +208,7 @@ def tried(strokes, name, aim, plant):
         yield f"{head:16s} left out {won.mean():+.4f} +- {error_of_mean(won):.4f}"
         if best == 0:
             continue
-        there = [
-            all_landed(side, along, offset, fit, options) for side, along in ((seen, even), (unseen, odd))
-        ]
+        there = [all_landed(side, along, offset, fit, options) for side, along in ((seen, even), (unseen, odd))]
         yield f"{'':16s} {gain_words(scored(*there, fit, options), base)}"
         if plant is None:
             again, fit_options = fitted(there[0], name, aim)
@@ -247,9 +240,7 @@ def refitted(strokes, name, aim):
             won = left_out(frame, offset) - base
             if won.mean() > most:
                 most, best = won.mean(), (frame, offset)
-            words.append(
-                f"{offset[0]:+.0f} {offset[1]:+.0f} mm {won.mean():+.4f} +- {error_of_mean(won):.4f}"
-            )
+            words.append(f"{offset[0]:+.0f} {offset[1]:+.0f} mm {won.mean():+.4f} +- {error_of_mean(won):.4f}")
         yield f"{frame:8s} {'   '.join(words)}"
     if best is None:
         yield "none wins"

@@ -94,8 +94,7 @@ def _picture(rings: list[np.ndarray], px_per_mm: float) -> np.ndarray:
     image = np.full((height * FINE, width * FINE), 255, np.uint8)
     upper_left = np.array([low[0], high[1]])
     pixels = [
-        np.round((((ring - upper_left) * (1, -1)) * px_per_mm + MARGIN_PX) * FINE).astype(np.int32)
-        for ring in rings
+        np.round((((ring - upper_left) * (1, -1)) * px_per_mm + MARGIN_PX) * FINE).astype(np.int32) for ring in rings
     ]
     cv2.fillPoly(image, pixels, 0)
     return cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA)
@@ -140,9 +139,7 @@ class Readings:
     def spoilt(self) -> list[tuple[Case, str]]:
         """Return the cases read right as drawn and wrong as painted."""
         rows = zip(self.cases, self.drawn, self.painted, strict=True)
-        return [
-            (each, painted) for each, drawn, painted in rows if each.is_right(drawn) > each.is_right(painted)
-        ]
+        return [(each, painted) for each, drawn, painted in rows if each.is_right(drawn) > each.is_right(painted)]
 
 
 def readings(
@@ -157,15 +154,11 @@ def readings(
     one = partial(case, font=font, size_mm=size_mm, brush_name=brush_name, compensation=compensation)
     cases = list(pool.map(one, texts))
     mode = cases[0].mode
-    return Readings(
-        cases, read([each.drawn for each in cases], mode), read([each.painted for each in cases], mode)
-    )
+    return Readings(cases, read([each.drawn for each in cases], mode), read([each.painted for each in cases], mode))
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("font", type=Path, nargs="+")
     parser.add_argument("--brush", default="round-6")
     parser.add_argument("--compensation", default="closed")
@@ -179,9 +172,7 @@ def main() -> None:
                 done = readings(texts, file.read_bytes(), pool, options.brush, options.compensation)
                 drawn, painted = done.right()
                 wrong = ", ".join(f"{each.text}: {said or '-'}" for each, said in done.spoilt())
-                print(
-                    f"{file.stem[:25]:<26}{kind:<8}{len(texts):>5}{drawn:>7}{painted:>9}  {wrong}", flush=True
-                )
+                print(f"{file.stem[:25]:<26}{kind:<8}{len(texts):>5}{drawn:>7}{painted:>9}  {wrong}", flush=True)
                 if options.pictures:
                     _keep(options.pictures / f"{file.stem}-{kind}.png", done.spoilt())
 

@@ -109,10 +109,7 @@ def by_lag(design: Design, name: str, lags_mm: list[float]) -> np.ndarray:
     some, target = found(design, brush)
     return np.array(
         [
-            [
-                overlap(Way("", "constant", lag).paint(stroke, brush, (0.0, 0.0)), each, brush)
-                for lag in lags_mm
-            ]
+            [overlap(Way("", "constant", lag).paint(stroke, brush, (0.0, 0.0)), each, brush) for lag in lags_mm]
             for stroke, each in zip(some, target, strict=True)
         ]
     ).reshape(-1, len(lags_mm))
@@ -147,9 +144,7 @@ def measured(title: str, designs: list[Design], brush, processes: int) -> None:
             print(f"\r{count} of {len(designs)}", end="", file=sys.stderr, flush=True)
     print("\r", end="", file=sys.stderr)
     every = len(done[0].alone)
-    print(
-        f"{title}: {len(designs)} of them, {every} strokes, {wide / every:.1%} wider than the brush somewhere"
-    )
+    print(f"{title}: {len(designs)} of them, {every} strokes, {wide / every:.1%} wider than the brush somewhere")
     print(f"  the best constant lag was searched on {tried} of the strokes")
     print(f"  {'':<28}{'per stroke':<24}{'per character':<24}{'ms per stroke':<16}poses per stroke")
     print(f"  {'':<28}" + 2 * f"{'mean   median 5th %':<24}" + f"{'median  mean':<16}mean")
@@ -191,9 +186,7 @@ def main() -> None:
     parser.add_argument("--brush", default="round-6")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--limit", type=int, metavar="N", help="a global search on N strokes, instead")
-    parser.add_argument(
-        "--tries", type=int, default=4000, help="simulations of that search, per stroke and beginning"
-    )
+    parser.add_argument("--tries", type=int, default=4000, help="simulations of that search, per stroke and beginning")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     lettering, brush = Lettering(fetched(options.folder, PACKAGES)), find_brush(options.brush)

@@ -102,9 +102,7 @@ def painted(text: str, font: bytes, size_mm: float, brush_name: str, compensatio
         file = Path(folder, "glyph.svg")
         file.write_text(document, encoding="utf-8")
         work = prepare(file, Options(brush=brush, compensation=compensation))
-    rings = [
-        ring for element in read_svg(document.encode()).elements for ring in filled_rings(element)
-    ]  # dots as well
+    rings = [ring for element in read_svg(document.encode()).elements for ring in filled_rings(element)]  # dots as well
     mark_rings = predict(work).outline_mm
     shape, mark = region(rings), region(mark_rings)
     finest = brush.half_width(brush.lag.calibrated_mm[0])
@@ -149,8 +147,7 @@ def _pieces(left, shape, finest: float) -> list[tuple[float, float]]:
     return [
         piece.representative_point().coords[0]
         for piece in shapely.get_parts(left.buffer(-EDGE_MM).buffer(EDGE_MM))
-        if piece.area > LOST_SHARE * shape.area
-        and shapely.maximum_inscribed_circle(piece, 0.01).length >= finest
+        if piece.area > LOST_SHARE * shape.area and shapely.maximum_inscribed_circle(piece, 0.01).length >= finest
     ]
 
 
@@ -200,9 +197,7 @@ def page(all_painted: list[Painted], cell_mm: float) -> np.ndarray:
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
 
         def pixels(mm, corner=corner, middle=middle):
-            return np.round((np.asarray(mm) - middle) * (PX_PER_MM, -PX_PER_MM) + corner + side / 2).astype(
-                np.int32
-            )
+            return np.round((np.asarray(mm) - middle) * (PX_PER_MM, -PX_PER_MM) + corner + side / 2).astype(np.int32)
 
         cv2.fillPoly(image, [pixels(ring) for ring in each.mark], (150, 120, 90), cv2.LINE_AA)
         cv2.polylines(image, [pixels(ring) for ring in each.shape], True, (0, 0, 0), 1, cv2.LINE_AA)
@@ -229,9 +224,7 @@ def row(name: str, size_mm: float, compensation: str, done: list[Painted]) -> st
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("font", type=Path, nargs="+")
     parser.add_argument("--brush", default="round-6")
     parser.add_argument("--compensation", nargs="+", default=["closed", "refined"])

@@ -170,9 +170,7 @@ def recover(
 
 
 def summary(found: list[dict]) -> str:
-    lines = [
-        f"{len(found)} brushes on as many machines, {np.median([f['s'] for f in found]):.2f} s each (median)"
-    ]
+    lines = [f"{len(found)} brushes on as many machines, {np.median([f['s'] for f in found]):.2f} s each (median)"]
     for with_machine, what in ((False, "without"), (True, "with")):
         off = np.array([f["lag"][with_machine] for f in found])
         lines.append(
@@ -183,10 +181,7 @@ def summary(found: list[dict]) -> str:
     astray = {f["seed"]: np.abs(f["lag"][True]).max() for f in found}
     lines.append(
         "  lag off by more than 3 %: "
-        + (
-            ", ".join(f"{100 * off:.1f} % (seed {seed})" for seed, off in astray.items() if off > 0.03)
-            or "none"
-        )
+        + (", ".join(f"{100 * off:.1f} % (seed {seed})" for seed, off in astray.items() if off > 0.03) or "none")
     )
     lines.append(f"  a field is certain in {sum(f['field'] for f in found)}")
     lines.append("  held by 95 %   error (rms)   half interval (median)")

@@ -108,17 +108,15 @@ def edge_error_px(coverage: np.ndarray, shape, px_per_mm: float) -> float:
     at = np.arange(0.0, ring.length, 1.0 / px_per_mm)
     points = shapely.get_coordinates(shapely.line_interpolate_point(ring, at))
     step = 0.2 / px_per_mm
-    along = shapely.get_coordinates(
-        shapely.line_interpolate_point(ring, at + step)
-    ) - shapely.get_coordinates(shapely.line_interpolate_point(ring, at - step))
+    along = shapely.get_coordinates(shapely.line_interpolate_point(ring, at + step)) - shapely.get_coordinates(
+        shapely.line_interpolate_point(ring, at - step)
+    )
     along /= np.linalg.norm(along, axis=1)[:, None]
     outward = np.column_stack([along[:, 1], -along[:, 0]]) * (1 if ring.is_ccw else -1)
     reach = np.arange(-4.0, 4.0, 0.05) + 0.025
     x = points[:, None, 0] * px_per_mm + outward[:, None, 0] * reach - 0.5
     y = (CANVAS_MM - points[:, None, 1]) * px_per_mm - outward[:, None, 1] * reach - 0.5
-    inside = (
-        cv2.remap(coverage, x.astype(np.float32), y.astype(np.float32), cv2.INTER_LINEAR).sum(axis=1) * 0.05
-    )
+    inside = cv2.remap(coverage, x.astype(np.float32), y.astype(np.float32), cv2.INTER_LINEAR).sum(axis=1) * 0.05
     error = np.abs(inside - 4.0)
     # at the tip and where edges meet in a corner the normal crosses another edge: no distance to speak of
     return float(error[error < 1.5].mean())

@@ -36,9 +36,7 @@ def main() -> None:
     wrong = [case for case in whole.cases if (case.verdict == "harmless") == bool(case.refusals)]
     wrong = [case for case in wrong if case.verdict != "neither"]
     for case in wrong[:200]:
-        print(
-            f"\n{case.dialect}, {case.job}, {case.damage}: {case.verdict}: {case.why} {' / '.join(case.refusals)}"
-        )
+        print(f"\n{case.dialect}, {case.job}, {case.damage}: {case.verdict}: {case.why} {' / '.join(case.refusals)}")
         print(*case.changed, sep="\n")
     print(*whole.crashes, sep="\n")
 

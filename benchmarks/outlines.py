@@ -69,9 +69,7 @@ def main() -> None:
     axis, axes = ms_each(areas, lambda area: _core.medial_axis(area, MIN_BRANCH_AREA, MIN_LIMB_AREA))
     joined_up = list(zip(areas, axes, strict=True))
     joining, found = ms_each(joined_up, lambda each: build_skeleton(each[0], *each[1]))
-    directing, chains = ms_each(
-        found, lambda each: join_pieces(each.pieces, each, SCRIPT) if each.pieces else []
-    )
+    directing, chains = ms_each(found, lambda each: join_pieces(each.pieces, each, SCRIPT) if each.pieces else [])
     lines = [[np.vstack([piece.line for piece in chain]) for chain in each] for each in chains]
     boxes = [np.array([[*area[0].min(axis=0), *area[0].max(axis=0)]]) for area in areas]
     ordering, _ = ms_each(
@@ -83,17 +81,13 @@ def main() -> None:
     whole, _ = ms_each(shapes, lambda rings: outline_strokes(rings, SCRIPT))
     edges = np.mean([sum(map(len, shape)) for shape in shapes])
     count = sum(len(each) for each in made)
-    print(
-        f"{len(shapes)} glyphs of {options.font.name}, {options.size:g} mm to the em: {edges:.0f} edges and"
-    )
+    print(f"{len(shapes)} glyphs of {options.font.name}, {options.size:g} mm to the em: {edges:.0f} edges and")
     print(f"{count / len(shapes):.2f} strokes each")
     print(f"  {'flattening and filling':<46} {filling:7.2f} ms")
     print(f"  {'medial axis':<46} {axis * per_glyph:7.2f} ms")
     print(f"  {'crossings, lines':<46} {joining * per_glyph:7.2f} ms")
     print(f"  {'direction, corners, order':<46} {writing * per_glyph:7.2f} ms")
-    print(
-        f"  {'curves, widths, parts of the shape':<46} {(strokes - joining - directing) * per_glyph:7.2f} ms"
-    )
+    print(f"  {'curves, widths, parts of the shape':<46} {(strokes - joining - directing) * per_glyph:7.2f} ms")
     print(f"  {'all (aim: 10 ms)':<46} {filling + whole:7.2f} ms")
     try:
         from skimage.morphology import medial_axis

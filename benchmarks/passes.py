@@ -203,11 +203,7 @@ def picture(shape, mark, strokes) -> np.ndarray:
     image = np.full((height, width, 3), 255, np.uint8)
 
     def pixels(points):
-        return [
-            np.round((np.asarray(points)[:, :2] - (low[0], high[1])) * (PX_PER_MM, -PX_PER_MM)).astype(
-                np.int32
-            )
-        ]
+        return [np.round((np.asarray(points)[:, :2] - (low[0], high[1])) * (PX_PER_MM, -PX_PER_MM)).astype(np.int32)]
 
     def fill(area, colour):
         for part in shapely.get_parts(area):
@@ -230,9 +226,7 @@ def picture(shape, mark, strokes) -> np.ndarray:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", nargs="*", help="as printed; without any all 47")
     parser.add_argument("--brush", default="round-6")
     parser.add_argument("--times", type=float, default=3.0, help="the brush's width a letter's stem is wide")

@@ -87,9 +87,7 @@ class Case:
         self.bulging = number // 2 % BULGING == BULGING - 1
         self.colour = COLOURS[(number // 2 + number // brushes) % len(COLOURS)]
         lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
-        laws = _core.MarkLaws(
-            list(lag * self.brush.lag), [0.0, 0.4], list(width * self.brush.half_width), 1.8, 1.0
-        )
+        laws = _core.MarkLaws(list(lag * self.brush.lag), [0.0, 0.4], list(width * self.brush.half_width), 1.8, 1.0)
         self.chart = chart(brush_of(laws, "roughly", (0.0, self.brush.deepest)), sheet_mm, strokes)
         self.camera = camera_of(np.random.default_rng([seed, number, 1]), sheet_mm, self.bulging)
         self.paint_rng = np.random.default_rng([seed, number, 2])
@@ -138,9 +136,7 @@ def outcome(case: Case, jpeg: bytes, true_height: float, height_known: float | N
         if height_known:
             seen = true_height + np.random.default_rng([case.number, 3]).normal(0, height_known)
             options.height_mm = _core.Prior(seen, height_known)
-        fitted = calibrate_marks(
-            marks, "found", options=options, edge_mm=edge_mm(read), leave_out_strays=True
-        )
+        fitted = calibrate_marks(marks, "found", options=options, edge_mm=edge_mm(read), leave_out_strays=True)
         out["fit_s"] = time.process_time() - begin
     except Error as refusal:
         return out | {"refused": refusal.code, "sentence": refusal.sentence}
@@ -191,9 +187,7 @@ def _half(found: list[dict]) -> list[str]:
         if "refused" in each:
             lines.append(f"  {each['number']}: refused, {each['refused']}: {each['sentence'][:90]}")
         elif each["strays"] or each["remarks"]:
-            lines.append(
-                f"  {each['number']}: {', '.join(each['remarks'])}; left out: {', '.join(each['strays'])}"
-            )
+            lines.append(f"  {each['number']}: {', '.join(each['remarks'])}; left out: {', '.join(each['strays'])}")
     made = [each for each in found if "values" in each]
     if not made:
         return lines
@@ -225,9 +219,7 @@ def main():
     arguments.add_argument("--sheet", type=values.sheet, default=(210.0, 297.0), help="a4, a3, 210x297")
     arguments.add_argument("--strokes", choices=("few", "normal", "many"))
     arguments.add_argument("--again", action="store_true", help="read and fit known photographs once more")
-    arguments.add_argument(
-        "--height", type=float, help="standard deviation to which the paper's height is known"
-    )
+    arguments.add_argument("--height", type=float, help="standard deviation to which the paper's height is known")
     arguments.add_argument("--half", choices=("inside", "outside"), help="only brushes of that half")
     args = arguments.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)

@@ -123,9 +123,7 @@ def characters(folder: Path, count: int, seed: int, brush) -> list:
     from npm import fetched
 
     drawings = Lettering(fetched(folder, PACKAGES)).drawings(max(1, count // 10), seed)
-    return [each for drawing in drawings for each in within_reach(brushsvg.strokes(drawing)[0], brush)[0]][
-        :count
-    ]
+    return [each for drawing in drawings for each in within_reach(brushsvg.strokes(drawing)[0], brush)[0]][:count]
 
 
 def compared(title: str, strokes, brush) -> None:
@@ -140,18 +138,12 @@ def compared(title: str, strokes, brush) -> None:
     pairs = zip(strokes, ours.plan.passes, strict=True)
     thinned = np.array([by_simplifying(stroke, brush, a_pass) for stroke, a_pass in pairs])
     within = np.array([miss.within_tolerance for miss in ours.tracking_errors])
-    print(
-        f"{title}: {len(strokes)} strokes, of them {within.sum()} within {TOLERANCE_MM} mm, which are compared"
-    )
+    print(f"{title}: {len(strokes)} strokes, of them {within.sum()} within {TOLERANCE_MM} mm, which are compared")
     few, sampled, thinned = few[within], sampled[within], thinned[within]
     for name, counts in (("every 0.5 mm", sampled), ("Douglas-Peucker", thinned), ("ours", few)):
         print(f"  {name:16} mean {counts.mean():6.1f}  median {np.median(counts):6.1f}")
-    print(
-        f"  ours / sampling {few.sum() / sampled.sum():.3f}, ours / Douglas-Peucker {few.sum() / thinned.sum():.3f}"
-    )
-    print(
-        f"  {1e3 * seconds / len(strokes):.2f} ms a stroke, {1e3 * without / len(strokes):.2f} without thinning out"
-    )
+    print(f"  ours / sampling {few.sum() / sampled.sum():.3f}, ours / Douglas-Peucker {few.sum() / thinned.sum():.3f}")
+    print(f"  {1e3 * seconds / len(strokes):.2f} ms a stroke, {1e3 * without / len(strokes):.2f} without thinning out")
 
 
 def main() -> None:

@@ -46,9 +46,7 @@ def tried_with(name: str) -> tuple:
 def roomy(name: str):
     """The cell with room for the page, where its example paper is; its arm, if any, is not followed."""
     cell = find_cell(name)
-    return replace(
-        cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg), arm=None
-    )
+    return replace(cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg), arm=None)
 
 
 def write(name: str, plan, brush) -> int:
@@ -90,9 +88,7 @@ def main() -> None:
         print(f"  {name:<48} {time.perf_counter() - begin:7.3f} s {size / 1e6:7.1f} MB")
     print("10 million poses: memory beyond the plan's arrays (aim: 50 MB)")
     for name in names:
-        ran = subprocess.run(
-            [sys.executable, __file__, name, "1010"], capture_output=True, text=True, check=True
-        )
+        ran = subprocess.run([sys.executable, __file__, name, "1010"], capture_output=True, text=True, check=True)
         memory, seconds, size = json.loads(ran.stdout)
         print(f"  {name:<48} {memory:7.1f} MB {seconds:7.1f} s {size:7.0f} MB")
 

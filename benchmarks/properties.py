@@ -46,8 +46,7 @@ def part(first: int, shelf: Path, dialects: list[str]) -> list[dict]:
         work = Path(folder)
         with quick_check() as check:
             found += [
-                asdict(one(number, work / str(number), shelf, check, dialects))
-                for number in range(first, first + PART)
+                asdict(one(number, work / str(number), shelf, check, dialects)) for number in range(first, first + PART)
             ]
         drawings = sorted(work.glob("*/drawing.svg"), key=lambda path: int(path.parent.name))[:6]
         sources = [shutil.copy(path, work / f"d{path.parent.name}.svg") for path in drawings]
@@ -68,35 +67,25 @@ def table(cases: list[dict]) -> str:
     for key in ("drawing", "brush", "dialect"):
         for name in sorted({case[key] for case in cases}):
             some = [case for case in cases if case[key] == name]
-            count = Counter(
-                "wrong" if case["wrong"] else "refused" if case["refused"] else "" for case in some
-            )
+            count = Counter("wrong" if case["wrong"] else "refused" if case["refused"] else "" for case in some)
             lines.append(f"{key + ' ' + name:24}{len(some):8}{count['refused']:9}{count['wrong']:7}")
     total = sum(bool(case["wrong"]) for case in cases)
     return "\n".join([*lines, f"{'all':24}{len(cases):8}{sum(bool(c['refused']) for c in cases):9}{total:7}"])
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--hours", type=float, default=1.0)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument(
-        "--dialect", nargs="*", default=[], help="only these; their results need a file of their own"
-    )
+    parser.add_argument("--dialect", nargs="*", default=[], help="only these; their results need a file of their own")
     parser.add_argument("--results", type=Path, default=ROOT / "build" / "properties.jsonl")
     args = parser.parse_args()
     args.results.parent.mkdir(parents=True, exist_ok=True)
-    known = (
-        [json.loads(line) for line in args.results.read_text().splitlines()] if args.results.exists() else []
-    )
+    known = [json.loads(line) for line in args.results.read_text().splitlines()] if args.results.exists() else []
     done = {case["number"] for case in known}
-    firsts = [
-        first for first in range(args.first, args.first + args.count, PART) if first + PART - 1 not in done
-    ]
+    firsts = [first for first in range(args.first, args.first + args.count, PART) if first + PART - 1 not in done]
     until = time.monotonic() + 3600 * args.hours
     with (
         tempfile.TemporaryDirectory() as shelf,

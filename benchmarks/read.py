@@ -70,9 +70,7 @@ def _element(random, name: str, k: int) -> str:
     if k % 20 == 19:
         return f'<use id="e{name}" xlink:href="#e{name.split("-")[0]}-{k - 1}" x="{r:.4f}" y="{r:.4f}"/>'
     steps = random.uniform(-6, 6, (SEGMENTS, 6))
-    d = f"m {x:.4f},{y:.4f} c " + " ".join(
-        "{:.6f},{:.6f} {:.6f},{:.6f} {:.6f},{:.6f}".format(*s) for s in steps
-    )
+    d = f"m {x:.4f},{y:.4f} c " + " ".join("{:.6f},{:.6f} {:.6f},{:.6f} {:.6f},{:.6f}".format(*s) for s in steps)
     return f'<path {look} d="{d}"/>'
 
 
@@ -109,9 +107,7 @@ def stages(data: bytes, rounds: int) -> dict[str, float]:
     root = parse_xml(data).root
     page = viewport.read_page(root.attrib)
     scale = transform.scales(page.paper_from_user)[0]
-    shapes = [
-        (tag, node.attrib) for node in root.iter() if (tag := node.tag.rpartition("}")[2]) in svg_shapes.TAGS
-    ]
+    shapes = [(tag, node.attrib) for node in root.iter() if (tag := node.tag.rpartition("}")[2]) in svg_shapes.TAGS]
 
     def path_data():
         return [svg_shapes.shape_commands(tag, attributes, page.viewport) for tag, attributes in shapes]
@@ -191,9 +187,7 @@ def main() -> None:
         print(f"  {'peer: svgpathtools, svg2paths (no CSS, no use)':<48} {paths:9.1f} ms")
         print(f"  {'floor: expat parsing the XML':<48} {floor:9.1f} ms")
         whole = ours["all of read_svg"]
-        print(
-            f"  svgelements / ours: {elements / whole:.1f} (aim: well above 1); ours / floor: {whole / floor:.0f}"
-        )
+        print(f"  svgelements / ours: {elements / whole:.1f} (aim: well above 1); ours / floor: {whole / floor:.0f}")
         processes(Path(folder), rounds)
 
 

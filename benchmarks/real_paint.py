@@ -231,9 +231,7 @@ def disc_marks(strokes, x, lag_terms) -> list[np.ndarray]:
     out = []
     for stroke in strokes:
         at = np.linspace(0, len(stroke.poses) - 1, 120)
-        q = np.column_stack(
-            [np.interp(at, np.arange(len(stroke.poses)), stroke.poses[:, i]) for i in range(3)]
-        )
+        q = np.column_stack([np.interp(at, np.arange(len(stroke.poses)), stroke.poses[:, i]) for i in range(3)])
         share = -q[:, 2] / deep
         r = np.zeros(len(q)) if lag_terms == 0 else x[4] + (x[5] if lag_terms == 2 else 0) * share
         p, z = np.empty(len(q), complex), q[:, 0] + 1j * q[:, 1]
@@ -270,9 +268,7 @@ def fit_disc(strokes, lag_terms) -> np.ndarray:
         simplex = np.vstack([x, *(x + d for d in np.diag(np.full(len(x), 1.0)))])
         found = minimize(loss, x, method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": 60})
         best = found if best is None or found.fun < best.fun else best
-    return minimize(
-        loss, best.x, method="Nelder-Mead", options={"maxfev": 150, "xatol": 0.01, "fatol": 1e-4}
-    ).x
+    return minimize(loss, best.x, method="Nelder-Mead", options={"maxfev": 150, "xatol": 0.01, "fatol": 1e-4}).x
 
 
 # Ours -----------------------------------------------------------------------------------------------
@@ -413,9 +409,7 @@ def picture(strokes, predicted, shifts, score, path: Path) -> None:
                 cv2.LINE_AA,
             )
         left, bottom, _, height = stroke.window
-        way = (
-            np.column_stack([stroke.poses[:, 0] - left, bottom + height - stroke.poses[:, 1]]) / stroke.px * 2
-        )
+        way = np.column_stack([stroke.poses[:, 0] - left, bottom + height - stroke.poses[:, 1]]) / stroke.px * 2
         cv2.polylines(image, [np.round(way).astype(np.int32)], False, (200, 90, 20), 1, cv2.LINE_AA)
         cv2.circle(image, tuple(int(v) for v in way[0]), 4, (200, 90, 20), -1, cv2.LINE_AA)
         cv2.putText(image, f"{2 * k + 1}: {score[k]:.3f}", (8, 20), 0, 0.6, (0, 0, 0), 1, cv2.LINE_AA)
@@ -463,9 +457,7 @@ def residual_words(strokes, fit, options) -> list[str]:
         pictures = predict_pictures(targets, tried, fit.height_mm, fit.shift_mm, options.deepest_mm)
         for target, picture in zip(targets, pictures, strict=True):
             fixed = soft_overlap(target.paint, picture)
-            out.append(
-                (fixed, max(fixed, best_shift(picture, target.paint, 1 / target.px_per_mm, FARTHEST_MM)[0]))
-            )
+            out.append((fixed, max(fixed, best_shift(picture, target.paint, 1 / target.px_per_mm, FARTHEST_MM)[0])))
         return np.array(out)
 
     by = np.array([[places(width, lag) for lag in OWN_LAGS] for width in OWN_WIDTHS])

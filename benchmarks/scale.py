@@ -67,9 +67,7 @@ def drawings(count: int | None) -> list[tuple[str, str]]:
     folder.mkdir(exist_ok=True)
     files = sorted((fetched(folder, PACKAGES) / "hanzi-writer-data").glob("?.json"))
     chosen = np.unique(np.linspace(0, len(files) - 1, count or len(files)).astype(int))
-    return [
-        (files[k].stem, _svg(json.loads(files[k].read_text(encoding="utf-8"))["strokes"])) for k in chosen
-    ]
+    return [(files[k].stem, _svg(json.loads(files[k].read_text(encoding="utf-8"))["strokes"])) for k in chosen]
 
 
 def _svg(outlines: list[str]) -> str:
@@ -91,9 +89,7 @@ def characters(out: Path, count: int | None, jobs: int) -> None:
     figures = [row.figures for row in done.rows if row.figures]
     overlap = np.array([one.overlap for one in figures])
     print(f"{len(items)} characters, {sum(one.strokes for one in figures)} strokes, {jobs} processes")
-    print(
-        f"  on the clock {clock:.0f} s, processors {used:.0f} s, {1e3 * used / len(items):.0f} ms a character"
-    )
+    print(f"  on the clock {clock:.0f} s, processors {used:.0f} s, {1e3 * used / len(items):.0f} ms a character")
     low = np.percentile(overlap, 5)
     print(f"  {len(done.refused)} refused, overlap {overlap.mean():.4f}, 5th percentile {low:.4f}")
     for row in done.refused[:5]:
@@ -143,9 +139,7 @@ def _workers(count: int) -> Iterator[tuple[str, list[int]]]:
     """Yield the address of a scheduler, and the processes of its workers."""
     from dask import distributed
 
-    with distributed.LocalCluster(
-        count, threads_per_worker=1, processes=True, dashboard_address=None
-    ) as local:
+    with distributed.LocalCluster(count, threads_per_worker=1, processes=True, dashboard_address=None) as local:
         with distributed.Client(local) as client:
             pids = list(client.run(os.getpid).values())
         yield local.scheduler_address, pids
@@ -164,9 +158,7 @@ def strokes(out: Path, count: int) -> None:
     for number in range(count):
         x, y = 30 + 8 * (number % across), 30 + 8 * (number // across)
         dx, dy = random.uniform(2, 6, 2)
-        lines.append(
-            f'<path d="M{x:.2f} {y:.2f}l{dx:.2f} {dy:.2f}" stroke-width="{random.uniform(1, 3):.2f}"/>'
-        )
+        lines.append(f'<path d="M{x:.2f} {y:.2f}l{dx:.2f} {dy:.2f}" stroke-width="{random.uniform(1, 3):.2f}"/>')
     size = 60 + 8 * across
     drawing = out / "many.svg"
     drawing.write_text(

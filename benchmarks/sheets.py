@@ -52,9 +52,7 @@ WORD = re.sub(
     lambda found: f'stroke-width="{float(found[1]) * WIDEST_MM / 5.5:.2f}"',
     studio.WORD,
 )
-PLAIN = re.sub(
-    r'stroke-width="[^"]*"', 'stroke-width="2.40"', WORD
-)  # one width; of its strokes only the loop is alone
+PLAIN = re.sub(r'stroke-width="[^"]*"', 'stroke-width="2.40"', WORD)  # one width; of its strokes only the loop is alone
 PLAIN = re.sub(r'<path id="(line|wave|stem)"[^>]*/>', "", PLAIN).replace("L94 48 L112 24", "L94 48 L104 16")
 SHARES = (0.3, 0.6, 0.95)  # depths at which a person measures, as shares of the largest depth
 
@@ -93,9 +91,7 @@ def starts_of(brush) -> dict[str, str]:
 
 def run(line: str, folder: Path) -> None:
     words = [
-        str(folder / each)
-        if re.fullmatch(r"[\w-]+\.\w+", each) and "=" not in each and not each[0].isdigit()
-        else each
+        str(folder / each) if re.fullmatch(r"[\w-]+\.\w+", each) and "=" not in each and not each[0].isdigit() else each
         for each in line.split()
     ]
     errors, out = io.StringIO(), io.StringIO()
@@ -190,34 +186,22 @@ def learned(sheet: int, folder: Path, notes: list[str]) -> str:
 
 
 def report(rows: list[dict]) -> None:
-    print(
-        "\nstart     brushes   overlap on sheets 1, 2, 3 (lowest)           true brush   below it on sheet 3"
-    )
+    print("\nstart     brushes   overlap on sheets 1, 2, 3 (lowest)           true brush   below it on sheet 3")
     for start in dict.fromkeys(row["start"] for row in rows):
         own = np.array([row["overlap"] for row in rows if row["start"] == start])
         true = np.array([row["true"] for row in rows if row["start"] == start])
         each = "   ".join(f"{own[:, k].mean():.3f} ({own[:, k].min():.3f})" for k in range(SHEETS))
         off = (true - own)[:, -1]
-        print(
-            f"{start:9} {len(own):4}      {each}   {true.mean():.3f}        {off.mean():.3f} ({off.max():.3f})"
-        )
+        print(f"{start:9} {len(own):4}      {each}   {true.mean():.3f}        {off.mean():.3f} ({off.max():.3f})")
 
 
 def main_() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=16)
-    parser.add_argument(
-        "--starts", nargs="+", choices=("three", "one", "round-6"), default=["three", "one", "round-6"]
-    )
-    parser.add_argument(
-        "--margin", choices=("auto", "on", "off"), default="auto", help="as convert --margin-strokes"
-    )
-    parser.add_argument(
-        "--plain", action="store_true", help="a word of one width, most of whose strokes touch"
-    )
-    parser.add_argument(
-        "--own-mm", type=float, default=0.0, help="standard deviation of each stroke's own place"
-    )
+    parser.add_argument("--starts", nargs="+", choices=("three", "one", "round-6"), default=["three", "one", "round-6"])
+    parser.add_argument("--margin", choices=("auto", "on", "off"), default="auto", help="as convert --margin-strokes")
+    parser.add_argument("--plain", action="store_true", help="a word of one width, most of whose strokes touch")
+    parser.add_argument("--own-mm", type=float, default=0.0, help="standard deviation of each stroke's own place")
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--keep", type=Path, help="a folder for all files; what is there is not done again")
     args = parser.parse_args()

@@ -60,9 +60,7 @@ MOVES = ("place of the sheet", "each stroke's own place")  # these causes only m
 
 def run(word: str, folder: Path) -> str:
     """Run a command of brushsvg in a folder and return its output."""
-    words = [
-        str(folder / each) if "." in each and not each.startswith("-") else each for each in word.split()
-    ]
+    words = [str(folder / each) if "." in each and not each.startswith("-") else each for each in word.split()]
     errors, out = io.StringIO(), io.StringIO()
     with contextlib.redirect_stderr(errors), contextlib.redirect_stdout(out):
         status = main(words)
@@ -171,9 +169,7 @@ def paint_a_studio(number: int, folder: Path, sheets: int = 3) -> dict:
         seen = json.loads((folder / f"seen-{sheet}.json").read_text())
         if sheet == 0:
             result["named"] = seen["faults"] and seen["faults"]["mend_first"]
-            result["said"] = seen["faults"] and {
-                row["cause"]: row["gain"] for row in seen["faults"]["causes"]
-            }
+            result["said"] = seen["faults"] and {row["cause"]: row["gain"] for row in seen["faults"]["causes"]}
             result["sheet"] = [*here.shift, here.turn]
             result["numbers"] = seen["faults"] and {
                 row["name"]: [row["value"], row["half_95"]] for row in seen["faults"]["numbers"]
@@ -208,9 +204,7 @@ def follow(seen: dict, sheet: int, folder: Path, strokes_a_load: int) -> tuple[i
         (folder / f"learnt-{sheet}.txt").write_text(str(refusal))
         (folder / f"mine-{sheet + 1}.json").write_bytes((folder / f"mine-{sheet}.json").read_bytes())
         return strokes_a_load, ""
-    words = (
-        f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
-    )
+    words = f"compare photo-{sheet}.jpg plan-{sheet}.json --brush mine-{sheet + 1}.json --cell cell-{sheet}.toml"
     text = run(f"{words} --quiet --corrected-cell cell-{sheet + 1}.toml -o left-{sheet}.json", folder)
     (folder / f"corrected-{sheet}.txt").write_text(text)
     left = json.loads((folder / f"left-{sheet}.json").read_text())
@@ -226,9 +220,7 @@ def truth_of(fault_values) -> dict[str, float]:
         "tilt": fault_values.tilt,
         "lean": fault_values.lean,
     }
-    found = {
-        f"{name} in {axis}": float(pair[k]) for name, pair in pairs.items() for k, axis in enumerate("xy")
-    }
+    found = {f"{name} in {axis}": float(pair[k]) for name, pair in pairs.items() for k, axis in enumerate("xy")}
     return found | {"lag": float(fault_values.lag) - 1, "width": float(fault_values.half) - 1}
 
 
@@ -260,12 +252,8 @@ def gains_of(swept, commanded, fault_values, seed: int, drawn, overlap: float) -
 
 def report(rows: list[dict]) -> None:
     if (sheets := len(rows[0]["overlap"])) > 1:
-        overlap, gap, by_target = (
-            np.array([row[key] for row in rows]) for key in ("overlap", "gap", "gap_wanted")
-        )
-        print(
-            "\nsheet  overlap with target: mean, 5th percentile   gap to what should be (repeatable): mean, closed"
-        )
+        overlap, gap, by_target = (np.array([row[key] for row in rows]) for key in ("overlap", "gap", "gap_wanted"))
+        print("\nsheet  overlap with target: mean, 5th percentile   gap to what should be (repeatable): mean, closed")
         for k in range(sheets):
             closed = 1 - gap[:, k].sum() / gap[:, 0].sum()
             less = 1 - by_target[:, k].sum() / by_target[:, 0].sum()
@@ -277,11 +265,7 @@ def report(rows: list[dict]) -> None:
             )
         for k in range(1, sheets):
             for before in range(k):
-                pairs = [
-                    (one[k][name], one[before][name])
-                    for one in (r["strokes"] for r in rows)
-                    for name in one[0]
-                ]
+                pairs = [(one[k][name], one[before][name]) for one in (r["strokes"] for r in rows) for name in one[0]]
                 worse = [b - a for a, b in pairs if a < b]
                 print(
                     f"strokes worse on sheet {k + 1} than on sheet {before + 1}: {len(worse)} of {len(pairs)}, by "
@@ -290,9 +274,7 @@ def report(rows: list[dict]) -> None:
     seen = [row for row in rows if row["numbers"]]
     print("\nnumbers of the first sheet: off (rms), within their 95 % intervals")
     for name in rows[0]["truth"]:
-        off = np.array(
-            [[row["numbers"][name][0] - row["truth"][name], row["numbers"][name][1]] for row in seen]
-        )
+        off = np.array([[row["numbers"][name][0] - row["truth"][name], row["numbers"][name][1]] for row in seen])
         within = int(np.sum(np.abs(off[:, 0]) <= off[:, 1]))
         print(f"  {name}: {np.sqrt(np.mean(off[:, 0] ** 2)):.4f}, {within} of {len(seen)}")
     ruled = [row for row in rows if max(row["gains"].values()) > 0.5 * row["lost"]]
@@ -306,8 +288,7 @@ def report(rows: list[dict]) -> None:
         if row not in most:
             said = row["said"] or {}
             words = ", ".join(
-                f"{cause} {gain:.3f} (said {said.get(cause, np.nan):.3f})"
-                for cause, gain in row["gains"].items()
+                f"{cause} {gain:.3f} (said {said.get(cause, np.nan):.3f})" for cause, gain in row["gains"].items()
             )
             print(f"  {row['number']}: named {row['named']}; lost {row['lost']:.3f}: {words}")
     print(f"{np.mean([row['seconds'] for row in rows]):.1f} s of processor time a studio")

@@ -120,14 +120,8 @@ def painted_chart(file: Path) -> int:
         "version": 1,
         "name": "painted",
         "depth_range_mm": [0, brush.deepest],
-        "plan": {
-            "passes": [
-                {"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes
-            ]
-        },
-        "marks": [
-            {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in marks
-        ],
+        "plan": {"passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]},
+        "marks": [{"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in marks],
     }
     file.write_text(json.dumps(measured), encoding="utf-8")
     return len(marks)
@@ -144,9 +138,7 @@ def refined(drawing: Path, out: Path, strokes: int) -> Callable[[Path], Spent]:
 
     def measure(tree: Path) -> Spent:
         closed = brushsvg("convert", drawing, "-o", out)(tree)
-        return brushsvg("convert", drawing, "-o", out, "--compensation", "refined")(tree).over(
-            strokes, closed
-        )
+        return brushsvg("convert", drawing, "-o", out, "--compensation", "refined")(tree).over(strokes, closed)
 
     return measure
 
@@ -238,11 +230,7 @@ def shown(seconds: float, unit: str) -> str:
 
 
 def machine() -> str:
-    model = (
-        re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-        if sys.platform == "linux"
-        else None
-    )
+    model = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text()) if sys.platform == "linux" else None
     name = model[1].strip() if model else platform.processor()
     return f"{name}, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}"
 

@@ -95,9 +95,7 @@ def ends_of(strokes, shape, mark) -> list[End]:
             if not all(0.5 < side < FREE for side in sides):
                 continue  # this end is in another stroke
             starts = inside + np.outer(ACROSS * half_mm, left)
-            drawn, painted = (
-                np.array([left_at(of, at, along, half_mm) for at in starts]) for of in (shape, mark)
-            )
+            drawn, painted = (np.array([left_at(of, at, along, half_mm) for at in starts]) for of in (shape, mark))
             if 0.5 < drawn[len(drawn) // 2] < AHEAD:
                 found.append(End(half_mm, drawn, painted))
     return found
@@ -122,9 +120,7 @@ def pairs(text: str, font: bytes, size_mm: float, brush_name: str) -> tuple[str,
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("font", type=Path, nargs="+")
     parser.add_argument("--brush", default="round-6")
     parser.add_argument("--processes", type=int, default=2)

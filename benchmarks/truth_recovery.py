@@ -67,9 +67,7 @@ def strokes_of(rng, brush, sheet_mm: tuple[float, float] | None):
         return painter.chart_strokes(brush.deepest)
     lag, width = rng.uniform(1 - KNOWN_TO, 1 + KNOWN_TO, 2)
     depths = np.linspace(0, brush.deepest, 21)[1:]
-    known = [
-        np.polynomial.polynomial.polyfit(depths, brush.law(law)(depths), 3) for law in ("lag", "half_width")
-    ]
+    known = [np.polynomial.polynomial.polyfit(depths, brush.law(law)(depths), 3) for law in ("lag", "half_width")]
     known[1][0] = 0.0
     laws = _core.MarkLaws(list(lag * known[0]), [0.0, 0.4], list(width * known[1]), 1.8, 1.0)
     made = chart(brush_of(laws, "known roughly", (0.0, brush.deepest)), sheet_mm)
@@ -80,9 +78,7 @@ def brush_for(rng, seed: int, outside: str | None):
     if outside is None:
         return painter.random_brush(rng)
     if outside == "round-6":
-        return painter.round_6(
-            json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text())
-        )
+        return painter.round_6(json.loads((Path(brushsvg.__file__).parent / "data/brushes/round-6.json").read_text()))
     groups = {"all": painter.SHAPES, "more": painter.MORE_SHAPES, "unseen": painter.UNSEEN_SHAPES}
     taken = list(groups.get(outside, [outside]))
     return painter.random_stranger(rng, taken[seed % len(taken)])
@@ -152,9 +148,7 @@ def summary(found: list[dict]) -> str:
         z = np.array([f["values"][name][0] / f["values"][name][1] for f in found])
         sd = np.median([f["values"][name][1] for f in found])
         pooled.append(np.abs(z) < 1.96)
-        lines.append(
-            f"  {name:20s} {100 * pooled[-1].mean():8.1f} %  {np.sqrt(np.mean(z**2)):10.2f}  {sd:12.4f}"
-        )
+        lines.append(f"  {name:20s} {100 * pooled[-1].mean():8.1f} %  {np.sqrt(np.mean(z**2)):10.2f}  {sd:12.4f}")
     lines.append(f"  pooled               {100 * np.mean(pooled):8.1f} %")
     worst = np.array([f["worst"] for f in found])
     lines.append(
@@ -173,14 +167,10 @@ def main():
     arguments.add_argument("--brushes", type=int, default=300)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--processes", type=int, default=2)
-    arguments.add_argument(
-        "--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it"
-    )
+    arguments.add_argument("--sheet", type=values.sheet, help="a4, a3, 210x297: the chart that brushsvg lays out on it")
     arguments.add_argument("--outside", choices=OUTSIDE)
     arguments.add_argument("--noise", type=float, help="of the edges, mm (0.1)")
-    arguments.add_argument(
-        "--family", action="store_true", help="laws that do not depart from their few numbers"
-    )
+    arguments.add_argument("--family", action="store_true", help="laws that do not depart from their few numbers")
     args = arguments.parse_args()
     recovered = functools.partial(
         recover,

@@ -94,9 +94,7 @@ def main() -> None:
 
 def with_widths(svg: str, size: float) -> str:
     """The word with strokes so many times as wide."""
-    return re.sub(
-        r'stroke-width="([\d.]+)"', lambda found: f'stroke-width="{size * float(found[1]):.3f}"', svg
-    )
+    return re.sub(r'stroke-width="([\d.]+)"', lambda found: f'stroke-width="{size * float(found[1]):.3f}"', svg)
 
 
 if __name__ == "__main__":

@@ -32,9 +32,7 @@ nitpicky = False
 def _plain(app, what, name, obj, options, lines):
     """Docstrings are written for `help()`: their lines stay as they are, and nothing in them is markup."""
     text = inspect.cleandoc("\n".join(lines)).splitlines()
-    lines[:] = [
-        f"| {line.replace('*', chr(92) + '*').replace('|', chr(92) + '|')}" if line else "" for line in text
-    ]
+    lines[:] = [f"| {line.replace('*', chr(92) + '*').replace('|', chr(92) + '|')}" if line else "" for line in text]
 
 
 def setup(app):

@@ -60,9 +60,7 @@ def _python() -> Iterator[str]:
         yield f"```{{eval-rst}}\n.. auto{kind}:: brushsvg.{name}"
         options = "" if kind == "function" else "   :members:\n"
         if kind == "module":  # names that have their own entry
-            options += (
-                f"   :exclude-members: {', '.join(sorted(set(named.__all__) & set(brushsvg.__all__)))}\n"
-            )
+            options += f"   :exclude-members: {', '.join(sorted(set(named.__all__) & set(brushsvg.__all__)))}\n"
         yield options + "```\n"
 
 

@@ -19,9 +19,7 @@ print(f"widest line of {brush.name}: {2 * brush.half_width_range_mm()[1]:.1f} mm
 
 # "clamp" paints one stroke, as wide as the brush allows. "passes" paints several strokes side by side.
 for wide in ("clamp", "passes"):
-    done = brushsvg.convert(
-        SHAPE, f"wide_{wide}.ngc", picture=f"wide_{wide}.png", brush=brush, wide=wide, figures=True
-    )
+    done = brushsvg.convert(SHAPE, f"wide_{wide}.ngc", picture=f"wide_{wide}.png", brush=brush, wide=wide, figures=True)
     assert done.figures
     print(f"{wide}: {len(done.plan.passes)} strokes, overlap {done.figures.total.overlap:.3f}")
     for notice in done.notices:

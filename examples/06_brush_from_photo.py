@@ -21,9 +21,7 @@ def command(*words: str) -> None:
 # The lag of the simulated brush is 15 % longer than that of round-6. The chart does not know this.
 LAG_FACTOR = 1.15
 Path("studio.toml").write_text(f'format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = {LAG_FACTOR}\n')
-command(
-    "chart", "-o", "chart.ngc", "--page", "page.pdf", "--chart", "chart.json", "--strokes", "few", "--force"
-)
+command("chart", "-o", "chart.ngc", "--page", "page.pdf", "--chart", "chart.json", "--strokes", "few", "--force")
 command("simulate-photo", "chart.json", "-o", "photo.jpg", "--studio", "studio.toml")
 
 made = brushsvg.calibrate("photo.jpg", "mine", chart="chart.json", progress=print)

@@ -29,6 +29,4 @@ Path("my_ur5e.toml").write_text(brushsvg.write_cell(cell), encoding="utf-8")
 done = brushsvg.convert(drawing, "arm.script", cell="my_ur5e.toml")
 for notice in done.notices:
     print(f"warning: {notice.where}: {notice.sentence}")
-print(
-    f"arm.script: {len(done.plan.passes)} strokes, {done.time_s:.0f} s, {len(done.text.splitlines())} lines"
-)
+print(f"arm.script: {len(done.plan.passes)} strokes, {done.time_s:.0f} s, {len(done.text.splitlines())} lines")

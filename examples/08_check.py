@@ -13,9 +13,7 @@ brushsvg.convert(drawing, "word.ngc")
 # check reads the program back, simulates every move, and compares the paint with the drawing.
 found = brushsvg.check("word.ngc", drawing)
 assert found.plan and found.figures
-print(
-    f"word.ngc: {len(found.problems)} problems, {found.time_s:.0f} s, overlap {found.figures.total.overlap:.3f}"
-)
+print(f"word.ngc: {len(found.problems)} problems, {found.time_s:.0f} s, overlap {found.figures.total.overlap:.3f}")
 
 # Somebody edits the program: after the third stroke the machine lifts the brush to 0.1 mm instead of 10 mm.
 parts = Path("word.ngc").read_text(encoding="utf-8").split("Z10.0000")

@@ -44,13 +44,9 @@ def main(drawing: Path, directory: Path) -> None:
     table = report.comparison_text([(name, totals[how]) for how, name in names.items()])
     files = {
         ".plan.json": writer.encode_checked(".json", work.plan, walk, work.brush, work.title),
-        ".ngc": writer.encode_checked(
-            ".ngc", work.plan, walk, work.brush, work.title, outputs.header_lines(work)
-        ),
+        ".ngc": writer.encode_checked(".ngc", work.plan, walk, work.brush, work.title, outputs.header_lines(work)),
         ".marks.svg": outputs.make_picture(".svg", work, marks["closed"]),
-        ".report.txt": report.as_text(".txt", outputs.make_report(work, marks["closed"], cell))
-        + "\n"
-        + table,
+        ".report.txt": report.as_text(".txt", outputs.make_report(work, marks["closed"], cell)) + "\n" + table,
         ".html": outputs.make_animation(work, loads, marks["closed"], cell),
         ".png": comparison_png(works, marks, totals),
     }

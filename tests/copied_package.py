@@ -20,9 +20,7 @@ def made_environment(folder: Path, core: Path) -> Path:
     borrowed = subprocess.check_output([own, "-c", code], text=True).split("\n")[:-1]
     package = folder / "site" / "brushsvg"
     shutil.rmtree(folder / "site", ignore_errors=True)
-    shutil.copytree(
-        ROOT / "python" / "brushsvg", package, ignore=shutil.ignore_patterns("__pycache__", "*.so")
-    )
+    shutil.copytree(ROOT / "python" / "brushsvg", package, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
     shutil.copy(core, package)
     venv = folder / "venv"
     if not venv.exists():

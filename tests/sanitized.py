@@ -28,13 +28,10 @@ def main(argv: list[str]) -> int:
     (core,) = (ROOT / "build" / preset).glob("_core*.so")
     python = made_environment(ROOT / "build" / preset / "environment", core)
     found = [
-        subprocess.check_output(["g++", f"-print-file-name={each}"], text=True).strip()
-        for each in RUNTIME[preset]
+        subprocess.check_output(["g++", f"-print-file-name={each}"], text=True).strip() for each in RUNTIME[preset]
     ]
     env = {**os.environ, **OPTIONS, "LD_PRELOAD": " ".join(found)}
-    return subprocess.run(
-        [python, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=ROOT, env=env
-    ).returncode
+    return subprocess.run([python, "-m", "pytest", "-p", "no:cacheprovider", *words], cwd=ROOT, env=env).returncode
 
 
 if __name__ == "__main__":

@@ -42,9 +42,7 @@ def main(folder: Path) -> None:
     (folder / "dabs.jpg").write_bytes(photo_of(painted(lopsided)))
     (folder / "dabs.json").write_text(write_chart(printed()))
     save_brush(assumed(), folder / "mine.json")
-    words = (
-        "calibrate dabs.jpg --chart dabs.json --brush mine.json -o own.json --picture read.png --plot own.png"
-    )
+    words = "calibrate dabs.jpg --chart dabs.json --brush mine.json -o own.json --picture read.png --plot own.png"
     subprocess.run([Path(sys.executable).with_name("brushsvg"), *words.split()], cwd=folder, check=True)
     read = cv2.imread(str(folder / "read.png"))
     size = read.shape[1] / printed().plan.sheet_mm[0]

@@ -25,9 +25,7 @@ SINGLE_PAGES = ("index.md", "glossary.md", "troubleshooting.md")
 GENERATED = tuple(f"reference/{name}.md" for name in ("commands", "python", "cells", "wheels"))
 MAX_MEDIAN_WORDS = 16
 MAX_WORDS = 30
-READER = re.compile(
-    r"\bfor\b.*\b(you|who|whose|everyone|people|owners)\b|\b(you|who)\b.*\bfor\b", re.IGNORECASE
-)
+READER = re.compile(r"\bfor\b.*\b(you|who|whose|everyone|people|owners)\b|\b(you|who)\b.*\bfor\b", re.IGNORECASE)
 
 
 def pages() -> list[Path]:

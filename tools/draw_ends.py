@@ -76,9 +76,7 @@ def cell(stroke, brush, **how: str) -> np.ndarray:
 
 def main() -> None:
     brush = find_brush("round-6")
-    rows = [
-        np.hstack([cell(each, brush, **{name: how}) for each in strokes(name == "end")]) for name, how in ROWS
-    ]
+    rows = [np.hstack([cell(each, brush, **{name: how}) for each in strokes(name == "end")]) for name, how in ROWS]
     small = cv2.resize(np.vstack(rows), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
     cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "explanation" / "ends.png"), small)
 

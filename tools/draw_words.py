@@ -65,17 +65,10 @@ def main() -> None:
     rows = [row(Path(file).read_bytes(), word) for file, word in pairs]
     width = max(image.shape[1] for cells in rows for image in cells)
     lines = [
-        np.hstack(
-            [
-                np.pad(each, ((0, 0), (0, width - each.shape[1]), (0, 0)), constant_values=PAPER)
-                for each in cells
-            ]
-        )
+        np.hstack([np.pad(each, ((0, 0), (0, width - each.shape[1]), (0, 0)), constant_values=PAPER) for each in cells])
         for cells in rows
     ]
-    cv2.imwrite(
-        str(Path(__file__).parents[1] / "docs" / "evidence" / "words.png"), np.vstack(lines) // 16 * 16 + 15
-    )
+    cv2.imwrite(str(Path(__file__).parents[1] / "docs" / "evidence" / "words.png"), np.vstack(lines) // 16 * 16 + 15)
 
 
 if __name__ == "__main__":

@@ -89,8 +89,7 @@ def round_6() -> dict:
         },
         "half_width": {
             "coefficients": [0, ROUND_HALF_WIDTH_PER_DEPTH],
-            "source": "The article prints no law for the width: 0.42 d is assumed until a real brush is "
-            "measured.",
+            "source": "The article prints no law for the width: 0.42 d is assumed until a real brush is measured.",
             "assumed": True,
         },
         "footprints": {

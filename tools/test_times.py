@@ -51,9 +51,7 @@ def run(suite: str) -> int:
 
 
 def read(folder: Path) -> list[dict]:
-    return [
-        json.loads(line) for file in sorted(folder.glob("*.jsonl")) for line in file.read_text().splitlines()
-    ]
+    return [json.loads(line) for file in sorted(folder.glob("*.jsonl")) for line in file.read_text().splitlines()]
 
 
 def show(title: str, costs: dict[str, float], rows: int) -> None:
@@ -92,9 +90,7 @@ def show_builds(rows: int) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rows", type=int, default=25, help="rows of each table (default: %(default)s)")
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("run", help="run suites").add_argument("suites", nargs="+", choices=SUITES)

@@ -140,11 +140,7 @@ def why_skipped(variant: Variant, found: dict, known: dict[str, dict]) -> str:
     """
     if variant.flags:
         return ""
-    alike = [
-        name
-        for name, other in known.items()
-        if all(found[change] == other[change] for change in variant.changes)
-    ]
+    alike = [name for name, other in known.items() if all(found[change] == other[change] for change in variant.changes)]
     return f"skipped: calculates like {alike[0]} on this processor" if alike else ""
 
 
@@ -225,9 +221,7 @@ def read_options() -> argparse.Namespace:
         choices=SUITES,
         help="run only this one; repeat it for more (default: all)",
     )
-    add(
-        "--tests", action="append", default=[], metavar="PATTERN", help="run only test files with such a name"
-    )
+    add("--tests", action="append", default=[], metavar="PATTERN", help="run only test files with such a name")
     add("--processes", default="auto", metavar="N", help="of pytest, as its -n (default: auto)")
     add("--list", action="store_true", help="build plain, list the variants, and run no test")
     return parser.parse_args()

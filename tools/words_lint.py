@@ -77,9 +77,7 @@ def findings(path: Path, banned: list[tuple[re.Pattern[str], str]]) -> Iterator[
 
 def sources(folders: list[Path]) -> list[Path]:
     """Return the source files of these paths, without files that quote the words."""
-    found = [
-        path for folder in folders for path in ([folder] if folder.is_file() else sorted(folder.rglob("*")))
-    ]
+    found = [path for folder in folders for path in ([folder] if folder.is_file() else sorted(folder.rglob("*")))]
     kept = [path for path in found if path.suffix in PYTHON + CPP and path.is_file()]
     return [path for path in kept if path.relative_to(ROOT).as_posix() not in QUOTING]
 

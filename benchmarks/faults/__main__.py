@@ -37,14 +37,10 @@ ROOT = Path(__file__).parents[2]
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("step", choices=["plant", "map", "try", "report"])
     parser.add_argument("paths", nargs="*", help="of tests to map; cpp: those of C++ (default: all)")
-    parser.add_argument(
-        "--work", type=Path, default=ROOT / "build" / "faults", help="folder (default: %(default)s)"
-    )
+    parser.add_argument("--work", type=Path, default=ROOT / "build" / "faults", help="folder (default: %(default)s)")
     parser.add_argument("--root", type=Path, default=ROOT, help="tree to plant in (default: this one)")
     parser.add_argument(
         "--tier",

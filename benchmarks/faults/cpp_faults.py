@@ -107,9 +107,7 @@ class _File:
                         f"!({inner})",
                         f"(brushsvg_faults::fault({NUMBER}) != static_cast<bool>({inner}))",
                     )
-            case "expression_statement" if (
-                node.named_children and node.named_children[0].type == "call_expression"
-            ):
+            case "expression_statement" if node.named_children and node.named_children[0].type == "call_expression":
                 self._add("call removed", node, ";", f"{{ if (!brushsvg_faults::fault({NUMBER})) {text} }}")
             case "return_statement" if node.named_children and text not in ("return {};", "return false;"):
                 if text == "return true;" or self._text(node.named_children[0]).startswith("!"):
@@ -135,9 +133,7 @@ class _File:
             mutated = f"({one_line(self._text(left))}) {table[operator]} ({one_line(self._text(right))})"
             shown = f"{self._text(left)} {table[operator]} {self._text(right)}"
             texts = [f"(brushsvg_faults::fault({NUMBER}) ? ({mutated}) : ({original}))"]
-            plain = re.fullmatch(
-                r"[\w\s.!<>=&|+-]+", original
-            )  # the other form of a boolean may read a missing value
+            plain = re.fullmatch(r"[\w\s.!<>=&|+-]+", original)  # the other form of a boolean may read a missing value
             if (kind == "comparison" and _pure(original)) or (kind == "boolean" and plain):
                 both = f"[&] {{ return {one_line(original)}; }}, [&] {{ return {mutated}; }}"
                 texts.insert(0, f"(brushsvg_faults::fault({NUMBER}, {both}) ? ({mutated}) : ({original}))")
@@ -175,6 +171,4 @@ class _File:
                 Edit(use.start_byte, use.end_byte, f"(brushsvg_faults::fault({NUMBER}) ? {other} : {word})")
                 for use in uses
             ]
-            self.faults.append(
-                Fault(self.file, *where, "constant", f"{word} = {number}", f"{word} = {other}", [edits])
-            )
+            self.faults.append(Fault(self.file, *where, "constant", f"{word} = {number}", f"{word} = {other}", [edits]))

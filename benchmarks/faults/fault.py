@@ -161,9 +161,7 @@ class Choice:
     def _offered(self, folder: str) -> Iterator[Fault]:
         rng = random.Random(f"{self._seed} {folder}")
         left: dict[str, list[Fault]] = {}
-        for fault in sorted(
-            self._by_folder[folder], key=lambda fault: (fault.file, fault.line, fault.change)
-        ):
+        for fault in sorted(self._by_folder[folder], key=lambda fault: (fault.file, fault.line, fault.change)):
             left.setdefault(fault.kind, []).append(fault)
         for faults in left.values():
             rng.shuffle(faults)

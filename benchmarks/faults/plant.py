@@ -36,9 +36,7 @@ def plant(root: Path, work: Path, seed: int, python: int, cpp: int, safety: int 
         number_all(faults)
         write(tree, sources, faults)
         code = "import brushsvg._core; print(brushsvg._core.__file__)"
-        done = subprocess.run(
-            [root / ".venv/bin/python", "-c", code], capture_output=True, text=True, check=True
-        )
+        done = subprocess.run([root / ".venv/bin/python", "-c", code], capture_output=True, text=True, check=True)
         shutil.copy(done.stdout.strip(), tree / PACKAGE)
         return save(work, faults)
     choice = choose_cpp(tree, seed, cpp, safety)
@@ -65,9 +63,7 @@ def save(work: Path, faults: list[Fault]) -> list[Fault]:
     for name in ("map", "tried"):
         shutil.rmtree(work / name, ignore_errors=True)
     (work / "tiers.json").unlink(missing_ok=True)
-    (work / "faults.json").write_text(
-        json.dumps([asdict(fault) for fault in faults], indent=1), encoding="utf-8"
-    )
+    (work / "faults.json").write_text(json.dumps([asdict(fault) for fault in faults], indent=1), encoding="utf-8")
     return faults
 
 
@@ -141,9 +137,7 @@ def choose_python(tree: Path, seed: int, count: int, safety: int) -> list[Fault]
     choice = Choice(in_parts(candidates) if safety else candidates, seed, accept)
     if safety:
         return take_each(choice, safety)
-    return take_all(
-        choice, count, {path.relative_to(tree).as_posix(): text for path, text in sources.items()}
-    )
+    return take_all(choice, count, {path.relative_to(tree).as_posix(): text for path, text in sources.items()})
 
 
 def choose_cpp(tree: Path, seed: int, count: int, safety: int) -> Choice:
@@ -199,9 +193,7 @@ def take_all(choice: Choice, count: int, sources: dict[str, bytes]) -> list[Faul
 
 def configure(tree: Path) -> None:
     python = tree / ".venv/bin/python"
-    done = subprocess.run(
-        [python, "-m", "pybind11", "--cmakedir"], capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([python, "-m", "pybind11", "--cmakedir"], capture_output=True, text=True, check=True)
     words = [
         f"-Dpybind11_DIR={done.stdout.strip()}",
         f"-DPython_EXECUTABLE={python}",
@@ -226,9 +218,7 @@ class Compiler:
             if path.is_relative_to(tree / "cpp"):
                 self.commands[path.relative_to(tree).as_posix()] = shlex.split(each["command"])
         self.includes = {
-            path: set(
-                re.findall(r'#include "(?:[\w/]*/)?(\w+\.hpp)"', (tree / path).read_text(encoding="utf-8"))
-            )
+            path: set(re.findall(r'#include "(?:[\w/]*/)?(\w+\.hpp)"', (tree / path).read_text(encoding="utf-8")))
             for path in [each.relative_to(tree).as_posix() for each in (tree / "cpp").rglob("*.[ch]pp")]
         }
 
@@ -277,9 +267,7 @@ def with_switches(source: bytes, faults: list[Fault], tree: Path) -> bytes:
 def read_sources(tree: Path) -> dict[str, bytes]:
     paths = [path for folder in (PACKAGE, "cpp") for path in sorted((tree / folder).rglob("*"))]
     return {
-        path.relative_to(tree).as_posix(): path.read_bytes()
-        for path in paths
-        if path.suffix in (".py", ".cpp", ".hpp")
+        path.relative_to(tree).as_posix(): path.read_bytes() for path in paths if path.suffix in (".py", ".cpp", ".hpp")
     }
 
 

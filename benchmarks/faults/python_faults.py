@@ -68,9 +68,7 @@ def _number(node: ast.AST) -> bool:
 
 
 def _text(node: ast.AST) -> bool:
-    return isinstance(node, NOT_NUMBERS) or (
-        isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
-    )
+    return isinstance(node, NOT_NUMBERS) or (isinstance(node, ast.Constant) and isinstance(node.value, str | bytes))
 
 
 class _File:
@@ -196,11 +194,6 @@ class _File:
                     if not uses or not other or name in elsewhere or name in outside:
                         continue
                     where = place(self.source, self._span(node)[0])
-                    edits = [
-                        Edit(*self._span(use), f"({other} if __fault__({NUMBER}) else {name})")
-                        for use in uses
-                    ]
+                    edits = [Edit(*self._span(use), f"({other} if __fault__({NUMBER}) else {name})") for use in uses]
                     original = f"{name} = {self._segment(value)}"
-                    self.faults.append(
-                        Fault(self.file, *where, "constant", original, f"{name} = {other}", [edits])
-                    )
+                    self.faults.append(Fault(self.file, *where, "constant", original, f"{name} = {other}", [edits]))

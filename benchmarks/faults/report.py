@@ -16,14 +16,10 @@ def equivalents() -> dict[tuple, str]:
     """Return {identity of a fault: why it changes nothing important}."""
     with EQUIVALENT.open("rb") as file:
         listed = tomllib.load(file).get("fault", [])
-    return {
-        tuple(each[key] for key in ("file", "code", "column", "change")): each["reason"] for each in listed
-    }
+    return {tuple(each[key] for key in ("file", "code", "column", "change")): each["reason"] for each in listed}
 
 
-def report(
-    faults: list[Fault], outcomes: dict[int, Outcome], tests: dict[str, Test], hits: dict[int, set[str]]
-) -> str:
+def report(faults: list[Fault], outcomes: dict[int, Outcome], tests: dict[str, Test], hits: dict[int, set[str]]) -> str:
     known = equivalents()
     lines = ["| | place | kind | change | | test |", "|--:|---|---|---|---|---|"]
     totals: dict[str, Counter] = defaultdict(Counter)

@@ -74,16 +74,12 @@ class Tree:
         self.map, self.tiers = work / "map", work / "tiers.json"
         self.python = self.root / ".venv/bin/python"
 
-    def start(
-        self, words: list, limit: float | None = None, show: bool = False, **env: str
-    ) -> tuple[int, str]:
+    def start(self, words: list, limit: float | None = None, show: bool = False, **env: str) -> tuple[int, str]:
         """Run a command in the tree; return its status and output.
 
         At the time limit, the command ends together with all processes that it started.
         """
-        surroundings = {
-            k: v for k, v in os.environ.items() if not k.startswith(("PYTEST_", "FAULTS_", "BRUSHSVG_"))
-        }
+        surroundings = {k: v for k, v in os.environ.items() if not k.startswith(("PYTEST_", "FAULTS_", "BRUSHSVG_"))}
         path = f"{self.root}/.venv/bin:{os.environ['PATH']}"
         process = subprocess.Popen(
             [*map(str, words)],
@@ -181,9 +177,7 @@ class Tree:
                 name = record["test"]
                 tier = "ci" if name.startswith(CPP) else tiers.get(name)
                 if "outcome" in record and tier:
-                    found[name] = Test(
-                        name, record["outcome"], record["seconds"], record.get("shared", []), tier
-                    )
+                    found[name] = Test(name, record["outcome"], record["seconds"], record.get("shared", []), tier)
         return found
 
     def hits(self) -> dict[int, set[str]]:
@@ -216,9 +210,7 @@ class Tree:
         for files in apart(list(dict.fromkeys(test.file for test in tests if not test.name.startswith(CPP)))):
             folder = Path(tempfile.mkdtemp(prefix="faults-"))
             try:
-                test, why, more = self._run_pytest(
-                    number, [test for test in tests if test.file in files], folder
-                )
+                test, why, more = self._run_pytest(number, [test for test in tests if test.file in files], folder)
             finally:
                 shutil.rmtree(folder, ignore_errors=True)
             ran += more
@@ -240,19 +232,13 @@ class Tree:
             FAULTS_SELECT=str(select),
             FAULTS_RESULTS=str(folder),
         )
-        lines = [
-            json.loads(line)
-            for path in folder.glob("tests-*.jsonl")
-            for line in path.read_text().splitlines()
-        ]
+        lines = [json.loads(line) for path in folder.glob("tests-*.jsonl") for line in path.read_text().splitlines()]
         by_name = {test.name: test for test in tests}
         ended = {line["test"] for line in lines if "outcome" in line}
         for line in lines:
             if line.get("outcome") == "failed":
                 # a file that cannot be imported fails as a whole
-                test = by_name.get(line["test"]) or next(
-                    (t for t in tests if t.file == line["test"]), tests[0]
-                )
+                test = by_name.get(line["test"]) or next((t for t in tests if t.file == line["test"]), tests[0])
                 return test, line["why"], len(ended)
         for line in lines:
             if "begun" in line and line["test"] not in ended:
@@ -322,9 +308,7 @@ def reaching(tests: dict[str, Test], hits: set[str]) -> tuple[list[Test], list[T
     Both lists begin with the quickest test. Tests share fixtures and cached results of a file or of a whole
     run. Only the first test that needs a shared result reaches the fault in it.
     """
-    passing = sorted(
-        (test for test in tests.values() if test.outcome == "passed"), key=lambda test: test.seconds
-    )
+    passing = sorted((test for test in tests.values() if test.outcome == "passed"), key=lambda test: test.seconds)
     files = {name for name in hits if "::" not in name}
     direct = [test for test in passing if test.name in hits or test.file in files]
     near_files = {test.file for test in direct if not test.name.startswith(CPP)}

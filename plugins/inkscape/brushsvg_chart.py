@@ -27,9 +27,7 @@ def main() -> None:
     wished = "" if os.path.isdir(args.output) else args.output  # Inkscape turns an empty choice into a folder
     suffix = os.path.splitext(wished)[1].lower() or ".json"
     if suffix not in PROGRAMS:
-        raise StopError(
-            f"{wished} ends in none of {' '.join(PROGRAMS)}: choose another name for the program."
-        )
+        raise StopError(f"{wished} ends in none of {' '.join(PROGRAMS)}: choose another name for the program.")
     program = f"chart{suffix}"
     words = ["-o", program, "--drawing", DRAWING, "--page", "page.svg", "--chart", "read-by.json"]
     words += ["--sheet", args.sheet, *choices(args)]

@@ -65,9 +65,7 @@ def _unattended_inkscape() -> str | None:
     """
     with contextlib.suppress(OSError):
         pipe = os.readlink("/proc/self/fd/2")
-        return next(
-            (each for each in glob.iglob("/proc/[0-9]*") if _is_unattended(each) and _has(each, pipe)), None
-        )
+        return next((each for each in glob.iglob("/proc/[0-9]*") if _is_unattended(each) and _has(each, pipe)), None)
     return None
 
 

@@ -124,9 +124,7 @@ def _label(paths, missed: int, marks, warnings: int, save_refuses: list[str]) ->
         return f"Brush preview: saving a program will be refused: {save_refuses[0]}{more}"
     count = len(paths)
     parts = [f"{count} stroke{'s' * (count != 1)}"]
-    errors_mm = [
-        float(path.get("data-tracking-error-mm")) for path in paths if path.get("data-tracking-error-mm")
-    ]
+    errors_mm = [float(path.get("data-tracking-error-mm")) for path in paths if path.get("data-tracking-error-mm")]
     if errors_mm:
         parts.append(f"tracking error at most {max(errors_mm):.2f} mm")
     if missed:

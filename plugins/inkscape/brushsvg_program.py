@@ -76,9 +76,7 @@ def guarded(main) -> None:
     except ImportError as problem:
         message = _lacking((problem.name or str(problem)).partition(".")[0])
     except Exception as mistake:
-        message = (
-            f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
-        )
+        message = f"brushsvg's extension made a mistake, please report it: {type(mistake).__name__}: {mistake}"
     else:
         return
     show_message(message)
@@ -93,9 +91,7 @@ def _lacking(module: str) -> str:
     lacks = f"{sys.executable}, which Inkscape runs extensions with, lacks {module}"
     if module == "inkex":
         return f"{lacks}, which comes with Inkscape: call this from Inkscape's menu Extensions."
-    package = (
-        f"the package {PACKAGES[module]} on Debian and Ubuntu, else with  " if module in PACKAGES else ""
-    )
+    package = f"the package {PACKAGES[module]} on Debian and Ubuntu, else with  " if module in PACKAGES else ""
     return f"{lacks}: install {package}{sys.executable} -m pip install {module}"
 
 
@@ -214,9 +210,7 @@ class Run:
         out, err = self.process.communicate()
         notices = [(line, _notice(line)) for line in err.splitlines()]
         self.save_refuses = [
-            self._in_words(notice)
-            for _, notice in notices
-            if notice and (notice["damaged"] or notice["refused"])
+            self._in_words(notice) for _, notice in notices if notice and (notice["damaged"] or notice["refused"])
         ]
         lines = [self._in_words(notice) if notice else line for line, notice in notices]
         status = self.process.returncode
@@ -283,9 +277,7 @@ def _notice(line: str) -> dict | None:
     try:
         notice = json.loads(line)
         return (
-            notice
-            if {"file", "where", "sentence", "code", "advice", "damaged", "refused"} <= notice.keys()
-            else None
+            notice if {"file", "where", "sentence", "code", "advice", "damaged", "refused"} <= notice.keys() else None
         )
     except (ValueError, AttributeError):
         return None

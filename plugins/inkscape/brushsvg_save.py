@@ -23,11 +23,7 @@ def main() -> None:
         cell="document",
         cell_file="",
     )
-    if (
-        args.cell == "document"
-        and args.else_cell
-        and root_of(args.input_file).get("data-brushsvg-cell") is None
-    ):
+    if args.cell == "document" and args.else_cell and root_of(args.input_file).get("data-brushsvg-cell") is None:
         args.cell = args.else_cell
     out = f"saved.{args.format}"
     with Run(args.executable, args.input_file, args.command, DRAWING, "-o", out, *choices(args)) as run:

@@ -58,9 +58,7 @@ def _tolerance(typed: str) -> str:
     try:
         value = float(typed.removesuffix("mm").replace(",", "."))
     except ValueError:
-        raise StopError(
-            f"{typed[:24]!r} is no tolerance: type millimetres, {TAKE_BACK}, or nothing."
-        ) from None
+        raise StopError(f"{typed[:24]!r} is no tolerance: type millimetres, {TAKE_BACK}, or nothing.") from None
     if not least <= value <= greatest:
         raise StopError(f"Tolerance {value:g} mm is outside the range [{least:g}, {greatest:g}] mm.")
     return f"{value:g}mm"

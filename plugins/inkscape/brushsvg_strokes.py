@@ -42,9 +42,7 @@ def main() -> None:
     svg = document.getroot()
     with tempfile.TemporaryDirectory(prefix="brushsvg") as folder:
         drawing, by_id = with_letters(etree, svg, args.input_file, folder)
-        with Run(
-            args.executable, drawing, "preview", DRAWING, "-o", STROKES, "--show", "strokes", *words
-        ) as run:
+        with Run(args.executable, drawing, "preview", DRAWING, "-o", STROKES, "--show", "strokes", *words) as run:
             _, warnings = run.finish()
             drawn = ElementTree.fromstring(run.made(STROKES))
     per_shape = _of_shapes(by_id, drawn)

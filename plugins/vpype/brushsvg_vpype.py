@@ -28,18 +28,12 @@ _ID = re.compile(r"layer(\d+)-")
 def choices(command):
     """Add the options that both commands have."""
     for option in (
-        click.option(
-            "--brush", "brush_name", default="round-6", metavar="NAME|FILE", help="default: round-6"
-        ),
-        click.option(
-            "--compensation", type=click.Choice(("none", "constant", "closed", "refined")), default="closed"
-        ),
+        click.option("--brush", "brush_name", default="round-6", metavar="NAME|FILE", help="default: round-6"),
+        click.option("--compensation", type=click.Choice(("none", "constant", "closed", "refined")), default="closed"),
         click.option("--tolerance", type=click.FloatRange(1e-5, 10), default=0.05, help="mm; default: 0.05"),
         click.option("--start", type=click.Choice(("pointed", "round", "butt", "auto")), default="auto"),
         click.option("--end", type=click.Choice(("pointed", "round", "butt", "auto")), default="auto"),
-        click.option(
-            "--width", type=vpype_cli.LengthType(), help="of all marks; default: the layers' pen widths"
-        ),
+        click.option("--width", type=vpype_cli.LengthType(), help="of all marks; default: the layers' pen widths"),
     ):
         command = option(command)
     return command

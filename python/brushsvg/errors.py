@@ -56,9 +56,7 @@ class Error(ValueError):
 
         where: the element of the notice, None for the element of this error.
         """
-        return Notice(
-            self.where if where is None else where, self.sentence, code=self.code, advice=self.advice
-        )
+        return Notice(self.where if where is None else where, self.sentence, code=self.code, advice=self.advice)
 
 
 @dataclass(frozen=True)
@@ -170,9 +168,7 @@ def need_one_of(value, choices: tuple, what: str) -> None:
 
 def missing_packages_error(what: str, *packages: str) -> Error:
     """Return an Error for missing packages, with the command that installs them."""
-    return Error(
-        f"{what} {' and '.join(packages)}: install with  {command_to_add(*packages)}", code="package-missing"
-    )
+    return Error(f"{what} {' and '.join(packages)}: install with  {command_to_add(*packages)}", code="package-missing")
 
 
 def command_to_add(*packages: str) -> str:

@@ -39,10 +39,7 @@ def plan_svg(plan: _core.Plan) -> str | None:
     Returns None if the plan has no sheet, too many points, poses that are not finite, or invalid arcs.
     """
     width, height = plan.sheet_mm
-    if (
-        not (0 < width <= 1e6 and 0 < height <= 1e6)
-        or sum(len(p.poses_mm) for p in plan.passes) > MOST_POINTS
-    ):
+    if not (0 < width <= 1e6 and 0 < height <= 1e6) or sum(len(p.poses_mm) for p in plan.passes) > MOST_POINTS:
         return None
     size = f'width="{width:g}mm" height="{height:g}mm" viewBox="0 0 {width:g} {height:g}"'
     wide = max(width, height) / 500

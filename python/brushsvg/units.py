@@ -41,16 +41,12 @@ def _shown(text: str) -> str:
 def _parts(text: str) -> tuple[float, str]:
     found = _LENGTH.fullmatch(text.strip())
     if not found:
-        raise Error(
-            f"{_shown(text)} is not a length; write for example 5mm, 0.2in or 14pt", code="not-a-length"
-        )
+        raise Error(f"{_shown(text)} is not a length; write for example 5mm, 0.2in or 14pt", code="not-a-length")
     value, unit = float(found[1]), found[2].lower()
     if not math.isfinite(value):
         raise Error(f"{_shown(text)} is too large to be a length", code="not-a-length")
     if unit not in MM_PER and unit not in ("", "%", *_OF_FONT):
-        raise Error(
-            f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q", code="not-a-length"
-        )
+        raise Error(f"{_shown(text)} has a unit that is not read; use one of mm cm in pt pc px Q", code="not-a-length")
     return value, unit
 
 
@@ -69,9 +65,7 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
     """
     value, unit = _parts(text)
     if unit == "%":
-        raise Error(
-            f"{_shown(text)} is a percentage, but there is nothing to take it of", code="not-a-length"
-        )
+        raise Error(f"{_shown(text)} is a percentage, but there is nothing to take it of", code="not-a-length")
     if unit in _OF_FONT:
         raise Error(
             f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q",
@@ -104,9 +98,7 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
     """
     found = _SIZE.fullmatch(" ".join(text.lower().split()))
     if not found:
-        raise Error(
-            f"{_shown(text)} is not a size; write for example 210x297mm or 8.5x11in", code="not-a-size"
-        )
+        raise Error(f"{_shown(text)} is not a size; write for example 210x297mm or 8.5x11in", code="not-a-size")
     height_unit = found[4]
     size = (
         length_mm(found[1] + (found[2] or height_unit), default_unit),
@@ -131,6 +123,4 @@ def clock(seconds: float) -> str:
     """Format a time for people, for example "1 min 19 s"."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
-    return (
-        f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
-    )
+    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

@@ -71,11 +71,7 @@ def _in_words(function: Callable, words: str, is_method: bool = False) -> Callab
 
 def _explain(words: str, ways: list[dict[str, str]], given: tuple, named: dict) -> str:
     shown = ", ".join([*map(_short, given), *(f"{name}={_short(value)}" for name, value in named.items())])
-    if (
-        len(ways) == 1
-        and all(re.fullmatch(r"arg\d", name) for name in ways[0])
-        and len(ways[0]) == len(given) == 1
-    ):
+    if len(ways) == 1 and all(re.fullmatch(r"arg\d", name) for name in ways[0]) and len(ways[0]) == len(given) == 1:
         kind = next(iter(ways[0].values()))
         return f"{words} is {kind if kind[0].isdigit() else f'a {kind}'}, not {shown}"
     taken = " or ".join(f"({', '.join(f'{name}: {kind}' for name, kind in way.items())})" for way in ways)
@@ -86,9 +82,7 @@ def _truth(way: dict[str, str], given: tuple, named: dict) -> str:
     """Return the words about True or False in place of a number, "" if there is none."""
     for name, value in [*zip(way, given, strict=False), *named.items()]:
         if _takes_numbers(way.get(name, "")) and _has_truth(value):
-            return (
-                f"{'' if re.fullmatch('arg[0-9]', name) else f': {name}'} takes numbers, not {_short(value)}"
-            )
+            return f"{'' if re.fullmatch('arg[0-9]', name) else f': {name}'} takes numbers, not {_short(value)}"
     return ""
 
 

@@ -66,10 +66,7 @@ def path(d, width="3"):
 
 
 def listing(folder):
-    return {
-        str(each.relative_to(folder)): each.read_bytes() if each.is_file() else None
-        for each in folder.rglob("*")
-    }
+    return {str(each.relative_to(folder)): each.read_bytes() if each.is_file() else None for each in folder.rglob("*")}
 
 
 def refused(folder, *words, status=1, **settings):

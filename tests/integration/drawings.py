@@ -51,9 +51,7 @@ class Inkscape:
         self.env.pop("DISPLAY", None)
 
     def __call__(self, *words):
-        subprocess.run(
-            ["inkscape", *map(str, words)], env=self.env, check=True, capture_output=True, timeout=120
-        )
+        subprocess.run(["inkscape", *map(str, words)], env=self.env, check=True, capture_output=True, timeout=120)
 
     def save(self, out: Path, *, plain: bool) -> Path:
         sketch = self.folder / "sketch.svg"

@@ -27,9 +27,7 @@ def text(msp, words=WORDS, align=ALIGN.LEFT, at=(50, 50), to=None, **attributes)
 
 def mtext(msp, words=WORDS, **attributes):
     """Add MTEXT wider than its lines, since the add-on guesses a missing width."""
-    return msp.add_mtext(
-        words, {"style": "T", "insert": (100, 100), "char_height": 8, "width": 300} | attributes
-    )
+    return msp.add_mtext(words, {"style": "T", "insert": (100, 100), "char_height": 8, "width": 300} | attributes)
 
 
 def raw(entity, **attributes):
@@ -80,9 +78,7 @@ LINES = {
     "ellipse in part": lambda d, m: m.add_ellipse((50, 50), (30, 10), 0.4, 1, 4),
     "ellipse over 0": lambda d, m: m.add_ellipse((50, 50), (30, 10), 0.4, 5, 2),
     "ellipse of ratio above 1": lambda d, m: m.add_ellipse((50, 50), (10, 3), 1.0).dxf.set("ratio", 2.0),
-    "ellipse of negative ratio": lambda d, m: m.add_ellipse((50, 50), (30, 10), 0.4, 1, 4).dxf.set(
-        "ratio", -0.4
-    ),
+    "ellipse of negative ratio": lambda d, m: m.add_ellipse((50, 50), (30, 10), 0.4, 1, 4).dxf.set("ratio", -0.4),
     "lwpolyline": lambda d, m: m.add_lwpolyline(PATH),
     "lwpolyline closed": lambda d, m: m.add_lwpolyline(PATH, close=True),
     "lwpolyline bulges": lambda d, m: m.add_lwpolyline(
@@ -96,12 +92,8 @@ LINES = {
         [(*p, 2, 2) for p in PATH], format="xyse", dxfattribs={"const_width": 3}
     ),
     "lwpolyline widths": lambda d, m: m.add_lwpolyline([(*p, 1, 3) for p in PATH], format="xyse"),
-    "lwpolyline widths and bulges": lambda d, m: m.add_lwpolyline(
-        [(*p, 1, 2, 0.6) for p in PATH], format="xyseb"
-    ),
-    "lwpolyline of width closed": lambda d, m: m.add_lwpolyline(
-        PATH, close=True, dxfattribs={"const_width": 2}
-    ),
+    "lwpolyline widths and bulges": lambda d, m: m.add_lwpolyline([(*p, 1, 2, 0.6) for p in PATH], format="xyseb"),
+    "lwpolyline of width closed": lambda d, m: m.add_lwpolyline(PATH, close=True, dxfattribs={"const_width": 2}),
     "polyline": lambda d, m: m.add_polyline2d(PATH),
     "polyline width": lambda d, m: m.add_polyline2d(
         PATH, dxfattribs={"default_start_width": 2, "default_end_width": 2}
@@ -115,9 +107,7 @@ LINES = {
     "polyline mesh": lambda d, m: polymesh(m),
     "polyface": lambda d, m: polyface(m),
     "spline": lambda d, m: m.add_open_spline([(10, 10), (20, 50), (50, 0), (70, 40), (90, 10)]),
-    "spline rational": lambda d, m: m.add_rational_spline(
-        [(10, 10), (20, 50), (50, 0), (70, 40)], [1, 3, 2, 1]
-    ),
+    "spline rational": lambda d, m: m.add_rational_spline([(10, 10), (20, 50), (50, 0), (70, 40)], [1, 3, 2, 1]),
     "spline closed": lambda d, m: m.add_spline().set_closed(
         [(10, 10, 0), (20, 50, 0), (50, 0, 0), (70, 40, 0), (90, 10, 0)]
     ),
@@ -243,9 +233,7 @@ PLANES = ocs(
         "hatch of edges": lambda d, m, z: edges(m, extrusion=z),
         "text": lambda d, m, z: text(m, extrusion=z, rotation=20),
         "text right": lambda d, m, z: text(m, align=ALIGN.TOP_RIGHT, extrusion=z, rotation=20),
-        "mtext": lambda d, m, z: mtext(
-            m, extrusion=z, text_direction=(1, 0.3, 0) if z == BELOW else (1, 0, -0.375)
-        ),
+        "mtext": lambda d, m, z: mtext(m, extrusion=z, text_direction=(1, 0.3, 0) if z == BELOW else (1, 0, -0.375)),
         "mtext rotation": lambda d, m, z: mtext(m, extrusion=z, rotation=30),
         "mtext formatted": lambda d, m, z: mtext(m, r"Ax\C1;p A", extrusion=z, rotation=30),
         "insert": in_block,
@@ -331,9 +319,7 @@ TEXTS = {
         m.add_attdef("AxA", (10, 10), "x", height=8, dxfattribs={"style": "T"}),
         line(m),
     ),
-    "attribute definition alone": lambda d, m: m.add_attdef(
-        "AxA", (10, 10), "x", height=8, dxfattribs={"style": "T"}
-    ),
+    "attribute definition alone": lambda d, m: m.add_attdef("AxA", (10, 10), "x", height=8, dxfattribs={"style": "T"}),
     "attribute definition invisible": lambda d, m: (
         m.add_attdef("AxA", (10, 10), "x", height=8, dxfattribs={"style": "T", "flags": 1}),
         line(m),
@@ -471,9 +457,7 @@ MTEXTS = {
     "mtext of an upside down style": lambda d, m: styled(d, m, mtext, generation_flags=4),
     "mtext of an oblique style": lambda d, m: styled(d, m, mtext, oblique=25),
     "mtext of a wide style": lambda d, m: styled(d, m, mtext, width=2),
-    "mtext of a wide style wrapped": lambda d, m: styled(
-        d, m, lambda m: mtext(m, "AA xx AA pp", width=60), width=2
-    ),
+    "mtext of a wide style wrapped": lambda d, m: styled(d, m, lambda m: mtext(m, "AA xx AA pp", width=60), width=2),
     "mtext of a high style": lambda d, m: styled(d, m, mtext, height=20),
     "mtext of a vertical style": lambda d, m: styled(d, m, mtext, flags=4),
     "mtext of no style": lambda d, m: mtext(m, style="nowhere"),
@@ -614,9 +598,7 @@ DASHES = {
     "dashed polyline": lambda d, m: dashed(
         d, m, add=lambda m, a: m.add_lwpolyline(PATH, dxfattribs=a | {"flags": 128})
     ),
-    "dashed polyline by segments": lambda d, m: dashed(
-        d, m, add=lambda m, a: m.add_lwpolyline(PATH, dxfattribs=a)
-    ),
+    "dashed polyline by segments": lambda d, m: dashed(d, m, add=lambda m, a: m.add_lwpolyline(PATH, dxfattribs=a)),
     "dashed wide polyline": lambda d, m: dashed(
         d, m, add=lambda m, a: m.add_lwpolyline(PATH, dxfattribs=a | {"const_width": 2})
     ),
@@ -650,9 +632,7 @@ FILLS = {
     "hatch of two that overlap": lambda d, m: two_outer(m),
     "hatch pattern": lambda d, m: hatch(m, BOX).set_pattern_fill("ANSI31", scale=4),
     "hatch gradient": lambda d, m: hatch(m, BOX).set_gradient((255, 0, 0), (0, 0, 255)),
-    "hatch gradient of one": lambda d, m: hatch(m, BOX).set_gradient(
-        (255, 0, 0), (255, 255, 255), one_color=1
-    ),
+    "hatch gradient of one": lambda d, m: hatch(m, BOX).set_gradient((255, 0, 0), (255, 255, 255), one_color=1),
     "hatch background": lambda d, m: (
         lambda h: (h.set_pattern_fill("ANSI31", scale=4), setattr(h, "bgcolor", (255, 255, 0)))
     )(hatch(m, BOX)),
@@ -668,9 +648,7 @@ FILLS = {
         [(10, 10), (50, 10), (50, 40), (10, 50)], {"invisible_edges": 5}
     ),
     "3dface triangle": lambda d, m: m.add_3dface([(10, 10), (50, 10), (50, 40)]),
-    "3dface triangle hidden edges": lambda d, m: m.add_3dface(
-        [(10, 10), (50, 10), (50, 40)], {"invisible_edges": 2}
-    ),
+    "3dface triangle hidden edges": lambda d, m: m.add_3dface([(10, 10), (50, 10), (50, 40)], {"invisible_edges": 2}),
     "3dface all hidden": lambda d, m: (
         m.add_3dface([(10, 10), (50, 10), (50, 40)], {"invisible_edges": 15}),
         line(m, (0, 60), (50, 60)),
@@ -699,9 +677,7 @@ def clockwise(m):
 
 def spline_edge(m):
     path = hatch(m).paths.add_edge_path()
-    path.add_spline(
-        control_points=[(10, 10), (20, 40), (50, 40), (60, 10)], degree=3, knot_values=[0] * 4 + [1] * 4
-    )
+    path.add_spline(control_points=[(10, 10), (20, 40), (50, 40), (60, 10)], degree=3, knot_values=[0] * 4 + [1] * 4)
     path.add_line((60, 10), (10, 10))
 
 
@@ -902,10 +878,7 @@ def underlay(d, m):
 
 
 OTHERS = {
-    **{
-        f"point mode {mode}": points(mode, 6)
-        for mode in (0, 1, 2, 3, 4, 32, 33, 34, 35, 36, 64, 66, 67, 96, 98, 99)
-    },
+    **{f"point mode {mode}": points(mode, 6) for mode in (0, 1, 2, 3, 4, 32, 33, 34, 35, 36, 64, 66, 67, 96, 98, 99)},
     "point mode 3 of relative size": points(3, -5),
     "point mode 3 of size 0": points(3, 0),
     "mline": mline(),

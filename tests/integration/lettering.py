@@ -86,9 +86,7 @@ def swept(strokes) -> list[np.ndarray]:
 
 def covered(paint, shape) -> float:
     """Return the share of a shape that is painted."""
-    return (_core.area(paint) + _core.area(shape) - _core.area(_core.unite([*paint, *shape]))) / _core.area(
-        shape
-    )
+    return (_core.area(paint) + _core.area(shape) - _core.area(_core.unite([*paint, *shape]))) / _core.area(shape)
 
 
 def evenly(line: np.ndarray, count: int = 64) -> np.ndarray:

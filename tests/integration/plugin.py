@@ -67,9 +67,7 @@ class Plugin:
         words = f"--actions={';'.join([*actions, f'export-filename:{out}', 'export-do'])}"
         return self._run(["xvfb-run", "-a", "inkscape", "--batch-process", words, str(drawing)])
 
-    def script(
-        self, name: str, drawing: Path, *words: str, before: tuple = ()
-    ) -> subprocess.CompletedProcess:
+    def script(self, name: str, drawing: Path, *words: str, before: tuple = ()) -> subprocess.CompletedProcess:
         """Run the script as Inkscape does, to read the text of its dialog.
 
         before holds words that start the script.
@@ -79,9 +77,7 @@ class Plugin:
         return self._run([*start, script, *words, str(drawing)])
 
     def _run(self, words) -> subprocess.CompletedProcess:
-        return subprocess.run(
-            words, env=self.env, cwd=self.folder, capture_output=True, timeout=40, check=False
-        )
+        return subprocess.run(words, env=self.env, cwd=self.folder, capture_output=True, timeout=40, check=False)
 
 
 def sentence(done: subprocess.CompletedProcess) -> str:

@@ -90,11 +90,7 @@ def _painted(node: ET.Element, above: np.ndarray):
 
     Invisible paths are in resvg's tree, and not in ours.
     """
-    if (
-        node.tag == SVG + "defs"
-        or node.get("opacity") == "0"
-        or node.get("visibility", "visible") != "visible"
-    ):
+    if node.tag == SVG + "defs" or node.get("opacity") == "0" or node.get("visibility", "visible") != "visible":
         return
     matrix = above @ _matrix(node.get("transform"))
     if node.tag == SVG + "path" and (path := _path(node, matrix)):
@@ -115,9 +111,7 @@ def _path(node: ET.Element, matrix: np.ndarray) -> Painted | None:
     lines = _lines(node.get("d"), matrix)
     if not seen or not lines:
         return None
-    width = (
-        float(node.get("stroke-width", 1)) * abs(np.linalg.det(matrix)) ** 0.5 if "stroke" in seen else 0.0
-    )
+    width = float(node.get("stroke-width", 1)) * abs(np.linalg.det(matrix)) ** 0.5 if "stroke" in seen else 0.0
     colour = node.get(seen[0])
     return Painted(
         lines=tuple(lines),

@@ -56,9 +56,7 @@ def painted(text: str, cap: str = "round"):
     except Error as refusal:
         return np.zeros((SIDE * SCALE, SIDE * SCALE)), [str(refusal)]
     sheet = (0.0, 0.0, SIDE * MM, SIDE * MM)
-    mark = shapely.union_all([_mark(element, cap) for element in design.elements]).intersection(
-        shapely.box(*sheet)
-    )
+    mark = shapely.union_all([_mark(element, cap) for element in design.elements]).intersection(shapely.box(*sheet))
     reported = [f"{n.where}: {n.sentence}" for n in design.notices if n.code != "dashed"]
     return _pixels(mark, design.sheet_mm[1]), reported
 
@@ -73,9 +71,7 @@ def _mark(element, cap: str):
                 mark = join(mark, shapely.Polygon(ring).buffer(0))
     if element.stroke_width_mm:
         mark = mark.union(
-            shapely.union_all(
-                [shapely.LineString(r).buffer(element.stroke_width_mm / 2, cap_style=cap) for r in rings]
-            )
+            shapely.union_all([shapely.LineString(r).buffer(element.stroke_width_mm / 2, cap_style=cap) for r in rings])
         )
     return mark
 

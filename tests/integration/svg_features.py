@@ -22,20 +22,14 @@ MARK = '<path d="M2 3L18 4V25Z" stroke-width="2"/>'
 BOX = 'viewBox="1 2 20 30" preserveAspectRatio='
 
 PATHS = {
-    "absolute commands": page(
-        '<path d="M10 20L40 30H60V50C70 60 80 60 90 50S110 40 120 50Q130 70 140 50T160 60Z"/>'
-    ),
+    "absolute commands": page('<path d="M10 20L40 30H60V50C70 60 80 60 90 50S110 40 120 50Q130 70 140 50T160 60Z"/>'),
     "relative commands": page('<path d="m10 20l30 10h20v20c10 10 20 10 30 0s20-10 30 0q10 20 20 0t20 10z"/>'),
     "commands repeat themselves": page(
         '<path d="M10 10 20 20 30 10m5 5 10 10 10-10h5 6 7v5 6L100 50 110 60C120 60 130 70 140 70 150 70 160 60 '
         '170 60s10 10 20 10 10-5 20 0Q210 80 220 70 230 60 240 70t10 10 10 0"/>'
     ),
-    "packed numbers": page(
-        '<path d="M10-.5.5.5l1e1.5-.5.5E+1-3,4,5-6.25.75.5C1.5.5.5-1.5 3e-1-2 M+4+5+6+7"/>'
-    ),
-    "smooth without a curve before": page(
-        '<path d="M10 10S20 30 40 10M60 10T90 30T120 10M130 10L140 20T160 30"/>'
-    ),
+    "packed numbers": page('<path d="M10-.5.5.5l1e1.5-.5.5E+1-3,4,5-6.25.75.5C1.5.5.5-1.5 3e-1-2 M+4+5+6+7"/>'),
+    "smooth without a curve before": page('<path d="M10 10S20 30 40 10M60 10T90 30T120 10M130 10L140 20T160 30"/>'),
     "smooth of the other kind before": page(
         '<path d="M10 10C20 30 30 30 40 10T70 20M90 10Q100 30 110 10S140 40 150 20"/>'
     ),
@@ -44,8 +38,7 @@ PATHS = {
     "lone movetos": page('<path d="M1 1M10 10h20M50 50M60 60h20M90 90"/><path d="M5 5"/>'),
     "dots": page('<path stroke-linecap="round" d="M10 10h0M20 20z M30 30L30 30M50 50h10"/>'),
     "arcs": page(
-        '<path d="M20 50A25 15 0 0 1 60 60A20 20 0 1 0 90 40a10 20 30 1 1 15 15a20 12-40 0020 10A15 15 0 0 1 150 '
-        '90"/>'
+        '<path d="M20 50A25 15 0 0 1 60 60A20 20 0 1 0 90 40a10 20 30 1 1 15 15a20 12-40 0020 10A15 15 0 0 1 150 90"/>'
     ),
     "arcs too small": page('<path d="M10 50A1 2 0 0 1 30 60M100 50a2 2 30 1 0 20 5"/>'),
     "arcs that are lines": page('<path d="M10 50A0 9 0 0 1 50 60A9 0 0 0 1 90 60A5 5 0 1 1 90 60L95 20"/>'),
@@ -61,9 +54,7 @@ SHAPES = {
         '<polyline points="1,2 30,4 10 50"/><polyline points="60-5.5.5,7 80 9 11 12"/>'
         '<polygon points="9 99 50 90 30 130"/>'
     ),
-    "rectangles": page(
-        '<rect x="10" y="20" width="30" height="40"/><rect width="10%" height="10%" x="50%" y="50%"/>'
-    ),
+    "rectangles": page('<rect x="10" y="20" width="30" height="40"/><rect width="10%" height="10%" x="50%" y="50%"/>'),
     "rounded rectangles": page(
         '<rect x="10" y="20" width="50" height="40" rx="8"/><rect x="70" y="20" width="50" height="40" ry="8"/>'
         '<rect x="130" y="20" width="50" height="40" rx="9" ry="5"/>'
@@ -171,9 +162,7 @@ NESTED = {
         '<line x1="10%" y1="10%" x2="90%" y2="90%" stroke-width="2%"/><svg viewBox="0 0 40 50">'
         '<line x1="10%" y1="10%" x2="90%" y2="90%" stroke-width="2%"/></svg></svg>'
     ),
-    "nested svg that shows nothing": page(
-        '<svg width="0" height="9"><path d="M2 3l5 6"/></svg><path d="M2 3l5 9"/>'
-    ),
+    "nested svg that shows nothing": page('<svg width="0" height="9"><path d="M2 3l5 6"/></svg><path d="M2 3l5 9"/>'),
     "nested svg in millimetres": in_millimetres(
         '<svg x="10" y="10" width="50mm" height="40" viewBox="0 0 5 4"><path d="M0 0L5 4" stroke-width=".1"/></svg>'
     ),
@@ -218,9 +207,7 @@ USES = {
         '<use href="#a" stroke="#00f" stroke-width="4"/><use href="#b" stroke="#00f" style="stroke-width:2"/>'
         '<g stroke="lime" color="#123456"><use href="#a" x="50" stroke="currentColor"/></g>'
     ),
-    "use of a shape": page(
-        '<defs><rect id="a" width="20" height="10"/></defs><use href="#a" x="5" y="6" width="99"/>'
-    ),
+    "use of a shape": page('<defs><rect id="a" width="20" height="10"/></defs><use href="#a" x="5" y="6" width="99"/>'),
     "use in millimetres and by style": page(
         '<path id="a" d="M2 3l15 20"/><use href="#a" x="5mm" y="1cm" style="stroke:red" class="b"/>'
     ),
@@ -232,9 +219,7 @@ USES = {
         '<g visibility="hidden"><path id="a" d="M2 3l15 20"/></g><use href="#a" x="9"/>'
         '<use href="#a" x="30" visibility="hidden"/>'
     ),
-    "use of a use of itself": page(
-        '<g id="a"><path d="M0 5h9"/><use href="#a" x="9"/></g><path d="M2 3l15 20"/>'
-    ),
+    "use of a use of itself": page('<g id="a"><path d="M0 5h9"/><use href="#a" x="9"/></g><path d="M2 3l15 20"/>'),
     "use of nothing": page('<use href="#none"/><use/><use href="other.svg#a"/><path d="M2 3l15 20"/>'),
     "use of what is hidden": page(
         '<path id="a" display="none" d="M0 5h9"/><use href="#a"/><defs display="none"><path id="b" d="M0 9h9"/>'
@@ -246,9 +231,7 @@ USES = {
         '<use href="#s" x="100" y="10" width="80" height="60" transform="rotate(5)"/>'
         '<use href="#s" width="50%" height="50%"/>'
     ),
-    "symbol without viewBox": page(
-        '<symbol id="s"><path d="M2 3l15 20"/></symbol><use href="#s" x="9" y="20"/>'
-    ),
+    "symbol without viewBox": page('<symbol id="s"><path d="M2 3l15 20"/></symbol><use href="#s" x="9" y="20"/>'),
     "symbol with an aspect": page(
         f'<symbol id="s" {BOX}"xMinYMax slice"><path d="M2 3l15 28"/></symbol><use href="#s" x="9" y="9" width="80" '
         'height="20"/><use href="#s" x="120" y="9" width="20" height="80"/>'

@@ -175,9 +175,7 @@ def transforms() -> dict[str, str]:
         )
     }
     found["rotate property of a group"] = page(f'<g style="rotate:20deg"><path {SHAPE}/></g>')
-    found["transform of the root"] = page(
-        f"<path {SHAPE}/>", 'width="200" height="200" transform="rotate(10)"'
-    )
+    found["transform of the root"] = page(f"<path {SHAPE}/>", 'width="200" height="200" transform="rotate(10)"')
     found["CSS transform of the root"] = page(
         f"<path {SHAPE}/>", 'width="200" height="200" style="transform:rotate(10deg)"'
     )
@@ -197,9 +195,7 @@ def looks() -> dict[str, str]:
         "clip-path by shape": page(f'<path {SHAPE} style="clip-path:inset(10px 30px)"/>'),
         "clip-path by shape in an attribute": page(f'<path {SHAPE} clip-path="circle(30px)"/>'),
         "clip-path of nothing": page(f'<path {SHAPE} clip-path="url(#none)"/>'),
-        "clip": page(
-            f'<svg width="200" height="200" style="clip:rect(0px,100px,100px,0px)"><path {SHAPE}/></svg>'
-        ),
+        "clip": page(f'<svg width="200" height="200" style="clip:rect(0px,100px,100px,0px)"><path {SHAPE}/></svg>'),
         "clip-path on a group": page(f'{clip}<g clip-path="url(#c)"><path {SHAPE}/></g>'),
         "mask": page(f'{mask}<path {SHAPE} mask="url(#m)"/>'),
         "mask-image": page(f'<path {SHAPE} style="mask-image:linear-gradient(90deg,#000,transparent)"/>'),
@@ -259,9 +255,7 @@ def looks() -> dict[str, str]:
             f'<path {SHAPE} mask="url(#m)"/>'
         ),
         "mask of nothing": page(f'<path {SHAPE} mask="url(#none)"/>'),
-        "backface-visibility": page(
-            f'<path {SHAPE} style="transform:rotateY(180deg);backface-visibility:hidden"/>'
-        ),
+        "backface-visibility": page(f'<path {SHAPE} style="transform:rotateY(180deg);backface-visibility:hidden"/>'),
         "isolation": page(f'<g style="isolation:isolate"><path {SHAPE}/></g>'),
         "overflow visible": page(
             '<svg x="50" y="50" width="50" height="50" overflow="visible"><path d="M0 0L90 90"/></svg>'
@@ -309,9 +303,7 @@ def geometries() -> dict[str, str]:
         attribute = name.split()[1]
         for value in values:
             found[f"{name} {value!r}"] = page(shape.format(f'{attribute}="{value}"') + '<path d="M5 5h9"/>')
-            found[f"CSS {name} {value!r}"] = page(
-                shape.format(f'style="{attribute}:{value}"') + '<path d="M5 5h9"/>'
-            )
+            found[f"CSS {name} {value!r}"] = page(shape.format(f'style="{attribute}:{value}"') + '<path d="M5 5h9"/>')
     found |= {
         f"root {name}": page("<path d='M40 50H150V140Z'/>", size)
         for name, size in {
@@ -344,9 +336,7 @@ def dashes() -> dict[str, str]:
         f"pathLength {text!r}": page(f'<path {LINE} stroke-dasharray="20 30" pathLength="{text}"/>')
         for text in "100|120|240|0|-5|x||nan|1e400".split("|")
     }
-    found["pathLength of a circle"] = page(
-        '<circle cx="90" cy="90" r="50" stroke-dasharray="10 15" pathLength="100"/>'
-    )
+    found["pathLength of a circle"] = page('<circle cx="90" cy="90" r="50" stroke-dasharray="10 15" pathLength="100"/>')
     found["pathLength of a rect with an offset"] = page(
         f'<rect {BOX} stroke-dasharray="10 15" stroke-dashoffset="5" pathLength="100"/>'
     )
@@ -359,18 +349,14 @@ def paths() -> dict[str, str]:
         "path('M40 50H150V140Z')|none|path('')|path(evenodd, 'M40 50H150V140Z')|M40 50H150V140Z|url(#a)|"
         "path('M40 50H150V140Z' x)|PATH('M40 50H150V140Z')|circle(50px)|inset(10px)"
     ).split("|")
-    found = {
-        f"CSS d: {text}": page(f'<path d="M10 10H60" style="d: {text}"/><path d="M5 5h9"/>') for text in texts
-    }
+    found = {f"CSS d: {text}": page(f'<path d="M10 10H60" style="d: {text}"/><path d="M5 5h9"/>') for text in texts}
     attributes = (
         "none| |M40 50H150V140Z x|m40 50H150|M40 50 L|M 1e400 5L50 50|M nan 5L9 9|L5 5|M40,50,150,50|M40 50\tH150"
     ).split("|")
     found |= {f"d {text!r}": page(f'<path d="{text}"/><path d="M5 5h9"/>') for text in attributes}
     found |= {
         f"points {text!r}": page(f'<polyline points="{text}"/><path d="M5 5h9"/>')
-        for text in "40,50 150,50|40,50 150|40 50|x|40 50 150 50 x|40,,50 60,60|40px 50px 150px 60px".split(
-            "|"
-        )
+        for text in "40,50 150,50|40,50 150|40 50|x|40 50 150 50 x|40,,50 60,60|40px 50px 150px 60px".split("|")
     }
     return found
 
@@ -381,9 +367,7 @@ def references() -> dict[str, str]:
         "href wins": page(f'{a}<use href="#a" xlink:href="#b"/>'),
         "href empty": page(f'{a}<use href="" xlink:href="#b"/><path d="M5 5h9"/>'),
         "href with blanks": page(f'{a}<use href=" #a "/><path d="M5 5h9"/>'),
-        "href escaped": page(
-            f'<defs><path id="ä b" {LINE}/></defs><use href="#%C3%A4%20b"/><path d="M5 5h9"/>'
-        ),
+        "href escaped": page(f'<defs><path id="ä b" {LINE}/></defs><use href="#%C3%A4%20b"/><path d="M5 5h9"/>'),
         "href to a file": page('<use href="x.svg#a"/><path d="M5 5h9"/>'),
         "href to this file and a name": page(f'{a}<use href="./#a"/><path d="M5 5h9"/>'),
         "two of one id": page(f'<defs><path id="a" {LINE}/><path id="a" {SHAPE}/></defs><use href="#a"/>'),
@@ -391,9 +375,7 @@ def references() -> dict[str, str]:
             f'<symbol id="s" display="none"><path {LINE}/></symbol><use href="#s"/><path {SHAPE}/>'
         ),
         "use of a marker": page(f'<marker id="s"><path {LINE}/></marker><use href="#s"/><path {SHAPE}/>'),
-        "use of a clipPath": page(
-            f'<clipPath id="s"><path {LINE}/></clipPath><use href="#s"/><path {SHAPE}/>'
-        ),
+        "use of a clipPath": page(f'<clipPath id="s"><path {LINE}/></clipPath><use href="#s"/><path {SHAPE}/>'),
         "use of a path in a clipPath": page(
             f'<clipPath><path id="s" {LINE}/></clipPath><use href="#s"/><path {SHAPE}/>'
         ),
@@ -434,9 +416,7 @@ def references() -> dict[str, str]:
             f"<style>@keyframes k{{from{{transform:translate(20px)}}to{{transform:translate(20px)}}}}"
             f"path{{animation:k 9s infinite}}</style><path {SHAPE}/>"
         ),
-        "script": page(
-            f'<path id="a" {LINE}/><script>document.getElementById("a").remove()</script><path {SHAPE}/>'
-        ),
+        "script": page(f'<path id="a" {LINE}/><script>document.getElementById("a").remove()</script><path {SHAPE}/>'),
         "systemLanguage": page(f'<path {LINE} systemLanguage="de"/><path {SHAPE}/>'),
         "systemLanguage empty": page(f'<path {LINE} systemLanguage=""/><path {SHAPE}/>'),
         "systemLanguage en-US": page(f'<path {LINE} systemLanguage="en-US"/><path {SHAPE}/>'),
@@ -551,23 +531,15 @@ def sheets() -> dict[str, str]:
     found["style in defs"] = page(
         f'<defs><style>.a{{display:none}}</style></defs><path class="a" {LINE}/><path {SHAPE}/>'
     )
-    found["style in a group"] = page(
-        f'<g><style>.a{{display:none}}</style></g><path class="a" {LINE}/><path {SHAPE}/>'
-    )
+    found["style in a group"] = page(f'<g><style>.a{{display:none}}</style></g><path class="a" {LINE}/><path {SHAPE}/>')
     found["html style"] = page(
         f'<style xmlns="http://www.w3.org/1999/xhtml">.a{{display:none}}</style><path class="a" {LINE}/><path {SHAPE}/>'
     )
-    found["style attribute with a comment"] = page(
-        f'<path {LINE} style="/* x */display:none"/><path {SHAPE}/>'
-    )
-    found["style attribute broken"] = page(
-        f'<path {LINE} style="display none; stroke-width:20"/><path {SHAPE}/>'
-    )
+    found["style attribute with a comment"] = page(f'<path {LINE} style="/* x */display:none"/><path {SHAPE}/>')
+    found["style attribute broken"] = page(f'<path {LINE} style="display none; stroke-width:20"/><path {SHAPE}/>')
     found["style attribute with braces"] = page(f'<path {LINE} style="{{display:none}}"/><path {SHAPE}/>')
     found["xml:space and lang"] = page(f'<path {LINE} xml:lang="de"/><path {SHAPE}/>')
-    found["lang rule"] = page(
-        f'<style>:lang(de){{display:none}}</style><path {LINE} xml:lang="de"/><path {SHAPE}/>'
-    )
+    found["lang rule"] = page(f'<style>:lang(de){{display:none}}</style><path {LINE} xml:lang="de"/><path {SHAPE}/>')
     found["fill rule"] = page(
         '<path d="M20 20H150V150H20ZM50 50H120V120H50Z" fill="#000" stroke="none" fill-rule="evenodd"/>'
     )

@@ -22,9 +22,7 @@ CHOICES = {
         'height="1"/><g i:extraneous="self"><path d="M0 5h9"/><path d="M0 9h9"/></g></switch>',
         'width="300" height="200" xmlns:i="http://ns.adobe.com/AdobeIllustrator/10.0/"',
     ),
-    "switch without a choice": page(
-        '<switch><path requiredExtensions="x" d="M0 5h9"/></switch><path d="M0 9h9"/>'
-    ),
+    "switch without a choice": page('<switch><path requiredExtensions="x" d="M0 5h9"/></switch><path d="M0 9h9"/>'),
     "conditions outside of a switch": page('<path systemLanguage="de" d="M0 5h9"/><path d="M0 9h9"/>'),
     "links": page('<a href="https://example.org"><path d="M0 5h9"/><g><path d="M0 9h9"/></g></a>'),
     "definitions": page(

@@ -94,9 +94,7 @@ def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
     brushsvg("convert", "x.svg", "-o", "x.ngc", "--lenient", "--quiet", cwd=desk, status=0)
     assert re.search(r"^\(warnings: 1, 1 ", (desk / "x.ngc").read_text(), re.MULTILINE)
     for words in (("preview", "x.svg", "-o", "x.png", "--quiet"), ("preview", "x.svg")):
-        assert brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported == [
-            (file, reported)
-        ]
+        assert brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported == [(file, reported)]
 
 
 def test_what_is_off_the_sheet_may_be_looked_at(desk):

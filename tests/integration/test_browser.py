@@ -169,9 +169,7 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
         outline[:, 0] -= notch * outline[:, 1].max() * front
         footprint["outline_mm"] = outline.tolist()
     (tmp_path / "brush.json").write_text(json.dumps(brush))
-    (tmp_path / "a.svg").write_text(
-        f'{OPEN}<path id="p" d="M15 30H105" stroke="#{COLOUR}" stroke-width="6"/></svg>'
-    )
+    (tmp_path / "a.svg").write_text(f'{OPEN}<path id="p" d="M15 30H105" stroke="#{COLOUR}" stroke-width="6"/></svg>')
     work = preparation.prepare(
         tmp_path / "a.svg",
         Options(brush=package.find_brush(tmp_path / "brush.json"), start="pointed", end="round"),
@@ -197,9 +195,7 @@ def test_target_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
     assert with_all.shape == bare.shape
     blue, grey = np.array([0xD9, 0x8F, 0x3F]), np.array([0xDB, 0xE2, 0xE4])
     for colour, tolerance, least in ((blue, 60, 50), (grey, 2, 500)):
-        counts = [
-            (np.abs(each.astype(int) - colour).max(axis=2) < tolerance).sum() for each in (with_all, bare)
-        ]
+        counts = [(np.abs(each.astype(int) - colour).max(axis=2) < tolerance).sum() for each in (with_all, bare)]
         assert counts[0] > counts[1] + least
 
 

@@ -47,9 +47,7 @@ def to_run() -> list[Block]:
     pages = [page for page in PAGES if page not in FOLLOWED and name_of(page) not in ELSEWHERE]
     found = [block for page in pages for block in blocks(page)]
     found = [block for block in found if block.kind == "commands"]
-    return [
-        block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())
-    ]
+    return [block for block in found if not all(why_not_run(block.page, line) for line in block.code.splitlines())]
 
 
 class Desk:
@@ -185,9 +183,7 @@ MADE = {
     "b.dxf": _dxf,
     "foreign.gcode": FOREIGN,
     "mine.csv": "\n".join(TABLE) + "\n",
-    "Lora.ttf": lambda desk: shutil.copy(
-        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", desk.folder / "Lora.ttf"
-    ),
+    "Lora.ttf": lambda desk: shutil.copy("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", desk.folder / "Lora.ttf"),
     "robot.svg": ROBOT,
     "letters.svg": "brushsvg text Ro -o letters.svg --font Lora.ttf --size 60",
     "word.ngc": "brushsvg convert word.svg -o word.ngc",
@@ -220,8 +216,6 @@ def test_a_block_of_commands_can_be_typed_as_it_stands(block, tmp_path):
             desk.type(line)
             for name in re.findall(r"(?:-o|--picture|--marks-picture|--page|--chart|>) +(\S+\.\w+)", line):
                 path = Path(name)
-                pattern = (
-                    f"{path.stem}-*{path.suffix}" if f"-o {name}" in line and "--per-colour" in line else name
-                )
+                pattern = f"{path.stem}-*{path.suffix}" if f"-o {name}" in line and "--per-colour" in line else name
                 written = [*desk.folder.glob(pattern)]
                 assert written and all(file.stat().st_size > 0 for file in written), line

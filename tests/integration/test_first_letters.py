@@ -15,9 +15,7 @@ from brushsvg.strokes.extraction import strokes
 PACKAGES = {"@fontsource/noto-naskh-arabic": "5.3.0", "@fontsource/noto-sans-devanagari": "5.3.0"}
 SIZE_MM = 50.0
 ARABIC = "سلام كتاب بيت شمس قمر مدرسة باب نور حب خط قلم ورد بحر جبل سماء طريق مدينة شجرة زهرة بن".split()
-DEVANAGARI = (
-    "नमस्ते भारत पानी कमल घर किताब राम सीता फल जल वन नदी सूरज चाँद पुस्तक विद्या मन आकाश बादल हिन्दी गगन".split()
-)
+DEVANAGARI = "नमस्ते भारत पानी कमल घर किताब राम सीता फल जल वन नदी सूरज चाँद पुस्तक विद्या मन आकाश बादल हिन्दी गगन".split()
 DOT_SHARE = 0.25  # a line is a dot if it is shorter than this share of the longest one
 TOLERANCE = 1.15  # a letter reaches a little beyond its advance
 

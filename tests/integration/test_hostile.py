@@ -100,8 +100,7 @@ def boxes(count, side):
 def nested(count):
     step = 29 / count
     return "".join(
-        f"M{k * step:.4f} {k * step:.4f}H{100 - k * step:.4f}V{60 - k * step:.4f}H{k * step:.4f}Z"
-        for k in range(count)
+        f"M{k * step:.4f} {k * step:.4f}H{100 - k * step:.4f}V{60 - k * step:.4f}H{k * step:.4f}Z" for k in range(count)
     )
 
 

@@ -50,9 +50,7 @@ def drawn(program, folder) -> list[np.ndarray]:
         check=True,
     )
     said = done.stdout + done.stderr
-    assert re.search(r"command\(s\) ignored: *0\b", said) and re.search(
-        r"Unexpected event\(s\): *0\b", said
-    ), said
+    assert re.search(r"command\(s\) ignored: *0\b", said) and re.search(r"Unexpected event\(s\): *0\b", said), said
     low = [float(each) for each in re.search(r"Coordinate range: \((.*?), (.*?)\)", said).groups()]
     strokes: list[list] = []
     written = (folder / "out.plt").read_text(encoding="latin-1")

@@ -35,15 +35,11 @@ def test_its_page_is_next_to_the_documents(plugin, tmp_path, view_box):
             [float(each.get(name)) / scale for name in ("x", "y", "width", "height")]
             for each in ET.parse(file).getroot().iter(f"{INKSCAPE}page")
         ]
-        assert np.array(pages) == pytest.approx(
-            np.array([[0, 0, 120, 60], [120 + GAP_MM, 0, 210, 297]]), abs=1e-3
-        )
+        assert np.array(pages) == pytest.approx(np.array([[0, 0, 120, 60], [120 + GAP_MM, 0, 210, 297]]), abs=1e-3)
         found = markers_mm(file, "#brushsvg-chart path")
         assert len(found) == len(expected) == 9  # eight markers and the bar
         for ours, theirs in zip(found, expected, strict=True):
-            moved = theirs + np.array(
-                [120 + GAP_MM, 60 - 297]
-            )  # both pages hang from one line; the paper's y runs up
+            moved = theirs + np.array([120 + GAP_MM, 60 - 297])  # both pages hang from one line; the paper's y runs up
             assert np.abs(ours - moved).max() < 0.01
     for name in ("drawing", "twice"):
         brushsvg("convert", f"{name}.svg", "-o", f"{name}.ngc", cwd=tmp_path, status=0)
@@ -72,6 +68,4 @@ def test_what_cannot_be_saved_is_reported(plugin, tmp_path, name, reported):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
     done = plugin.script("chart", drawing, f"--output={tmp_path / name}")
-    assert (
-        done.returncode == 1 and reported in done.stderr.decode() and "Traceback" not in done.stderr.decode()
-    )
+    assert done.returncode == 1 and reported in done.stderr.decode() and "Traceback" not in done.stderr.decode()

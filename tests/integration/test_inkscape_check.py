@@ -43,16 +43,12 @@ def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
     assert colours == ["#d4351c", "#e08700"]
     shown = tmp_path / "shown.svg"
     shown.write_text(out.read_text().replace('data-brushsvg-skip="yes"', ""))
-    for marked, drawn in zip(
-        ends_mm(shown, "#brushsvg-check path"), ends_mm(out, "#wide, #sharp"), strict=True
-    ):
+    for marked, drawn in zip(ends_mm(shown, "#brushsvg-check path"), ends_mm(out, "#wide, #sharp"), strict=True):
         assert np.abs(marked - drawn).max() < 0.01
 
 
 def test_letters_that_the_document_has_refused_are_marked_in_place(plugin, tmp_path):
-    fat = (
-        OPEN.replace("<svg ", '<svg data-brushsvg-wide="refuse" ') + '<path id="fat" d="M20 20h60v14h-60z"/>'
-    )
+    fat = OPEN.replace("<svg ", '<svg data-brushsvg-wide="refuse" ') + '<path id="fat" d="M20 20h60v14h-60z"/>'
     _, layer = checked(plugin, tmp_path, f'{fat}<path id="thin" d="M20 45h60v4h-60z"/></svg>')
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6", "1", "0")
     (text,) = (" ".join(text.itertext()) for text in layer.iter(f"{SVG}text"))
@@ -72,9 +68,7 @@ def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
 
 
 def test_what_no_program_would_be_written_for_cannot_be_painted(plugin, tmp_path):
-    _, layer = checked(
-        plugin, tmp_path, '<path id="off" d="M 1,30 H 60" stroke="#000" fill="none" stroke-width="5"/>'
-    )
+    _, layer = checked(plugin, tmp_path, '<path id="off" d="M 1,30 H 60" stroke="#000" fill="none" stroke-width="5"/>')
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6", "0")
     assert gives(" ".join(layer.itertext()), "left")
     assert [path.get("style").split("stroke:")[1][:7] for path in layer.iter(f"{SVG}path")] == ["#d4351c"]
@@ -87,9 +81,7 @@ def test_nothing_to_say(plugin, tmp_path):
 
 
 def test_nothing_that_can_be_painted(plugin, tmp_path):
-    body = "".join(
-        f'<path id="p{k}" d="M20 30 H90" stroke="#000" stroke-width="{30 + k}"/>' for k in range(5)
-    )
+    body = "".join(f'<path id="p{k}" d="M20 30 H90" stroke="#000" stroke-width="{30 + k}"/>' for k in range(5))
     _, layer = checked(plugin, tmp_path, body)
     assert len(list(layer.iter(f"{SVG}path"))) == 5
 

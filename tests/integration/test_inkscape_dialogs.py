@@ -22,9 +22,7 @@ MOST_PX = 1000
 def test_no_dialog_is_wider_than_a_small_screen(plugin, tmp_path, dialog):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm"/>')
-    script = (
-        f"inkscape --with-gui --actions={dialog} {drawing} & while sleep 0.3; do xwininfo -root -tree; done"
-    )
+    script = f"inkscape --with-gui --actions={dialog} {drawing} & while sleep 0.3; do xwininfo -root -tree; done"
     screen = ["xvfb-run", "-a", "-s", "-screen 0 2560x1600x24", "bash", "-c", script]
     shown = re.compile(rf'"{DIALOGS[dialog]}": .*?(\d+)x\d+\+')
     with subprocess.Popen(

@@ -61,9 +61,7 @@ ADVICE = {  # by the code of the notice: a script of ours and a drawing that giv
     "depth-not-measured": ("preview", path("M20 30 H90", width="0.1")),
     "width-out-of-reach": (
         "check",
-        f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'.replace(
-            "<svg ", '<svg data-brushsvg-wide="clamp" '
-        ),
+        f'{OPEN}<path id="bar" d="M20 20h60v14h-60z"/></svg>'.replace("<svg ", '<svg data-brushsvg-wide="clamp" '),
     ),
     "paper-example": ("save", document('data-brushsvg-cell="ur5e"'), "--format=script"),
     "sheet-too-small": ("chart", SOUND, "--strokes=many", "--sheet=letter"),

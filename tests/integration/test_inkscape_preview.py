@@ -124,9 +124,7 @@ def test_the_layer_is_not_painted(plugin, tmp_path):
     assert (tmp_path / "shown.ngc").read_bytes() == (tmp_path / "drawing.ngc").read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("select", "css"), [("bar", "#bar"), ("layer1", "#layer1"), ("wave,sharp", "#wave, #sharp")]
-)
+@pytest.mark.parametrize(("select", "css"), [("bar", "#bar"), ("layer1", "#layer1"), ("wave,sharp", "#wave, #sharp")])
 def test_a_selection_alone_is_shown(plugin, tmp_path, select, css):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("in"))
@@ -156,9 +154,7 @@ def test_our_own_layer_is_not_what_is_selected(plugin, tmp_path):
 
 def test_of_refined_marks_those_are_red_that_are_elsewhere(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
-    source.write_text(
-        drawing("mm").replace("110,93 22,95", "110,91 22,92")
-    )  # so sharp that refining wins nothing
+    source.write_text(drawing("mm").replace("110,93 22,95", "110,91 22,92"))  # so sharp that refining wins nothing
     plugin.set(preview__compensation="refined")
     try:
         shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
@@ -169,9 +165,7 @@ def test_of_refined_marks_those_are_red_that_are_elsewhere(plugin, tmp_path):
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6, refined", "4")
     assert "tolerance" not in layer.get(f"{INKSCAPE}label")
     red = ["#d4351c" in path.get("style") for path in layer.iter(f"{SVG}path")]
-    assert red == [False, False, True, False], (
-        "the one that turns too sharply, which refinement left as it was"
-    )
+    assert red == [False, False, True, False], "the one that turns too sharply, which refinement left as it was"
 
 
 def test_what_the_dialog_says_wins(plugin, tmp_path):
@@ -182,9 +176,7 @@ def test_what_the_dialog_says_wins(plugin, tmp_path):
         shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
     finally:
         plugin.set()
-    assert_alike(
-        rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--brush", "rigid", "--compensation", "none")
-    )
+    assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--brush", "rigid", "--compensation", "none"))
 
 
 def test_odd_ids_can_be_selected(plugin, tmp_path):
@@ -229,9 +221,7 @@ def test_the_label_says_that_saving_will_be_refused(plugin, tmp_path, path):
         f'<svg xmlns="http://www.w3.org/2000/svg" {HEADS["mm"]}>'
         f'<path id="edge" d="{path}" style="fill:none;stroke:#000;stroke-width:5"/></svg>'
     )
-    label = preview(plugin.effect("preview", source, tmp_path / "shown.svg").read_text()).get(
-        f"{INKSCAPE}label"
-    )
+    label = preview(plugin.effect("preview", source, tmp_path / "shown.svg").read_text()).get(f"{INKSCAPE}label")
     assert gives(label, "refused", "edge") and "--" not in label
     plugin.save(source, saved)
     assert not saved.exists()

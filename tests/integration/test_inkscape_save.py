@@ -172,9 +172,7 @@ def test_dialogs_offer_what_comes_along():
 
 def test_every_language_can_be_saved():
     saved = {file.read_text().split("<extension>")[1].split("<")[0] for file in SOURCE.glob("*save*.inx")}
-    posts = [
-        post for name, post in POSTS.items() if name != "robodk"
-    ]  # which asks for a file of the user's own
+    posts = [post for name, post in POSTS.items() if name != "robodk"]  # which asks for a file of the user's own
     endings = {post.extensions[0] for post in posts}
     endings = endings - {".hpgl"} | {".plt"}  # Inkscape's own exporter takes .hpgl
     assert saved == endings | {".json", ".html"}

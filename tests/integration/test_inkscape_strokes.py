@@ -33,8 +33,7 @@ def letters(text="oS", size_mm=50.0) -> str:
     svg, _ = text_svg(text, FONT.read_bytes(), size_mm=size_mm, width_mm=None, sheet_mm=None)
     root = ET.fromstring(svg)
     return "".join(
-        f'<path id="{node.get("id")}" style="fill:#203060" d="{node.get("d")}"/>'
-        for node in root.iter(f"{SVG}path")
+        f'<path id="{node.get("id")}" style="fill:#203060" d="{node.get("d")}"/>' for node in root.iter(f"{SVG}path")
     )
 
 
@@ -159,8 +158,7 @@ def test_widths_can_be_edited(plugin, inkscape, tmp_path):
     move = f"select-by-id:{line.get('id')};transform-translate:10,0"
     inkscape(f"--actions={move};export-filename:{moved};export-do", done)
     (a,), (b,) = (
-        read_svg(file.read_text().replace('data-brushsvg-skip="yes"', "").encode()).elements
-        for file in (done, moved)
+        read_svg(file.read_text().replace('data-brushsvg-skip="yes"', "").encode()).elements for file in (done, moved)
     )
     step_mm = np.ptp(b.subpaths[0].cubics - a.subpaths[0].cubics, axis=(0, 1))
     assert step_mm.max() < 1e-3, "all of it moves alike"
@@ -216,11 +214,7 @@ def test_converted_again_next_to_text_lines_stay_lines(plugin, tmp_path):
 
 def test_what_a_selected_letter_is_copied_to_stays(plugin, tmp_path):
     source = tmp_path / "letters.svg"
-    copies = (
-        '<g id="both">'
-        + letters("o").replace('id="', 'id="copied-')
-        + '<path id="bar" d="M5 90h60v4h-60z"/></g>'
-    )
+    copies = '<g id="both">' + letters("o").replace('id="', 'id="copied-') + '<path id="bar" d="M5 90h60v4h-60z"/></g>'
     name = re.search('id="(copied-[^"]*)"', copies)[1]
     source.write_text(drawing("mm").replace("</svg>", f'{copies}<use id="copy" href="#both" x="40"/></svg>'))
     out = converted(plugin, source, name)

@@ -133,9 +133,7 @@ def test_a_program_that_fetches_paint_is_krl(errors_of, tmp_path):
 
 def test_a_page_of_1000_strokes_is_krl(errors_of, tmp_path):
     (tmp_path / "page.json").write_text(json.dumps(page(1000)))
-    brushsvg(
-        "convert", "page.json", "-o", "page.src", "--cell", "kr6-r900", cwd=tmp_path, status=0, timeout_s=600
-    )
+    brushsvg("convert", "page.json", "-o", "page.src", "--cell", "kr6-r900", cwd=tmp_path, status=0, timeout_s=600)
     assert errors_of((tmp_path / "page.src").read_text()) == []
 
 

@@ -117,9 +117,7 @@ def test_letters_are_covered(lettering, kind):
         drawing = letter(font, text)
         made, _ = strokes(drawing)
         shares[text] = covered(swept(made), filled_rings(drawing.elements[0]))
-    print(
-        f"{kind}: covered {np.mean(list(shares.values())):.4f}, least {min(shares.items(), key=lambda x: x[1])}"
-    )
+    print(f"{kind}: covered {np.mean(list(shares.values())):.4f}, least {min(shares.items(), key=lambda x: x[1])}")
     assert np.mean(list(shares.values())) >= 0.95
 
 
@@ -181,9 +179,7 @@ def test_fonts_painted(lettering, kind, em_mm):
     """
     brush = find_brush("round-6")
     overlaps = compared([letter(lettering.font(kind), text, em_mm) for text in TEXT], brush)
-    print(
-        f"{kind} at {em_mm:g} mm: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in overlaps.items())
-    )
+    print(f"{kind} at {em_mm:g} mm: " + ", ".join(f"{how} {overlap:.3f}" for how, overlap in overlaps.items()))
     assert overlaps["closed"] >= 0.85  # 0.947, 0.948
     assert overlaps["closed"] == max(overlaps.values())
 
@@ -206,9 +202,7 @@ def test_no_limb_is_lost(lettering, kind, weight, em_mm):
     for text in LIMBS:
         design = letter(lettering.font(kind, weight), text, em_mm)
         made, _, _ = within_reach(strokes(design)[0], brush)
-        marks = _core.simulate(
-            _core.compensate(made, brush, design.sheet_mm, "closed", 0.05, None).plan, brush
-        )
+        marks = _core.simulate(_core.compensate(made, brush, design.sheet_mm, "closed", 0.05, None).plan, brush)
         _core.trace_outlines(marks, brush)
         shape = region([ring for element in design.elements for ring in filled_rings(element)])
         left = unpainted_area(shape.difference(region(marks.outline_mm)), made).buffer(-0.3).buffer(0.3)
@@ -226,9 +220,7 @@ def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
 
     def overlap(design, wide: str) -> float:
         rings = [ring for stroke in strokes(design)[0] for ring in stroke.wanted_mm]
-        return _core.overlap(
-            predict(prepare(design, Options(brush=brush, wide=wide))).outline_mm, _core.unite(rings)
-        )
+        return _core.overlap(predict(prepare(design, Options(brush=brush, wide=wide))).outline_mm, _core.unite(rings))
 
     designs = [letter(lettering.font("script"), text, 100.0) for text in TEXT]
     clamp, passes = (np.mean([overlap(each, wide) for each in designs]) for wide in ("clamp", "passes"))

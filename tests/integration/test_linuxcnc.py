@@ -113,9 +113,7 @@ def check_points(before, sections, passes):
         assert 0 < clearance < safe
         arcs = {last: (first, *circle) for first, last, *circle in target.get("arcs", ())}
         on_an_arc = {k for last, (first, *_) in arcs.items() for k in range(first + 1, last)}
-        painted = [
-            ("arc" if k in arcs else "feed", pose) for k, pose in enumerate(poses) if k not in on_an_arc
-        ]
+        painted = [("arc" if k in arcs else "feed", pose) for k, pose in enumerate(poses) if k not in on_an_arc]
         expected = [
             *(("rapid", (x0, y0, safe)), ("feed", (x0, y0, clearance))),
             *painted,
@@ -370,9 +368,7 @@ def test_linuxcnc_refuses_a_broken_program(fault, converted, tmp_path):
     broken = FAULTS[fault](text)
     assert broken != text
     (tmp_path / "broken.ngc").write_text(broken)
-    done = subprocess.run(
-        ["rs274", "-g", "broken.ngc"], cwd=tmp_path, capture_output=True, text=True, timeout=60
-    )
+    done = subprocess.run(["rs274", "-g", "broken.ngc"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
 
 

@@ -70,9 +70,7 @@ def test_linuxcnc_goes_round_corners_as_it_is_reckoned_with(tmp_path):
             assert distances(around, cut).max() < NEAR_MM
             # three points of that circle are simulated: their chords are a quarter of the cut off it
             assert distances(around, ours).max() < TOLERANCE_MM / 4
-            assert (
-                distances(around, way).max() > 2 * TOLERANCE_MM * np.sin(np.radians(180 - turn_deg) / 2) / 3
-            )
+            assert distances(around, way).max() > 2 * TOLERANCE_MM * np.sin(np.radians(180 - turn_deg) / 2) / 3
             tried += 1
         else:
             assert distances(around, way).max() < TOLERANCE_MM

@@ -52,9 +52,7 @@ def test_check_separates_dangerous_from_harmless(dialect, tmp_path, capsys):
         figures.of(dialect, "harmless") > least < figures.of(dialect, "dangerous"),
     )
     if dialect == "ebb" and not all(holds):
-        pytest.xfail(
-            "slices of 16 ms: of 2,000 programs 7 of 189 harmless ones are refused, and 609 are neither"
-        )
+        pytest.xfail("slices of 16 ms: of 2,000 programs 7 of 189 harmless ones are refused, and 609 are neither")
     assert all(holds), (holds, refused)
 
 
@@ -159,9 +157,7 @@ def test_the_judge_reads_as_linuxcnc_does(name, tmp_path):
         known = [False] * 3  # nobody knows where the tool is before the program
         for leg, theirs in zip(ours, legs, strict=False):
             assert leg.kind == theirs[0]
-            known = [
-                is_so or abs(a - b) < 2e-4 for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True)
-            ]
+            known = [is_so or abs(a - b) < 2e-4 for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True)]
             for is_so, a, b in zip(known, leg.end, theirs[1:4], strict=True):
                 assert not is_so or a == pytest.approx(b, abs=2e-4), (damage, leg, theirs)
             if leg.kind != "rapid":

@@ -54,9 +54,7 @@ def test_a_page_of_a_thousand_strokes_is_run_through_all_its_places(dialect):
         within_mm = unit_mm(cell) / 2 * 2**0.5 + 1e-6
         off = cKDTree(ends[:, :2]).query(target[:, :2])[0]
         deepest = ends[:, 2].min()
-        assert abs(deepest - target[:, 2].min()) <= (
-            value_mm(cell) / 2 + cell.servo.step_mm if cell.servo else 1e-9
-        )
+        assert abs(deepest - target[:, 2].min()) <= (value_mm(cell) / 2 + cell.servo.step_mm if cell.servo else 1e-9)
     else:
         within_mm = EXACT_MM
         off = cKDTree(ends).query(target)[0]

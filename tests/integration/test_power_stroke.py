@@ -67,9 +67,7 @@ def test_inkscape_draws_each_stroke_of_letters(size_mm, inkscape, tmp_path):
     moves = "transform-translate:1,0"
     inkscape(f"--actions=select-by-id:{','.join(ids)};{moves};export-filename:{saved};export-do", source)
     assert len(ids) > 90
-    assert [
-        node.get("id") for node in _lines(saved) if not node.get("d").rstrip().lower().endswith("z")
-    ] == []
+    assert [node.get("id") for node in _lines(saved) if not node.get("d").rstrip().lower().endswith("z")] == []
 
 
 def _lines(file):

@@ -81,11 +81,7 @@ def shown() -> dict[str, str]:
 
 def requested(name: str, code: str) -> str:
     """Return the code below a line that names its unchecked rules."""
-    spared = [
-        rule
-        for reason, rule in NOT_REQUESTED.items()
-        if f"import {reason}" in code or reason == name.split()[0]
-    ]
+    spared = [rule for reason, rule in NOT_REQUESTED.items() if f"import {reason}" in code or reason == name.split()[0]]
     spared += [NOT_REQUESTED["matplotlib"]] if "from matplotlib" in code else []
     return f"# pyright: {', '.join(spared)}\n{code}" if spared else code
 
@@ -114,9 +110,7 @@ def reported(tmp_path_factory, npm):
     """
     pyright = npm("pyright", PACKAGES) / "pyright" / "index.js"
     folder = tmp_path_factory.mktemp("pyright")
-    shutil.copytree(
-        PACKAGE, folder / "site" / "brushsvg", ignore=shutil.ignore_patterns("data", "__pycache__")
-    )
+    shutil.copytree(PACKAGE, folder / "site" / "brushsvg", ignore=shutil.ignore_patterns("data", "__pycache__"))
     programs = folder / "programs"
     programs.mkdir()
     files = {name: requested(name, code) for name, code in shown().items()} | {"every_name": every_name()}

@@ -14,9 +14,7 @@ FIRST = 100
 def test_all_that_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
     jobs = 20 if dialect in FEWER else JOBS
     with quick_check() as check:
-        all_ = [
-            tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + jobs)
-        ]
+        all_ = [tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + jobs)]
     assert [job for job in all_ if job.wrong] == []
     assert [job for job in all_ if job.denied] == []
     assert sum(not job.refused for job in all_) > jobs / 3, "most are written"

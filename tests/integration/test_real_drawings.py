@@ -171,9 +171,7 @@ def filled(rings, height_mm, px_per_mm, shape, parts=4):
     """Return the even-odd coverage of rings, parts x parts samples per pixel."""
     fine = np.zeros((shape[0] * parts, shape[1] * parts), np.uint8)
     scale = px_per_mm * parts
-    points = [
-        np.round((np.array(ring) * [1, -1] + [0, height_mm]) * scale - 0.5).astype(np.int32) for ring in rings
-    ]
+    points = [np.round((np.array(ring) * [1, -1] + [0, height_mm]) * scale - 0.5).astype(np.int32) for ring in rings]
     cv2.fillPoly(fine, points, 255)
     return cv2.resize(fine, (shape[1], shape[0]), interpolation=cv2.INTER_AREA) / 255
 

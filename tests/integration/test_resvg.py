@@ -152,15 +152,12 @@ def resaved(resvg, inkscape, tmp_path_factory):
 
     def save(*words):
         folder = tmp_path_factory.mktemp("resaved")
-        names = {
-            f"{number}.svg": name for number, name in enumerate(DRAWINGS) if name not in REPORTED_OTHERWISE
-        }
+        names = {f"{number}.svg": name for number, name in enumerate(DRAWINGS) if name not in REPORTED_OTHERWISE}
         for file, name in names.items():
             (folder / file).write_text(DRAWINGS[name], encoding="utf-8")
         inkscape("--export-type=svg", *words, *(folder / file for file in names))
         saved = {
-            name: (folder / file.replace(".", "_out.")).read_text(encoding="utf-8")
-            for file, name in names.items()
+            name: (folder / file.replace(".", "_out.")).read_text(encoding="utf-8") for file, name in names.items()
         }
         return saved, resvg.pages(saved)
 
@@ -176,8 +173,7 @@ def test_as_resvg_reads_what_inkscape_saved(words, resaved, tmp_path):
     saved, pages = resaved(*words)
     assert all(text != DRAWINGS[name] for name, text in saved.items())
     found = {
-        name: differences(read(text, tmp_path), pages[name], is_round=name in ROUND)
-        for name, text in saved.items()
+        name: differences(read(text, tmp_path), pages[name], is_round=name in ROUND) for name, text in saved.items()
     }
     assert {name: sentences for name, sentences in found.items() if sentences} == {}
 

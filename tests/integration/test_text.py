@@ -49,9 +49,7 @@ def points_of(d):
 
 @pytest.mark.parametrize("name", SINGLE_LINES)
 def test_single_lines_come_back_as_they_are_in_the_font(name, tmp_path):
-    document, notices = text_svg(
-        "Robot", (LINES / f"{name}.svg").read_bytes(), size_mm=SIZE_MM, width_mm=WIDTH_MM
-    )
+    document, notices = text_svg("Robot", (LINES / f"{name}.svg").read_bytes(), size_mm=SIZE_MM, width_mm=WIDTH_MM)
     assert notices == []
     (tmp_path / "robot.svg").write_text(document, encoding="utf-8")
     design = read_drawing(tmp_path / "robot.svg")
@@ -168,9 +166,7 @@ def test_outlines_look_as_inkscape_sets_them(inkscape, tmp_path):
     )
     ours, theirs = (ink(inkscape.paint(tmp_path / f"{name}.svg", 8)) for name in ("ours", "paths"))
     height, width = (max(each.shape[k] for each in (ours, theirs)) for k in (0, 1))
-    ours, theirs = (
-        np.pad(each, ((0, height - each.shape[0]), (0, width - each.shape[1]))) for each in (ours, theirs)
-    )
+    ours, theirs = (np.pad(each, ((0, height - each.shape[0]), (0, width - each.shape[1]))) for each in (ours, theirs))
     assert np.minimum(ours, theirs).sum() / np.maximum(ours, theirs).sum() > 0.97
 
 

@@ -146,9 +146,7 @@ def test_help_names_what_there_is_and_nothing_else(desk):
     for flag in ("picture", "report", "page"):
         says = re.search(rf"(?s)--{flag} FILE .*?\((.*?)\)", pages[("convert",)])[1]
         for suffix in says.split():
-            brushsvg(
-                "convert", values["IN"], "-o", "made.ngc", f"--{flag}", f"{flag}{suffix}", cwd=desk, status=0
-            )
+            brushsvg("convert", values["IN"], "-o", "made.ngc", f"--{flag}", f"{flag}{suffix}", cwd=desk, status=0)
     made = {each.name for each in desk.iterdir()} - {"sound.svg", "old.ngc", "brushsvg-demo.png"}
     assert made == {
         *(

@@ -112,9 +112,7 @@ def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
     vpype("read", "x.svg", "brushwrite", "out.json", "brushwrite", "--width", "1mm", "thin.json", cwd=desk)
     brushsvg("convert", "x.svg", "-o", "typed.json", cwd=desk, status=0)
     plan, thin, typed = (json.loads((desk / f"{name}.json").read_text()) for name in ("out", "thin", "typed"))
-    depths = [
-        [min(z for _, _, z in each["poses_mm"]) for each in some["passes"]] for some in (plan, thin, typed)
-    ]
+    depths = [[min(z for _, _, z in each["poses_mm"]) for each in some["passes"]] for some in (plan, thin, typed)]
     assert depths[0] == pytest.approx(depths[2], abs=0.02)
     assert max(depths[1]) == pytest.approx(min(depths[1]), abs=0.02) and min(depths[1]) > max(depths[0])
     assert [each["layer"] for each in plan["passes"]] == ["Ink", "Ink", "Red"]
@@ -154,9 +152,7 @@ def zigzag(chance):
     at, heading = chance.uniform((60, 60), (300, 160)), chance.uniform(0, 2 * np.pi)
     points = [at]
     for _ in range(int(chance.integers(1, 5))):
-        at = np.clip(
-            at + chance.uniform(30, 80) * np.array([np.cos(heading), np.sin(heading)]), 20, (340, 200)
-        )
+        at = np.clip(at + chance.uniform(30, 80) * np.array([np.cos(heading), np.sin(heading)]), 20, (340, 200))
         points.append(at)
         heading += chance.choice([-1, 1]) * chance.uniform(1.2, 2.2)
     return np.round(points, 1)

@@ -13,11 +13,7 @@ TABLE = "test_every_combination.py"
 
 def pytest_terminal_summary(terminalreporter):
     """Print how many combinations ran and how many were refused, by code."""
-    rows = [
-        each
-        for each in terminalreporter.stats.get("passed", ())
-        if TABLE in each.nodeid and "[" in each.nodeid
-    ]
+    rows = [each for each in terminalreporter.stats.get("passed", ()) if TABLE in each.nodeid and "[" in each.nodeid]
     reasons = Counter(value for each in rows for name, value in each.user_properties if name == "refused")
     if rows:
         refused = ", ".join(f"{count} {code}" for code, count in sorted(reasons.items())) or "none"
@@ -44,9 +40,7 @@ def chart_folder(tmp_path_factory):
     A studio without faults paints and photographs a small chart.
     """
     folder = tmp_path_factory.mktemp("chart")
-    plan, chart, photo, studio = (
-        folder / name for name in ("plan.json", "chart.json", "chart.jpg", "studio.toml")
-    )
+    plan, chart, photo, studio = (folder / name for name in ("plan.json", "chart.json", "chart.jpg", "studio.toml"))
     studio.write_text(STUDIO)
     for words in (
         ("chart", "-o", plan, "--chart", chart, "--sheet", "a5", "--strokes", "few"),

@@ -54,9 +54,7 @@ def photographed(at: Path) -> None:
 
 def photograph(at: Path, *flags: str) -> Path:
     """Paint and photograph a small chart in a studio without faults."""
-    plan, chart, photo, studio = (
-        at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg", ".toml")
-    )
+    plan, chart, photo, studio = (at.with_suffix(end) for end in (".plan.json", ".chart.json", ".jpg", ".toml"))
     studio.write_text(STUDIO)
     run("chart", "-o", plan, "--chart", chart, *flags)
     run("simulate-photo", chart, "-o", photo, "--studio", studio)

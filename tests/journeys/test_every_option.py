@@ -86,9 +86,7 @@ def rows(options: dict) -> list[dict]:
         given = {name for name, value in zip(names, row, strict=False) if value and value != "off"}
         return not any({a, b} <= given for a, b in APART + SINGLE)
 
-    return [
-        dict(zip(names, row, strict=True)) for row in AllPairs([*options.values()], filter_func=is_offered)
-    ]
+    return [dict(zip(names, row, strict=True)) for row in AllPairs([*options.values()], filter_func=is_offered)]
 
 
 @pytest.fixture

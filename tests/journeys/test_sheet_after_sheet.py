@@ -47,9 +47,7 @@ class Desk:
         (at / "studio.toml").write_text(STUDIO)
 
     def run(self, line: str) -> None:
-        words = [
-            str(self.at / each) if "." in each and not each[0].isdigit() else each for each in line.split()
-        ]
+        words = [str(self.at / each) if "." in each and not each[0].isdigit() else each for each in line.split()]
         assert main([*words, "--quiet"]) == 0, line
 
     def overlap(self, name: str) -> float:
@@ -72,9 +70,7 @@ def paint_three_sheets(desk: Desk) -> list[float]:
         desk.run(f"convert word.svg -o plan-{sheet}.json {planned} --page page-{sheet}.svg")
         desk.run(f"convert word.svg -o job-{sheet}.ngc {planned} --page page.svg --force")
         desk.run(f"check job-{sheet}.ngc word.svg {planned}")
-        desk.run(
-            f"check job-{sheet}.ngc plan-{sheet}.json --brush mine-{sheet}.json --cell cell-{sheet}.toml"
-        )
+        desk.run(f"check job-{sheet}.ngc plan-{sheet}.json --brush mine-{sheet}.json --cell cell-{sheet}.toml")
         desk.run(
             f"simulate-photo plan-{sheet}.json -o photo-{sheet}.jpg --brush mine-{sheet}.json --cell cell-{sheet}.toml "
             f"--true-brush round-6 --studio studio.toml --seed {sheet}"
@@ -95,9 +91,7 @@ def paint_three_sheets(desk: Desk) -> list[float]:
 
 @pytest.mark.parametrize("machine", ["", MACHINE], ids=["plain cell", "cell with a machine"])
 def test_three_sheets_without_a_chart(desk, machine):
-    desk.run(
-        "brush new -o mine-1.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8"
-    )
+    desk.run("brush new -o mine-1.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8")
     desk.run("cell new -o cell-1.toml")
     cell = desk.at / "cell-1.toml"
     cell.write_text(cell.read_text() + machine)
@@ -112,9 +106,7 @@ def test_a_sheet_planned_for_another_brush_teaches_with_a_warning(desk, capsys):
     """
     desk.run("convert word.svg -o plan.json --page page.svg")
     desk.run("simulate-photo plan.json -o photo.jpg --studio studio.toml")
-    desk.run(
-        "brush new -o mine.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8"
-    )
+    desk.run("brush new -o mine.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8")
     words = "calibrate photo.jpg --plan plan.json --prior mine.json -o mine-2.json".split()
     words = [str(desk.at / each) if "." in each else each for each in words]
     status, _, reported = in_json(capsys, *words)

@@ -36,19 +36,13 @@ def goes_the_whole_way(user, name: str) -> None:
     if name in FAMILIES["pen"]:  # it draws at one depth only
         brush, width = "rigid", "--width 1"
     else:
-        user.types(
-            f"calibrate chart.jpg --chart chart.json --machine lean,axes,tilt,backlash --cell {name} -o {brush}"
-        )
+        user.types(f"calibrate chart.jpg --chart chart.json --machine lean,axes,tilt,backlash --cell {name} -o {brush}")
     job = f"--brush {brush} {width}"
     user.types(f"convert word.svg -o {program} {job} --cell {name} --page page.svg")
     user.types(f"check {program} word.svg {job} --cell {name}")
     user.types(f"simulate-photo word.svg -o photo.jpg {job} --cell {name} --studio studio.toml")
-    user.types(
-        f"compare photo.jpg word.svg {job} --cell {name} -o corrections.json --corrected-cell corrected.toml"
-    )
-    assert find_cell(str(user.folder / "corrected.toml")).machine.scale == pytest.approx(
-        (TOO_FAR, TOO_FAR), abs=0.002
-    )
+    user.types(f"compare photo.jpg word.svg {job} --cell {name} -o corrections.json --corrected-cell corrected.toml")
+    assert find_cell(str(user.folder / "corrected.toml")).machine.scale == pytest.approx((TOO_FAR, TOO_FAR), abs=0.002)
     second = f"{job} --cell corrected.toml --corrections corrections.json"
     user.types(f"convert word.svg -o second-{program} {second}")
     user.types(f"check second-{program} word.svg {second}")

@@ -104,9 +104,7 @@ class Reference:
         d0, d1 = self.poses[i, 2], self.poses[i + 1, 2]
         cuts = [0.0, 1.0]
         if d1 != d0:
-            cuts += [
-                t for t in ((k - d0) / (d1 - d0) for k in [0.0, *self.law.kinks()]) if 1e-12 < t < 1 - 1e-12
-            ]
+            cuts += [t for t in ((k - d0) / (d1 - d0) for k in [0.0, *self.law.kinks()]) if 1e-12 < t < 1 - 1e-12]
         cuts = sorted(cuts)
         for t0, t1 in itertools.pairwise(cuts):
             if self._depth(i, 0.5 * (t0 + t1)) < 0:
@@ -140,12 +138,7 @@ class Reference:
                 )
                 self.is_taut = True
                 break
-            if (
-                0 < k < len(times) - 1
-                and slack[k] >= slack[k - 1]
-                and slack[k] >= slack[k + 1]
-                and slack[k] > -1e-4
-            ):
+            if 0 < k < len(times) - 1 and slack[k] >= slack[k - 1] and slack[k] >= slack[k + 1] and slack[k] > -1e-4:
                 top = minimize_scalar(
                     lambda t: above - self._slack(i, t),
                     bounds=(times[k - 1], times[k + 1]),
@@ -279,9 +272,7 @@ def follow(tcp, velocity, lag, contact, heading, is_taut):
                 is_taut = True
             else:
                 k = above[0]
-                at = brentq(
-                    lambda t, p=contact: np.hypot(*(tcp(t) - p)) - lag, times[k - 1], times[k], xtol=1e-15
-                )
+                at = brentq(lambda t, p=contact: np.hypot(*(tcp(t) - p)) - lag, times[k - 1], times[k], xtol=1e-15)
                 is_taut = True
                 events.append(at)
             reach = tcp(at) - contact
@@ -340,9 +331,7 @@ def step_all(plans, laws, steps, method="article", epsilon=1e-9):
 def _all_at_once(laws):
     """Return a function of m polynomials with floors: depths (m,) -> values (m,)."""
     width = max(len(law.coefficients) for law in laws)
-    coefficients = np.array([np.pad(law.coefficients, (0, width - len(law.coefficients))) for law in laws]).T[
-        ::-1
-    ]
+    coefficients = np.array([np.pad(law.coefficients, (0, width - len(law.coefficients))) for law in laws]).T[::-1]
     floor, floor_slope = np.array([law.floor for law in laws]), np.array([law.floor_slope for law in laws])
 
     def radius(depth):
@@ -420,9 +409,7 @@ class Middle:
                     offset = bezier(self.cubics[c], x) - points[rows]
                     first, second = bezier(self.cubics[c], x, 1), bezier(self.cubics[c], x, 2)
                     slope = (offset * first).sum(1)
-                    bend = np.maximum(
-                        (first * first).sum(1) + (offset * second).sum(1), 1e-3 * (first * first).sum(1)
-                    )
+                    bend = np.maximum((first * first).sum(1) + (offset * second).sum(1), 1e-3 * (first * first).sum(1))
                     x = np.clip(x - slope / np.maximum(bend, 1e-300), 0, 1)
                 distance = np.hypot(*(bezier(self.cubics[c], x) - points[rows]).T)
                 s = np.interp(x, self.t, self.s[c])
@@ -562,9 +549,7 @@ def swept(outlines, convex, unite=shapely.union_all):
     quads = [first, np.roll(first, -1, axis=1), np.roll(second, -1, axis=1), second]
     # An edge that turns about its own point sweeps two triangles, not their hull.
     quads = shapely.make_valid(shapely.polygons(np.stack(quads, axis=2).reshape(-1, 4, 2)))
-    points = shapely.multipoints(
-        pairs.reshape(-1, 2), indices=np.repeat(np.arange(len(pairs)), pairs.shape[1])
-    )
+    points = shapely.multipoints(pairs.reshape(-1, 2), indices=np.repeat(np.arange(len(pairs)), pairs.shape[1]))
     regions = [
         shapely.convex_hull(points),
         quads,

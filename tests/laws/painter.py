@@ -21,9 +21,7 @@ BRISTLES = (
     ((0.5, 1.0), 1.5),
 )  # ranges across a brush, in half widths, and the factor by which paint lasts longer there
 POSES = 260  # the least number of poses per stroke for the stepping, about one every 0.3 mm
-CLOSE = (
-    420  # poses of a second pass, more where the footprint turns; no point of it moves over 0.5 mm per pose
-)
+CLOSE = 420  # poses of a second pass, more where the footprint turns; no point of it moves over 0.5 mm per pose
 
 
 @dataclass
@@ -154,9 +152,7 @@ class Stranger(TrueBrush):
 def outline_of(half, widest, front, vertices=33):
     """Return drops (n, vertices, 2) from half widths, widest sections, fronts (n,)."""
     angle = np.linspace(-np.pi / 2, np.pi / 2, vertices - 1)
-    half, widest, front = (
-        np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front)
-    )
+    half, widest, front = (np.maximum(np.asarray(each, float), 1e-6)[:, None] for each in (half, widest, front))
     ahead = np.stack([widest + front * np.cos(angle), half * np.sin(angle)], axis=2)
     return np.concatenate([np.zeros((len(half), 1, 2)), ahead], axis=1)
 
@@ -294,18 +290,14 @@ def random_stranger(rng, shape):
         across = curves["half_width"](depth)
         return outline_of(across, curves["tip_to_widest"](depth), front * across)
 
-    steep = max(
-        curves["tip_to_widest"](d) / curves["half_width"](d) for d in np.linspace(0.1, 1, 10) * deepest
-    )
+    steep = max(curves["tip_to_widest"](d) / curves["half_width"](d) for d in np.linspace(0.1, 1, 10) * deepest)
     return Stranger(deepest, None, None, None, float(steep), front, shape=outlines, curves=curves)
 
 
 def round_6(own):
     """Return the shipped brush with the laws and outlines of its file."""
     curves = {
-        name: oracle.Law(
-            own[name]["coefficients"], own[name].get("floor", -np.inf), own[name].get("floor_slope", 0.0)
-        )
+        name: oracle.Law(own[name]["coefficients"], own[name].get("floor", -np.inf), own[name].get("floor_slope", 0.0))
         for name in ("lag", "tip_gap", "tip_to_widest", "half_width")
     }
     dragged = [(each["depth_mm"], np.array(each["outline_mm"])) for each in own["footprints"]["dragged"]]
@@ -368,9 +360,7 @@ def paint(rng, brush, strokes, faults, regions=None):
         rings = [_noisy(rng, np.array(ring.coords)[:-1], faults) for ring in _rings(region)]
         c, s = np.cos(turn), np.sin(turn)
         rings = [
-            (ring + moved - centre) @ np.array([[c, s], [-s, c]]) + centre + shift
-            for ring in rings
-            if len(ring) >= 8
+            (ring + moved - centre) @ np.array([[c, s], [-s, c]]) + centre + shift for ring in rings if len(ring) >= 8
         ]
         sheet.marks.append((name, poses, rings))
         sheet.displacements.append(moved)

@@ -61,11 +61,7 @@ def _printed(sheet_mm, dictionary_name, markers, bar, labels, seed):
 
 def with_turn(jpeg, orientation):
     """A JPEG whose EXIF says how the camera was held."""
-    tiff = (
-        b"MM\x00*\x00\x00\x00\x08\x00\x01\x01\x12\x00\x03\x00\x00\x00\x01\x00"
-        + bytes([orientation])
-        + b"\x00" * 6
-    )
+    tiff = b"MM\x00*\x00\x00\x00\x08\x00\x01\x01\x12\x00\x03\x00\x00\x00\x01\x00" + bytes([orientation]) + b"\x00" * 6
     body = b"Exif\x00\x00" + tiff
     return jpeg[:2] + b"\xff\xe1" + (len(body) + 2).to_bytes(2, "big") + body + jpeg[2:]
 

@@ -193,9 +193,7 @@ def photographed(plan, regions, title="", camera=None, seed=1):
     for tick in page.ticks:
         sheet.paint([tick], INK)
     for region in regions.values():
-        rings = [
-            ring for part in getattr(region, "geoms", [region]) for ring in (part.exterior, *part.interiors)
-        ]
+        rings = [ring for part in getattr(region, "geoms", [region]) for ring in (part.exterior, *part.interiors)]
         sheet.paint([np.array(ring.coords)[:-1] + page.frame_mm for ring in rings], BLUE)
     camera = camera or Camera(size_px=(1800, round(1800 * page.size_mm[1] / page.size_mm[0])), fill=0.93)
     return photograph.photograph(sheet, camera, seed)
@@ -210,7 +208,6 @@ def as_region(rings):
     """Return a region from rings: outer rings counter-clockwise, holes clockwise."""
     shapes = [Polygon(ring) for ring in rings]
     outer, holes = (
-        unary_union([shape.buffer(0) for shape in shapes if shape.exterior.is_ccw == side])
-        for side in (True, False)
+        unary_union([shape.buffer(0) for shape in shapes if shape.exterior.is_ccw == side]) for side in (True, False)
     )
     return outer.difference(holes)

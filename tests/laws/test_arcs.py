@@ -176,9 +176,7 @@ def test_on_a_circle_smaller_than_the_lag_the_patch_comes_to_rest(radius):
 def test_plans_of_ours_paint_the_same_with_arcs_and_chords(degrees, half_width):
     a = np.radians(degrees)
     points = np.array([[20, 50], [60, 50], [60 + 30 * np.cos(a), 50 + 30 * np.sin(a)]])
-    cubics = np.array(
-        [np.concatenate([p, p + (q - p) / 3, q - (q - p) / 3, q]) for p, q in itertools.pairwise(points)]
-    )
+    cubics = np.array([np.concatenate([p, p + (q - p) / 3, q - (q - p) / 3, q]) for p, q in itertools.pairwise(points)])
     stroke = core.Stroke(id="s", middle_mm=cubics, half_width=[(0.0, half_width)])
     brush = find_brush("round-6")
     plan = core.compensate([stroke], brush, (100.0, 100.0), few_poses=False).plan

@@ -31,21 +31,16 @@ def brush():
     def rows(kind, value, noise):
         read = [value(d) + rng.normal(0, noise) for d in depths]
         return [
-            Row(kind, f"{kind}[{i}]", d, {"value_mm": v})
-            for i, (d, v) in enumerate(zip(depths, read, strict=True))
+            Row(kind, f"{kind}[{i}]", d, {"value_mm": v}) for i, (d, v) in enumerate(zip(depths, read, strict=True))
         ]
 
     measured = {
         "lag": rows("lag", truth.lag, 0.3),
-        "tip_to_widest": rows(
-            "tip_to_widest", lambda d: max(-2.35 + 2.75 * d - 0.42 * d**2 + 0.024 * d**3, 0), 0.15
-        ),
+        "tip_to_widest": rows("tip_to_widest", lambda d: max(-2.35 + 2.75 * d - 0.42 * d**2 + 0.024 * d**3, 0), 0.15),
         "half_width": rows("half_width", truth.half_width, 0.1),
         "side_view": rows("side_view", lambda d: truth.lag(d) + truth.tip_gap(d) - truth.lag(0.0), 0.3),
     }
-    made = calibrate(
-        Measurements(measured, depth_range_mm=(0.0, 10.0), depths_mm=sorted(set(depths))), "measured"
-    )
+    made = calibrate(Measurements(measured, depth_range_mm=(0.0, 10.0), depths_mm=sorted(set(depths))), "measured")
     assert np.abs(np.array(made.brush.covariance)[:5, 5:7]).max() > 0
     return made.brush
 
@@ -66,9 +61,7 @@ def drawn(brush, coefficients):
     for law in LAWS:
         profile = getattr(brush, law)
         last = first + len(profile.coefficients)
-        changed = _core.Profile(
-            coefficients[first:last].tolist(), floor=profile.floor, floor_slope=profile.floor_slope
-        )
+        changed = _core.Profile(coefficients[first:last].tolist(), floor=profile.floor, floor_slope=profile.floor_slope)
         setattr(other, law, changed)
         first = last
     return other

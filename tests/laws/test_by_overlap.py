@@ -48,23 +48,15 @@ def painted(displaced_mm, lean=(0.0, 0.0), by_map=((0.0, 0.0), (0.0, 0.0)), **fa
     as_run = [
         (
             name,
-            poses
-            + np.pad((poses[:, :2] - centre) @ np.transpose(by_map) - poses[:, 2:] * lean, ((0, 0), (0, 1))),
+            poses + np.pad((poses[:, :2] - centre) @ np.transpose(by_map) - poses[:, 2:] * lean, ((0, 0), (0, 1))),
         )
         for name, poses in strokes
     ]
-    painted = painter.paint(
-        rng, brush, as_run, painter.Faults(displacement=displaced_mm, **faults), painter.swept
-    )
+    painted = painter.paint(rng, brush, as_run, painter.Faults(displacement=displaced_mm, **faults), painter.swept)
     return brush, {
-        "plan": {
-            "passes": [
-                {"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes
-            ]
-        },
+        "plan": {"passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]},
         "marks": [
-            {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]}
-            for name, _, rings in painted.marks
+            {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks
         ],
         "expected": {"displacement_mm": displaced_mm},
     }
@@ -108,9 +100,7 @@ def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
     by_map = np.array([[0.01, -0.03], [0.05, 0.012]])
     _, marks = painted(DISPLACED_LITTLE_MM, by_map=by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b").fit
-    unreported = SimpleNamespace(
-        laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm
-    )
+    unreported = SimpleNamespace(laws=made.fit.laws, turn_rad=0.0, shift_mm=(0.0, 0.0), centre_mm=made.fit.centre_mm)
     assert machine_added(made, unreported).offsets.map == pytest.approx(by_map, abs=0.006)
 
 
@@ -167,9 +157,7 @@ def targets_of(strokes, brush, displaced=lambda k: np.zeros(2)):
 
 
 def round_brush(lag) -> painter.TrueBrush:
-    return painter.TrueBrush(
-        4.0, np.array(lag), np.array([0, 0.6]), np.array([0, 0.6, 0.0]), 1.0, 1.0, round_tail=True
-    )
+    return painter.TrueBrush(4.0, np.array(lag), np.array([0, 0.6]), np.array([0, 0.6, 0.0]), 1.0, 1.0, round_tail=True)
 
 
 def laws(brush, lag) -> object:
@@ -217,8 +205,7 @@ def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_
         for target, (_, poses) in zip(targets_of(as_run, brush, lambda k: moved[k]), strokes, strict=True)
     ]
     marks = [
-        core.PaintedMark(name, poses, outlines(target))
-        for (name, poses), target in zip(strokes, targets, strict=True)
+        core.PaintedMark(name, poses, outlines(target)) for (name, poses), target in zip(strokes, targets, strict=True)
     ]
     options = reported(brush)
     options.height_mm = core.Prior(0.0, 0.2)
@@ -244,11 +231,8 @@ def test_of_few_marks_it_is_not_known_what_predicts():
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
     targets = targets_of(strokes, brush)
     marks = [
-        core.PaintedMark(name, poses, outlines(target))
-        for (name, poses), target in zip(strokes, targets, strict=True)
+        core.PaintedMark(name, poses, outlines(target)) for (name, poses), target in zip(strokes, targets, strict=True)
     ]
-    found = overlap_choice.best_predicting(
-        marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), reported(brush)
-    )
+    found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), reported(brush))
     assert (found.kind, found.parts, found.left_out) == ("laws", 0, {})
     assert chosen_in_words(found)

@@ -77,9 +77,7 @@ def series(depth, rng=None, noise_deg=0.0):
     heading = tcp - contact
     heading /= np.hypot(*heading.T)[:, None]
     tip = contact - GAP * depth * heading
-    alpha = np.degrees(
-        np.arctan2(heading[:, 0], heading[:, 1])
-    )  # from +y, positive on the side it comes from
+    alpha = np.degrees(np.arctan2(heading[:, 0], heading[:, 1]))  # from +y, positive on the side it comes from
     moved = tip[1:] - tip[0]
     beta = np.degrees(np.arctan2(moved[:, 0], moved[:, 1]))
     if rng is not None:
@@ -163,9 +161,7 @@ def test_the_scatter_of_a_series_is_that_of_repeated_readings():
                 found[row["depth_mm"]].append((lengths["lag_mm"], lengths["tip_gap_mm"]))
     for d, lengths in found.items():
         seen = np.std(lengths, axis=0) / np.radians(0.5)
-        [row] = from_dict(angles=[noisy_series(np.random.default_rng(0), 0.0, 0.0)[int(d) - 1]]).rows[
-            "angles"
-        ]
+        [row] = from_dict(angles=[noisy_series(np.random.default_rng(0), 0.0, 0.0)[int(d) - 1]]).rows["angles"]
         reported = scatter_of_series(row, lag(d), GAP * d, False)
         assert reported == pytest.approx(seen, rel=0.12)
 
@@ -281,8 +277,7 @@ def test_side_view_and_straight_stroke_give_the_tip_gap():
     assert made.brush.tip_gap.coefficients == pytest.approx([0, GAP], abs=1e-6)
     path = 60.0
     straight = [
-        {"depth_mm": d, "path_mm": path, "distance_mm": path - lag(d) - GAP * d + widest(d)}
-        for d in DEPTHS.tolist()
+        {"depth_mm": d, "path_mm": path, "distance_mm": path - lag(d) - GAP * d + widest(d)} for d in DEPTHS.tolist()
     ]
     made = calibrate(from_dict(straight=straight, **known), "b")
     assert made.brush.tip_gap.coefficients == pytest.approx([0, GAP], abs=1e-6)
@@ -310,9 +305,7 @@ def test_intervals_cover_the_truth_through_corrections(kind):
             law_name, truth = "tip_gap", np.array([0, GAP])
         rows[kind] = values(depths, sums + rng.normal(0, 0.2, depths.size))
         made = calibrate(from_dict(**rows), "b")
-        assert not any(
-            "held" in remark for fitted in made.laws for remark in fitted.remarks if fitted.name == "lag"
-        )
+        assert not any("held" in remark for fitted in made.laws for remark in fitted.remarks if fitted.name == "lag")
         profile = getattr(made.brush, law_name)
         off = np.abs(np.array(profile.coefficients) - truth)
         covered.append(off <= profile.half_interval_95)
@@ -375,9 +368,7 @@ def test_plain_and_total_lines_are_those_of_numpy():
     gram = np.array([scale * e_foldings, s]) @ np.array([scale * e_foldings, s]).T
     _, vectors = np.linalg.eigh(gram)
     total = scale * vectors[0, 0] / vectors[1, 0]
-    assert _core.from_angles(np.pi / 2, s, alpha, [], _core.Lines.total)["lag_mm"] == pytest.approx(
-        total, rel=1e-9
-    )
+    assert _core.from_angles(np.pi / 2, s, alpha, [], _core.Lines.total)["lag_mm"] == pytest.approx(total, rel=1e-9)
 
 
 @pytest.mark.parametrize(

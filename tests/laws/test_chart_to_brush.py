@@ -41,10 +41,7 @@ def uneven(ring, rng):
 @pytest.fixture(scope="module")
 def painted(tmp_path_factory):
     desk = tmp_path_factory.mktemp("desk")
-    assert (
-        main(["chart", "-o", str(desk / "plan.json"), "--sheet", "a5", "--chart", str(desk / "chart.json")])
-        == 0
-    )
+    assert main(["chart", "-o", str(desk / "plan.json"), "--sheet", "a5", "--chart", str(desk / "chart.json")]) == 0
     made = read_chart((desk / "chart.json").read_bytes())
     brush, rng = truth(), np.random.default_rng(6)
     marks = _core.simulate(made.plan, brush)

@@ -44,9 +44,7 @@ WORD = Path(__file__).parents[2] / "examples" / "vincent.svg"
 A5 = (148.0, 210.0)
 DEEPEST = 8.0
 LAG, GAP = np.array([2.2, 1.5, -0.06]), np.array([0.0, 0.55])
-FAULTS = painter.Faults(
-    noise=0.04, noise_length=0.5, displacement=0.15, placement=0.8, turn=0.008, height=0.0
-)
+FAULTS = painter.Faults(noise=0.04, noise_length=0.5, displacement=0.15, placement=0.8, turn=0.008, height=0.0)
 CAMERA = Camera(size_px=(1500, 2050), shadow=0.3)
 TURN = 2 * np.pi * np.arange(128) / 128
 
@@ -198,9 +196,7 @@ def predicted_overlap(plan, brush, painted):
     """Return the mean predicted overlap over strokes."""
     marks = core.simulate(plan, brush)
     core.trace_outlines(marks, brush)
-    reported = [
-        whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes
-    ]
+    reported = [whole(shapely.make_valid(shapely.Polygon(max(one.outline_mm, key=len)))) for one in marks.passes]
     both = zip(reported, painted, strict=True)
     return np.mean([one.intersection(other).area / one.union(other).area for one, other in both])
 
@@ -248,10 +244,7 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     strokes = [(one.stroke, oracle.chords(one.poses_mm, one.arcs, step=1.0)) for one in made.plan.passes]
     faults = replace(FAULTS, height=0.05)
     sheet = painter.paint(np.random.default_rng(8), truth(SHAPES[name]), strokes, faults)
-    rows = [
-        {"stroke": stroke, "outline_mm": [ring.tolist() for ring in rings]}
-        for stroke, _, rings in sheet.marks
-    ]
+    rows = [{"stroke": stroke, "outline_mm": [ring.tolist() for ring in rings]} for stroke, _, rings in sheet.marks]
     marks = read_painted(json.loads(core.write_plan(made.plan)), rows, None)
     made_of_strokes = calibrate_marks(marks, "before", leave_out_strays=True)
     before = made_of_strokes.brush

@@ -42,9 +42,7 @@ def job(tmp_path_factory):
 
 def compared(job, fault_values, seed=1, *flags):
     folder, plan = job
-    (folder / "photo.jpg").write_bytes(
-        studio.photographed(plan, studio.painted(plan, fault_values, seed), "word")
-    )
+    (folder / "photo.jpg").write_bytes(studio.photographed(plan, studio.painted(plan, fault_values, seed), "word"))
     words = ["compare", "--force", "photo.jpg", "word.svg", "--brush", "mine.json", "-o", "seen.json"]
     words = [str(folder / word) if "." in word else word for word in words]
     assert main([*words, "--quiet", *flags]) == 0
@@ -67,9 +65,7 @@ ONE = {
     ),
     "brush": (studio.Faults(lag=1.15, half=0.88), {"lag": 0.15, "width": -0.12}),
     "each stroke's own place": (
-        studio.Faults(
-            own={name: np.array([0.6 * (-1) ** k, 0.5 * (-1) ** (k // 2)]) for k, name in enumerate(NAMES)}
-        ),
+        studio.Faults(own={name: np.array([0.6 * (-1) ** k, 0.5 * (-1) ** (k // 2)]) for k, name in enumerate(NAMES)}),
         {},
     ),
     "missing paint": (studio.Faults(lasts_mm=38.0), {}),
@@ -94,9 +90,7 @@ def test_what_is_wrong_is_named_and_measured(job, cause, capsys):
         )
         assert with_corrected.mean() < 0.6 * with_old.mean(), "the cell undoes their displacement"
         corrected = read_cell(folder / "corrected.toml")
-        assert corrected.name not in cell_names(), (
-            "a program that names it is not checked with the cell as it was"
-        )
+        assert corrected.name not in cell_names(), "a program that names it is not checked with the cell as it was"
         assert corrected.machine.scale == pytest.approx((1.01, 0.992), abs=0.002)
     gains = {row["cause"]: row["gain"] for row in found["causes"]}
     _, plan = job
@@ -115,9 +109,7 @@ def test_all_of_it_at_once_is_within_its_intervals(job, number, capsys):
     found = compared(job, fault_values, number)
     truth = {"lag": fault_values.lag - 1, "width": fault_values.half - 1}
     for name in ("scale", "backlash", "tilt"):
-        truth |= {
-            f"{name} in {axis}": value for axis, value in zip("xy", getattr(fault_values, name), strict=True)
-        }
+        truth |= {f"{name} in {axis}": value for axis, value in zip("xy", getattr(fault_values, name), strict=True)}
     rows = {row["name"]: row for row in found["numbers"]}
     off = {name: (rows[name]["value"] - value) / rows[name]["half_95"] for name, value in truth.items()}
     assert all(abs(each) < 1.2 for each in off.values()), off

@@ -143,9 +143,7 @@ def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
     turn, scale, shift, left = similarity_off(found)
     assert abs(turn) < 0.6 and shift < 0.7, (turn, shift)
     assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)
-    degrees, right = re.search(
-        r"turned by (\d+\.\d) degrees( to the right)?", describe_reading(found)
-    ).groups()
+    degrees, right = re.search(r"turned by (\d+\.\d) degrees( to the right)?", describe_reading(found)).groups()
     shown = float(degrees) * (-1 if right else 1)
     assert abs((shown - turn_deg + 180) % 360 - 180) < 0.6 and "24 strokes" in describe_reading(found)
 

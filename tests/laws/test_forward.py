@@ -200,9 +200,7 @@ def test_heading_before_the_first_motion():
     first = rows.pose <= 2
     assert rows.heading_rad[first] == pytest.approx(np.full(first.sum(), 2 * np.pi / 3), abs=1e-12)
     assert rows.pull[first][rows.depth_mm[first] > 0] == pytest.approx(0.0, abs=1e-12)
-    assert rows_of([[1, 1, 0.0], [1, 1, -3], [1, 1, 0.0]], make_brush()).heading_rad == pytest.approx(
-        0.0, abs=0
-    )
+    assert rows_of([[1, 1, 0.0], [1, 1, -3], [1, 1, 0.0]], make_brush()).heading_rad == pytest.approx(0.0, abs=0)
 
 
 def test_rigid_pen_follows_the_tcp():
@@ -238,16 +236,13 @@ def test_rows_are_as_close_as_the_tolerance_asks(tolerance):
                 return oracle.placed(shape, contact, heading, brush.tip_gap(depth))
 
             ends = [
-                outline(rows.contact_mm[j], rows.heading_rad[j], rows.depth_mm[j], rows.pull[j])
-                for j in (k, k + 1)
+                outline(rows.contact_mm[j], rows.heading_rad[j], rows.depth_mm[j], rows.pull[j]) for j in (k, k + 1)
             ]
             contact, heading, _, pull = reference.at(0.5 * (rows.pose[k] + rows.pose[k + 1]))
             if np.isnan(heading):
                 continue
             between = outline(contact, heading, 0.5 * (rows.depth_mm[k] + rows.depth_mm[k + 1]), pull)
-            assert np.max(np.hypot(*(between - 0.5 * (ends[0] + ends[1])).T)) <= tolerance * 1.01, rows.pose[
-                k
-            ]
+            assert np.max(np.hypot(*(between - 0.5 * (ends[0] + ends[1])).T)) <= tolerance * 1.01, rows.pose[k]
 
 
 # Check values ------------------------------------------------------------------------

@@ -33,9 +33,7 @@ def lever(depth):
 def line(*points):
     """Return straight cubics through points."""
     p = np.array(points, float)
-    return np.array(
-        [np.concatenate([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b]) for a, b in itertools.pairwise(p)]
-    )
+    return np.array([np.concatenate([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b]) for a, b in itertools.pairwise(p)])
 
 
 def corner(degrees, arm=30.0):
@@ -69,9 +67,7 @@ def smooth(rng, pieces, turn=1.2):
         length, turned = rng.uniform(8, 18), heading + rng.uniform(-turn, turn)
         end = xy + length * oracle.unit(0.5 * (heading + turned))
         third = length / 3
-        out.append(
-            np.concatenate([xy, xy + third * oracle.unit(heading), end - third * oracle.unit(turned), end])
-        )
+        out.append(np.concatenate([xy, xy + third * oracle.unit(heading), end - third * oracle.unit(turned), end]))
         xy, heading = end, turned
     return np.array(out)
 
@@ -112,9 +108,7 @@ def as_far_as_a_round_cap(stroke):
     """
     cubics = np.asarray(stroke.middle_mm)
     end = cubics[-1, 6:]
-    behind = next(
-        (p for p in cubics[::-1].reshape(-1, 4, 2)[:, ::-1].reshape(-1, 2) if (p != end).any()), end
-    )
+    behind = next((p for p in cubics[::-1].reshape(-1, 4, 2)[:, ::-1].reshape(-1, 2) if (p != end).any()), end)
     way = stroke.half_width[-1][1] * (end - behind) / max(np.hypot(*(end - behind)), 1e-12)
     return np.vstack([cubics, np.concatenate([end + k / 3 * way for k in range(4)])[None]])
 
@@ -249,9 +243,7 @@ def test_any_lag_law(name):
 
 def _compensated_in_a_process(half_width, results):
     painted = Painted(stroke_of(line((0, 0), (30, 0)), half_width), 0.05)
-    results.put(
-        (np.isfinite(painted.poses).all(), painted.tracking_error.largest_mm, painted.once_taut().max())
-    )
+    results.put((np.isfinite(painted.poses).all(), painted.tracking_error.largest_mm, painted.once_taut().max()))
 
 
 @pytest.mark.parametrize("thick", [2.0, 2.5, 3.0])
@@ -333,9 +325,7 @@ BENDS = {
 @pytest.mark.parametrize("bend", BENDS)
 def test_contact_comes_back(bend, wide):
     middle_mm, parts = BENDS[bend]
-    painted = Painted(
-        stroke_of(middle_mm, [(0.0, wide[0]), (1.0, wide[1])]), 1e-6, parts=2, step=1.0, few_poses=False
-    )
+    painted = Painted(stroke_of(middle_mm, [(0.0, wide[0]), (1.0, wide[1])]), 1e-6, parts=2, step=1.0, few_poses=False)
     length = sum(p[0] for p in parts)
 
     def depth_at(s):
@@ -359,9 +349,7 @@ def test_contact_settles_on_its_own_circle(half_width):
     far = 20 * abs(e)  # the effect of the start (for e < 0, of the end) decays as exp(-s/|e|)
     s = painted.s[painted.taut]
     length = painted.middle.length
-    rows = (
-        painted.taut[(s > far) & (s < length - 0.1)] if e > 0 else painted.taut[(s > 1) & (s < length - far)]
-    )
+    rows = painted.taut[(s > far) & (s < length - 0.1)] if e > 0 else painted.taut[(s > 1) & (s < length - far)]
     away = painted.rows.contact_mm[rows] - [0, radius]
     assert len(rows) > 100
     assert np.hypot(*away.T) == pytest.approx(np.sqrt(radius**2 - e**2), abs=1e-6)
@@ -391,9 +379,7 @@ def reach(painted, point, direction, rows):
     for k in rows:
         if marks.depth_mm[k] > 0:
             outline = core.footprint_at(ROUND.footprints, marks.depth_mm[k], marks.pull[k])
-            outline = oracle.placed(
-                outline, marks.contact_mm[k], marks.heading_rad[k], 0.52 * marks.depth_mm[k]
-            )
+            outline = oracle.placed(outline, marks.contact_mm[k], marks.heading_rad[k], 0.52 * marks.depth_mm[k])
             farthest = max(farthest, ((outline - point) @ direction).max())
     return farthest
 
@@ -405,14 +391,10 @@ def test_ends_of_the_mark(half_width, seed):
 
     The patch rests while the brush is lifted.
     """
-    painted = Painted(
-        stroke_of(smooth(np.random.default_rng(seed), 3), [(0.0, half_width)]), 1e-3, parts=12, step=0.5
-    )
+    painted = Painted(stroke_of(smooth(np.random.default_rng(seed), 3), [(0.0, half_width)]), 1e-3, parts=12, step=0.5)
     (start, end), (first, last) = painted.middle.at([0, painted.middle.length])
     near = np.array_split(np.arange(len(painted.rows.pose)), 2)
-    halves = [
-        rows[np.hypot(*(painted.widest[rows] - p).T) < 12] for rows, p in zip(near, (start, end), strict=True)
-    ]
+    halves = [rows[np.hypot(*(painted.widest[rows] - p).T) < 12] for rows, p in zip(near, (start, end), strict=True)]
     beyond = 2e-3 if half_width < 3 else 0.01  # a corner of a blunt front sticks out where the line bends
     depth = half_width / 0.42
     assert half_width - 0.06 <= reach(painted, end, last, halves[1]) <= half_width + beyond
@@ -428,9 +410,7 @@ def test_ends_of_the_mark(half_width, seed):
 
 def test_a_plain_lift_would_leave_a_tail():
     """The measure of test_ends_of_the_mark finds the tail of an uncompensated stroke."""
-    painted = Painted(
-        stroke_of(line((0, 0), (40, 0)), [(0.0, 1.68)]), 1e-3, method="none", parts=12, step=0.5
-    )
+    painted = Painted(stroke_of(line((0, 0), (40, 0)), [(0.0, 1.68)]), 1e-3, method="none", parts=12, step=0.5)
     contact = painted.rows.contact_mm
     lifting = painted.rows.pose >= painted.rows.pose[-1] - 12
     assert contact[-1, 0] - contact[lifting][0, 0] == pytest.approx(LAG(4.0) - LAG(0.0), abs=1e-8)
@@ -442,10 +422,7 @@ def test_a_dab_has_its_widest_section_where_it_was_drawn():
     deepest = np.argmax(painted.rows.depth_mm)
     assert painted.rows.depth_mm[deepest] == pytest.approx(1 / 0.42, abs=1e-9)
     assert painted.widest[deepest] == pytest.approx([3, 4], abs=0.05)
-    assert (
-        reach(painted, np.array([3.0, 4.0]), np.array([0.0, 1.0]), range(len(painted.rows.pose)))
-        <= 1.0 + 1e-6
-    )
+    assert reach(painted, np.array([3.0, 4.0]), np.array([0.0, 1.0]), range(len(painted.rows.pose))) <= 1.0 + 1e-6
 
 
 # None, constant, and what is refused --------------------------------------------------------------
@@ -454,9 +431,7 @@ def test_a_dab_has_its_widest_section_where_it_was_drawn():
 @pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
 def test_none_keeps_the_tcp_on_the_middle_line(tolerance):
     middle = np.vstack([smooth(np.random.default_rng(5), 3)])
-    found = core.compensate(
-        [stroke_of(middle, [(0.0, 0.8), (1.0, 2.0)])], ROUND, (99.0, 99.0), "none", tolerance
-    )
+    found = core.compensate([stroke_of(middle, [(0.0, 0.8), (1.0, 2.0)])], ROUND, (99.0, 99.0), "none", tolerance)
     poses, on = found.plan.passes[0].poses_mm, oracle.Middle(middle)
     assert poses[[0, -1], 2] == pytest.approx(0, abs=0)
     assert poses[[0, 1], :2] == pytest.approx(np.tile(middle[0, :2], (2, 1)), abs=1e-9)
@@ -522,10 +497,7 @@ def test_widths_out_of_reach_are_refused_with_the_range():
 
 
 def test_strokes_keep_their_order_and_names():
-    strokes = [
-        core.Stroke(id=f"n{k}", middle_mm=line((k, 0), (k + 20, 5)), half_width=[(0.0, 1.0)])
-        for k in range(5)
-    ]
+    strokes = [core.Stroke(id=f"n{k}", middle_mm=line((k, 0), (k + 20, 5)), half_width=[(0.0, 1.0)]) for k in range(5)]
     found = core.compensate(strokes, ROUND, (99.0, 99.0))
     assert [p.stroke for p in found.plan.passes] == [f"n{k}" for k in range(5)]
     assert len(found.tracking_errors) == 5
@@ -567,10 +539,7 @@ def painted_region(poses, step=0.25, from_x=-np.inf):
     mm miss less than a ten thousandth of the area of a dot, and 0.02 mm at an edge.
     """
     reference = oracle.Reference(poses, LAG)
-    dragged = [
-        (d, np.asarray(each.outline_mm))
-        for d, each in zip(range(1, 11), ROUND.footprints.dragged, strict=True)
-    ]
+    dragged = [(d, np.asarray(each.outline_mm)) for d, each in zip(range(1, 11), ROUND.footprints.dragged, strict=True)]
     outlines = []
     heading = None
     for pose in np.unique(np.concatenate([every(poses, step), reference.events()])):
@@ -713,9 +682,7 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
     middle = np.array([50.0, 50.0])
     off = (length - width) / 2 * along
     box = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
-    target = shapely.affinity.translate(
-        shapely.affinity.rotate(box, turned_rad, (0, 0), use_radians=True), *middle
-    )
+    target = shapely.affinity.translate(shapely.affinity.rotate(box, turned_rad, (0, 0), use_radians=True), *middle)
     stroke = stroke_of(line(middle - off, middle + off), [(0.0, width / 2)])
     stroke.wanted_mm = [np.asarray(target.exterior.coords)[:-1]]
 
@@ -787,9 +754,7 @@ def test_a_dot_without_corners_stays_round(corners):
     angles = np.arange(corners) * 2 * np.pi / corners
     stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 3.0)])
     stroke.wanted_mm = [np.column_stack([50 + 3 * np.cos(angles), 50 + 3 * np.sin(angles)])]
-    plans = [
-        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("auto", "round")
-    ]
+    plans = [core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("auto", "round")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
 
@@ -889,10 +854,7 @@ def end_of_bar(half_width, slope, **options):
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
     poses = np.asarray(found.plan.passes[0].poses_mm)
     assert found.tracking_errors[0].within_tolerance
-    assert (
-        core.tracking_error_of(found.plan.passes[0], stroke, ROUND).largest_mm
-        == found.tracking_errors[0].largest_mm
-    )
+    assert core.tracking_error_of(found.plan.passes[0], stroke, ROUND).largest_mm == found.tracking_errors[0].largest_mm
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()  # one touch
     target = shapely.Polygon(cut_bar(half_width, slope))
@@ -932,10 +894,7 @@ def plan_of_bar(half_width, slope, **options):
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
     poses = np.asarray(found.plan.passes[0].poses_mm)
     assert found.tracking_errors[0].within_tolerance
-    assert (
-        core.tracking_error_of(found.plan.passes[0], stroke, ROUND).largest_mm
-        == found.tracking_errors[0].largest_mm
-    )
+    assert core.tracking_error_of(found.plan.passes[0], stroke, ROUND).largest_mm == found.tracking_errors[0].largest_mm
     assert poses[0, 2] == poses[-1, 2] == 0.0
     assert (poses[1:-1, 2] < 0.0).all()
     assert -poses[:, 2].min() < ROUND.depth_for_half_width(half_width) + 1e-9
@@ -1034,9 +993,7 @@ def test_what_is_no_cut_ends_round(half_width, target):
 def test_what_begins_with_no_cut_is_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
     stroke.wanted_mm = [np.array(target, float)]
-    plans = [
-        core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("round", "butt")
-    ]
+    plans = [core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("round", "butt")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
 

@@ -40,14 +40,10 @@ WORD = """<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="5"/>
 ONE_DEPTH = """<path id="bow" d="M14 34 C24 8 48 8 56 32" stroke-width="4"/>
 <path id="hook" d="M70 12 L98 12 C106 12 106 34 92 34 L78 34" stroke-width="4"/>
 <path id="knee" d="M70 48 L94 48 L112 24" stroke-width="4"/><path id="line" d="M14 78 L60 74" stroke-width="4"/>"""
-BARS = "".join(
-    f'<path id="bar-{k}" d="M20 {20 * k} L{80 + 10 * k} {20 * k}" stroke-width="4"/>' for k in (1, 2, 3, 4)
-)
+BARS = "".join(f'<path id="bar-{k}" d="M20 {20 * k} L{80 + 10 * k} {20 * k}" stroke-width="4"/>' for k in (1, 2, 3, 4))
 CAMERA = Camera(size_px=(1800, 1170), fill=0.95)
 DISPLACED = Camera(size_px=(1800, 1170), tilt_deg=(-6.0, 5.0), fill=0.9)
-FAULTS = painter.Faults(
-    noise=0.05, noise_length=0.5, displacement=0.2, placement=0.6, turn=0.006, height=0.15
-)
+FAULTS = painter.Faults(noise=0.05, noise_length=0.5, displacement=0.2, placement=0.6, turn=0.006, height=0.15)
 LAG, GAP, HALF = np.array([2.6, 1.3, 0.1, -0.009]), np.array([0.0, 0.45]), np.array([0.0, 0.5, -0.005])
 WIDEST, FRONT, DEEPEST = 1.6, 0.95, 10.0
 DEPTHS = np.linspace(1, DEEPEST, 10)
@@ -141,10 +137,7 @@ def test_a_word_brings_the_brush_nearer_to_the_truth(learnt):
     before, now = studio.brush("mine.json"), studio.brush()
     for law in ("lag", "half_width"):
         true = truth.law(law)(depths)
-        off = [
-            np.abs(np.array([getattr(each, law)(d) for d in depths]) / true - 1).mean()
-            for each in (before, now)
-        ]
+        off = [np.abs(np.array([getattr(each, law)(d) for d in depths]) / true - 1).mean() for each in (before, now)]
         assert off[1] < 0.2 * off[0] and off[1] < 0.03, (law, off)
         values = np.array([getattr(now, law)(d) for d in depths])
         band = law_band(now, law, depths)[0]
@@ -249,9 +242,7 @@ def test_the_plan_of_a_corrected_word_says_where_the_tool_went(tmp_path, capsys)
         }
         for k, one in enumerate(read_plan(tmp_path / "word.json").passes)
     ]
-    (tmp_path / "c.json").write_text(
-        json.dumps({"format": "brushsvg/comparison", "version": 1, "strokes": shift})
-    )
+    (tmp_path / "c.json").write_text(json.dumps({"format": "brushsvg/comparison", "version": 1, "strokes": shift}))
     plan = studio.convert("led.json", "--corrections", str(tmp_path / "c.json"))
     truth = true_brush(1.15, 0.9)
     studio.paint(6, truth, plan)

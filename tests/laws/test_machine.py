@@ -71,9 +71,7 @@ def painted_by(seed, parts, one_way=False):
     strokes = painter.chart_strokes(brush.deepest, 3)
     if one_way:
         strokes = [
-            (name, poses)
-            for name, poses in strokes
-            if name in ("straight-1", "straight-3", "ramp-up", "angular-1")
+            (name, poses) for name, poses in strokes if name in ("straight-1", "straight-3", "ramp-up", "angular-1")
         ]
         strokes = [(name, poses[poses[:, 1] < poses[0, 1] + 3]) for name, poses in strokes]
     centre = np.concatenate([poses[:, :2] for _, poses in strokes]).mean(axis=0)
@@ -88,12 +86,8 @@ def painted_by(seed, parts, one_way=False):
         return painter.swept(brush, ways, height)
 
     sheet = painter.paint(rng, brush, strokes, painter.Faults(displacement=0.3), regions)
-    plan = {
-        "passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
-    }
-    marks = [
-        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in sheet.marks
-    ]
+    plan = {"passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]}
+    marks = [{"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in sheet.marks]
     return brush, read_painted(plan, marks, None)
 
 
@@ -132,9 +126,7 @@ def test_brush_and_machine_come_back(parts):
         for term, value in zip(("u u", "u v", "v v"), row, strict=True)
     }
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
-    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts) + 6 * (
-        "field" in parts
-    )
+    assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts) + 6 * ("field" in parts)
     for one in found:
         assert abs(one.value - truth[one.name]) < 2 * one.half, one
         assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"
@@ -196,9 +188,7 @@ def test_an_exact_machine_is_found_to_be_exact():
     assert all(abs(one.value) < 2 * one.half for one in found[:2])
     depths = np.linspace(0.2, 1, 9) * brush.deepest
     error = [made.brush.lag(depth) - brush.law("lag")(depth) for depth in depths]
-    assert np.all(np.abs(error) < 1.5 * law_band(made.brush, "lag", depths)[0]), (
-        "more is open, and the band says so"
-    )
+    assert np.all(np.abs(error) < 1.5 * law_band(made.brush, "lag", depths)[0]), "more is open, and the band says so"
 
 
 @pytest.mark.parametrize("seed", [5, 6])

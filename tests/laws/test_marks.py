@@ -82,14 +82,8 @@ PASSES = {
 
 CASES = [
     *((name, "round") for name in PASSES),
-    *(
-        (name, "round, pressed apart")
-        for name in ("press in place", "corner", "reversal", "two dabs", "crossing")
-    ),
-    *(
-        (name, "crescent")
-        for name in ("straight", "press in place", "corner", "reversal", "circle", "two dabs")
-    ),
+    *((name, "round, pressed apart") for name in ("press in place", "corner", "reversal", "two dabs", "crossing")),
+    *((name, "crescent") for name in ("straight", "press in place", "corner", "reversal", "circle", "two dabs")),
     *((name, "crescent, pressed apart") for name in ("press in place", "straight back", "two dabs")),
 ]
 
@@ -135,11 +129,7 @@ def dense_union(poses, shape, lag="round", close_mm=2e-4):
         middle = 0.5 * (p0 + p1)
         between = outline(middle)
         if a is None or b is None or between is None:
-            return (
-                [None, b]
-                if (a is None and b is None) or p1 - p0 < 1e-9
-                else halves(p0, middle, p1, a, between, b)
-            )
+            return [None, b] if (a is None and b is None) or p1 - p0 < 1e-9 else halves(p0, middle, p1, a, between, b)
         if np.max(np.abs(between - 0.5 * (a + b))) < close_mm and np.max(np.abs(a - b)) < 1e3 * close_mm:
             return [between, b]
         return [None, b] if p1 - p0 < 1e-9 else halves(p0, middle, p1, a, between, b)

@@ -228,8 +228,7 @@ def test_strokes_that_are_displaced_more_are_reported(tmp_path, capsys):
     status, _, reported = in_json(capsys, *words)
     assert status == 0 and is_reported(reported, "stroke-farther", "bar"), reported
     before, now = (
-        {row["stroke"]: row["aside_mm"] for row in json.loads(path.read_text())["strokes"]}
-        for path in (first, out)
+        {row["stroke"]: row["aside_mm"] for row in json.loads(path.read_text())["strokes"]} for path in (first, out)
     )
     farther = {name for name in now if now[name] > before[name] + 0.1}
     assert {notice.where for _, notice in reported if notice.code == "stroke-farther"} == farther
@@ -480,9 +479,7 @@ def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
     plan = studio.plan()
     before = studio.rings(plan)
     requested = tuple(
-        Correction(
-            a_pass.stroke, tuple(a_pass.poses_mm[0][:2]), (50.0, 30.0), (0.0, 0.0), 0.0, wider_mm=by_mm
-        )
+        Correction(a_pass.stroke, tuple(a_pass.poses_mm[0][:2]), (50.0, 30.0), (0.0, 0.0), 0.0, wider_mm=by_mm)
         for a_pass in plan.passes
     )
     after = studio.rings(apply_corrections(plan, requested, BRUSH))

@@ -12,9 +12,7 @@ import shapely
 core = pytest.importorskip("brushsvg._core")
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-STEP_MM = (
-    0.04  # a lift begins where the patch is about to slip: twice as much lets it, by 0.006 of a dot's overlap
-)
+STEP_MM = 0.04  # a lift begins where the patch is about to slip: twice as much lets it, by 0.006 of a dot's overlap
 PARTS = 6  # of a move at least: where it turns, the patch is not let go by one step
 OUTLINE_EVERY = 6  # a hull of neighbours 0.24 mm apart leaves 1e-3 mm out on the tightest bends
 
@@ -41,9 +39,7 @@ def stepped(plan, brush):
         heading = np.arctan2(lever[:, 1], lever[:, 0])
         known = np.flatnonzero(reach > 1e-9)
         if len(known):  # else it is pressed straight down, and the heading is 0
-            heading = heading[
-                known[np.clip(np.searchsorted(known, np.arange(len(poses))), 0, len(known) - 1)]
-            ]
+            heading = heading[known[np.clip(np.searchsorted(known, np.arange(len(poses))), 0, len(known) - 1)]]
         outlines = []
         for k in sorted({*range(0, len(poses), OUTLINE_EVERY), len(poses) - 1}):
             depth = -poses[k, 2]
@@ -89,9 +85,7 @@ def check_figures(strokes, compensation, brush_name="round-6"):
     target = [target_region(stroke) for stroke in strokes]
     for row, mark, expected in zip(rows, painted, target, strict=True):
         assert row.overlap == pytest.approx(overlap(mark, expected), abs=0.005), row.stroke
-    assert total.overlap == pytest.approx(
-        overlap(shapely.union_all(painted), shapely.union_all(target)), abs=0.005
-    )
+    assert total.overlap == pytest.approx(overlap(shapely.union_all(painted), shapely.union_all(target)), abs=0.005)
     number = {stroke.id: k for k, stroke in enumerate(strokes)}
     for group in groups:
         members = [number[name] for name in group.strokes]
@@ -126,9 +120,7 @@ def random_stroke(rng, name):
         )
         points, heading = last, heading + 2 * turn
     half = rng.uniform(0.4, 4.0, 2)
-    return core.Stroke(
-        name, np.reshape(cubics, (-1, 8)), half_width=[(0.0, float(half[0])), (1.0, float(half[1]))]
-    )
+    return core.Stroke(name, np.reshape(cubics, (-1, 8)), half_width=[(0.0, float(half[0])), (1.0, float(half[1]))])
 
 
 @pytest.mark.parametrize(("seed", "compensation"), [(0, "closed"), (1, "none"), (2, "closed")])

@@ -42,9 +42,7 @@ def sheet(seed, narrows_per_m, mixed=False):
 
     painted = painter.paint(rng, brush, strokes, painter.Faults(), regions)
     passes = [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
-    marks = [
-        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks
-    ]
+    marks = [{"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks]
     return brush, {"plan": {"passes": passes}, "marks": marks}
 
 
@@ -67,9 +65,7 @@ def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
     terms = len(laws.half_width) - 1
     at = slice(len(laws.lag) + len(laws.tip_gap) - 1, len(laws.lag) + len(laws.tip_gap) - 1 + terms)
     powers = brush.deepest ** np.arange(1, terms + 1)
-    known, alone = (
-        powers @ np.array(each)[at, at] @ powers for each in (made.covariance, made.fit.covariance)
-    )
+    known, alone = (powers @ np.array(each)[at, at] @ powers for each in (made.covariance, made.fit.covariance))
     assert known > 1.3 * alone, "what the rate leaves open is in the laws' intervals"
 
 
@@ -104,9 +100,7 @@ def chart_sheet(seed, law):
 
 def rate_of(made):
     paint = made.brush.paint
-    return paint.narrows_per_m, core.deviations_of_95(paint.degrees_of_freedom) * np.sqrt(
-        paint.covariance[0][0]
-    )
+    return paint.narrows_per_m, core.deviations_of_95(paint.degrees_of_freedom) * np.sqrt(paint.covariance[0][0])
 
 
 @sample(("seed", "rate"), [(0, 0.7), (3, 0.25), (3, 0.0)], keep=1)
@@ -193,10 +187,7 @@ def test_an_order_by_depth_alone_is_refused():
     """
     _, reported = sheet(1, 0.5)
     arcs = [each for each in reported["plan"]["passes"] if not each["stroke"].startswith("ramp")]
-    apart = [
-        {"stroke": f"gap{k}", "poses_mm": [[0, -900, -1], [4000, -900, -1]], "speed_mm_s": 20}
-        for k in range(3)
-    ]
+    apart = [{"stroke": f"gap{k}", "poses_mm": [[0, -900, -1], [4000, -900, -1]], "speed_mm_s": 20} for k in range(3)]
     by_depth = [[each for each in arcs if each["stroke"].endswith(f"-{k}")] for k in (1, 2, 3)]
     passes = [one for k in range(3) for one in (apart[k], *by_depth[k])]
     names = {each["stroke"] for each in arcs}
@@ -229,9 +220,7 @@ def run_dry(lasts_mm, gone=()):
         for name, _, rings in painted.marks
         if name in wet
     ]
-    return {"plan": {"passes": passes}, "marks": marks}, dict(
-        zip((name for name, _ in strokes), ends, strict=True)
-    )
+    return {"plan": {"passes": passes}, "marks": marks}, dict(zip((name for name, _ in strokes), ends, strict=True))
 
 
 @sample("share", [0.0, 0.4], keep=1)

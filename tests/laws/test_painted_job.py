@@ -129,9 +129,7 @@ def test_however_much_wider_it_is(job, capsys, by_mm):
 
 def test_what_only_turns_leaves_nothing_of_the_strokes_places(job, capsys):
     folder, page, rings, _ = job
-    (folder / "rot.jpg").write_bytes(
-        shown(page, {name: list(map(turned, each)) for name, each in rings.items()})
-    )
+    (folder / "rot.jpg").write_bytes(shown(page, {name: list(map(turned, each)) for name, each in rings.items()}))
     found = json.loads(compare(folder, capsys, "rot.jpg", "--json")[1].out)
     assert found["sheet"]["turn_deg"] == pytest.approx(TURN_DEG, abs=0.02)
     assert found["sheet"]["strokes_aside_mm"] < 0.02
@@ -165,9 +163,7 @@ def test_photographs_of_two_sheets_are_refused(job, capsys):
     words = ["compare", *(str(folder / name) for name in ("photo.jpg", "two.jpg", "four.svg"))]
     status, _, reported = in_json(capsys, *words, "--quiet")
     assert status == 1 and is_reported(reported, "photos-differ"), reported
-    (folder / "aside.jpg").write_bytes(
-        shown(page, painted, Camera((1500, 1050), tilt_deg=(-8.0, 6.0), fill=0.9))
-    )
+    (folder / "aside.jpg").write_bytes(shown(page, painted, Camera((1500, 1050), tilt_deg=(-8.0, 6.0), fill=0.9)))
     words[2] = str(folder / "aside.jpg")
     assert main([*words, "--quiet"]) == 0
 
@@ -227,9 +223,7 @@ def seen(job, capsys, photo):
     """Status, what was reported, and by stroke whether it was found and is corrected."""
     folder, out = job[0], job[0] / "bad.json"
     out.unlink(missing_ok=True)
-    status, _, reported = in_json(
-        capsys, "compare", "--force", folder / photo, folder / "four.svg", "-o", out
-    )
+    status, _, reported = in_json(capsys, "compare", "--force", folder / photo, folder / "four.svg", "-o", out)
     rows = json.loads(out.read_text())["strokes"] if out.exists() else []
     return status, reported, {row["stroke"]: (row["found"], row["correction"] is not None) for row in rows}
 
@@ -245,9 +239,7 @@ def test_a_finger_in_the_picture_is_reported_and_corrects_nothing_it_covers(job,
     hand = Polygon([(20, -40), (115, -40), (115, 50), (60, 75), (15, 50)]).exterior.coords[:-1]
     (folder / "hand.jpg").write_bytes(with_a_thing(page, painted, hand))
     status, ((_, reported),), rows = seen(job, capsys, "hand.jpg")
-    assert status == 1 and reported.code in ("photo-of-another-job", "photo-without-paint") and not rows, (
-        reported
-    )
+    assert status == 1 and reported.code in ("photo-of-another-job", "photo-without-paint") and not rows, reported
 
 
 @pytest.mark.parametrize("half", ["left", "right", "upper", "lower", "two thirds"])
@@ -313,10 +305,7 @@ def test_the_page_names_its_plan(job, tmp_path, capsys):
         made = main([*words, "--quiet"])
         assert made == 0, capsys.readouterr().err
     text = (tmp_path / "page.svg").read_text()
-    assert (
-        f"brushsvg job {page.printed.id}" in text
-        and text.count("data-marker") == len(page.printed.markers) == 8
-    )
+    assert f"brushsvg job {page.printed.id}" in text and text.count("data-marker") == len(page.printed.markers) == 8
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
     work = prepare(folder / "four.svg")
     assert job_page(order_nearest_first(work).plan).printed.id == page.printed.id, "in any order"
@@ -330,9 +319,7 @@ def test_python_reports_what_the_command_shows(job, capsys, tmp_path):
     stages = []
     found = brushsvg.compare(folder / "four.svg", folder / "photo.jpg", progress=stages.append)
     assert (
-        status == 0
-        and found.report.text(picture=str(named[1])) == reported.out
-        and found.json == named[0].read_text()
+        status == 0 and found.report.text(picture=str(named[1])) == reported.out and found.json == named[0].read_text()
     )
     assert found.picture() == named[1].read_bytes()
     assert brushsvg.write_cell(found.cell) == named[2].read_text() and not found.is_corrected
@@ -341,13 +328,9 @@ def test_python_reports_what_the_command_shows(job, capsys, tmp_path):
     assert len(set(stages)) > 3 and all(isinstance(words, str) for words in stages)
     for again in (copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
         assert again == found and again.picture() == found.picture()
-    (folder / "three.jpg").write_bytes(
-        shown(page, {name: each for name, each in painted.items() if name != "bow"})
-    )
+    (folder / "three.jpg").write_bytes(shown(page, {name: each for name, each in painted.items() if name != "bow"}))
     notices = brushsvg.compare(folder / "four.svg", [str(folder / "three.jpg")]).notices
-    assert [(each.where, each.code) for each in notices if each.code == "mark-missing"] == [
-        ("bow", "mark-missing")
-    ]
+    assert [(each.where, each.code) for each in notices if each.code == "mark-missing"] == [("bow", "mark-missing")]
 
 
 def test_what_cannot_be_compared_from_python_is_one_error(job, tmp_path):

@@ -53,12 +53,8 @@ def sheet(seed, depths=3, round_tail=False, **faults):
 
 
 def as_file(strokes, painted):
-    plan = {
-        "passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]
-    }
-    marks = [
-        {"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks
-    ]
+    plan = {"passes": [{"stroke": name, "poses_mm": poses.tolist(), "speed_mm_s": 20} for name, poses in strokes]}
+    marks = [{"stroke": name, "outline_mm": [ring.tolist() for ring in rings]} for name, _, rings in painted.marks]
     return plan, marks
 
 
@@ -281,9 +277,7 @@ def test_a_height_just_below_0_is_not_surer_than_the_paper_above_allows():
     brush, _, clean = sheet(11, noise=1e-9, height=1e-9, **STILL)
 
     def sure(height):
-        return np.sqrt(
-            drawn_towards(brush, SimpleNamespace(marks=clean.marks, height=height)).covariance[-4][-4]
-        )
+        return np.sqrt(drawn_towards(brush, SimpleNamespace(marks=clean.marks, height=height)).covariance[-4][-4])
 
     assert 3 * sure(-0.2) < sure(0.02), "how sure it is on both sides"
     assert 0.6 * sure(0.002) < sure(-0.002) < sure(0.002) < 1.1 * sure(0.0)
@@ -346,9 +340,7 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     assert framed.fit.left_aside > 0.1
     assert "[0, 10] %" in report(framed).text(True)
     assert "[0, 10] %" not in report(alone).text(True)
-    if (
-        seed == 3
-    ):  # the departure of brush 5 from the usual laws has one of two sizes, which the last bits decide
+    if seed == 3:  # the departure of brush 5 from the usual laws has one of two sizes, which the last bits decide
         for law in ("lag", "tip_gap", "half_width"):
             np.testing.assert_allclose(intervals(framed, law)[1:], intervals(alone, law)[1:], rtol=0.05)
     np.testing.assert_allclose(framed.fit.laws.lag, alone.fit.laws.lag, atol=0.05)

@@ -149,9 +149,7 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
         assert np.abs(values / truth - 1).max() < 0.02, (law, values / truth)
     (tmp_path / "photo.jpg").write_bytes(photo_of(marks(), camera=replace(CAMERA, sag_mm=0.8)))
     status, _, reported = in_json(capsys, *words)
-    assert status == 1 and are_reported([each for _, each in reported], "photo-not-flat", "marks-scaled"), (
-        reported
-    )
+    assert status == 1 and are_reported([each for _, each in reported], "photo-not-flat", "marks-scaled"), reported
 
 
 @pytest.mark.thorough
@@ -235,9 +233,7 @@ def fitted(count, astray):
     """Return a fit of randomly displaced marks; astray moves one mark further."""
     rng = np.random.default_rng(1)
     rows = [
-        SimpleNamespace(
-            displacement_mm=rng.normal(0, 0.2, 2), rms_mm=0.05, distance_mm=rng.normal(0, 0.05, 99)
-        )
+        SimpleNamespace(displacement_mm=rng.normal(0, 0.2, 2), rms_mm=0.05, distance_mm=rng.normal(0, 0.05, 99))
         for _ in range(count)
     ]
     for k, by in astray.items():

@@ -65,9 +65,7 @@ def random_cell(rng, name):
         cell = replace(cell, servo=replace(cell.servo, table=SERVOS[name]))
     lowest = -rng.uniform(5, 10)
     cell = replace(cell, heights=Heights(safe, rng.uniform(0.5, 3), lowest))
-    cell = replace(
-        cell, speeds=replace(cell.speeds, press_mm_s=rng.uniform(2, 30), approach_mm_s=rng.uniform(5, 60))
-    )
+    cell = replace(cell, speeds=replace(cell.speeds, press_mm_s=rng.uniform(2, 30), approach_mm_s=rng.uniform(5, 60)))
     if name not in SERVOS:  # values of a servo do not support leaning paper
         paper = Paper(
             tuple(rng.uniform(-300, 300, 3)),
@@ -76,9 +74,7 @@ def random_cell(rng, name):
         cell = replace(cell, paper=paper)
     cell = replace(cell, workspace=replace(cell.workspace, box_mm=(), reach_mm=(), margin_mm=60.0))
     if rng.random() < 0.6:
-        ink = Station(
-            "ink", (-20.0, 30.0), ("#000000",), surface_mm=-1.0, depth_mm=3.0, rim_mm=1.0, hold_s=0.3
-        )
+        ink = Station("ink", (-20.0, 30.0), ("#000000",), surface_mm=-1.0, depth_mm=3.0, rim_mm=1.0, hold_s=0.3)
         wiped = Station(
             "red",
             (-20.0, 60.0),
@@ -286,8 +282,6 @@ def test_programs_for_machines_that_go_elsewhere_are_allowed_and_come_back(seed)
     cell = replace(cell, machine=Machine(**axes))
     plan = random_plan(rng, brush, cell.heights.lowest_mm)
     text = "".join(writer.encode(LANGUAGES[name], plan, brush, "random", (), cell))
-    ran = simulate_program.simulate_program(
-        read_program(text, LANGUAGES[name], cell), brush, cell, plan.sheet_mm
-    )
+    ran = simulate_program.simulate_program(read_program(text, LANGUAGES[name], cell), brush, cell, plan.sheet_mm)
     assert ran.problems == []
     assert against_plan.with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []

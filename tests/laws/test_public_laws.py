@@ -59,9 +59,7 @@ def test_arrays_broadcast_and_constant_depth_is_a_ramp_too():
     )
     both = laws.alpha_after(alpha0, s, lag)
     assert both.shape == (5, 4, 2)
-    assert laws.alpha_on_ramp(alpha0[..., 0], s[:, 0], 9.0, 3.0, 3.0) == pytest.approx(
-        both[..., 1], abs=1e-13
-    )
+    assert laws.alpha_on_ramp(alpha0[..., 0], s[:, 0], 9.0, 3.0, 3.0) == pytest.approx(both[..., 1], abs=1e-13)
     assert laws.contact_offset(both, lag).shape == (5, 4, 2, 2)
     assert laws.alpha_after(1.0, [0.0, 1.0], 0.0) == pytest.approx([1.0, 0.0])  # a rigid pen
 

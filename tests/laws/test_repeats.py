@@ -18,9 +18,7 @@ pytestmark = pytest.mark.long  # sheets are rendered and read
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100">'
 LINES = "".join(
     f'<path id="s{k}" fill="none" stroke="#000" stroke-width="3" d="M{x} {y} l24 4 l0 10"/>'
-    for k, (x, y) in enumerate(
-        [(20, 20), (100, 20), (60, 20), (100, 50), (20, 50), (60, 50), (20, 75), (60, 75)]
-    )
+    for k, (x, y) in enumerate([(20, 20), (100, 20), (60, 20), (100, 50), (20, 50), (60, 50), (20, 75), (60, 75)])
 )
 CAMERA = Camera(size_px=(1400, 950), fill=0.95)
 TO_THE_RIGHT = ("s1", "s3", "s5", "s7")  # of where the stroke before ended
@@ -158,9 +156,4 @@ def test_strokes_that_are_painted_once_show_no_spread(tmp_path, capsys):
     cv2.imwrite(str(twice[1]), cv2.imread(str(twice[0])))  # other bytes, the same pixels
     status, _, reported = in_json(capsys, "compare", *twice, "--sheets")
     assert status == 1 and is_reported(reported, "too-few-repeats"), reported
-    assert (
-        main(
-            ["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--at-least", "0.5"]
-        )
-        == 2
-    )
+    assert main(["compare", str(tmp_path / "a.jpg"), str(tmp_path / "four.svg"), "--sheets", "--at-least", "0.5"]) == 2

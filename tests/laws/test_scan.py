@@ -101,9 +101,7 @@ def off_mm(read_rings, rings):
     [
         SMALL,
         replace(SMALL, tilt_deg=(-12.0, 9.0), turn_deg=80.0, size_px=(1700, 1400), bend=0.02, fill=0.9),
-        replace(
-            SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, displacement_mm=(8.0, 8.0), size_px=(1200, 1500)
-        ),
+        replace(SMALL, turn_deg=181.0, bend=-0.05, fill=0.8, displacement_mm=(8.0, 8.0), size_px=(1200, 1500)),
     ],
     ids=["straight above", "tilted", "upside down"],
 )
@@ -211,9 +209,7 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
     boxes = {stroke.id: shapely.box(*stroke.box_mm) for stroke in a5().strokes}
     marks["straight-4"] = [ring + np.array([1.0, -4.5]) for ring in marks["straight-4"]]
     below = shape(marks["straight-4"]).difference(boxes["straight-4"])
-    nearer = below.difference(
-        boxes["straight-4"].buffer(boxes["straight-4"].distance(boxes["straight-3"]) / 2)
-    )
+    nearer = below.difference(boxes["straight-4"].buffer(boxes["straight-4"].distance(boxes["straight-3"]) / 2))
     assert nearer.area > 3  # the mark's own box is not the nearest one everywhere
     one, other = "reference-1", "reference-2"
     apart = shape(marks[one]).distance(shape(marks[other]))
@@ -256,10 +252,7 @@ def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
     They are so far displaced that they are in the boxes of others. No mark is lost.
     """
     depth = {one.id: one.depth_mm for one in a5().strokes}
-    marks = {
-        name: [ring + np.multiply(lean, depth[name]) for ring in rings]
-        for name, rings in painted_marks().items()
-    }
+    marks = {name: [ring + np.multiply(lean, depth[name]) for ring in rings] for name, rings in painted_marks().items()}
     assert all(shape(one).disjoint(shape(other)) for one, other in itertools.combinations(marks.values(), 2))
     found = read(photograph.exposed(painted_sheet(marks.values()), SMALL)).marks
     assert not found.missing and not found.joined
@@ -505,9 +498,7 @@ def test_a_page_without_paint_is_refused():
 def test_photographs_of_one_sheet_are_averaged_and_must_agree():
     noisy = replace(SMALL, noise=0.06, quality=80)
     other = replace(noisy, tilt_deg=(-5.0, 4.0), turn_deg=-3.0, size_px=(1050, 1350))
-    jpegs = [
-        photograph.photograph(sheet(), camera, seed) for seed, camera in enumerate((noisy, other, noisy))
-    ]
+    jpegs = [photograph.photograph(sheet(), camera, seed) for seed, camera in enumerate((noisy, other, noisy))]
     photos = [(f"{k}.jpg", data) for k, data in enumerate(jpegs)]
     marks = painted_marks()
 
@@ -520,8 +511,7 @@ def test_photographs_of_one_sheet_are_averaged_and_must_agree():
     assert together.photos == 3 and rms(together) < min(alone), (rms(together), alone)
     rng = np.random.default_rng(1)
     moved = [
-        [ring + side for ring in rings]
-        for rings, side in zip(marks.values(), rng.normal(0, 0.4, (24, 2)), strict=True)
+        [ring + side for ring in rings] for rings, side in zip(marks.values(), rng.normal(0, 0.4, (24, 2)), strict=True)
     ]
     second = photograph.photograph(painted_sheet(moved), SMALL)
     with refused("photos-differ") as refusal:
@@ -692,7 +682,5 @@ def test_refusals_name_the_file(tmp_path, capsys):
     assert (status, about) == (1, str(file)) and agrees(reported, "not-json"), reported
     file.write_text(write_chart(a5()))
     status, _, ((about, reported),) = in_json(capsys, *words)
-    assert (status, about) == (1, str(photo)) and agrees(reported, f"photo-markers-missing {a5().id}"), (
-        reported
-    )
+    assert (status, about) == (1, str(photo)) and agrees(reported, f"photo-markers-missing {a5().id}"), reported
     assert not out.exists()

@@ -43,9 +43,7 @@ def middle(depth, widest=widest):
 def lines(depths=DEPTHS, rng=None, noise=0.0, widest=widest):
     exact = [middle(d, widest) for d in depths]
     shaken = [each + (rng.normal(0, noise, each.shape) if rng else 0.0) for each in exact]
-    return [
-        {"depth_mm": float(d), "points_mm": points.tolist()} for d, points in zip(depths, shaken, strict=True)
-    ]
+    return [{"depth_mm": float(d), "points_mm": points.tolist()} for d, points in zip(depths, shaken, strict=True)]
 
 
 def test_footprints_and_centre_lines_alone_give_lag_and_tip_gap():
@@ -91,9 +89,7 @@ def test_a_turn_to_either_side_reads_the_same(turned):
 def test_a_line_says_how_sure_it_is():
     rng, exact = np.random.default_rng(3), np.array(middle(8.0))
     read = [read_turn(exact + rng.normal(0, 0.05, exact.shape)) for _ in range(60)]
-    off = np.array(
-        [(turn.lag_mm - lag(8.0), turn.turning_mm - lag(8.0) + widest(8.0) - GAP * 8) for turn in read]
-    )
+    off = np.array([(turn.lag_mm - lag(8.0), turn.turning_mm - lag(8.0) + widest(8.0) - GAP * 8) for turn in read])
     reported = np.array([np.sqrt(np.diag(turn.covariance_mm2)) for turn in read])
     assert off.std(axis=0) == pytest.approx(np.median(reported, axis=0), rel=0.4)
 
@@ -256,9 +252,7 @@ def test_one_fit_survives_an_outlier_by_its_norm_and_names_it(absolute):
 def test_a_dict_is_a_file(tmp_path):
     rows = {"depth_range_mm": [0, 10], "name": "mine"} | FOOTPRINTS | {"lag": values(DEPTHS, lag(DEPTHS))}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    reported = brushsvg.calibrate(
-        rows | {"lag": [{"depth_mm": np.float64(d), "value_mm": lag(d)} for d in DEPTHS]}
-    )
+    reported = brushsvg.calibrate(rows | {"lag": [{"depth_mm": np.float64(d), "value_mm": lag(d)} for d in DEPTHS]})
     assert reported.brush == brushsvg.calibrate(tmp_path / "m.json").brush
     with refused("wrong-type"):
         brushsvg.calibrate({"lag": object()})

@@ -75,10 +75,7 @@ def test_each_key_does_what_it_says(drawing, capsys):
 def test_the_same_seed_is_the_same_photograph_and_its_studio_is_reported(drawing, capsys):
     folder = drawing.parent
     for name, seed in (("a", 7), ("b", 7), ("c", 8)):
-        assert (
-            main(["simulate-photo", str(drawing), "-o", str(folder / f"{name}.jpg"), "--seed", str(seed)])
-            == 0
-        )
+        assert main(["simulate-photo", str(drawing), "-o", str(folder / f"{name}.jpg"), "--seed", str(seed)]) == 0
     a, b, c = ((folder / f"{name}.jpg").read_bytes() for name in "abc")
     assert a == b != c
     text = capsys.readouterr().out
@@ -105,9 +102,7 @@ def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys,
     monkeypatch.chdir(tmp_path)
     assert main(["chart", "-o", "c.ngc", "--sheet", "a5", "--chart", "c.json", "--quiet"]) == 0
     for seed in (2, 3):  # seed 2 was once refused, and seed 3 was not
-        assert main(["simulate-photo", "c.json", "-o", "p.jpg", "--seed", str(seed)]) == 0, (
-            capsys.readouterr().err
-        )
+        assert main(["simulate-photo", "c.json", "-o", "p.jpg", "--seed", str(seed)]) == 0, capsys.readouterr().err
     Path("s.toml").write_text(HEAD + "[machine]\nheight_mm = 1.0\n")
     status, _, said = in_json(capsys, "simulate-photo", "c.json", "-o", "p.jpg", "--studio", "s.toml")
     assert status == 1 and is_reported(said, "depth-out-of-range 11.000 machine.height_mm")
@@ -179,19 +174,14 @@ def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, ca
 
     simulate-photo prints the page of a job around the chart's plan. Its markers are not those of chart.json.
     """
-    plan, chart, photo, found = (
-        str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "mine.json")
-    )
+    plan, chart, photo, found = (str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "mine.json"))
     page = str(tmp_path / "page.svg")
     assert main(["chart", "-o", plan, "--sheet", "a5", "--page", page, "--chart", chart, "--quiet"]) == 0
     assert main(["simulate-photo", plan, "-o", photo, "--quiet"]) == 0
     status, _, reported = in_json(capsys, "calibrate", "--force", photo, "--chart", chart, "-o", found)
     assert status == 1 and is_reported(reported, "photo-of-another-chart"), reported
     assert all(flag in reported[-1][1].advice for flag in ("--plan", "--prior", "--chart"))
-    assert (
-        main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"])
-        == 0
-    )
+    assert main(["calibrate", "--force", photo, "--plan", plan, "--prior", "round-6", "-o", found, "--quiet"]) == 0
     assert json.loads((tmp_path / "mine.json").read_text())["format"] == "brushsvg/brush"
 
 
@@ -268,9 +258,7 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
 
     A studio without faults gives back the named brush. From the plan alone, the page would be different.
     """
-    plan, chart, photo, found = (
-        str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json")
-    )
+    plan, chart, photo, found = (str(tmp_path / name) for name in ("plan.json", "chart.json", "p.jpg", "own.json"))
     assert main(["chart", "-o", plan, "--brush", "round-6", "--sheet", "a5", "--chart", chart]) == 0
     (tmp_path / "studio.toml").write_text(HEAD)
     assert main(["simulate-photo", chart, "-o", photo, "--studio", str(tmp_path / "studio.toml")]) == 0
@@ -281,9 +269,7 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
         assert np.abs(values / truth - 1).max() < 0.05, (law, values / truth)
     capsys.readouterr()
     status, _, reported = in_json(capsys, "calibrate", "--force", photo, "--chart", plan, "-o", found)
-    assert status == 1 and is_reported([each for _, each in reported], "format-unknown '--chart FILE'"), (
-        reported
-    )
+    assert status == 1 and is_reported([each for _, each in reported], "format-unknown '--chart FILE'"), reported
 
 
 def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):

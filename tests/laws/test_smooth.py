@@ -74,8 +74,7 @@ def turning(edge):
     line = shapely.LineString(edge)
     at = np.arange(WINDOW_MM, line.length - WINDOW_MM, STEP_MM)
     before, here, after = (
-        shapely.get_coordinates(shapely.line_interpolate_point(line, at + d))
-        for d in (-WINDOW_MM, 0, WINDOW_MM)
+        shapely.get_coordinates(shapely.line_interpolate_point(line, at + d)) for d in (-WINDOW_MM, 0, WINDOW_MM)
     )
     (x, y), (u, v) = (here - before).T, (after - here).T
     return here, np.arctan2(x * v - y * u, x * u + y * v)

@@ -163,9 +163,7 @@ def test_the_widest_point_is_stretched_with_the_mark():
     at = np.flatnonzero(one.pose == 1)[0]
     longer = np.sqrt(1 + 0.5**2)  # 1 / cos of the tilt
     away = WIDEST(5.0) - 0.52 * 5.0
-    assert core.widest_points(one, brush)[at] - one.contact_mm[at] == pytest.approx(
-        [away * longer, 0], abs=1e-3
-    )
+    assert core.widest_points(one, brush)[at] - one.contact_mm[at] == pytest.approx([away * longer, 0], abs=1e-3)
 
 
 def test_set_down_on_the_spot_the_patch_is_under_the_axis_and_the_tip_stays():

@@ -101,9 +101,7 @@ REFUSED = {
     "bulging": (lambda: shot(sag_mm=3.0), "photo-not-flat"),
     "not painted": (lambda: photograph.exposed(photograph.page(a5()), CAMERA), "photo-without-paint"),
     "painted the wrong way round": (
-        lambda: shot(
-            {stroke: [np.array(A5) - ring for ring in rings] for stroke, rings in painted_marks().items()}
-        ),
+        lambda: shot({stroke: [np.array(A5) - ring for ring in rings] for stroke, rings in painted_marks().items()}),
         "photo-paint-elsewhere",
     ),
     "another chart painted": (lambda: shot(of_another_chart()), "photo-paint-elsewhere"),
@@ -215,9 +213,7 @@ def test_a_picture_that_was_cut_on_one_side_is_not_paper_that_bulges(cut, sag_mm
     a4 = chart(find_brush("round-6"), (210.0, 297.0))
     corners = {marker.id: np.array(marker.corners_mm) for marker in a4.markers}
     printed = Printed((210.0, 297.0), corners, a4.dictionary)
-    camera = Camera(
-        size_px=(1500, 2100), blur_px=0.6, fill=0.8, bend=-0.07, tilt_deg=(3.0, 2.0), sag_mm=sag_mm
-    )
+    camera = Camera(size_px=(1500, 2100), blur_px=0.6, fill=0.8, bend=-0.07, tilt_deg=(3.0, 2.0), sag_mm=sag_mm)
     whole = photograph.exposed(photograph.page(a4), camera)
     assert sag_mm or len(find_view(whole, printed).seen) == 8
     if cut[0]:

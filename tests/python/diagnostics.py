@@ -20,11 +20,7 @@ def agrees(reported: Error | Notice, expected: str, where: str | None = None) ->
     """
     code, *parts = shlex.split(expected)
     text = f"{reported.where}: {reported if isinstance(reported, Error) else reported.text}"
-    return (
-        reported.code == code
-        and where in (None, reported.where)
-        and all(_found(part, text) for part in parts)
-    )
+    return reported.code == code and where in (None, reported.where) and all(_found(part, text) for part in parts)
 
 
 def is_reported(reported, expected: str, where: str | None = None) -> bool:

@@ -25,9 +25,7 @@ def drawing(draw=None, units=4, version="R2010"):
 def encoded(document, binary=False):
     stream = io.BytesIO() if binary else io.StringIO()
     document.write(stream, **({"fmt": "bin"} if binary else {}))
-    return (
-        stream.getvalue() if binary else stream.getvalue().encode(document.output_encoding, "surrogateescape")
-    )
+    return stream.getvalue() if binary else stream.getvalue().encode(document.output_encoding, "surrogateescape")
 
 
 def text_dxf(*entities, header=""):
@@ -77,9 +75,7 @@ def _some(points):
 
 def _off(points, line):
     sides = shapely.linestrings(np.stack((line[:-1], line[1:]), axis=1))
-    _, distances = shapely.STRtree(sides).query_nearest(
-        shapely.points(points), all_matches=False, return_distance=True
-    )
+    _, distances = shapely.STRtree(sides).query_nearest(shapely.points(points), all_matches=False, return_distance=True)
     return distances.max()
 
 

@@ -165,17 +165,13 @@ def rings():
 
 FOLDER = Path(tempfile.mkdtemp())
 OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
-(FOLDER / "d.svg").write_text(
-    f'{OPEN}<path id="p" fill="none" stroke="red" stroke-width="3" d="M9 9h40"/></svg>'
-)
+(FOLDER / "d.svg").write_text(f'{OPEN}<path id="p" fill="none" stroke="red" stroke-width="3" d="M9 9h40"/></svg>')
 (FOLDER / "broken.svg").write_text(OPEN + "<g>" * 2000)
 (FOLDER / "none.svg").write_bytes(b"")
 (FOLDER / "noise.dxf").write_bytes(bytes(range(256)) * 50)
 (FOLDER / "broken.toml").write_text("name = [[[[")
 (FOLDER / "shared").mkdir()
-(FOLDER / "shared" / "brushsvg.toml").write_text(
-    'format = "brushsvg/project"\nversion = 1\nbrush = "rigid"\n'
-)
+(FOLDER / "shared" / "brushsvg.toml").write_text('format = "brushsvg/project"\nversion = 1\nbrush = "rigid"\n')
 (FOLDER / "broken.json").write_text("[" * 100_000)
 (FOLDER / "m.csv").write_text(
     "\n".join(["kind,depth_mm,value_mm", *(f"{k},{d},{d}" for d in range(1, 7) for k in ("lag", "width"))])

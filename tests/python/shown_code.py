@@ -8,9 +8,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).parents[2]
 DOCS = REPOSITORY / "docs"
-GENERATED = {
-    DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")
-}  # made_pages.py writes them
+GENERATED = {DOCS / "reference" / f"{name}.md" for name in ("commands", "python", "cells")}  # made_pages.py writes them
 FOLLOWED = [page for folder in ("start", "howto") for page in sorted((DOCS / folder).glob("*.md"))]
 PAGES = [
     REPOSITORY / "README.md",

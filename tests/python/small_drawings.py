@@ -55,6 +55,4 @@ def gains(count: int, seed: int, brush) -> np.ndarray:
     """Return how much overlap each stroke gains from `refined` over `closed`."""
     random = np.random.default_rng(seed)
     drawings = [small_drawing(random, k) for k in range(count)]
-    return np.concatenate(
-        [overlaps(each, brush, "refined") - overlaps(each, brush, "closed") for each in drawings]
-    )
+    return np.concatenate([overlaps(each, brush, "refined") - overlaps(each, brush, "closed") for each in drawings])

@@ -20,9 +20,7 @@ def lines(design):
         (element.id, (x0, 50 - y0), (x1, 50 - y1))
         for element in design.elements
         for subpath in element.subpaths
-        for (x0, y0), (x1, y1) in [
-            (subpath.cubics[0, 0].round(9).tolist(), subpath.cubics[-1, 3].round(9).tolist())
-        ]
+        for (x0, y0), (x1, y1) in [(subpath.cubics[0, 0].round(9).tolist(), subpath.cubics[-1, 3].round(9).tolist())]
     ]
 
 

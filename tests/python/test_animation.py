@@ -41,9 +41,7 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
     rows = timeline(whole_program(whole(work.plan), work.brush, find_cell()), marks)
     sent = {
         name: np.cumsum(steps)
-        for name, steps in data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))[
-            "rows"
-        ].items()
+        for name, steps in data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))["rows"].items()
     }
     assert np.abs(sent["t"] / 1000 - rows.time_s).max() <= 0.0005 + 1e-9
     for axis, name in enumerate("xyz"):
@@ -53,9 +51,7 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
     assert np.abs(sent["px"] / 100 - rows.contact_mm[touching, 0]).max() <= 0.005 + 1e-9
     assert np.abs(sent["py"] / 100 - rows.contact_mm[touching, 1]).max() <= 0.005 + 1e-9
     assert np.abs(sent["heading"] / 1000 - rows.heading_rad[touching]).max() <= 0.0005 + 1e-9
-    assert (
-        np.abs(sent["gap"] / 100 - [work.brush.tip_gap(d) for d in rows.depth_mm[touching]]).max() <= 0.0051
-    )
+    assert np.abs(sent["gap"] / 100 - [work.brush.tip_gap(d) for d in rows.depth_mm[touching]]).max() <= 0.0051
 
 
 def test_the_rings_are_those_of_the_prediction(tmp_path):

@@ -64,9 +64,7 @@ def plan_of(line):
 
 
 def look(cell, plan):
-    return preflight.check_job(
-        split_into_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05
-    )
+    return preflight.check_job(split_into_loads(plan, BRUSH, cell), BRUSH, _core.simulate(plan, BRUSH), cell, 0.05)
 
 
 @sample("which", range(len(JOBS)), keep=4)
@@ -123,9 +121,7 @@ def test_the_nearest_place_may_be_a_turn():
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"
     made = unchecked_program(split_into_loads(plan, BRUSH, cell), BRUSH, cell)
-    found = place.nearest(
-        made, joints.joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999
-    )
+    found = place.nearest(made, joints.joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999)
     assert found.turn_deg != 0
     there = place.cell_at(cell, found.frame)
     assert look(there, plan).problems == []

@@ -125,10 +125,7 @@ def apart_mm(some, others):
     """Return the greatest distance between the two tracks of each stroke."""
     assert some.keys() == others.keys()
     pairs = [(some[name], others[name]) for name in some]
-    return [
-        max(distance(points(a), LineString(b)).max(), distance(points(b), LineString(a)).max())
-        for a, b in pairs
-    ]
+    return [max(distance(points(a), LineString(b)).max(), distance(points(b), LineString(a)).max()) for a, b in pairs]
 
 
 @sample("side", [(1, -1), (-1, 1), (1, 1)], keep=3)
@@ -167,9 +164,7 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
     cell = replace(find_cell("linuxcnc-3axis"), machine=Machine(backlash_mm=(0.45, 0.3)))
     (tmp_path / "knows.toml").write_text(write_cell(cell))
     path = tmp_path / "a.ngc"
-    assert (
-        in_json(capsys, "convert", tmp_path / "a.svg", "-o", path, "--cell", tmp_path / "knows.toml")[0] == 0
-    )
+    assert in_json(capsys, "convert", tmp_path / "a.svg", "-o", path, "--cell", tmp_path / "knows.toml")[0] == 0
     text, words = path.read_text(), (tmp_path / "a.svg", "--cell", tmp_path / "knows.toml")
     rows = [line for _, line, _ in places_of(text)]
     first = next(line for name, line, _ in places_of(text) if name)
@@ -209,9 +204,7 @@ def test_a_circle_is_cut_where_an_axis_turns_back():
         assert np.hypot(*ends.T) == pytest.approx(8.0)
         assert [arc.first for arc in cut.arcs] == [0, *(arc.last for arc in cut.arcs[:-1])]
         assert cut.arcs[-1].last == len(cut.poses_mm) - 1
-    back = core.Pass(
-        stroke="s", poses_mm=poses[::-1], speed_mm_s=20.0, arcs=[core.Arc(0, 5, (40.0, 30.0), -1)]
-    )
+    back = core.Pass(stroke="s", poses_mm=poses[::-1], speed_mm_s=20.0, arcs=[core.Arc(0, 5, (40.0, 30.0), -1)])
     assert np.array(split_arcs_at_extremes(back, 0.0).poses_mm) == pytest.approx(
         np.array(split_arcs_at_extremes(a_pass, 0.0).poses_mm)[::-1]
     )
@@ -247,9 +240,7 @@ def test_backlash_that_cannot_be_undone_is_refused(name, value, reported):
         parse_cell(f"{text}\n[machine]\nbacklash_mm = {value}\n")
 
 
-@pytest.mark.parametrize(
-    "name, ending", [("grbl-servo", ".nc"), ("hpgl-plotter", ".hpgl"), ("marlin-servo", ".gcode")]
-)
+@pytest.mark.parametrize("name, ending", [("grbl-servo", ".nc"), ("hpgl-plotter", ".hpgl"), ("marlin-servo", ".gcode")])
 def test_servos_and_pens_take_it_too(tmp_path, capsys, name, ending):
     (tmp_path / "a.svg").write_text(DRAWING)
     cell = replace(find_cell(name), machine=Machine(backlash_mm=(0.4, 0.3)))

@@ -54,9 +54,7 @@ def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
     assert not work.unreached and not work.missed
     # A plan that is already as good is not refined, and a notice says so. Which plan is better depends on the
     # last digits.
-    assert {notice.code for notice in work.notices} <= (
-        {"flag-without-effect"} if compensation == "refined" else set()
-    )
+    assert {notice.code for notice in work.notices} <= ({"flag-without-effect"} if compensation == "refined" else set())
 
 
 TAIL = [(20, 5), (28, 5), (28, 36), (29, 40), (32, 44.5), (25, 45), (21, 44), (20, 41)]

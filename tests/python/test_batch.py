@@ -311,9 +311,7 @@ def test_two_runs_do_not_write_to_one_folder(desk):
 def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
     Path("font.svg").write_text(FONT)
     Path("words.txt").write_text("TT\n\n T T \nTX\nTT\nT\\nT\n", encoding="utf-8")
-    status, _, reported = in_json(
-        capsys, *"batch --words words.txt --font font.svg --size 30 -o out --jobs 1".split()
-    )
+    status, _, reported = in_json(capsys, *"batch --words words.txt --font font.svg --size 30 -o out --jobs 1".split())
     assert status == 1
     assert [notice.code for _, notice in reported if notice.code] == ["glyph-missing"]
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
@@ -327,9 +325,7 @@ def test_warnings_of_a_kind_are_reported_as_one(desk, capsys):
     for k in range(6):
         Path(f"in/{k}.svg").write_text(drawing(k).replace("</svg>", "<text>A</text></svg>"))
     status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
-    assert status == 1 and are_reported(
-        [n for _, n in reported], "text-unread in/0.svg 5", "width-out-of-reach 30.000"
-    )
+    assert status == 1 and are_reported([n for _, n in reported], "text-unread in/0.svg 5", "width-out-of-reach 30.000")
     rows = [json.loads(line) for line in Path("out/manifest.jsonl").read_text().splitlines()[1:]]
     assert [len(row["notices"]) for row in rows if not row["code"]] == [1] * 6
 
@@ -457,9 +453,7 @@ def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(des
         assert contents().keys() >= {f"programs/{small[:-4]}.ls"}
         alone = brushsvg.convert(Path("two", small), cell="lrmate200id", width=3)
         assert Path("out/programs", f"{small[:-4]}.ls").read_bytes() == alone.text.encode()
-        assert not brushsvg.batch(
-            ["two/a.svg"], "own", executor=executor, cell="lrmate200id", width=3
-        ).refused
+        assert not brushsvg.batch(["two/a.svg"], "own", executor=executor, cell="lrmate200id", width=3).refused
         again = brushsvg.batch([("a/a", drawing(0))], "own", executor=executor, cell="lrmate200id", width=3)
     assert [each.code for each in again.refused] == ["name-taken"]
 
@@ -493,9 +487,7 @@ def test_names_that_macos_holds_for_one_are_refused(desk):
         brushsvg.batch([("\u00e9", drawing(0)), ("e\u0301", drawing(1))], "out", jobs=1)
 
 
-@pytest.mark.parametrize(
-    "way", ["../victim.txt", "below/../../victim.txt", "{}/victim.txt", "link/victim.txt"]
-)
+@pytest.mark.parametrize("way", ["../victim.txt", "below/../../victim.txt", "{}/victim.txt", "link/victim.txt"])
 def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
     """A manifest from elsewhere cannot name a file outside its folder.
 
@@ -548,9 +540,7 @@ def test_parquet_holds_the_same_table(desk, monkeypatch):
     for row, reported in zip(rows, table, strict=True):
         assert row.keys() == reported.keys()
         for name, value in row.items():
-            assert value == (type(value)(reported[name]) if value is not None else reported[name] or None), (
-                name
-            )
+            assert value == (type(value)(reported[name]) if value is not None else reported[name] or None), name
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with refused("package-missing pyarrow"):
         brushsvg.batch(["in"], "out", jobs=1, parquet=True)
@@ -565,9 +555,7 @@ def test_progress_shows_rate_and_time_left_and_cancel_is_heard(desk):
 
     with threads() as executor, pytest.raises(CancelledError):
         brushsvg.batch(["in"], "out", executor=executor, progress=progress, cancel=is_over)
-    assert gives(said[0], "4") and len(re.findall(r"\d+(?:\.\d+)?", said[0])) >= 3, (
-        "how many, how fast, how long"
-    )
+    assert gives(said[0], "4") and len(re.findall(r"\d+(?:\.\d+)?", said[0])) >= 3, "how many, how fast, how long"
     rows = Path("out/manifest.jsonl").read_text().splitlines()[1:]
     assert 1 <= len(rows) < 4 or len(said) == len(rows)
     assert not Path("out/table.csv").exists()
@@ -636,10 +624,7 @@ def test_a_contact_sheet_has_a_place_for_each(tmp_path):
     picture = tmp_path / "a.png"
     cv2.imwrite(str(picture), np.full((60, 120, 3), (0, 0, 255), np.uint8))
     why = "a long sentence of 12.000 mm that goes on " * 12
-    cards = [
-        Card(f"drawing {k}" * 4, "overlap 0.990", why, None if k == 1 else picture.read_bytes)
-        for k in range(31)
-    ]
+    cards = [Card(f"drawing {k}" * 4, "overlap 0.990", why, None if k == 1 else picture.read_bytes) for k in range(31)]
     pages = [cv2.imdecode(np.frombuffer(each, np.uint8), 1) for each in contact_sheets(cards)]
     assert len(pages) == 2 and ACROSS * DOWN == 30
     assert pages[0].shape[1] == pages[1].shape[1] > ACROSS * CARD_W

@@ -82,9 +82,7 @@ def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_requested():
     worse = []
     for k in range(100):
         radius_mm, width_mm = (
-            (rng.uniform(8, 11), rng.uniform(8.2, 8.4))
-            if k % 2
-            else (rng.uniform(8, 20), rng.uniform(4, 8.2))
+            (rng.uniform(8, 11), rng.uniform(8.2, 8.4)) if k % 2 else (rng.uniform(8, 20), rng.uniform(4, 8.2))
         )
         stroke = arc(
             radius_mm,

@@ -140,9 +140,7 @@ def with_circle(brush):
     ]
     poses += [(60, 30, -3), (60, 29, 0)]
     arc = _core.Arc(2, 4, (40.0, 29.0), 1)
-    return _core.Plan(
-        brush.name, "", (80.0, 80.0), [_core.Pass("round", np.array(poses, float), 20.0, arcs=[arc])]
-    )
+    return _core.Plan(brush.name, "", (80.0, 80.0), [_core.Pass("round", np.array(poses, float), 20.0, arcs=[arc])])
 
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05])

@@ -340,8 +340,7 @@ def test_a_key_that_is_not_known_is_named_with_the_one_that_may_be_intended(tmp_
     status, _, reported = in_json(capsys, "brush", "check", mistyped(tmp_path))
     unknown = {one.where: one.sentence for _, one in reported if one.code == "key-unknown"}
     expected = {
-        where: re.findall(r"[\w.]+_mm_s|lag\.\w+|footprints\.\w+", sentence)
-        for where, sentence in unknown.items()
+        where: re.findall(r"[\w.]+_mm_s|lag\.\w+|footprints\.\w+", sentence) for where, sentence in unknown.items()
     }
     assert status == 0 and expected == {
         "max_sped_mm_s": ["max_speed_mm_s"],

@@ -51,9 +51,7 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     depth = np.arange(1, 8.0)
     best = np.polyfit(depth, 5 + depth + 0.1 * (-1) ** depth, 3)  # 7 values, about two for each coefficient
     np.testing.assert_allclose(brush.lag.coefficients, best[::-1], atol=1e-5)
-    count = sum(
-        len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width")
-    )
+    count = sum(len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width"))
     assert np.array(brush.covariance).shape == (count, count)
     assert tuple(brush.depth_range_mm) == (0, 7)
 
@@ -102,8 +100,7 @@ def test_a_slip_of_the_pen_gives_no_negative_lag(tmp_path):
 DEPTHS = np.arange(1, 11.0)
 ROUND = find_brush("round-6")
 LAG, GAP, WIDEST, HALF = (
-    np.array([law(d) for d in DEPTHS])
-    for law in (ROUND.lag, ROUND.tip_gap, ROUND.tip_to_widest, ROUND.half_width)
+    np.array([law(d) for d in DEPTHS]) for law in (ROUND.lag, ROUND.tip_gap, ROUND.tip_to_widest, ROUND.half_width)
 )
 
 
@@ -115,9 +112,7 @@ def series(alpha0=90.0, s=(1.0, 3.0, 6.0), unit=1.0, way=1):
     rows = []
     for depth, lag in zip(DEPTHS.tolist(), LAG, strict=True):
         alpha = np.degrees(2 * np.arctan(np.exp(-np.array([1.0, 3.0, 6.0]) / lag))) * unit
-        rows.append(
-            {"depth_mm": depth, "alpha0_deg": alpha0, "s_mm": list(s), "alpha_deg": alpha[::way].tolist()}
-        )
+        rows.append({"depth_mm": depth, "alpha0_deg": alpha0, "s_mm": list(s), "alpha_deg": alpha[::way].tolist()})
     return rows
 
 
@@ -195,12 +190,8 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
 )
 def test_what_no_brush_can_have_is_refused_with_what_to_do(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
-    status, _, ((file, reported),) = in_json(
-        capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json"
-    )
-    assert (status, file, reported.where) == (1, str(tmp_path / "m.json"), where) and agrees(
-        reported, said
-    ), reported
+    status, _, ((file, reported),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
+    assert (status, file, reported.where) == (1, str(tmp_path / "m.json"), where) and agrees(reported, said), reported
     assert not (tmp_path / "b.json").exists()
 
 
@@ -382,10 +373,7 @@ def test_half_widths_and_widths_with_noise_go_together():
     def rows(kind, depths, times):
         halves = (0.1 + 0.03 * depths) * depths * rng.normal(1, 0.15, len(depths))
         return {
-            kind: [
-                Row(kind, "", *row)
-                for row in zip(depths, ({"value_mm": times * h} for h in halves), strict=True)
-            ]
+            kind: [Row(kind, "", *row) for row in zip(depths, ({"value_mm": times * h} for h in halves), strict=True)]
         }
 
     for _ in range(200):
@@ -415,9 +403,7 @@ def test_a_width_that_none_can_have_is_refused_with_its_line(line, column, said,
     (tmp_path / "w.csv").write_text(f"depth_mm,width_mm\n{line}\n")
     words = ("brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "w.csv")
     status, _, ((file, reported),) = in_json(capsys, *words)
-    assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, said, f"line 2, {column}"), (
-        reported
-    )
+    assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, said, f"line 2, {column}"), reported
 
 
 def test_of_exact_values_no_rounding_is_reported(tmp_path):
@@ -460,10 +446,7 @@ def test_normal_noise_is_seldom_called_an_outlier():
     rng, depths = np.random.default_rng(1), np.linspace(1, 10, 12)
     columns = np.vander(depths, 5, increasing=True)
     off = np.eye(12) - columns @ np.linalg.pinv(columns)
-    named = sum(
-        bool(plausibility.find_outliers(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0))
-        for _ in range(2000)
-    )
+    named = sum(bool(plausibility.find_outliers(list(depths), off @ rng.normal(0, 0.3, 12), 5, 0)) for _ in range(2000))
     assert named <= 6  # one in ten thousand values
 
 
@@ -551,9 +534,7 @@ def test_a_fit_stays_as_it_was_when_the_brush_is_made():
     assert fit.law.source == "" and gives(made.brush.tip_to_widest.source, "10")
 
 
-@pytest.mark.parametrize(
-    ("alpha0_deg", "is_taken"), [(90, True), (60, True), (95, True), (96, False), (120, False)]
-)
+@pytest.mark.parametrize(("alpha0_deg", "is_taken"), [(90, True), (60, True), (95, True), (96, False), (120, False)])
 def test_angles_that_begin_beyond_what_reading_leaves_of_90_degrees_are_refused(alpha0_deg, is_taken):
     """Start angles above 90 degrees plus reading error are refused.
 
@@ -646,9 +627,7 @@ def test_parts_of_a_machine_that_there_are_not_are_refused_with_those_that_there
 def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
-    status, _, ((_, reported),) = in_json(
-        capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean"
-    )
+    status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean")
     assert status == 1 and agrees(reported, "options-contradict --machine")
     assert not out.exists()
 
@@ -703,9 +682,7 @@ def test_an_overlap_needs_marks(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
     status, _, reported = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--aim", "overlap")
-    assert status == 1 and are_reported(
-        [notice for _, notice in reported], "options-contradict --aim overlap"
-    )
+    assert status == 1 and are_reported([notice for _, notice in reported], "options-contradict --aim overlap")
     assert not out.exists()
 
 

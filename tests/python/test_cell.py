@@ -222,9 +222,7 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
     random = np.random.default_rng(5)
     found = {True: 0, False: 0}
     for _ in range(200):
-        paper = Paper(
-            tuple(random.uniform(-400, 400, 3)), (*random.uniform(-40, 40, 2), random.uniform(0, 360))
-        )
+        paper = Paper(tuple(random.uniform(-400, 400, 3)), (*random.uniform(-40, 40, 2), random.uniform(0, 360)))
         low = random.uniform(-500, 300, 3)
         workspace = replace(
             find_cell("ur5e").workspace,
@@ -236,9 +234,7 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
         x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 2000, 16.0), np.arange(0, 2000, 16.0)))
         is_met = True
         for height in (0.0, cell.heights.safe_mm):
-            points = transform_points(
-                robot_from_paper(cell), np.column_stack([x, y, np.full(len(x), height)])
-            )
+            points = transform_points(robot_from_paper(cell), np.column_stack([x, y, np.full(len(x), height)]))
             away = np.linalg.norm(points, axis=1)
             inside = ((points >= low) & (points <= workspace.box_mm[1])).all(axis=1)
             is_met &= bool((inside & (away >= 100) & (away <= workspace.reach_mm[1])).any())

@@ -43,10 +43,7 @@ def small_chart():
 def marks_of(made, brush):
     marks = _core.simulate(made.plan, brush)
     _core.trace_outlines(marks, brush)
-    return [
-        shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in each.outline_mm])
-        for each in marks.passes
-    ]
+    return [shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in each.outline_mm]) for each in marks.passes]
 
 
 @pytest.mark.parametrize(
@@ -74,9 +71,7 @@ def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
         assert min(mark.distance(marker) for marker in markers) > markers[0].length / 24 - 1e-6, stroke.id
     tree = shapely.STRtree(marks)
     pairs = tree.query(marks, "dwithin", 1.0).T
-    assert all(a == b for a, b in pairs), [
-        (made.strokes[a].id, made.strokes[b].id) for a, b in pairs if a < b
-    ]
+    assert all(a == b for a, b in pairs), [(made.strokes[a].id, made.strokes[b].id) for a, b in pairs if a < b]
     for label in made.labels:
         x, y = label.at_mm
         size = min(MAX_TEXT_MM, label.width_mm / (0.6 * len(label.text)))
@@ -111,9 +106,7 @@ def test_what_is_on_it():
     for trace in marks.passes:
         if trace.stroke.startswith("arc"):
             first = int(np.flatnonzero(trace.taut)[0])
-            assert all(
-                taut for taut, depth in zip(trace.taut[first:], trace.depth_mm[first:], strict=True) if depth
-            )
+            assert all(taut for taut, depth in zip(trace.taut[first:], trace.depth_mm[first:], strict=True) if depth)
 
 
 @pytest.mark.slow
@@ -454,9 +447,7 @@ def test_one_load_is_fetched_once():
     stations = (Station("any", (-20.0, 10.0), depth_mm=7.0),)
     cell = replace(find_cell(), reload=Reload("stroke"), stations=stations)
     made = chart(find_brush("round-6"), A5, one_load=True)
-    fetched = [
-        bool(each) for each in station_visits(split_into_loads(made.plan, find_brush("round-6"), cell), cell)
-    ]
+    fetched = [bool(each) for each in station_visits(split_into_loads(made.plan, find_brush("round-6"), cell), cell)]
     assert fetched[0] and not any(fetched[1:]) and len(fetched) == len(made.strokes)
 
 

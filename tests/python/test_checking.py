@@ -231,9 +231,7 @@ def test_damaged_numbers_of_a_header_are_reported_in_a_sentence(desk, capsys, li
     assert status == 1 and agrees(reported, said), reported
 
 
-@pytest.mark.parametrize(
-    ("offset", "said"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")]
-)
+@pytest.mark.parametrize(("offset", "said"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")])
 def test_check_says_that_a_program_is_for_another_height_of_the_paper(desk, capsys, offset, said):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", f"--z-offset={offset}")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
@@ -298,9 +296,7 @@ def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
     (desk / "painter.toml").write_text(text + PAINT.replace("[-10, 10]", "[-15, 10]"))
     suffix = LANGUAGES[name]
     for flags in ((), ("--from-stroke", "3"), ("--order", "nearest")):
-        assert (
-            call(capsys, "convert", "two.svg", "-o", f"two{suffix}", "--cell", "painter.toml", *flags)[0] == 0
-        )
+        assert call(capsys, "convert", "two.svg", "-o", f"two{suffix}", "--cell", "painter.toml", *flags)[0] == 0
         words = ("check", f"two{suffix}", "two.svg", "--cell", "painter.toml", "--json")
         status, out, err = call(capsys, *words)
         assert (status, err) == (0, []), err
@@ -308,9 +304,7 @@ def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
         assert rows["a+2"] > 0.9, "measured as the stroke that it is"
         assert call(capsys, "check", f"two{suffix}", "--cell", "painter.toml")[0] == 0
     if "grbl" in name:
-        assert not re.search(r"[!?~%]", (desk / f"two{suffix}").read_text()), (
-            "grbl acts on them in comments, too"
-        )
+        assert not re.search(r"[!?~%]", (desk / f"two{suffix}").read_text()), "grbl acts on them in comments, too"
 
 
 def test_strokes_in_another_order_are_reported(desk, capsys):
@@ -347,9 +341,7 @@ def test_a_resumed_program_knows_what_it_should_have_painted(desk, capsys):
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(re.sub(r"(?s)\n\(stroke 3.*?\n\n", "\n", text))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
-    assert status == 1 and ("third", "stroke-not-painted") in {
-        (each.where, each.code) for _, each in reported
-    }
+    assert status == 1 and ("third", "stroke-not-painted") in {(each.where, each.code) for _, each in reported}
     (desk / "two.ngc").write_text(text.replace("(stroke 2 of", "(stroke 900000 of"))
     for drawing in (("two.svg",), ()):  # The program's header shows this without the drawing, too.
         status, _, ((_, reported), *_) = in_json(capsys, "check", "two.ngc", *drawing)
@@ -686,9 +678,7 @@ def test_stations_of_any_name_are_separated(desk, capsys, cell, hand):
             table = f'place_mm = [-15, 10]\ncolours = ["{colour}"]\n{how}\n'
             text += f"[[stations]]\nname = {json.dumps(name, ensure_ascii=False)}\n{table}"
         (desk / "mine.toml").write_text(text, encoding="utf-8")
-        paths = "".join(
-            f'<path d="M20 {20 + 9 * k} h30" stroke="{colour}"/>' for k, colour in enumerate(colours)
-        )
+        paths = "".join(f'<path d="M20 {20 + 9 * k} h30" stroke="{colour}"/>' for k, colour in enumerate(colours))
         before, _, _ = DRAWING.partition("<path")
         (desk / "some.svg").write_text(f"{before}{paths}</g></svg>")
         words = ("some.svg", "-o", f"some{suffix}", "--cell", "mine.toml")
@@ -937,9 +927,7 @@ def leaning(name: str, decimals: int) -> str:
 
 
 @pytest.mark.parametrize("decimals", [3, 5])
-@pytest.mark.parametrize(
-    "flags", [("--compensation", "none"), ("--compensation", "constant", "--tolerance", "0.2")]
-)
+@pytest.mark.parametrize("flags", [("--compensation", "none"), ("--compensation", "constant", "--tolerance", "0.2")])
 def test_on_paper_that_leans_rounding_is_no_change(desk, capsys, decimals, flags):
     """On tilted paper, rounding is not reported as a change.
 
@@ -1080,9 +1068,7 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
     after = edited(old, new, count)(before)
     (desk / "two.nc").write_text(after)
     first = next(
-        number
-        for number, (x, y) in enumerate(zip(before.splitlines(), after.splitlines(), strict=False), 1)
-        if x != y
+        number for number, (x, y) in enumerate(zip(before.splitlines(), after.splitlines(), strict=False), 1) if x != y
     )
     status, _, err = call(capsys, "check", "two.nc", *drawing)
     reported = [re.search(r"\b(\d+): '(.*?)': .* '(.*)'", line) for line in err]
@@ -1114,9 +1100,7 @@ def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys
     ):
         (desk / "bad.nc").write_text("\n".join([*lines[:line], *new, *lines[line + 1 :]]) + "\n")
         status, _, reported = in_json(capsys, "check", "bad.nc", *drawing)
-        assert status == 1 and any(each.code == code and "line " in each.sentence for _, each in reported), (
-            new
-        )
+        assert status == 1 and any(each.code == code and "line " in each.sentence for _, each in reported), new
     (desk / "fine.nc").write_text("\n".join([*lines[:k], f"{lines[k]} F1100", *lines[k + 1 :]]) + "\n")
     assert call(capsys, "check", "fine.nc", *drawing)[0] == 0
 
@@ -1190,9 +1174,7 @@ def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, c
     visit = re.search(r"(?s)\(paint: ink\)\n.*?(?=\(stroke 1)", text)[0]
     (desk / "two.ngc").write_text(text.replace("(stroke 2", f"{visit}F480.0\n(stroke 2"))
     status, _, reported = in_json(capsys, "check", "two.ngc", "--cell", "mine.toml")
-    assert status == 1 and any(agrees(each, "program-changed '(time: about'") for _, each in reported), (
-        reported
-    )
+    assert status == 1 and any(agrees(each, "program-changed '(time: about'") for _, each in reported), reported
 
 
 def test_a_title_that_stands_twice_is_reported(desk, capsys):
@@ -1219,9 +1201,7 @@ def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys,
     text = (SHIPPED / "grbl-servo.toml").read_text()
     text = edited(r"(?m)^table = .*$", f"table = {table}")(text)
     text = edited(r"(?m)^lowest_mm = \S+", "lowest_mm = -8.5")(text)
-    (desk / "servo.toml").write_text(
-        edited(r"(?m)^settle_s.*$", rf"settle_s = 0.2\nstep_mm = {step_mm}")(text)
-    )
+    (desk / "servo.toml").write_text(edited(r"(?m)^settle_s.*$", rf"settle_s = 0.2\nstep_mm = {step_mm}")(text))
     dots = '<path d="M60 60 h0.01" stroke-linecap="round"/><path d="M75 60 h0.3"/></g>'
     (desk / "two.svg").write_text(DRAWING.replace("</g>", dots))
     for flags in ((), ("--compensation", "none")):
@@ -1238,13 +1218,8 @@ def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys,
 def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
     (desk / "leaning.toml").write_text(leaning("linuxcnc-3axis", 3))
     (desk / "two.svg").write_text(DRAWING.replace('stroke-width="3"', 'stroke-width="20"'))
-    (desk / "two.svg").write_text(
-        (desk / "two.svg").read_text().replace("M20 60 h30 v-20 h-12", "M30 50 h50")
-    )
-    assert (
-        call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "leaning.toml", "--width", "8.4")[0]
-        == 0
-    )
+    (desk / "two.svg").write_text((desk / "two.svg").read_text().replace("M20 60 h30 v-20 h-12", "M30 50 h50"))
+    assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "leaning.toml", "--width", "8.4")[0] == 0
     assert call(capsys, "check", "two.ngc", "--cell", "leaning.toml")[0] == 0
 
 
@@ -1354,9 +1329,7 @@ def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
         '<path id="hair" fill="none" stroke="#000" stroke-width="0.01" d="M20 20h40"/></svg>'
     )
-    status, _, (*_, (_, reported)) = in_json(
-        capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo"
-    )
+    status, _, (*_, (_, reported)) = in_json(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")
     assert (status, reported.where, reported.code) == (1, "hair", "never-pressed")
     assert call(capsys, "convert", "two.svg", "-o", "two.gcode", "--cell", "grbl-3axis")[0] == 0
     assert call(capsys, "check", "two.gcode", "two.svg")[0] == 0
@@ -1368,9 +1341,7 @@ def test_a_part_of_a_drawing_that_is_left_out_is_reported_again(desk, capsys):
     assert in_json(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
     assert (
-        status == 0
-        and [file for file, _ in reported] == ["two.svg"]
-        and is_reported(reported, "text-unread", "words")
+        status == 0 and [file for file, _ in reported] == ["two.svg"] and is_reported(reported, "text-unread", "words")
     )
     assert in_json(capsys, "setup", "border", "two.svg", "-o", "around.ngc")[0] == 0
     status, _, reported = in_json(capsys, "check", "around.ngc", "two.svg")

@@ -108,11 +108,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
         '<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>'
         '<glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>'
     )
-    rows = [
-        f"{kind},{depth},{slope * depth}"
-        for depth in range(1, 6)
-        for kind, slope in (("lag", 2), ("width", 0.8))
-    ]
+    rows = [f"{kind},{depth},{slope * depth}" for depth in range(1, 6) for kind, slope in (("lag", 2), ("width", 0.8))]
     (desk / "m.csv").write_text("\n".join(["kind,depth_mm,value_mm", *rows]))
     cell = (Path(commands.__file__).parents[2] / "data" / "cells" / "ur5e.toml").read_text()
     paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "red"\nplace_mm = [-50, 50]\ndepth_mm = 5\n'
@@ -126,9 +122,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     assert not any(": written" in warning for warning in warnings)
     named = ", ".join(dict.fromkeys(word for word in (*words.split(), "out.json") if word in made))
     known = WRITERS[words]
-    assert re.fullmatch(
-        re.escape(f"brushsvg: {named}: ") + "[a-z]+" + (f"; {known}" if known else ""), line
-    ), line
+    assert re.fullmatch(re.escape(f"brushsvg: {named}: ") + "[a-z]+" + (f"; {known}" if known else ""), line), line
     for name in made:
         (desk / name).unlink()
     assert run(capsys, *words.split(), "--quiet") == (0, out, warnings)
@@ -303,9 +297,7 @@ def test_a_preview_alone_warns(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
     status, _, reported = in_json(capsys, "preview", "x.json", "-o", "out.svg")
     assert status == 0
-    assert is_reported(reported, "speed-out-of-range 30") and is_reported(reported, "mark-off-sheet upper"), (
-        reported
-    )
+    assert is_reported(reported, "speed-out-of-range 30") and is_reported(reported, "mark-off-sheet upper"), reported
     status, out, _ = run(capsys, "preview", "x.json")
     assert status == 0
     assert gives(out, "line", "30 mm/s")
@@ -361,9 +353,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
     edited_plan(desk, brush="my-brush")
     status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
     assert status == 1 and agrees(reported, "brush-unknown my-brush")
-    status, _, ((_, reported),) = in_json(
-        capsys, "convert", "x.json", "-o", "out.ngc", "--brush", "round-6", "--quiet"
-    )
+    status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc", "--brush", "round-6", "--quiet")
     assert status == 0 and agrees(reported, "plan-of-other-brush my-brush round-6", "brush")
 
 
@@ -565,9 +555,7 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
 def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
-    status, _, ((_, reported),) = in_json(
-        capsys, "convert", "x.svg", "-o", "out.ngc", "--quiet", "--corners", "turn"
-    )
+    status, _, ((_, reported),) = in_json(capsys, "convert", "x.svg", "-o", "out.ngc", "--quiet", "--corners", "turn")
     assert status == 0 and agrees(reported, "off-middle-line 0.05", "line"), reported
     assert re.search(r" \d\.\d+ mm [a-z]+ x \d+\.\d, y \d+\.\d mm", reported.sentence)
     flags = ("--compensation", "none", "--quiet")
@@ -810,9 +798,7 @@ def test_help_is_quick_and_promises_only_what_there_is(capsys):
     } | {"--force"}
     code = "import sys; from brushsvg.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.jobs.preparation.preparation"} & set(
-        done.stderr.split()
-    )
+    assert not {"numpy", "cv2", "brushsvg._core", "brushsvg.jobs.preparation.preparation"} & set(done.stderr.split())
 
 
 def test_a_plain_convert_imports_no_large_library(desk):
@@ -858,9 +844,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     assert run(capsys, "convert", "a.svg", "-o", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
-    status, _, reported = in_json(
-        capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", "my.toml", "--sheet", "96x60"
-    )
+    status, _, reported = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
     assert status == 1 and is_reported(reported, "tool-off-sheet right"), reported
     for cell, said in (("mine", "cell-unknown mine grbl-3axis"), ("no.toml", "file-unreadable")):
         status, _, ((_, reported),) = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", cell)

@@ -130,9 +130,7 @@ def test_size_and_place(desk, capsys):
 
 def test_flags_have_no_effect_on_a_plan(desk, capsys):
     plan(desk, capsys)
-    status, _, reported = in_json(
-        capsys, "convert", "plan.json", "-o", "p2.json", "--fit", "50x50", "--layer", "Ink"
-    )
+    status, _, reported = in_json(capsys, "convert", "plan.json", "-o", "p2.json", "--fit", "50x50", "--layer", "Ink")
     assert status == 0
     for flag in ("--fit", "--layer"):
         assert is_reported(reported, f"flag-without-effect {flag}"), reported
@@ -151,9 +149,7 @@ def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys, command):
 
 
 def test_settings_steer_the_plan(desk, capsys):
-    text = DRAWING.replace(
-        'id="b"', 'id="b" data-brushsvg-order="-1" data-brushsvg-passes="2" data-brushsvg-speed="7"'
-    )
+    text = DRAWING.replace('id="b"', 'id="b" data-brushsvg-order="-1" data-brushsvg-passes="2" data-brushsvg-speed="7"')
     text = text.replace('id="a"', 'id="a" data-brushsvg-brush="rigid"')
     (desk / "d.svg").write_text(text)
     passes, reported = plan(desk, capsys)
@@ -188,15 +184,11 @@ def test_import_shows_damage_that_convert_refuses(desk, capsys):
     status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Red")
     assert status == 1 and is_reported(reported, "geometry-damaged 13", "b"), reported
     assert main(["preview", "d.svg", "-o", "seen.png", "--show", "strokes"]) == 0
-    assert main(["convert", "d.svg", "-o", "x.json", "--layer", "Ink"]) == 0, (
-        "damage elsewhere does not count"
-    )
+    assert main(["convert", "d.svg", "-o", "x.json", "--layer", "Ink"]) == 0, "damage elsewhere does not count"
 
 
 def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
-    (desk / "f.svg").write_text(
-        DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', "")
-    )
+    (desk / "f.svg").write_text(DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', ""))
     reported = refusal(capsys, "convert", "f.svg", "-o", "x.json", "--as", "stroke")
     assert reported.code == "nothing-to-paint"
     assert main(["preview", "f.svg", "-o", "seen.png", "--show", "strokes", "--as", "stroke"]) == 0
@@ -235,9 +227,7 @@ def test_text(desk, capsys):
     font = """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
       <glyph unicode="T" d="M 0 700 L 500 700 M 250 700 L 250 0"/></font></svg>"""
     (desk / "font.svg").write_text(font)
-    assert (
-        main(["text", "T\\nTT", "-o", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
-    )
+    assert main(["text", "T\\nTT", "-o", "t.svg", "--font", "font.svg", "--size", "30", "--width", "2.5"]) == 0
     passes, reported = plan(desk, capsys, drawing="t.svg")
     assert (len(passes), reported) == (6, [])
     reported = refusal(capsys, "text", "T", "-o", "u.svg", "--font", "none.svg")
@@ -291,9 +281,7 @@ def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys,
     assert main(["preview", "d.svg", "-o", "x.svg", "--corners", "turn"]) == 0
     assert ("d.svg: b: " in capsys.readouterr().err) == is_marked
     text = (desk / "x.svg").read_text()
-    ((miss, marked),) = re.findall(
-        r'data-stroke="b" data-tracking-error-mm="([0-9.]+)"( data-off-line="yes")?', text
-    )
+    ((miss, marked),) = re.findall(r'data-stroke="b" data-tracking-error-mm="([0-9.]+)"( data-off-line="yes")?', text)
     assert float(miss) > 0.05
     assert bool(marked) == is_marked
 
@@ -390,9 +378,7 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
 
     A dot is pressed less than a line of the same width: 0.87 mm, where the line is at 1.0 mm.
     """
-    dots = "".join(
-        f'<path d="M{x} 30h0.01" stroke-width="{w}"/>' for x, w in ((20, 1.02), (40, 1.2), (60, 3))
-    )
+    dots = "".join(f'<path d="M{x} 30h0.01" stroke-width="{w}"/>' for x, w in ((20, 1.02), (40, 1.2), (60, 3)))
     (desk / "dots.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
         f'<g stroke="#000" stroke-linecap="round">{dots}</g></svg>'

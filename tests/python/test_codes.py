@@ -77,9 +77,7 @@ def in_library() -> tuple[set[str], list[str]]:
 
 
 def in_docs() -> list[str]:
-    rows = re.findall(
-        r"^\| (`.*?) \|", (ROOT / "docs" / "reference" / "diagnostics.md").read_text(), re.MULTILINE
-    )
+    rows = re.findall(r"^\| (`.*?) \|", (ROOT / "docs" / "reference" / "diagnostics.md").read_text(), re.MULTILINE)
     return re.findall("`([^`]+)`", " ".join(rows))
 
 
@@ -150,11 +148,7 @@ def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
     Only refusal.hpp searches sentences for numbers and names. fit_nonsense.cpp only checks that there is a
     sentence.
     """
-    requested = {
-        file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")
-    }
+    requested = {file.name for file in (TESTS / "cpp").iterdir() if "what()" in file.read_text(encoding="utf-8")}
     assert requested <= {"refusal.hpp", "brushsvg_test.cpp", "fit_nonsense.cpp", "mark_fit_test.cpp"}
-    words = {
-        file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")
-    }
+    words = {file.name for file in (TESTS / "cpp").iterdir() if "THROWS_WITH" in file.read_text(encoding="utf-8")}
     assert not words

@@ -131,9 +131,7 @@ def refused(desk, capsys, words) -> list[str]:
     return said.splitlines()
 
 
-@pytest.mark.parametrize(
-    "command", [each for each in COMMANDS if any(word in SOUND for word in each.split())]
-)
+@pytest.mark.parametrize("command", [each for each in COMMANDS if any(word in SOUND for word in each.split())])
 @pytest.mark.slow
 def test_all_that_is_read_may_be_nonsense(desk, capsys, command):
     for word in {*command.split()} & {*SOUND}:
@@ -184,6 +182,5 @@ def test_no_command_is_forgotten():
     # test_demo.py covers the places that demo writes to.
     reads_nothing = {"brush list", "cell list", "demo", "doctor"}
     assert names(command_parser()) - reads_nothing == {
-        next(name for name in names(command_parser()) if f"{command} ".startswith(f"{name} "))
-        for command in COMMANDS
+        next(name for name in names(command_parser()) if f"{command} ".startswith(f"{name} ")) for command in COMMANDS
     }

@@ -100,9 +100,7 @@ def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_
         angles = middle + np.linspace(half, -half, 7)
         outwards = np.array([np.cos(middle), np.sin(middle), 0.0])
         centre = random.uniform(0, 100, 2) - radius * outwards[:2]
-        points = np.column_stack(
-            [centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]), [-2] * 7]
-        )
+        points = np.column_stack([centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]), [-2] * 7])
         expected = turned(points[[0, 0, *inner, 6, 6]], centre, -1)
         read = np.round(points[[0, 3, 6]], decimals)
         again = turned(read[[0, 0, 1, 2, 2]], centre_of(read[:, :2]), -1)
@@ -168,9 +166,7 @@ def leash_mm(one, other):
 @pytest.mark.slow
 def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves, how, away_mm, limit_mm):
     random = np.random.default_rng(seed)
-    requested = np.cumsum(
-        random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0
-    )  # may overlap itself or stand still
+    requested = np.cumsum(random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0)  # may overlap itself or stand still
     some_ = int(random.integers(0, moves + 1))
     found = {
         "same": requested,
@@ -218,8 +214,6 @@ def test_long_paths_take_no_more_than_what_is_next_to_them(monkeypatch):
     found = np.repeat(requested, 2, axis=0)
     counted = []
     within = against_plan._part_within_limit
-    monkeypatch.setattr(
-        against_plan, "_part_within_limit", lambda *some_: counted.append(1) or within(*some_)
-    )
+    monkeypatch.setattr(against_plan, "_part_within_limit", lambda *some_: counted.append(1) or within(*some_))
     assert find_departure(found, requested, 0.02) is None
     assert len(counted) < 8 * len(found)

@@ -76,9 +76,7 @@ def test_a_tool_commanded_far_below_the_paper_is_warned_of(desk, z_offset, is_re
     With --z-offset -3 instead of -0.3, the brush or the table is crushed. There was no warning once.
     """
     reported = [
-        notice
-        for notice in brushsvg.convert("two.svg", z_offset=z_offset).notices
-        if notice.where == "z_offset"
+        notice for notice in brushsvg.convert("two.svg", z_offset=z_offset).notices if notice.where == "z_offset"
     ]
     assert [agrees(each, f"unusual-value {-z_offset} cell") for each in reported] == [True] * is_reported
     assert not brushsvg.convert("two.svg", formats=[".json"]).notices
@@ -214,10 +212,7 @@ def test_any_choice_may_be_nonsense(desk, name):
 
 def test_brush_and_cell_may_be_at_hand(desk):
     brush, cell = brushsvg.find_brush("round-6"), brushsvg.find_cell("ur5e")
-    assert (
-        brushsvg.convert("two.svg", brush=brush, cell=cell).text
-        == brushsvg.convert("two.svg", cell="ur5e").text
-    )
+    assert brushsvg.convert("two.svg", brush=brush, cell=cell).text == brushsvg.convert("two.svg", cell="ur5e").text
     with refused("out-of-range decimals"):
         brushsvg.convert("two.svg", cell=replace(cell, decimals=400))
 
@@ -246,8 +241,7 @@ def test_ranges_are_those_of_the_flags():
     A change of one must be a change of the other.
     """
     flags = {
-        action.dest: action
-        for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions
+        action.dest: action for action in command_parser()._subparsers._group_actions[0].choices["convert"]._actions
     }
     assert set(CHOICES) <= set(flags)
     for name, limits in CHOICE_RANGES.items():

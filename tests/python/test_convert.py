@@ -32,9 +32,7 @@ def drawing(tmp_path):
 
 
 def total(work):
-    return report.measure(report.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[
-        1
-    ]
+    return report.measure(report.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[1]
 
 
 def test_the_best_constant_lag_is_the_best_of_all(drawing):
@@ -175,9 +173,7 @@ def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypa
 def test_a_stroke_of_a_program_and_its_time_are_computed_once(drawing, tmp_path, monkeypatch):
     requested, timed = [], []
     as_written, duration_s = program.as_written, motion._duration_s
-    monkeypatch.setattr(
-        program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args)
-    )
+    monkeypatch.setattr(program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args))
     monkeypatch.setattr(motion, "_duration_s", lambda made: timed.append(made) or duration_s(made))
     assert main(["convert", str(drawing), "-o", str(tmp_path / "a.ngc"), "--quiet"]) == 0
     assert requested

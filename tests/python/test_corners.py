@@ -70,9 +70,7 @@ def test_widths_go_with_the_line_when_it_begins_elsewhere():
     assert (np.diff(at) >= 0).all()
     assert (at[0], at[-1]) == (0, 1)
     # 15, 45 and 65 mm along the old line of 80 mm are 0, 30 and 50 mm along the new one
-    assert np.interp(np.array([0, 30, 50, 65, 80]) / 80, at, half) == pytest.approx(
-        [1.75, 2.75, 1.75, 1.0, 1.75]
-    )
+    assert np.interp(np.array([0, 30, 50, 65, 80]) / 80, at, half) == pytest.approx([1.75, 2.75, 1.75, 1.0, 1.75])
 
 
 @pytest.mark.parametrize(("d", "count"), [(STAR, 5), (APEX, 2), ("M35 5H60L35 20H60", 3)])
@@ -109,9 +107,7 @@ def test_widths_of_parts_are_those_of_the_line(brush):
     assert np.array(second.half_width) == pytest.approx(np.array([(0, there), (1, 3)]))
 
 
-@pytest.mark.parametrize(
-    ("flags", "count"), [([], 2), (["--corners", "turn"], 1), (["--compensation", "none"], 1)]
-)
+@pytest.mark.parametrize(("flags", "count"), [([], 2), (["--corners", "turn"], 1), (["--compensation", "none"], 1)])
 def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
     drawing = tmp_path / "apex.svg"
     drawing.write_text(

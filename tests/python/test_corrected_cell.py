@@ -88,9 +88,7 @@ def test_the_map_of_the_paper_stays():
     now = corrected_machine(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows))
     assert now.map_mm == rows
     cell = write_cell(replace(find_cell("linuxcnc-3axis"), machine=None))
-    assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, (
-        "the table that is printed has it, too"
-    )
+    assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, "the table that is printed has it, too"
 
 
 @pytest.mark.parametrize("along, target", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
@@ -166,8 +164,7 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
     one = core.Pass(stroke="s", poses_mm=np.array([[0, 0, 0], [20, 0, -4.0], [40, 0, 0]]), speed_mm_s=20.0)
     plan = core.Plan("round-6", "", (100.0, 60.0), [one])
     free, held = (
-        {n.name: n.sigma for n in FaultModel(plan, brush, ("s",), MIDDLE, learned).numbers}
-        for learned in (False, True)
+        {n.name: n.sigma for n in FaultModel(plan, brush, ("s",), MIDDLE, learned).numbers} for learned in (False, True)
     )
     share = brush.lag.rmse_mm / core.deviations_of_95() / brush.lag(4.0)
     assert held["lag"] == pytest.approx(share) and held["lag"] < 0.5 * free["lag"] == 0.075

@@ -120,9 +120,7 @@ def fixed_to_the_handle(headings=HEADINGS):
     out = dabs()
     for k, dab in enumerate(out):
         away = dab.rings_mm[0] - dab.rings_mm[0].mean(axis=0)
-        out[k] = replace(
-            dab, rings_mm=(dab.rings_mm[0] + np.outer(away[:, 0] > 0, [0.3, 0.0]) * dab.depth_mm,)
-        )
+        out[k] = replace(dab, rings_mm=(dab.rings_mm[0] + np.outer(away[:, 0] > 0, [0.3, 0.0]) * dab.depth_mm,))
     return out
 
 
@@ -136,9 +134,7 @@ REFUSED = {
         "dabs-too-few 0 4 2 dab-5",
     ),
     "one left of a depth": (
-        lambda: [
-            replace(dab, rings_mm=()) if dab.name in ("dab-5", "dab-6", "dab-8") else dab for dab in dabs()
-        ],
+        lambda: [replace(dab, rings_mm=()) if dab.name in ("dab-5", "dab-6", "dab-8") else dab for dab in dabs()],
         "dabs-too-few 1 4 2 dab-8",
     ),
     "fixed to the handle": (fixed_to_the_handle, "dabs-turned"),
@@ -181,11 +177,7 @@ def test_a_chart_of_dabs():
     made = chart(BRUSH, (148.0, 210.0), "few", dabs=True)
     assert [stroke.kind for stroke in made.strokes] == ["dab"] * 16
     for depth in {stroke.depth_mm for stroke in made.strokes}:
-        here = [
-            one
-            for one, stroke in zip(made.plan.passes, made.strokes, strict=True)
-            if stroke.depth_mm == depth
-        ]
+        here = [one for one, stroke in zip(made.plan.passes, made.strokes, strict=True) if stroke.depth_mm == depth]
         headings = [round(np.degrees(landing(one.poses_mm)[1])) % 360 for one in here]
         assert sorted(headings) == [0, 90, 180, 270]
     assert dab_depths(BRUSH, 3, 6.0) == [1.2, 3.6, 6.0]

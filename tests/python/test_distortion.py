@@ -191,9 +191,7 @@ def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, 
 def test_limits_are_checked_for_commanded_places(desk):
     work = preparation.prepare("two.svg")
     cell = cell_with(Machine(scale=(0.92, 1.0)))
-    tight = replace(
-        cell, workspace=replace(cell.workspace, box_mm=((-30.0, -30.0, -30.0), (100.0, 100.0, 50.0)))
-    )
+    tight = replace(cell, workspace=replace(cell.workspace, box_mm=((-30.0, -30.0, -30.0), (100.0, 100.0, 50.0))))
     straight = replace(tight, machine=None)
     marks = _core.simulate(work.plan, work.brush)
     assert preflight.check_job(_loads(work), work.brush, marks, straight, 0.05).problems == []
@@ -245,9 +243,7 @@ def with_paint(machine, name="linuxcnc-3axis", safe_mm=5.0):
     cell = cell_with(machine, name)
     heights = replace(cell.heights, safe_mm=safe_mm, clearance_mm=1.0)
     space = replace(cell.workspace, box_mm=(), reach_mm=())
-    return replace(
-        cell, name="mine", heights=heights, workspace=space, reload=Reload("stroke"), stations=(INK,)
-    )
+    return replace(cell, name="mine", heights=heights, workspace=space, reload=Reload("stroke"), stations=(INK,))
 
 
 def over_the_paper(reported, machine):

@@ -26,8 +26,7 @@ from brushsvg.machine.cells.cell_file import parse_cell
 
 HELD = {
     "python": "here; types in integration/test_pyright.py",
-    "commands": "integration/test_doc_commands.py; of README here, of start/"
-    " and howto/ in test_pages_followed.py",
+    "commands": "integration/test_doc_commands.py; of README here, of start/ and howto/ in test_pages_followed.py",
     "make": "not run, because it sets up a machine, or takes minutes and more: its targets are held here",
     "shell": "tests/consumer/run.sh for C++; integration/test_doc_commands.py for Inkscape",
     "cpp": "the example, which tests/consumer/run.sh builds and runs",
@@ -107,9 +106,7 @@ def test_every_block_is_of_a_kind_that_is_held():
     for block in BLOCKS:
         found.setdefault(block.page, set()).add(block.kind)
     followed = {name_of(page) for page in FOLLOWED}
-    assert {
-        page: " ".join(sorted(kinds)) for page, kinds in found.items() if page not in followed
-    } == KINDS_OF_PAGES
+    assert {page: " ".join(sorted(kinds)) for page, kinds in found.items() if page not in followed} == KINDS_OF_PAGES
 
 
 @pytest.fixture
@@ -123,9 +120,7 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "measured.csv").write_text("kind,depth_mm,value_mm\n" + "\n".join(rows) + "\n")
     glyphs = "".join(f"<glyph unicode='{letter}' d='M100 0L300 600'/>" for letter in "Robt")
     font = f"<font horiz-adv-x='500'><font-face units-per-em='1000'/>{glyphs}</font>"
-    (tmp_path / "EMSAllure.svg").write_text(
-        f"<svg xmlns='http://www.w3.org/2000/svg'><defs>{font}</defs></svg>"
-    )
+    (tmp_path / "EMSAllure.svg").write_text(f"<svg xmlns='http://www.w3.org/2000/svg'><defs>{font}</defs></svg>")
     drawing = ezdxf.new(units=4)  # mm
     drawing.modelspace().add_line((10, 10), (60, 40), dxfattribs={"lineweight": 200})
     drawing.saveas(tmp_path / "word.dxf")
@@ -182,10 +177,7 @@ def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
     plan = brushsvg.compensate([stroke], brush, sheet_mm=(140, 100)).plan
     marks = brushsvg.simulate(plan, brush)
     brushsvg.trace_outlines(marks, brush)
-    rows = {
-        kind: [{"depth_mm": d, "value_mm": k * d + 0.1 * (d % 2)} for d in range(1, 9)]
-        for kind, k in LAWS.items()
-    }
+    rows = {kind: [{"depth_mm": d, "value_mm": k * d + 0.1 * (d % 2)} for d in range(1, 9)] for kind, k in LAWS.items()}
     brushsvg.save_brush(brush, tmp_path / "shipped.json")
     brushsvg.save_brush(brushsvg.calibrate(rows).brush, tmp_path / "fitted.json")
     shipped, fitted = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("shipped", "fitted"))
@@ -217,13 +209,9 @@ def unlike(shown, real, where: str = "") -> list[str]:
     """
     if isinstance(shown, dict) and isinstance(real, dict):
         lost = [f"{where}.{key}" for key in shown if key not in real]
-        return lost + [
-            each for key in shown if key in real for each in unlike(shown[key], real[key], f"{where}.{key}")
-        ]
+        return lost + [each for key in shown if key in real for each in unlike(shown[key], real[key], f"{where}.{key}")]
     if isinstance(shown, list) and isinstance(real, list):
-        return [
-            each for pair in zip(shown[:1], real[:1], strict=False) for each in unlike(*pair, f"{where}[0]")
-        ]
+        return [each for pair in zip(shown[:1], real[:1], strict=False) for each in unlike(*pair, f"{where}[0]")]
     kinds = [
         (int, float) if isinstance(each, int | float) and not isinstance(each, bool) else type(each)
         for each in (shown, real)

@@ -37,9 +37,7 @@ def on_root(*settings):
 
 
 def test_the_document_chooses_for_the_whole_job(desk, capsys):
-    (desk / "said.svg").write_text(
-        on_root('brush="rigid"', 'cell="ur5e"', 'compensation="none"', 'tolerance=".2mm"')
-    )
+    (desk / "said.svg").write_text(on_root('brush="rigid"', 'cell="ur5e"', 'compensation="none"', 'tolerance=".2mm"'))
     flags = ["--brush", "rigid", "--cell", "ur5e", "--compensation", "none", "--tolerance", "0.2"]
     assert main(["convert", "said.svg", "-o", "said.script"]) == 0
     assert main(["convert", "d.svg", "-o", "typed.script", *flags]) == 0

@@ -46,9 +46,7 @@ def test_a_white_shape_below_all_is_background(shape):
     design = read(shape + LINE)
     assert ids(design) == ["line"]
     assert are_reported(design.notices, "background")
-    assert len(read(shape + LINE, background="keep").elements) == 1 + shape.count("<rect") + shape.count(
-        "<path"
-    )
+    assert len(read(shape + LINE, background="keep").elements) == 1 + shape.count("<rect") + shape.count("<path")
 
 
 @pytest.mark.parametrize(
@@ -119,9 +117,7 @@ def test_what_is_on_another_is_painted_once(tmp_path):
         + LINE.replace("line", "copy")
         + '<path id="back" fill="none" stroke="#000" stroke-width="3" d="M70 30h-60"/>'
     )
-    others = LINE.replace("line", "red").replace("#000", "red") + LINE.replace("line", "wide").replace(
-        '"3"', '"4"'
-    )
+    others = LINE.replace("line", "red").replace("#000", "red") + LINE.replace("line", "wide").replace('"3"', '"4"')
     design = from_file(tmp_path, f"<svg {PAGE}>{twice}{others}</svg>".encode())
     assert ids(design) == ["line", "red", "wide"]
     assert are_reported(design.notices, "drawn-twice copy back")
@@ -133,23 +129,18 @@ ILLUSTRATOR = 'data-name="Layer 1" width="595.28" height="841.89" viewBox="0 0 5
 
 # Illustrator's "Save as" writes this; its comment is removed here.
 ILLUSTRATOR_STYLE = (
-    'width="595.28px" height="841.89px" viewBox="0 0 595.28 841.89" '
-    'style="enable-background:new 0 0 595.28 841.89;"'
+    'width="595.28px" height="841.89px" viewBox="0 0 595.28 841.89" style="enable-background:new 0 0 595.28 841.89;"'
 )
 
 
-@pytest.mark.parametrize(
-    ("root", "per_inch"), [(OLD_INKSCAPE, 90), (ILLUSTRATOR, 72), (ILLUSTRATOR_STYLE, 72)]
-)
+@pytest.mark.parametrize(("root", "per_inch"), [(OLD_INKSCAPE, 90), (ILLUSTRATOR, 72), (ILLUSTRATOR_STYLE, 72)])
 def test_programs_with_other_pixels_are_named(root, per_inch):
     design = read(LINE, f'xmlns="http://www.w3.org/2000/svg" {root}')
     (notice,) = design.notices
     assert agrees(notice, f"other-pixels {per_inch} 210 297")
     # Following the advice gives this size.
     kept = re.sub(r'(?:width|height)="[^"]*"', "", root)
-    advised = read(
-        LINE, f'xmlns="http://www.w3.org/2000/svg" {kept} {notice.advice.removeprefix("give its svg ")}'
-    )
+    advised = read(LINE, f'xmlns="http://www.w3.org/2000/svg" {kept} {notice.advice.removeprefix("give its svg ")}')
     assert advised.sheet_mm == pytest.approx((210, 297), abs=0.01) and not advised.notices
     lengths = [np.ptp(each.elements[0].subpaths[0].cubics[..., 0]) for each in (advised, design)]
     assert lengths[0] / lengths[1] == pytest.approx(96 / per_inch, rel=1e-4)
@@ -186,9 +177,7 @@ def test_xml_in_encodings_of_two_bytes_is_read(label, codec, name):
 
 def test_bytes_that_are_not_of_the_encoding_are_refused():
     with refused("not-xml GBK"):
-        read_svg(
-            f'<?xml version="1.0" encoding="GBK"?><svg {PAGE}>'.encode() + b"\xff\xff</svg>", ReadOptions()
-        )
+        read_svg(f'<?xml version="1.0" encoding="GBK"?><svg {PAGE}>'.encode() + b"\xff\xff</svg>", ReadOptions())
 
 
 def clip(clips, body, more=""):
@@ -205,9 +194,7 @@ def spans(element):
 def test_lines_are_cut_by_clip_paths():
     (element,) = clip('<circle cx="40" cy="30" r="15"/>', CUT).elements
     assert spans(element) == [pytest.approx((25, 55), abs=0.01)]
-    (element,) = clip(
-        '<rect x="20" width="10" height="60"/><rect x="50" width="5" height="60"/>', CUT
-    ).elements
+    (element,) = clip('<rect x="20" width="10" height="60"/><rect x="50" width="5" height="60"/>', CUT).elements
     assert np.ravel(spans(element)) == pytest.approx([20, 30, 50, 55])
     whole = clip('<rect width="100" height="60"/>', CUT)
     assert spans(whole.elements[0]) == [(10, 70)] and not whole.notices
@@ -229,9 +216,7 @@ def test_shapes_are_intersected_with_clip_paths():
 def test_a_clipped_shape_has_no_stroke_along_the_clip():
     both = '<rect id="s" x="10" y="10" width="40" height="40" stroke="#000" stroke-width="2" clip-path="url(#Clip)"/>'
     shape, stroke = clip('<rect x="0" y="0" width="30" height="60"/>', both).elements
-    assert (
-        (shape.id, stroke.id) == ("s", "s-stroke") and shape.stroke_width_mm == 0 and stroke.fill_rule == ""
-    )
+    assert (shape.id, stroke.id) == ("s", "s-stroke") and shape.stroke_width_mm == 0 and stroke.fill_rule == ""
     ends = stroke.subpaths[0].cubics
     assert {round(ends[0, 0, 0], 6), round(ends[-1, 3, 0], 6)} == {30.0}
 
@@ -289,9 +274,7 @@ POWER = (
 
 
 def test_a_powerstroke_with_a_cap_of_zero_width_tapers():
-    design = read(
-        POWER.format(caps='start_linecap_type="zerowidth" end_linecap_type="round"'), f"{PAGE} {INKSCAPE}"
-    )
+    design = read(POWER.format(caps='start_linecap_type="zerowidth" end_linecap_type="round"'), f"{PAGE} {INKSCAPE}")
     at, widths = design.elements[0].subpaths[0].widths.T
     assert np.interp([0.0, 0.1, 0.2, 1.0], at, widths) == pytest.approx([0.0, 1.2, 2.4, 2.0])
     round_ends = read(POWER.format(caps=""), f"{PAGE} {INKSCAPE}").elements[0].subpaths[0].widths
@@ -313,9 +296,7 @@ def test_attributes_of_a_block_array_are_in_each_cell(tmp_path):
     insert.dxf.row_spacing, insert.dxf.column_spacing = 20, 15
     insert.add_attrib("T", "I", (10, 12), {"height": 5})
     design = saved(document, tmp_path)
-    places = [
-        np.concatenate([p.cubics for p in e.subpaths]).reshape(-1, 2).min(axis=0) for e in design.elements
-    ]
+    places = [np.concatenate([p.cubics for p in e.subpaths]).reshape(-1, 2).min(axis=0) for e in design.elements]
     texts, lines = (
         [p for p, e in zip(places, design.elements, strict=True) if e.fill_rule],
         len(design.elements) - 6,
@@ -373,8 +354,6 @@ def test_lines_that_only_meet_are_no_pressure_stroke(tmp_path):
         f'<path d="M{a}L{b}" stroke="#000" stroke-width="2"/>'
         for a, b in (("10 10", "50 10"), ("50 10", "50 40"), ("50 40", "10 40"))
     )
-    corner = (
-        '<g stroke="#000"><path d="M60 10H80" stroke-width="1"/><path d="M80 10V40" stroke-width="1.5"/></g>'
-    )
+    corner = '<g stroke="#000"><path d="M60 10H80" stroke-width="1"/><path d="M80 10V40" stroke-width="1.5"/></g>'
     design = from_file(tmp_path, f'<svg {PAGE} fill="none">{square}{corner}</svg>'.encode())
     assert len(design.elements) == 5 and not design.notices

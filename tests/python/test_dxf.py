@@ -12,9 +12,7 @@ from brushsvg.read.dxf import read_dxf
 from brushsvg.read.dxf.ezdxf_import import ezdxf
 from brushsvg.strokes.extraction import strokes
 
-CONTROL = np.array(
-    [(0, 0, 0), (20, 40, 0), (50, -30, 0), (70, 10, 0), (90, 35, 0), (120, 0, 0), (130, 30, 0)], float
-)
+CONTROL = np.array([(0, 0, 0), (20, 40, 0), (50, -30, 0), (70, 10, 0), (90, 35, 0), (120, 0, 0), (130, 30, 0)], float)
 BULGES = [(0, 0, 0.5), (40, 0, -1.3), (60, 30, 0.0), (10, 50, 3.0), (0, 20, 1e-3)]
 
 
@@ -53,9 +51,7 @@ def add_edges(msp):
     path.add_arc((40, 0), 20, 0, 180, ccw=False)
     path.add_line((60, 0), (60, 80))
     path.add_ellipse((0, 80), (60, 0), 0.5, 0, 180, ccw=True)
-    path.add_spline(
-        control_points=[(-60, 80), (-50, 40), (-30, 60), (-20, 0)], degree=3, knot_values=[0] * 4 + [1] * 4
-    )
+    path.add_spline(control_points=[(-60, 80), (-50, 40), (-30, 60), (-20, 0)], degree=3, knot_values=[0] * 4 + [1] * 4)
     path.add_line((20, 0), (-20, 0))
 
 
@@ -190,9 +186,7 @@ FITTED = [(0, 0), (30, 40), (80, -10), (100, 20)]
 def test_a_spline_that_jumps_is_two_lines(weights):
     points = np.array([(0, 0), (10, 0), (20, 10), (30, 10), (30, 40), (40, 40), (50, 50), (60, 50)], float)
     knots = [0] * 4 + [1] * 4 + [2] * 4
-    element = only(
-        drawing(lambda m: add_spline(m, 3, knots, np.column_stack((points, 0 * points[:, 0])), weights))
-    )
+    element = only(drawing(lambda m: add_spline(m, 3, knots, np.column_stack((points, 0 * points[:, 0])), weights)))
     for subpath, part in zip(element.subpaths, (points[:4], points[4:]), strict=True):
         assert apart(subpath, BSpline([0] * 4 + [1] * 4, part, 3)(np.linspace(0, 1, 4000))) < 1e-3
     near = points.copy()
@@ -334,9 +328,7 @@ def test_the_sheet_is_what_is_drawn_and_20_mm_around():
 def test_widths_along_a_polyline():
     rows = [(0, 0, 1, 3, 0), (30, 0, 2, 2, 1), (30, 20, 0, 0, 0), (0, 20, 0, 4, 0), (0, 60, 9, 9, 0)]
     for add in ("add_lwpolyline", "add_polyline2d"):
-        document = drawing(
-            lambda m, add=add: getattr(m, add)(rows, format="xyseb", dxfattribs={"lineweight": 50})
-        )
+        document = drawing(lambda m, add=add: getattr(m, add)(rows, format="xyseb", dxfattribs={"lineweight": 50}))
         element = only(document)
         (subpath,) = element.subpaths
         at = np.cumsum([0, 30, 10 * np.pi, 30, 40]) / (100 + 10 * np.pi)
@@ -361,9 +353,7 @@ def test_one_width_is_the_strokes_width():
     assert element.subpaths[0].widths is None
 
 
-@pytest.mark.parametrize(
-    ("weight", "mm"), [(100, 1.0), (-1, 0.7), (-2, 0.25), (-3, 0.25), (0, 0.25), (211, 2.11)]
-)
+@pytest.mark.parametrize(("weight", "mm"), [(100, 1.0), (-1, 0.7), (-2, 0.25), (-3, 0.25), (0, 0.25), (211, 2.11)])
 def test_line_weights(weight, mm):
     document = drawing()
     document.layers.add("thick", lineweight=70)
@@ -431,9 +421,7 @@ def test_rows_and_columns():
     }
     document.modelspace().add_blockref("b", (5, 5), {**grid, "yscale": 2})
     design = read(document)
-    found = {
-        tuple(np.mean(along(e.subpaths[0].cubics, 400)[:-1], axis=0).round(0) + 0.0) for e in design.elements
-    }
+    found = {tuple(np.mean(along(e.subpaths[0].cubics, 400)[:-1], axis=0).round(0) + 0.0) for e in design.elements}
     assert found == {(5.0 - 20 * row, 7.0 + 30 * column) for row in range(2) for column in range(3)}
     assert len({element.id for element in design.elements}) == 6
 

@@ -80,9 +80,7 @@ HEADERS = {
 @pytest.mark.parametrize("kind", BARE)
 @pytest.mark.parametrize("markers", ["", "100 AcDbEntity", "100 AcDbPolyline", "5 2F 330 1F"])
 def test_newer_entities_are_read_without_header_and_markers(header, kind, markers):
-    data = text_dxf(
-        LINE, f"0 {kind} {markers} {BARE[kind]}", "0 CIRCLE 8 0 10 0 20 0 40 5", header=HEADERS[header]
-    )
+    data = text_dxf(LINE, f"0 {kind} {markers} {BARE[kind]}", "0 CIRCLE 8 0 10 0 20 0 40 5", header=HEADERS[header])
     design = read_dxf(data, OPTIONS)
     first, *found, last = design.elements
     assert (first.id, last.id[:6]) == ("LINE-1", "CIRCLE")
@@ -242,9 +240,7 @@ def test_splines_of_great_cost_are_left_out(monkeypatch):
 
     design = read(drawing(draw))
     assert [element.id[:6] for element in design.elements] == ["CIRCLE"]
-    assert agrees(design.notices[0], "geometry-damaged 4000") and agrees(
-        design.notices[1], "geometry-damaged 5000"
-    )
+    assert agrees(design.notices[0], "geometry-damaged 4000") and agrees(design.notices[1], "geometry-damaged 5000")
 
 
 def test_things_of_no_size():
@@ -272,9 +268,7 @@ def chain(count, *others):
     for k in range(count - 1):
         for kind in kinds:
             for place in range(2):
-                document.blocks.get(f"{kind}{k}").add_blockref(
-                    f"{kinds[place % len(kinds)]}{k + 1}", (place, 0)
-                )
+                document.blocks.get(f"{kind}{k}").add_blockref(f"{kinds[place % len(kinds)]}{k + 1}", (place, 0))
     document.modelspace().add_blockref("A0", (0, 0))
     return document
 
@@ -356,9 +350,7 @@ def test_what_is_not_read_is_counted_for_any_author(header, markers, kind):
     assert len(design.elements) == 1
     (notice,) = design.notices
     assert (notice.where, notice.damaged) == (kind, False)
-    assert agrees(notice, f"dxf-entity-unread {kind} 2") and ("covers" in notice.sentence) == (
-        kind == "WIPEOUT"
-    )
+    assert agrees(notice, f"dxf-entity-unread {kind} 2") and ("covers" in notice.sentence) == (kind == "WIPEOUT")
 
 
 def test_a_helix_without_markers_is_not_read_and_one_with_them_is():

@@ -56,9 +56,7 @@ def test_each_dash_is_a_stroke(name, dashes):
     (element,) = design.elements
     assert spans(element) == dashes
     assert element.stroke_width_mm == 0.5
-    assert (
-        are_reported(design.notices, f"dashed {element.id} {len(dashes)}") and design.notices[0].layer == "0"
-    )
+    assert are_reported(design.notices, f"dashed {element.id} {len(dashes)}") and design.notices[0].layer == "0"
 
 
 def test_patterns_scale_with_the_drawing_the_entity_and_the_unit_but_not_with_blocks():
@@ -121,9 +119,7 @@ def test_what_is_no_plain_pattern_counts_as_unbroken(name):
     assert agrees(notice, "dashes-unread", name) and notice.layer is None
 
 
-@pytest.mark.parametrize(
-    ("drawing_scale", "scale"), [(-1.0, 1.0), (0.0, 1.0), (1.0, float("nan")), (1e308, 1e308)]
-)
+@pytest.mark.parametrize(("drawing_scale", "scale"), [(-1.0, 1.0), (0.0, 1.0), (1.0, float("nan")), (1e308, 1e308)])
 def test_scales_that_are_none(drawing_scale, scale):
     document = typed(lambda m: m.add_line((0, 0), (32, 0), {"linetype": "DASHED", "ltscale": 0.5}))
     document.header["$LTSCALE"] = drawing_scale
@@ -173,9 +169,7 @@ def test_clipped_blocks_are_named():
     design = read(document)
     assert [spans(element) for element in design.elements] == [[(0, 99)]] * 2
     (notice,) = design.notices
-    assert (
-        agrees(notice, "clipping-unread XCLIP", design.elements[0].id.split("/")[0]) and notice.layer == "0"
-    )
+    assert agrees(notice, "clipping-unread XCLIP", design.elements[0].id.split("/")[0]) and notice.layer == "0"
 
 
 def corners(element):

@@ -43,17 +43,14 @@ def in_boxes(version="R2010"):
 def boxes(element):
     """Return the lower left and upper right corners of each outline, left to right."""
     found = [
-        [*s.cubics.min(axis=(0, 1)).round(6) + 0.0, *s.cubics.max(axis=(0, 1)).round(6) + 0.0]
-        for s in element.subpaths
+        [*s.cubics.min(axis=(0, 1)).round(6) + 0.0, *s.cubics.max(axis=(0, 1)).round(6) + 0.0] for s in element.subpaths
     ]
     return sorted(map(tuple, found))
 
 
 def test_text_is_a_filled_shape_in_its_font(fonts):
     document = in_boxes()
-    text = document.modelspace().add_text(
-        "A px", height=7, dxfattribs={"style": "Boxes", "insert": (3, 4), "color": 1}
-    )
+    text = document.modelspace().add_text("A px", height=7, dxfattribs={"style": "Boxes", "insert": (3, 4), "color": 1})
     design = read(document)
     (element,) = design.elements
     assert boxes(element) == [(3, 4, 9, 11), (17, 2, 23, 9), (24, 4, 30, 9)]
@@ -82,9 +79,7 @@ def test_text_is_a_filled_shape_in_its_font(fonts):
 @pytest.mark.parametrize("turned", [0, 90])
 def test_text_is_aligned_turned_and_stretched(fonts, align, box, turned):
     document = in_boxes()
-    text = document.modelspace().add_text(
-        "AA", height=7, rotation=turned, dxfattribs={"style": "Boxes", "width": 2}
-    )
+    text = document.modelspace().add_text("AA", height=7, rotation=turned, dxfattribs={"style": "Boxes", "width": 2})
     text.set_placement((50, 60), align=ALIGN[align])
     (element,) = read(document).elements
     points = np.concatenate([s.cubics.reshape(-1, 2) for s in element.subpaths]) - (50, 60)
@@ -152,9 +147,7 @@ def test_codes_of_text(fonts):
 @pytest.mark.parametrize("kind", ["TEXT", "MTEXT"])
 def test_text_that_does_not_say_its_height_is_damaged(fonts, kind):
     line = "0 LINE 8 0 10 0 20 0 11 5 21 5"
-    design = read_dxf(
-        text_dxf(line, f"0 {kind} 8 0 10 0 20 0 1 A"), ReadOptions(sheet_mm=(99, 99), units="mm")
-    )
+    design = read_dxf(text_dxf(line, f"0 {kind} 8 0 10 0 20 0 1 A"), ReadOptions(sheet_mm=(99, 99), units="mm"))
     assert are_reported(design.notices, "geometry-damaged height") and design.notices[0].damaged
 
 
@@ -375,9 +368,7 @@ def test_text_leaves_nothing_at_home(tmp_path):
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
     script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
     runs = [
-        subprocess.run(
-            [sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True
-        )
+        subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env={"HOME": str(tmp_path)}, capture_output=True)
         for _ in range(2)
     ]
     assert {(done.returncode, done.stderr) for done in runs} == {(0, b"")}

@@ -77,9 +77,7 @@ def test_every_pose_is_passed_within_half_a_step_of_both_motors(motors, turned_d
         off = np.abs(steps - target).max(axis=1)
         at = off <= 0.5 + 1e-6
         assert at.any(), pose
-        assert np.abs(ends[at, 2] - pose[2]).min() < cell.servo.step_mm, (
-            "half a step, where parts may be so short"
-        )
+        assert np.abs(ends[at, 2] - pose[2]).min() < cell.servo.step_mm, "half a step, where parts may be so short"
         away_steps = max(away_steps, off[at].min())
     assert away_steps > 0.4
 
@@ -99,8 +97,7 @@ def test_a_page_does_not_drift():
     Steps are differences of rounded places. The errors of rounded differences would add up.
     """
     dashes = [
-        [(10 + 0.83 * k, 10, 0), (10.303 + 0.83 * k, 40.007, -1), (10.303 + 0.83 * k, 40.007, 0)]
-        for k in range(90)
+        [(10 + 0.83 * k, 10, 0), (10.303 + 0.83 * k, 40.007, -1), (10.303 + 0.83 * k, 40.007, 0)] for k in range(90)
     ]
     found = run(made(*dashes))
     last = [leg for leg in found.legs if leg.end[2] < 0][-1]
@@ -142,9 +139,7 @@ def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(m
     assert min(times[0]) >= 16 and np.mean(np.array(times[1]) < 16) > 0.5
     assert len(times[0]) < len(times[1])
     new, old = ([(leg.start, leg.end) for leg in run(text).legs if leg.kind != "wait"] for text in texts)
-    assert [leg for leg in new if leg[0][:2] == leg[1][:2]] == [
-        leg for leg in old if leg[0][:2] == leg[1][:2]
-    ]
+    assert [leg for leg in new if leg[0][:2] == leg[1][:2]] == [leg for leg in old if leg[0][:2] == leg[1][:2]]
     places, k = np.array([end for _, end in old]), 0
     for start, end in new:  # each slice merges one or several old slices on one straight line
         first, k = k, k + 1 + int((np.abs(places[k:] - end).max(axis=1) < 1e-9).argmax())

@@ -118,9 +118,7 @@ def test_brush_from_table(run):
     pytest.importorskip("matplotlib")
     assert numbers(r"overlap .*: (\d\.\d+)", run("05_brush_from_table.py"))[0] > 0.95
     brush = brushsvg.find_brush("mine.json")
-    assert brush.lag(4.0) == pytest.approx(8.9, abs=0.3) and 2 * brush.half_width(4.0) == pytest.approx(
-        3.3, abs=0.2
-    )
+    assert brush.lag(4.0) == pytest.approx(8.9, abs=0.3) and 2 * brush.half_width(4.0) == pytest.approx(3.3, abs=0.2)
     assert "(brush: mine" in Path("mine.ngc").read_text()
     assert cv2.imread("mine.png") is not None
 

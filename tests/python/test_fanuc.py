@@ -54,9 +54,7 @@ def test_a_long_job_is_a_program_that_calls_others(job, capsys):
     assert "".join(f" : CALL {name} ;\r\n" for name in names) in main
     assert main.replace("\r\n", "").count("\n") == 0 and "mm/sec" not in main
     texts = [path.read_bytes().decode("ascii") for path in parts]
-    assert all(
-        text.count("P[") <= 2 * 1000 and len(path.stem) == 8 for text, path in zip(texts, parts, strict=True)
-    )
+    assert all(text.count("P[") <= 2 * 1000 and len(path.stem) == 8 for text, path in zip(texts, parts, strict=True))
     assert RUNNABLE in check(job, capsys)
     ran = sound("".join([main, *texts]), find_cell("lrmate200id"))
     assert [words for words, _ in ran.titles][:2] == ["stroke 1 of 30: s0", "stroke 2 of 30: s1"]
@@ -162,9 +160,7 @@ def test_corners_are_cut_by_the_time_to_speed():
     cell = on("lrmate200id", SQUARE)
     cell = replace(cell, blending=replace(cell.blending, tolerance_mm=0.04))
     slow = replace(cell, blending=replace(cell.blending, ramp_s=1.0))
-    percents = [
-        [int(word[3:]) for word in text_for(each).split() if word.startswith("CNT")] for each in (cell, slow)
-    ]
+    percents = [[int(word[3:]) for word in text_for(each).split() if word.startswith("CNT")] for each in (cell, slow)]
     assert percents[0] and all(abs(a - 2 * b) <= 1 for a, b in zip(*percents, strict=True))
 
 

@@ -59,9 +59,7 @@ def intended_by(made):
 
     This is the area of the passes' discs, and the rest of their targets in the corners of square ends.
     """
-    return shapely.union_all(
-        [painted_area(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)]
-    )
+    return shapely.union_all([painted_area(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)])
 
 
 def share_left(shape, made) -> float:
@@ -151,9 +149,7 @@ def way_of(line):
 def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush):
     turns = np.radians(40 * np.arange(9))  # The corners are too blunt for square ends.
     corners = np.column_stack([30 + 25 * np.cos(turns), 25 + 25 * np.sin(turns)])
-    passes, _, _ = within_reach(
-        of("M" + "L".join(f"{x:.4f} {y:.4f}" for x, y in corners) + "Z"), brush, "passes"
-    )
+    passes, _, _ = within_reach(of("M" + "L".join(f"{x:.4f} {y:.4f}" for x, y in corners) + "Z"), brush, "passes")
     assert passes[0].closed
     start = passes[0].middle_mm[0, :2]
     inside = (30, 25) + (corners - (30, 25)) * (1 - HALF_MM / (25 * np.cos(np.radians(20))))
@@ -234,9 +230,7 @@ def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
 
 
 def like(stroke, line):
-    return stroke.replaced(
-        middle_mm=line.middle_mm, closed=line.closed, half_width=line.half_width, wanted_mm=[]
-    )
+    return stroke.replaced(middle_mm=line.middle_mm, closed=line.closed, half_width=line.half_width, wanted_mm=[])
 
 
 @pytest.mark.slow

@@ -101,9 +101,7 @@ def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, ca
 
 
 def test_a_pen_that_has_one_height_tries_none(tmp_path, capsys):
-    status, _, reported = in_json(
-        capsys, "setup", "first-run", "marlin-servo", "-o", tmp_path / "first.gcode"
-    )
+    status, _, reported = in_json(capsys, "setup", "first-run", "marlin-servo", "-o", tmp_path / "first.gcode")
     assert status == 1 and is_reported(reported, "pen-depth") and not (tmp_path / "first.gcode").exists()
 
 

@@ -33,9 +33,7 @@ def test_least_squares_is_numpys():
     assert fit.law.rmse_mm == pytest.approx(np.sqrt(left @ left / 25))
     assert fit.r_squared == pytest.approx(1 - left @ left / np.sum((value - value.mean()) ** 2))
     # 2.0595 is Student's t for 25 degrees of freedom at 97.5 %, from printed tables.
-    np.testing.assert_allclose(
-        fit.law.half_interval_95, 2.0595 * np.sqrt(np.diag(covariance))[::-1], rtol=1e-4
-    )
+    np.testing.assert_allclose(fit.law.half_interval_95, 2.0595 * np.sqrt(np.diag(covariance))[::-1], rtol=1e-4)
     assert not fit.held and tuple(fit.law.calibrated_mm) == (1, 10)
 
 
@@ -120,9 +118,7 @@ def test_a_floor_is_found_at_least_as_well_as_by_scipy(seed):
     if found < squares * (1 - 1e-6):
         return  # scipy stopped in another local minimum
     np.testing.assert_allclose([fit.law(d) for d in depth], floored(depth, *best), atol=0.01)
-    if (
-        np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3
-    ):  # otherwise, the slope has a step there
+    if np.abs(np.polyval(fit.law.coefficients[::-1], depth)).min() > 1e-3:  # otherwise, the slope has a step there
         np.testing.assert_allclose(np.diag(fit.covariance), np.diag(covariance), rtol=0.01)
 
 

@@ -94,12 +94,8 @@ def test_a_servo_may_go_by_m300():
 
 
 def test_check_does_not_take_a_tone_for_a_servo(desk, capsys):
-    (desk / "tone.gcode").write_text(
-        "G21\nG90\nM300 S30\nG1 X20 Y20 F900\nG1 X40 Y20\nM300 S50\nG1 X60 Y20\n"
-    )
-    status, _, notices = in_json(
-        capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo"
-    )
+    (desk / "tone.gcode").write_text("G21\nG90\nM300 S30\nG1 X20 Y20 F900\nG1 X40 Y20\nM300 S50\nG1 X60 Y20\n")
+    status, _, notices = in_json(capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo")
     assert status == 1 and is_reported(notices, "servo-unknown M300")
 
 
@@ -314,9 +310,7 @@ def test_a_way_that_leaves_the_workspace_is_reported_with_its_line(desk, capsys)
         replace(
             find_cell("linuxcnc-3axis"),
             name="mine",
-            workspace=Workspace(
-                box_mm=((-20.0, -20.0, -20.0), (70.0, 70.0, 20.0)), margin_mm=50.0, tilt_limit_deg=2.0
-            ),
+            workspace=Workspace(box_mm=((-20.0, -20.0, -20.0), (70.0, 70.0, 20.0)), margin_mm=50.0, tilt_limit_deg=2.0),
         )
     )
     (desk / "mine.toml").write_text(cell)

@@ -56,9 +56,7 @@ def test_without_atheris_a_fault_ends_in_a_finding_whose_input_is_kept(tmp_path,
     monkeypatch.setattr(fuzz_target, "atheris", None)
     with warnings.catch_warnings():
         try:
-            status = fuzz_target.main(
-                ["", "faulty", "-runs=2000", "-seed=1", f"-artifact_prefix={tmp_path}/"]
-            )
+            status = fuzz_target.main(["", "faulty", "-runs=2000", "-seed=1", f"-artifact_prefix={tmp_path}/"])
         finally:
             logging.disable(logging.NOTSET)
     assert status == 77
@@ -66,9 +64,7 @@ def test_without_atheris_a_fault_ends_in_a_finding_whose_input_is_kept(tmp_path,
     assert b"7" in kept.read_bytes()
 
 
-@pytest.mark.parametrize(
-    "text, code", [("two\nlines", "a"), ("a" * 9000, "a"), ("no code", ""), ("\x1b[2J", "a")]
-)
+@pytest.mark.parametrize("text, code", [("two\nlines", "a"), ("a" * 9000, "a"), ("no code", ""), ("\x1b[2J", "a")])
 def test_a_refusal_that_fills_the_terminal_or_has_no_code_is_a_finding(text, code):
     def read(data):
         raise Error(text, code=code)

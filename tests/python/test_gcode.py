@@ -98,9 +98,7 @@ def test_every_language_has_a_program_to_look_at():
 
 @pytest.mark.parametrize("tiny", [-2.77e-17, -4.9e-5, 1e-300, -0.0])
 def test_numbers_are_plain(tiny):
-    text = text_of(
-        ("s", [(tiny, 1e-7, min(tiny, 0)), (123456.5, 20, -3), (tiny, 0, 0)], 20.0), sheet=(2e5, 60)
-    )
+    text = text_of(("s", [(tiny, 1e-7, min(tiny, 0)), (123456.5, 20, -3), (tiny, 0, 0)], 20.0), sheet=(2e5, 60))
     words = re.findall(r"[XYZFP]\S+", "\n".join(code_lines(text)))
     assert words
     for word in words:
@@ -139,9 +137,7 @@ def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name
     assert feed
 
 
-@pytest.mark.parametrize(
-    ("name", "is_read"), [("marlin-3axis", False), ("klipper-3axis", False), ("grbl-3axis", True)]
-)
+@pytest.mark.parametrize(("name", "is_read"), [("marlin-3axis", False), ("klipper-3axis", False), ("grbl-3axis", True)])
 def test_a_command_with_a_sign_is_none_to_printers(name, is_read):
     """Printers do not read a command with a sign.
 

@@ -56,8 +56,6 @@ def test_help_fits_on_a_screen_and_help_all_has_every_option(name, monkeypatch, 
 
 
 def test_groups_name_options_that_exist():
-    flags = {
-        flag for each in commands().values() for action in each._actions for flag in action.option_strings
-    }
+    flags = {flag for each in commands().values() for action in each._actions for flag in action.option_strings}
     assert flags >= RARE_OPTIONS
     assert {f"--{name}" for names in TOPICS.values() for name in names.split()} <= flags

@@ -203,9 +203,7 @@ def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
     words = ("pens.svg", "-o", "air.hpgl", "--cell", "hpgl-plotter", "--brush", "rigid")
     assert call(capsys, "setup", "border", *words)[0] == 0
     found = run(Path("air.hpgl").read_text())
-    assert sum(leg.kind == "rapid" for leg in found.legs) >= 4 and not any(
-        leg.kind == "feed" for leg in found.legs
-    )
+    assert sum(leg.kind == "rapid" for leg in found.legs) >= 4 and not any(leg.kind == "feed" for leg in found.legs)
     assert call(capsys, "check", "air.hpgl")[0] == 0
 
 

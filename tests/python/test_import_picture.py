@@ -28,9 +28,7 @@ def test_svg_numbers_names_and_warnings():
 
 def test_png_shows_the_band_as_wide_as_the_stroke_where_it_was_drawn():
     design = read(BODY)
-    image = cv2.imdecode(
-        np.frombuffer(overview(".png", design, strokes(design)[0], []), np.uint8), cv2.IMREAD_COLOR
-    )
+    image = cv2.imdecode(np.frombuffer(overview(".png", design, strokes(design)[0], []), np.uint8), cv2.IMREAD_COLOR)
     column = image[:, 40 + (30 * 15)].astype(int)  # x = 30 mm at 15 px/mm, clear of arrows and numbers
     painted = np.flatnonzero(np.abs(column - 255).sum(axis=1) > 60)
     top = 100
@@ -83,9 +81,7 @@ def test_numbers_do_not_overlap():
 
 
 def test_warnings_of_a_kind_are_one_line():
-    notices = [
-        Notice(f"p{k}", f"depth 0.{k} mm is outside the range [1, 10] mm", code="depth") for k in range(9)
-    ]
+    notices = [Notice(f"p{k}", f"depth 0.{k} mm is outside the range [1, 10] mm", code="depth") for k in range(9)]
     texts = [word for word, *_ in words_of('<path d="M1 1H9"/>', [*notices, Notice("x", "another")])]
     assert gives(texts[-2], "p0", "8", "0.0 mm") and texts[-1] == "x: another"
 
@@ -111,8 +107,7 @@ def test_lists_stay_on_the_picture_and_entries_are_on_no_other():
     """
     names = [f"INSERT-93.1.{k}/LWPOLYLINE-8{k}" for k in range(9)]
     lines = "".join(
-        f'<path id="{name}" d="M{5 + 5 * k} 5v9" stroke-width="{1 + k / 10}"/>'
-        for k, name in enumerate(names)
+        f'<path id="{name}" d="M{5 + 5 * k} 5v9" stroke-width="{1 + k / 10}"/>' for k, name in enumerate(names)
     )
     head = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="150mm" viewBox="0 0 60 150" stroke="red">'
     long = Notice("TEXT-95", "the outlines of a font that is not the drawing's " * 4, code="x")
@@ -127,8 +122,6 @@ def test_lists_stay_on_the_picture_and_entries_are_on_no_other():
         rows.setdefault(float(node.get("y")), []).append((float(node.get("x")), wide, node.text))
     entries = [word for row in rows.values() for *_, word in row if "INSERT" in word]
     assert len(entries) == 9 and all(word.endswith(" mm") for word in entries)
-    for row in (
-        sorted(row) for row in rows.values() if any("  " in word or "font" in word for *_, word in row)
-    ):
+    for row in (sorted(row) for row in rows.values() if any("  " in word or "font" in word for *_, word in row)):
         for (x, wide, word), (after, *_) in zip(row, [*row[1:], (width, 0, "")], strict=True):
             assert x + wide < after, word

@@ -65,9 +65,7 @@ def included(path: Path, text: str) -> set[str]:
         homes = {unit(home) for home in CPP.rglob(Path(quoted).name)} or {quoted}
         assert len(homes) == 1, f"there are several {quoted}: {sorted(homes)}"
         found |= homes
-    found |= {
-        python_unit(name.split(".")) for name in re.findall(r'\bimport\(\s*"([^"]+)"', text)
-    }  # pybind11
+    found |= {python_unit(name.split(".")) for name in re.findall(r'\bimport\(\s*"([^"]+)"', text)}  # pybind11
     return found - {unit(path)}
 
 
@@ -178,9 +176,7 @@ def test_folders_stay_small():
     for root in (PACKAGE, CPP):
         for folder in {path.parent for path in files() if path.is_relative_to(root)} - {root}:
             count = len({path.stem for path in files() if path.parent == folder} - {"__init__"})
-            assert count <= MAX_FILES or folder.name in exempt, (
-                f"{folder.relative_to(ROOT)} has {count} files"
-            )
+            assert count <= MAX_FILES or folder.name in exempt, f"{folder.relative_to(ROOT)} has {count} files"
 
 
 def test_the_core_knows_no_vendor_and_no_format():
@@ -201,9 +197,7 @@ def test_each_header_has_a_test_and_a_source_of_its_name(header):
     else:
         assert test.exists(), f"{header.name} has no {test.name}"
     if stem not in ("brushsvg", "lag_impl"):
-        assert f'#include "brushsvg/{stem}.hpp"' in files()[HEADERS / "brushsvg.hpp"], (
-            f"brushsvg.hpp lacks {stem}.hpp"
-        )
+        assert f'#include "brushsvg/{stem}.hpp"' in files()[HEADERS / "brushsvg.hpp"], f"brushsvg.hpp lacks {stem}.hpp"
     for source in CPP.glob(f"*/**/{stem}.cpp"):
         assert files()[source].startswith(f'#include "brushsvg/{stem}.hpp"\n'), (
             f"{source.name} must include its own header first, which shows that the header stands alone"
@@ -252,9 +246,7 @@ def test_a_planted_fault_is_named(path, text, named):
 
 def test_allowed_imports_are_not_named():
     assert not complaints(CPP / "marks" / "simulate.cpp", '#include <vector>\n#include "brushsvg/lag.hpp"')
-    assert not complaints(
-        PACKAGE / "machine" / "posts" / "new.py", "import math\nfrom ..motion import Move\n"
-    )
+    assert not complaints(PACKAGE / "machine" / "posts" / "new.py", "import math\nfrom ..motion import Move\n")
 
 
 def test_an_import_that_cannot_be_followed_is_refused():
@@ -273,9 +265,9 @@ def test_documents_name_files_that_exist(document):
         # a pattern, or the name of a format
         if path.isupper() or "NAME" in path or path.startswith("brushsvg/"):
             continue
-        assert any(
-            (home / name).exists() for home in (ROOT, PACKAGE, CPP) for name in (path, f"{path}.py")
-        ), f"{document} names {path}, which is gone"
+        assert any((home / name).exists() for home in (ROOT, PACKAGE, CPP) for name in (path, f"{path}.py")), (
+            f"{document} names {path}, which is gone"
+        )
 
 
 def test_equations_name_code_and_tests_that_exist():

@@ -42,18 +42,13 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
     assert (status, err) == (0, [])
     assert out.endswith(f"{RUNNABLE}\n")
     status, _, reported = in_json(capsys, "check", program, "two.svg")
-    assert (status, "border-elsewhere" in {each.code for _, each in reported}) == (1, True), (
-        "it was fitted into less"
-    )
+    assert (status, "border-elsewhere" in {each.code for _, each in reported}) == (1, True), "it was fitted into less"
 
 
 @pytest.mark.parametrize("name", LANGUAGES)
 def test_strokes_that_find_the_paper_are_checked(desk, capsys, name):
     program = f"height{LANGUAGES[name]}"
-    assert (
-        call(capsys, "setup", "height", "-o", program, "--cell", name, "--from", "0.7", "--step", "0.13")[0]
-        == 0
-    )
+    assert call(capsys, "setup", "height", "-o", program, "--cell", name, "--from", "0.7", "--step", "0.13")[0] == 0
     status, out, err = call(capsys, "check", program)
     assert (status, err) == (0, [])
     assert gives(out, "0.7", "-1 mm", "0.13 mm")

@@ -43,9 +43,7 @@ def test_each_stroke_is_deeper_by_one_step_and_says_what_it_means():
 def test_the_strokes_do_not_meet_and_stay_on_the_sheet():
     sheet = (120, 60)
     made = paper_height(BRUSH, CELL, sheet, 1.0, -1.0, 0.1)
-    rows = [
-        [move.points_mm for move in s.moves if move.meaning in ("land", "paint")] for s in made.sections()
-    ]
+    rows = [[move.points_mm for move in s.moves if move.meaning in ("land", "paint")] for s in made.sections()]
     spans = [(land[0, 0], paint[0, 0], land[0, 1]) for land, paint in rows]
     for number, (left, right, y) in enumerate(spans):
         assert 0 < left < right < sheet[0] and 0 < y < sheet[1]

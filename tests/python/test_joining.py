@@ -15,9 +15,7 @@ LINE = 'fill="none" stroke="black" stroke-width="4"'
 
 
 def of(*lines: str, rest: str = LINE) -> list:
-    return strokes(read("".join(f'<path id="{chr(97 + k)}" d="{d}" {rest}/>' for k, d in enumerate(lines))))[
-        0
-    ]
+    return strokes(read("".join(f'<path id="{chr(97 + k)}" d="{d}" {rest}/>' for k, d in enumerate(lines))))[0]
 
 
 def ends(stroke) -> list:

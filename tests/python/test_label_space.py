@@ -55,13 +55,8 @@ def covers(box, marks, placed, anchors, anchor) -> bool:
     cells = [(x * CELL, y * CELL, (x + 1) * CELL, (y + 1) * CELL) for x, y in zip(columns, rows, strict=True)]
     on_marks = any(common(box, cell) > 1e-9 for cell in cells)
     end = np.clip(anchor, box[:2], box[2:])
-    on_lines = any(
-        within(at, label.box) for label in placed for at in np.linspace(anchor, end, LEADER_SAMPLES)
-    ) or any(
-        within(at, box)
-        for label in placed
-        if label.leader
-        for at in np.linspace(*label.leader, LEADER_SAMPLES)
+    on_lines = any(within(at, label.box) for label in placed for at in np.linspace(anchor, end, LEADER_SAMPLES)) or any(
+        within(at, box) for label in placed if label.leader for at in np.linspace(*label.leader, LEADER_SAMPLES)
     )
     away = [np.hypot(*(np.clip(each, box[:2], box[2:]) - each)) for each in anchors]
     on_labels = any(common(box, label.box) > 0 for label in placed)

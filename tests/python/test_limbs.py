@@ -39,14 +39,10 @@ def t_of(stem: float, bar: float, out: float) -> str:
     The bar sticks out by `out` on both sides.
     """
     left, right = 25 - stem / 2, 25 + stem / 2
-    return (
-        f"M{left} 5H{right}V15H{right + out}V{15 + bar}H{right}V45H{left}V{15 + bar}H{left - out}V15H{left}Z"
-    )
+    return f"M{left} 5H{right}V15H{right + out}V{15 + bar}H{right}V45H{left}V{15 + bar}H{left - out}V15H{left}Z"
 
 
-@pytest.mark.parametrize(
-    ("stem", "bar", "out"), [(8, 2, 2.5), (8, 3, 3.0), (8, 1.2, 3), (12, 2, 4), (6, 2, 2)]
-)
+@pytest.mark.parametrize(("stem", "bar", "out"), [(8, 2, 2.5), (8, 3, 3.0), (8, 1.2, 3), (12, 2, 4), (6, 2, 2)])
 def test_the_bar_of_a_t_is_painted_however_thick_its_stem(stem, bar, out):
     made = found(t_of(stem, bar, out))
     assert len(made) == 2, "a stem and a bar"

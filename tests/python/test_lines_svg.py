@@ -15,9 +15,7 @@ from brushsvg.show.editable_svg import WIDTH_TOLERANCE, lines_svg
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 # A curved wedge, a bar of one width, a swelling ring, and a dot.
-WEDGE = (
-    '<path id="wedge" d="M10 10C30 10 40 20 60 40L56 43C40 26 30 12 10 12Z" fill="#203060" stroke="none"/>'
-)
+WEDGE = '<path id="wedge" d="M10 10C30 10 40 20 60 40L56 43C40 26 30 12 10 12Z" fill="#203060" stroke="none"/>'
 BAR = '<path id="bar" d="M10 40H50V44H10Z" fill="#203060" stroke="none"/>'
 RING = (
     '<path id="ring" d="M70 20A15 15 0 1 0 100 20A15 15 0 1 0 70 20ZM73 20A10 12 0 1 1 93 20A10 12 0 1 1 73 20Z" '

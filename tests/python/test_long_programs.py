@@ -61,9 +61,7 @@ def job(request, tmp_path, capsys, monkeypatch):
         with monkeypatch.context() as patch:
             if path.parent.name == "whole":
                 patch.setitem(cell.MAX_PROGRAM_LINES, find_cell(name).language, NO_LIMIT)
-            status, _, reported = call(
-                capsys, "convert", str(tmp_path / "waves.json"), "-o", str(path), "--cell", name
-            )
+            status, _, reported = call(capsys, "convert", str(tmp_path / "waves.json"), "-o", str(path), "--cell", name)
             assert status == 0, reported
     assert files_of(paths[0]) == paths[:1]
     return name, paths[1], text_of(paths[:1])
@@ -79,9 +77,7 @@ def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
     if name == "ur5e":
         events, again = (run_stub(text).events for text in (text_of(files), whole))
         assert [event for event in events if event[0] != "textmsg"] == again
-        assert [event[1] for event in events if event[0] == "textmsg"] == [
-            f"{NEXT} {count}" for count in (2, 3)
-        ]
+        assert [event[1] for event in events if event[0] == "textmsg"] == [f"{NEXT} {count}" for count in (2, 3)]
     for plan in ([], [str(first.parents[1] / "waves.json")]):
         status, out, reported = call(capsys, "check", str(first), *plan)
         assert status == 0 and RUNNABLE in out, reported
@@ -150,9 +146,7 @@ def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
     assert RUNNABLE in call(capsys, "check", str(tmp_path / "a.script"), str(tmp_path / "a.json"))[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "parts"), [("ur5e", "a-part2.script a-part3.script"), ("kr6-r900", "B.*.src")]
-)
+@pytest.mark.parametrize(("name", "parts"), [("ur5e", "a-part2.script a-part3.script"), ("kr6-r900", "B.*.src")])
 def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
     output = tmp_path / f"a{LANGUAGES[name]}"
     for strokes in (3, 1):

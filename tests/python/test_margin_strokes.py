@@ -140,9 +140,7 @@ def test_where_there_is_no_room_none_is_added_and_a_notice_says_so(desk, capsys,
 
 def test_a_calibrated_brush_needs_none(desk):
     brush = brushsvg.find_brush("round-6")
-    size = sum(
-        len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width")
-    )
+    size = sum(len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width"))
     brush.covariance = (1e-6 * np.eye(size)).tolist()
     save_brush(brush, "known.json")
     run("convert word.svg -o plan.json --brush known.json --page page.svg")
@@ -177,9 +175,7 @@ def test_figures_of_a_photograph_are_of_the_drawing(desk):
     (desk / "studio.toml").write_text('format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = 1.15\n')
     seen = {}
     for margin in ("auto", "off"):
-        run(
-            f"simulate-photo word.svg -o {margin}.jpg --brush mine.json --studio studio.toml --margin-strokes {margin}"
-        )
+        run(f"simulate-photo word.svg -o {margin}.jpg --brush mine.json --studio studio.toml --margin-strokes {margin}")
         run(f"compare {margin}.jpg word.svg --brush mine.json -o {margin}.json")
         seen[margin] = json.loads((desk / f"{margin}.json").read_text())
     assert [row["stroke"] for row in seen["auto"]["strokes"]] == ["bow", "margin-1"]

@@ -65,9 +65,7 @@ def test_groups_are_judged_as_each_alone():
     marks = simulate(compensate(strokes, brush, (100, 100)).plan, brush).passes
     groups = [[0, 1], [2], [1, 4, 3], []]
     found = _core.common_areas(marks, strokes, groups, brush)
-    alone = [
-        _core.common_area([marks[k] for k in some], [strokes[k] for k in some], brush) for some in groups
-    ]
+    alone = [_core.common_area([marks[k] for k in some], [strokes[k] for k in some], brush) for some in groups]
     assert found == alone
     assert len({area.overlap for area in found}) == 4
     with pytest.raises(Error) as reported:

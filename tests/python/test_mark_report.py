@@ -71,9 +71,7 @@ def test_the_table_for_a_cell_says_for_which_machines_its_lines_have_no_use(name
     parts = ("lean", "axes", "tilt", "backlash")
     options = _core.MarkOptions()
     machine_found.ask_for(options, parts)
-    machine = SimpleNamespace(
-        lean_mm_per_mm=(0.1, 0.0), scale=(1.01, 1.0), skew=0.0, tilt_mm_per_mm=(0.001, 0.0)
-    )
+    machine = SimpleNamespace(lean_mm_per_mm=(0.1, 0.0), scale=(1.01, 1.0), skew=0.0, tilt_mm_per_mm=(0.001, 0.0))
     fit = SimpleNamespace(machine=machine, height_mm=0.2, centre_mm=(0.0, 0.0))
     found = [machine_found.Number("backlash", f"backlash in {axis}", 0.3, 0.1, "mm") for axis in "xy"]
     head, *lines = machine_found.cell_table(fit, options, found)

@@ -79,9 +79,7 @@ def test_what_is_drawn_is_the_plan_and_check_takes_it(seed):
             assert leg.speed_mm_s <= plan.passes[0].speed_mm_s
     target = [line @ turn.T + (12.0, 20.0) for line in lines]
     assert np.abs(np.array(strokes) - np.array(target)).max() <= 0.5e-3 + 1e-9
-    ran = simulate_program.simulate_program(
-        read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET
-    )
+    ran = simulate_program.simulate_program(read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET)
     assert ran.problems == []
     assert against_plan.with_plan(ran, split_into_loads(plan, find_brush("rigid"), cell), cell)[1] == []
 

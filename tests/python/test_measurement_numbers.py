@@ -74,11 +74,7 @@ MEASURED = {
     "sums": HEAD
     | WIDTHS
     | {"tip_gap": rows(ROUND.tip_gap), "tip_to_widest": rows(ROUND.tip_to_widest)}
-    | {
-        "straight": [
-            {"depth_mm": d, "path_mm": 60.0, "distance_mm": 60.0 - float(ROUND.lag(d))} for d in DEPTHS
-        ]
-    },
+    | {"straight": [{"depth_mm": d, "path_mm": 60.0, "distance_mm": 60.0 - float(ROUND.lag(d))} for d in DEPTHS]},
     "lines": HEAD
     | WIDTHS
     | {"tip_to_widest": rows(ROUND.tip_to_widest), "centre_line": [line(d) for d in DEPTHS]}
@@ -181,9 +177,7 @@ def calibrated(tmp_path, capsys, monkeypatch):
 def test_a_number_of_a_measurement_is_bounded_by_what_it_means(name, path, calibrated):
     content = painted() if name == "painted" else MEASURED[name]
     assert calibrated(json.dumps(content)) is None
-    taken = [
-        words for words, value in NEVER.items() if not calibrated(json.dumps(changed(content, path, value)))
-    ]
+    taken = [words for words, value in NEVER.items() if not calibrated(json.dumps(changed(content, path, value)))]
     assert taken == []
 
 

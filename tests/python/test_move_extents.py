@@ -42,9 +42,7 @@ def circles(draw, rise=FLAT):
     radius, first = draw(st.floats(0.5, 300)), draw(st.floats(-4, 4))
     turn, sweep = draw(st.sampled_from([1, -1])), draw(st.floats(0.01, 6.2))
     places = [complex(x, y) + cmath.rect(radius, angle) for angle in (first, first + turn * sweep)]
-    start, end = (
-        (place.real, place.imag, height) for place, height in zip(places, (z, z + draw(rise)), strict=True)
-    )
+    start, end = ((place.real, place.imag, height) for place, height in zip(places, (z, z + draw(rise)), strict=True))
     return start, end, (x, y, turn), sweep
 
 
@@ -73,9 +71,7 @@ def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start,
     some, places, step_mm = both(frame, start, end, circle)
     low, high = bounds(some)
     assert low == pytest.approx(places.min(axis=0), abs=step_mm) and (low <= places.min(axis=0) + 1e-9).all()
-    assert (
-        high == pytest.approx(places.max(axis=0), abs=step_mm) and (high >= places.max(axis=0) - 1e-9).all()
-    )
+    assert high == pytest.approx(places.max(axis=0), abs=step_mm) and (high >= places.max(axis=0) - 1e-9).all()
     away = np.linalg.norm(places, axis=1)
     nearest, farthest = distances_from_origin(some)
     assert nearest == pytest.approx(away.min(), abs=step_mm) and nearest <= away.min() + 1e-9
@@ -108,10 +104,7 @@ def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, 
     low, high = bounds(some)
     assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
     away = np.linalg.norm(places, axis=1)
-    assert (
-        distances_from_origin(some)[0] <= away.min() + 1e-9
-        and distances_from_origin(some)[1] >= away.max() - 1e-9
-    )
+    assert distances_from_origin(some)[0] <= away.min() + 1e-9 and distances_from_origin(some)[1] >= away.max() - 1e-9
     box = np.array(corner), np.add(corner, size)
     if ((places > box[0]) & (places < box[1])).all(axis=1).any():
         assert find_place_inside(some, *box) is not None
@@ -133,9 +126,7 @@ def test_ways_that_stay_in_a_place_or_run_along_a_side():
     box = (0, 0, 0), (10, 10, 10)
     assert find_place_inside(make_paths([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
     assert find_place_inside(make_paths([[(5, 5, 15)]]), *box) is None
-    assert find_place_inside(make_paths([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, (
-        "along a side is not inside"
-    )
+    assert find_place_inside(make_paths([[(-5, 5, 10), (15, 5, 10)]]), *box) is None, "along a side is not inside"
     assert find_place_inside(make_paths([[(-5, 5, 9.9), (15, 5, 9.9)]]), *box) == pytest.approx([5, 5, 9.9])
     assert find_place_inside(make_paths([]), *box) is None
 
@@ -147,9 +138,7 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
 
     No point of the triangle at a joint is further from the two moves.
     """
-    path = np.array(
-        [(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)]
-    )
+    path = np.array([(-before_mm, 0, 0), (0, 0, 0), (after_mm * math.cos(turn_rad), after_mm * math.sin(turn_rad), 0)])
     radii = blend_radii(path, Blending(tolerance_mm))
     cut = cut_corners(path, radii)[0]
     if len(cut) < 5:

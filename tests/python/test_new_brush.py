@@ -318,9 +318,7 @@ def answered(monkeypatch, capsys, words, answers):
     return main([*map(str, words)]), capsys.readouterr().out, shown.getvalue()
 
 
-def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_same(
-    tmp_path, monkeypatch, capsys
-):
+def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_same(tmp_path, monkeypatch, capsys):
     requested, typed = tmp_path / "asked.json", tmp_path / "typed.json"
     answers = "2 1.5 4 nonsense 5 3,5 6 8 5 7.5".split()
     status, out, shown = answered(monkeypatch, capsys, ["brush", "new", "-o", requested], answers)

@@ -100,9 +100,7 @@ def test_an_arm_of_a_round_c_ends_amid_its_cut(slant_deg):
     amid, way = (np.array([np.cos(t), np.sin(t)]) for t in np.radians([40, 40 + slant_deg]))
     upper = [15 * amid - 8 * way, 15 * amid + 12 * way]
     cut = shapely.Polygon([(0, 0), *upper, (60, 0), *((x, -y) for x, y in upper[::-1])])
-    ring = (
-        shapely.Point(0, 0).buffer(19, quad_segs=17).difference(shapely.Point(0, 0).buffer(11, quad_segs=17))
-    )
+    ring = shapely.Point(0, 0).buffer(19, quad_segs=17).difference(shapely.Point(0, 0).buffer(11, quad_segs=17))
     shape = shapely.transform(ring.difference(cut), lambda at: at + np.array([25, 25]))
     (letter,) = painted(path(polygon(shape)))
     for half in (letter.half_width[0][1], letter.half_width[-1][1]):
@@ -159,9 +157,7 @@ def test_a_hairline_that_ends_in_a_ball_keeps_its_way_from_the_stem():
     ball = [(-6.8, -9.0, 3.9)]
     line = np.array(stem + tail + ball)
     hair = shapely.LineString([place[:2] for place in tail + ball]).buffer(0.15)
-    shape = shapely.unary_union(
-        [shapely.box(-3.4, 10, 3.4, 44), hair, shapely.Point(ball[0][:2]).buffer(3.9)]
-    )
+    shape = shapely.unary_union([shapely.box(-3.4, 10, 3.4, 44), hair, shapely.Point(ball[0][:2]).buffer(3.9)])
     ring = np.array(shapely.geometry.polygon.orient(shape).exterior.coords)[:-1]
     assert run_to_cut(line, [ring]) is line
 
@@ -248,9 +244,7 @@ def test_directions_are_those_of_writing(d, start):
 )
 def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
     made = painted(path(d))
-    assert [stroke.id for stroke in made] == (
-        ["p"] if count == 1 else [f"p/{k}" for k in range(1, count + 1)]
-    )
+    assert [stroke.id for stroke in made] == (["p"] if count == 1 else [f"p/{k}" for k in range(1, count + 1)])
     shape = target(made)
     assert _core.overlap(marks(made), shape) > 0.91
     assert made[0].closed == (name == "O")
@@ -333,9 +327,7 @@ def test_a_stem_that_sticks_out_next_to_its_arch_is_a_stroke_of_its_own(top, val
 
 def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
     disc = "M{0} 25A{1} {1} 0 1 0 {2} 25A{1} {1} 0 1 0 {0} 25Z".format
-    made = painted(
-        path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"')
-    )
+    made = painted(path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"'))
     assert _core.area(target(made)) == pytest.approx(np.pi * (15**2 - 2 * 0.5**2), rel=0.01)
 
 
@@ -488,9 +480,7 @@ def test_a_dot_is_a_dab_and_a_ring_is_closed_and_turns_left_from_the_top():
     (dot,) = painted('<circle id="p" cx="20" cy="20" r="4"/>')
     assert np.ptp(dot.middle_mm) == pytest.approx(10, abs=0.1), "one point, x 20, y 30"
     assert dot.half_width[0][1] == pytest.approx(4, abs=0.05)
-    (ring,) = painted(
-        path("M30 5A20 20 0 1 0 30 45A20 20 0 1 0 30 5ZM30 11A14 14 0 1 1 30 39A14 14 0 1 1 30 11Z")
-    )
+    (ring,) = painted(path("M30 5A20 20 0 1 0 30 45A20 20 0 1 0 30 5ZM30 11A14 14 0 1 1 30 39A14 14 0 1 1 30 11Z"))
     start, later = ring.middle_mm[0, :2], _core.flatten(ring, 0.01)[20, :2]
     assert start[1] > 40
     assert later[0] < start[0]
@@ -582,9 +572,7 @@ def test_hostile_outlines(name, rule):
     shape = filled_rings(design.elements[0])
     assert _core.area(target(made)) == pytest.approx(_core.area(shape), rel=0.02, abs=1e-3)
     if name not in ("an eight", "a loop that folds over itself", "nested holes", "a hole that touches"):
-        assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape) + 1e-3, (
-            "no paint outside"
-        )
+        assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape) + 1e-3, "no paint outside"
 
 
 def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():

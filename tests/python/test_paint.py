@@ -33,9 +33,7 @@ from brushsvg.show.evaluation.report import PaintedPlan, measure
 from brushsvg.verify.readback import read_program
 from brushsvg.verify.simulate_program import simulate_program
 
-BLACK = Station(
-    "black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0
-)
+BLACK = Station("black", (-20.0, 10.0), ("#000000",), surface_mm=-2.0, depth_mm=7.0, rim_mm=4.0, hold_s=0.5, drip_s=2.0)
 ANY = Station("any", (-20.0, 40.0), depth_mm=5.0, wipe_mm=((-14.0, 40.0, 3.0), (-10.0, 40.0, 3.0)))
 WATER = Station("water", (-20.0, 70.0), depth_mm=12.0)
 STRIPE = [(20, 0, 0), (25, 0, -3), (60, 0, -3), (58, 0, 0)]
@@ -95,9 +93,7 @@ def test_every_stroke_or_every_layer():
 def test_another_colour_is_washed_for():
     plan = plan_of((9, "#000000", ""), (9, "#FF0000", ""), (9, "#00ff00", ""), (9, "#000000", ""))
     found = names(station_visits(whole(plan), cell_with(Reload("length", wash="water"))))
-    assert found == [["black"], ["water", "any"], [], ["water", "black"]], (
-        "red and green come from one vessel"
-    )
+    assert found == [["black"], ["water", "any"], [], ["water", "black"]], "red and green come from one vessel"
 
 
 def test_a_resumed_job_begins_with_paint():
@@ -144,9 +140,7 @@ def test_a_visit_goes_down_into_the_paint_and_drips_off():
     assert wiped[-1].points_mm.tolist() == [[-10, 40, 10]]
 
 
-def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_hard_or_rinsed(
-    tmp_path, capsys
-):
+def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_hard_or_rinsed(tmp_path, capsys):
     """Paint is stirred first, then only dipped into; the brush is washed or rinsed.
 
     The tests' own interpreter runs the program. The visits are: full, short, hard wash and full, rinse and
@@ -221,9 +215,7 @@ def test_a_person_dips_at_safe_height():
 
 def test_a_station_out_of_the_box_is_refused():
     cell = cell_with(Reload("stroke"))
-    boxed = replace(
-        cell, workspace=replace(cell.workspace, box_mm=((-15.0, -50.0, -30.0), (500.0, 200.0, 60.0)))
-    )
+    boxed = replace(cell, workspace=replace(cell.workspace, box_mm=((-15.0, -50.0, -30.0), (500.0, 200.0, 60.0))))
     broken = forbidden(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
     assert is_reported(broken, "out-of-box 'x -20.0 mm' '[-15, 500] mm' linuxcnc-3axis", "black")
 
@@ -263,8 +255,7 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
     line = np.array([(20, 0, 0), (25, 0, -3), (60, 0, -3), (58, 0, 0)], float)
     names = ["a", "a+2", "a+3", "b~2", "b+x", "+2", "2+"]
     passes = [
-        _core.Pass(name, line + np.array([0, 10 + 10 * k, 0]), 20.0, "", "#000000")
-        for k, name in enumerate(names)
+        _core.Pass(name, line + np.array([0, 10 + 10 * k, 0]), 20.0, "", "#000000") for k, name in enumerate(names)
     ]
     plan = _core.Plan(brush.name, "", (400.0, 100.0), passes)
     cell = cell_with(Reload("length", every, 5.0))
@@ -294,15 +285,9 @@ def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
         (reported,) = report_long_strokes(plan, brush, cell)
         assert agrees(reported, f"load-too-long {painted_mm(plan.loads[0]):.0f}", "rub")
         passes[0].settings = REFUSED
-        assert (
-            report_long_strokes(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
-        )
+        assert report_long_strokes(whole(_core.Plan(brush.name, "", (400.0, 100.0), passes)), brush, cell) == []
     for every in (40.0, 90.0):  # a line can be cut between its two poses
-        long = [
-            _core.Pass(
-                "line", np.array([(20, 50, 0), (30, 50, -4), (380, 50, -4), (370, 50, 0)], float), 20.0
-            )
-        ]
+        long = [_core.Pass("line", np.array([(20, 50, 0), (30, 50, -4), (380, 50, -4), (370, 50, 0)], float), 20.0)]
         cell = cell_with(Reload("length", every, 5.0))
         loads = split_into_loads(_core.Plan(brush.name, "", (400.0, 100.0), long), brush, cell)
         assert len(loads.loads) >= 350 / every and report_long_strokes(loads, brush, cell) == []
@@ -531,17 +516,13 @@ def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
     cell = replace(cell, workspace=replace(cell.workspace, keep_out_mm=(wall,)))
     cell = replace(cell, stations=(replace(ANY, wipe_mm=()),))
     plan = long_plan(brush)
-    reported = check_job(
-        split_into_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05
-    ).problems
+    reported = check_job(split_into_loads(plan, brush, cell), brush, _core.simulate(plan, brush), cell, 0.05).problems
     assert {each.code for each in reported} == {"in-kept-out-box"}
 
 
 def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
     brush = find_brush("round-6")
-    text = "".join(
-        writer.encode(".ngc", long_plan(brush), brush, "t", (), cell_with(Reload("length", 120.0, 6.0)))
-    )
+    text = "".join(writer.encode(".ngc", long_plan(brush), brush, "t", (), cell_with(Reload("length", 120.0, 6.0))))
     titles = [line.strip("()") for line in text.splitlines() if line.startswith(("(stroke", "(paint"))]
     assert titles[:5] == [
         "paint: black",

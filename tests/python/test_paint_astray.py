@@ -21,9 +21,7 @@ def brush():
     return find_brush("round-6")
 
 
-@pytest.mark.parametrize(
-    ("displaced_mm", "is_reported"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)]
-)
+@pytest.mark.parametrize(("displaced_mm", "is_reported"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)])
 def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_reported):
     """Paint outside a shape is reported by its distance from the shape.
 

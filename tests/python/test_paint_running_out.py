@@ -49,9 +49,7 @@ def brush_of(rate):
 
 
 def cell_with(reload):
-    return replace(
-        find_cell(), name="painting", reload=reload, stations=(Station("any", (-20.0, 40.0), depth_mm=5.0),)
-    )
+    return replace(find_cell(), name="painting", reload=reload, stations=(Station("any", (-20.0, 40.0), depth_mm=5.0),))
 
 
 ONE_LOAD = cell_with(Reload("length", 1e5, 6.0))

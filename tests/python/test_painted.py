@@ -44,9 +44,7 @@ def marks():
 
 def scaled(by):
     by = np.array(by, float)
-    return [
-        {"stroke": m["stroke"], "outline_mm": [(np.array(m["outline_mm"][0]) * by).tolist()]} for m in marks()
-    ]
+    return [{"stroke": m["stroke"], "outline_mm": [(np.array(m["outline_mm"][0]) * by).tolist()]} for m in marks()]
 
 
 def test_marks_and_plan_inline():
@@ -98,10 +96,7 @@ def bent(mark, **changes):
         (plan(), scaled([1 / 25.4, 1 / 25.4]), "marks", "marks-scaled inches"),
         (
             plan(),
-            [
-                m | {"outline_mm": [(np.array(m["outline_mm"][0]) * [1, -1] + [0, 120]).tolist()]}
-                for m in marks()
-            ],
+            [m | {"outline_mm": [(np.array(m["outline_mm"][0]) * [1, -1] + [0, 120]).tolist()]} for m in marks()],
             "marks",
             "marks-displaced",
         ),
@@ -169,8 +164,7 @@ def bent(mark, **changes):
         (
             {
                 "passes": [
-                    {"stroke": n, "poses_mm": [[x, y, -3] for x, y, _ in p], "speed_mm_s": 20}
-                    for n, p in strokes()
+                    {"stroke": n, "poses_mm": [[x, y, -3] for x, y, _ in p], "speed_mm_s": 20} for n, p in strokes()
                 ]
             },
             marks(),
@@ -225,9 +219,7 @@ def test_a_sheet_in_another_place_is_reported_with_it(moved, said):
     more = [(name, (np.array(strokes()[0][1]) + by).tolist()) for name, by in shift.items()]
     every = [*strokes(), *more]
     plan_ = {"passes": [{"stroke": name, "poses_mm": poses, "speed_mm_s": 20} for name, poses in every]}
-    rows = [
-        {"stroke": name, "outline_mm": [moved(np.array(around(poses))).tolist()]} for name, poses in every
-    ]
+    rows = [{"stroke": name, "outline_mm": [moved(np.array(around(poses))).tolist()]} for name, poses in every]
     with refused(said, "marks"):
         read_painted(plan_, rows, None)
 

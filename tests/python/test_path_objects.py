@@ -37,9 +37,7 @@ def test_a_path_becomes_the_stroke_that_svgpathtools_draws(given):
 
 
 def test_y_points_down_from_the_upper_edge_where_a_page_has_a_height():
-    up, down = (
-        brushsvg.stroke_from_path("M10 20 L30 25", 3.0, page_height_mm=height) for height in (None, 100.0)
-    )
+    up, down = (brushsvg.stroke_from_path("M10 20 L30 25", 3.0, page_height_mm=height) for height in (None, 100.0))
     assert np.allclose(np.asarray(up.middle_mm)[0, [0, 1, 6, 7]], (10, 20, 30, 25))
     assert np.allclose(np.asarray(down.middle_mm)[0, [0, 1, 6, 7]], (10, 80, 30, 75))
     back = brushsvg.path_from_stroke(down, page_height_mm=100.0)
@@ -97,9 +95,7 @@ def test_what_is_no_stroke_is_refused(path, width_mm, said):
 
 
 def test_drawings_that_are_open_already_are_read_as_their_files_are(tmp_path):
-    text = (
-        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50"><path id="a" '
-    )
+    text = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50"><path id="a" '
     text += 'd="M10 20 C20 5 30 5 40 30" fill="none" stroke="#123456" stroke-width="3"/></svg>'
     (tmp_path / "a.svg").write_text(text)
     of_file = brushsvg.read_drawing(tmp_path / "a.svg")

@@ -18,9 +18,7 @@ DRAWING = (
 def desk(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     inks = {name: ink for ink, names in INKS.items() for name in names}
-    lines = (
-        f'<path id="{name}" stroke="{inks[name]}" d="M10 {8 + 8 * k}H50"/>' for k, name in enumerate("abcde")
-    )
+    lines = (f'<path id="{name}" stroke="{inks[name]}" d="M10 {8 + 8 * k}H50"/>' for k, name in enumerate("abcde"))
     (tmp_path / "word.svg").write_text(DRAWING.format("".join(lines)))
     return tmp_path
 
@@ -51,10 +49,7 @@ def test_strokes_of_a_colour_are_where_they_are_in_all(desk, capsys):
     """
     words = "convert", "word.svg", "-o", "all.json", "--fit", "80x40"
     assert in_json(capsys, *words)[0] == 0
-    assert (
-        in_json(capsys, "convert", "word.svg", "-o", "part.json", "--fit", "80x40", "--colour", "gold")[0]
-        == 0
-    )
+    assert in_json(capsys, "convert", "word.svg", "-o", "part.json", "--fit", "80x40", "--colour", "gold")[0] == 0
     whole, part = (brushsvg.read_plan(desk / f"{name}.json").passes for name in ("all", "part"))
     places = {each.stroke: each.poses_mm.tolist() for each in whole}
     assert len(part) == 2 and all(places[each.stroke] == each.poses_mm.tolist() for each in part)
@@ -69,9 +64,7 @@ def test_a_plan_is_parted_as_its_drawing_is(desk, capsys):
 def test_a_colour_that_is_not_there_is_refused(desk, capsys):
     status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--colour", "#00ff00")
     assert status == 1 and is_reported(reported, "nothing-to-paint #00ff00 #ffd700 #d32f2f #1a237e", "colour")
-    assert (
-        in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
-    )
+    assert in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
     assert not list(desk.glob("out*"))
 
 

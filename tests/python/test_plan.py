@@ -100,9 +100,7 @@ def test_nothing_is_added_to_a_copy_without_a_word():
     with pytest.raises(AttributeError):
         plan.passes.append(_core.Pass("b"))
     arrays = [stroke.middle_mm, stroke.wanted_mm[0], brush.footprints.dragged[0].outline_mm]
-    arrays += [
-        getattr(marks.passes[0], name) for name in ("depth_mm", "taut", "tcp_mm", "contact_mm", "pose")
-    ]
+    arrays += [getattr(marks.passes[0], name) for name in ("depth_mm", "taut", "tcp_mm", "contact_mm", "pose")]
     assert not any(array.flags.writeable for array in arrays)
 
 

@@ -35,9 +35,7 @@ def ways_in_small_steps(passes, backlash):
 
 def test_the_way_is_that_of_small_steps_with_few_poses():
     rng = np.random.default_rng(3)
-    passes = [
-        np.column_stack([rng.uniform(0, 60, (6, 2)), [0.0, -2.0, -4.0, -3.0, -1.0, 0.0]]) for _ in range(3)
-    ]
+    passes = [np.column_stack([rng.uniform(0, 60, (6, 2)), [0.0, -2.0, -4.0, -3.0, -1.0, 0.0]]) for _ in range(3)]
     reported = [core.Pass(stroke=f"s{k}", poses_mm=poses, speed_mm_s=20.0) for k, poses in enumerate(passes)]
     run = passes_with_backlash(reported, (0.8, 0.5))
     for one, target in zip(run, ways_in_small_steps(passes, (0.8, 0.5)), strict=True):

@@ -167,9 +167,7 @@ def test_programs_are_read_as_they_were_intended(style, seed):
     assert len(found) == len(lines)
     assert is_reported(design.notices, "pen-reading")
     dips = [notice for notice in design.notices if notice.code == "dips-left-out"]
-    assert bool(dips) == style.startswith("dips") and all(
-        agrees(each, f"dips-left-out {len(lines)}") for each in dips
-    )
+    assert bool(dips) == style.startswith("dips") and all(agrees(each, f"dips-left-out {len(lines)}") for each in dips)
 
 
 def test_the_corpus_has_eighty_programs():
@@ -244,9 +242,7 @@ def test_to_begin_and_end_at_z_0_turns_no_z():
     design = read_gcode("\n".join(parked(hatch, 5, 0)).encode(), ReadOptions(sheet_mm=(200, 150)))
     assert is_reported(design.notices, "pen-reading 0 5")
     inner = [each for each in design.elements if each.subpaths[0].cubics[0, 0, 0] == 40]
-    assert [np.ptp(each.subpaths[0].cubics.reshape(-1, 2), axis=0).tolist() for each in inner] == [
-        [40, 0]
-    ] * 3
+    assert [np.ptp(each.subpaths[0].cubics.reshape(-1, 2), axis=0).tolist() for each in inner] == [[40, 0]] * 3
 
 
 def test_the_paper_of_a_z_that_falls_to_lift():
@@ -284,9 +280,7 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sketch.gcode").write_bytes(SKETCH)
     words = "--width 3 --paper-z 0 --pen z --skip-region 30,30,100,50 --skip-comment nothing".split()
-    assert is_reported(
-        in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc")[2], "gcode-no-width 1 --width"
-    )
+    assert is_reported(in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc")[2], "gcode-no-width 1 --width")
     status, _, reported = in_json(capsys, "convert", "sketch.gcode", "-o", "out.ngc", *words)
     assert not is_reported(reported, "gcode-no-width"), "they have one"
     assert status == 0 and is_reported(reported, "strokes-skipped 1 2"), reported

@@ -14,9 +14,7 @@ from brushsvg.machine.program import Job, unchecked_program
 
 def plan_of(*poses, speed=20.0, sheet=(100.0, 60.0)):
     passes = [
-        SimpleNamespace(
-            stroke=f"s{k}", poses_mm=np.array(p, float), speed_mm_s=speed, arcs=(), tool_axes=(), colour=""
-        )
+        SimpleNamespace(stroke=f"s{k}", poses_mm=np.array(p, float), speed_mm_s=speed, arcs=(), tool_axes=(), colour="")
         for k, p in enumerate(poses, 1)
     ]
     return SimpleNamespace(sheet_mm=sheet, passes=passes)

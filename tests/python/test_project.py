@@ -148,9 +148,7 @@ def test_every_option_is_in_the_table():
     assert flags - {"join"} | {"sheet", "layer"} == set(TYPED)
 
 
-@pytest.mark.parametrize(
-    "flag", [*TYPED, *(flag for flag, choice in options().items() if choice in CHOICE_VALUES)]
-)
+@pytest.mark.parametrize("flag", [*TYPED, *(flag for flag, choice in options().items() if choice in CHOICE_VALUES)])
 def test_values_are_those_of_the_command_line(desk, flag):
     choice = options().get(flag, flag)
     good, bad = TYPED.get(flag) or (" ".join(CHOICE_VALUES.get(choice, ())), "nonsense")
@@ -160,17 +158,13 @@ def test_values_are_those_of_the_command_line(desk, flag):
     def in_file(text):
         listed = choice in ("layer", "skip_region", "skip_comment")
         line = f"{key} = ['{text}']" if listed else f"{key} = '{text}'"
-        table = (
-            "" if key in CHOICE_BY_TOP_KEY else "[defaults]\n" + ("compensation='constant'\n" if more else "")
-        )
+        table = "" if key in CHOICE_BY_TOP_KEY else "[defaults]\n" + ("compensation='constant'\n" if more else "")
         project(table + line)
         return brushsvg.read_project(NAME).settings[choice]
 
     for text in good.split():
         target = getattr(
-            parse(
-                ["convert", "d.dxf" if flag == "units" else "d.svg", "-o", "o.ngc", f"--{flag}={text}", *more]
-            ),
+            parse(["convert", "d.dxf" if flag == "units" else "d.svg", "-o", "o.ngc", f"--{flag}={text}", *more]),
             choice,
         )
         assert in_file(text) == target, text
@@ -179,9 +173,7 @@ def test_values_are_those_of_the_command_line(desk, flag):
             parse(["convert", "d.svg", "-o", "o.ngc", f"--{flag}={text}", *more])
         with pytest.raises(brushsvg.Error) as reported:
             in_file(text)
-        assert reported.value.file == NAME and reported.value.where.endswith(key) and reported.value.code, (
-            text
-        )
+        assert reported.value.file == NAME and reported.value.where.endswith(key) and reported.value.code, text
 
 
 def test_numbers_need_no_quotes(desk):
@@ -326,9 +318,7 @@ def test_explain_works_without_a_project_file(desk, capsys):
 
 def test_an_option_that_was_typed_sets_others_of_the_project_back(desk, capsys):
     project('[defaults]\nfit = "60x40"\nstart = "pointed"\ncompensation = "constant"\nlag = 3')
-    lines = explained(
-        capsys, *"convert d.svg -o o.ngc --scale 0.9 --terminals butt --compensation closed".split()
-    )
+    lines = explained(capsys, *"convert d.svg -o o.ngc --scale 0.9 --terminals butt --compensation closed".split())
     assert all(gives(lines[name], "default") for name in ("fit", "start", "lag"))
     assert all(gives(lines[name], "command line") for name in ("scale", "terminals", "compensation"))
     (desk / "d.svg").write_text(said(terminals="round"))
@@ -352,9 +342,7 @@ def test_a_default_that_is_typed_counts_as_typed(desk, capsys):
         "0",
         "command line",
     )
-    assert gives(
-        explained(capsys, "convert", "d.svg", "-o", "q.ngc", "--z-offset=0")["z-offset"], "0", "command line"
-    )
+    assert gives(explained(capsys, "convert", "d.svg", "-o", "q.ngc", "--z-offset=0")["z-offset"], "0", "command line")
     assert gives(explained(capsys, "convert", "d.svg", "-o", "o.json")["z-offset"], "0", "default")
 
 
@@ -431,9 +419,7 @@ def test_check_believes_the_program_rather_than_the_project(desk, capsys):
     assert main(["check", "o.ngc"]) == 0
     lines = explained(capsys, "check", "o.ngc", "d.svg", "--cell", "linuxcnc-3axis")
     assert gives(lines["brush"], "round-6", NAME, "program") and gives(lines["cell"], "command line")
-    (desk / "foreign.gcode").write_text(
-        "G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG0 Z5\nM2\n"
-    )
+    (desk / "foreign.gcode").write_text("G21\nG90\nG0 Z5\nG0 X30 Y40\nG1 Z-3 F600\nG1 X80 Y60 F1200\nG0 Z5\nM2\n")
     project('paper = "a4"\n[defaults]\nspeed = 9\nwide = "passes"')
     assert main(["check", "foreign.gcode"]) == 0
 
@@ -451,12 +437,7 @@ def test_a_batch_takes_the_project_of_its_first_drawing_and_each_drawing_counts_
     (desk / "one" / NAME).unlink()
     (desk / "two" / NAME).unlink()
     for name, tolerance in (("one/a", "0.2"), ("two/b", "0.1")):
-        assert (
-            main(
-                ["convert", f"{name}.svg", "-o", f"{name}.script", "--cell", "ur5e", "--tolerance", tolerance]
-            )
-            == 0
-        )
+        assert main(["convert", f"{name}.svg", "-o", f"{name}.script", "--cell", "ur5e", "--tolerance", tolerance]) == 0
         made_by_batch = desk / "many/programs" / f"{name[4:]}.script"
         assert made_by_batch.read_bytes() == (desk / f"{name}.script").read_bytes()
     project('cell = "ur5e"', "one")
@@ -584,9 +565,7 @@ def test_init_asks_four_questions_each_with_a_default(desk):
     status, shown = at_terminal(desk, "init", answers="\n\n\n\n")
     # The file exists already, so init asks no questions.
     assert status == 1 and not re.search(r"\[[^\[\]]+\]: ", shown)
-    status, shown = at_terminal(
-        desk, "init", "--force", answers="ur5\nur5e\nroun-6\nrigid\na9\na5\nfast\n12,5\n"
-    )
+    status, shown = at_terminal(desk, "init", "--force", answers="ur5\nur5e\nroun-6\nrigid\na9\na5\nfast\n12,5\n")
     assert status == 0 and len(re.findall(r"\[[^\[\]]+\]: ", shown)) == 8
     assert gives(shown, "ur5e", "round-6")
     assert brushsvg.read_project(desk / NAME).settings == {
@@ -595,9 +574,7 @@ def test_init_asks_four_questions_each_with_a_default(desk):
         "sheet": (148.0, 210.0),
         "paint_speed": 12.5,
     }
-    status, shown = at_terminal(
-        desk, "init", "--force", *"--cell ur5e --brush none --sheet a4".split(), answers="7\n"
-    )
+    status, shown = at_terminal(desk, "init", "--force", *"--cell ur5e --brush none --sheet a4".split(), answers="7\n")
     assert status == 0 and brushsvg.read_project(desk / NAME).settings["paint_speed"] == 7.0
     before = (desk / NAME).read_bytes()
     status, shown = at_terminal(desk, "init", "--force", answers="ur5e\n\x04")

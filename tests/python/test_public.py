@@ -21,9 +21,7 @@ README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 def python(*words):
-    return subprocess.run(
-        [sys.executable, *map(str, words)], capture_output=True, text=True, check=True
-    ).stdout
+    return subprocess.run([sys.executable, *map(str, words)], capture_output=True, text=True, check=True).stdout
 
 
 @pytest.mark.parametrize("name", brushsvg.__all__)
@@ -38,9 +36,7 @@ def test_names_and_table_agree():
         brushsvg.varnish  # noqa: B018
 
 
-@pytest.mark.parametrize(
-    "first", ["import brushsvg.strokes", "from brushsvg.jobs import preparation", "brushsvg.Plan"]
-)
+@pytest.mark.parametrize("first", ["import brushsvg.strokes", "from brushsvg.jobs import preparation", "brushsvg.Plan"])
 def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
     python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")
 
@@ -56,9 +52,7 @@ def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monke
     kind = name.split(".")[0]
     read, write = (getattr(brushsvg, f"{does}_{kind}") for does in ("read", "write"))
     brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
-    text = write(
-        {"cell": brushsvg.find_cell("ur5e"), "plan": plan, "marks": brushsvg.simulate(plan, brush)}[kind]
-    )
+    text = write({"cell": brushsvg.find_cell("ur5e"), "plan": plan, "marks": brushsvg.simulate(plan, brush)}[kind])
     Path(name).write_text(text, encoding="utf-8")
     assert write(read(name)) == write(read(tmp_path / name)) == text  # a str without a slash is also a path
     if kind != "cell":
@@ -102,14 +96,10 @@ def test_importing_the_package_loads_nothing():
 def test_the_demo_leaves_everything(tmp_path):
     out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
     names = {path.name for path in (tmp_path / "demo").iterdir()}
-    assert names == {
-        f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".html", ".png")
-    }
+    assert names == {f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".html", ".png")}
     table = out[: out.index(str(tmp_path))]
     assert (tmp_path / "demo" / "vincent.report.txt").read_text().endswith("\n\n" + table.removesuffix("\n"))
-    rows = [
-        re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed|refined", line)
-    ]
+    rows = [re.split("  +", line) for line in table.splitlines() if re.match("none|constant|closed|refined", line)]
     reported = re.findall(
         r"^\| `(?:none|constant|closed|refined)`.*?\| \**([\d.]+)\** \| \**([\d.]+) / ([\d.]+)\** \|$",
         README,

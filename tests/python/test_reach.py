@@ -101,9 +101,9 @@ def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
         (painted_line,), target, notices = within_reach(made, liner)
         assert target == made
         assert [half for _, half in painted_line.half_width] == [0.5]
-        assert [
-            agrees(notice, f"width-out-of-reach {width} '[1, 2] mm' nearest", "p") for notice in notices
-        ] == ([True] * is_reported)
+        assert [agrees(notice, f"width-out-of-reach {width} '[1, 2] mm' nearest", "p") for notice in notices] == (
+            [True] * is_reported
+        )
         with refused(f"width-out-of-reach {width} '[1, 2] mm'", "p"):
             within_reach(made, liner, "refuse")
     rigid = find_brush("rigid")
@@ -200,6 +200,4 @@ def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
     both = strokes(read(f'<path id="arm" d="{arm}" {bare}/><path id="bar" d="{bar}" {bare}/>'))[0]
     _, _, notices = within_reach(both, brush)
     reported = [each.text for each in notices]
-    assert any("would overlap" in each for each in reported) or not any(
-        "as others" in each for each in reported
-    )
+    assert any("would overlap" in each for each in reported) or not any("as others" in each for each in reported)

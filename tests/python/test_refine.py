@@ -50,16 +50,12 @@ def with_teeth(stroke):
     The target is as ragged as pieces from which other strokes were cut. Every mark turns less than this
     target.
     """
-    rim = np.array(shapely.Polygon(_core.wanted_outline(stroke, 0.01)[0]).exterior.segmentize(0.4).coords)[
-        :-1
-    ]
+    rim = np.array(shapely.Polygon(_core.wanted_outline(stroke, 0.01)[0]).exterior.segmentize(0.4).coords)[:-1]
     outwards = np.roll(rim, 1, axis=0) - np.roll(rim, -1, axis=0)
     outwards = outwards[:, ::-1] * (-1, 1) / np.linalg.norm(outwards, axis=1)[:, None]
     ragged = shapely.Polygon(rim + 0.25 * (-1) ** np.arange(len(rim))[:, None] * outwards).buffer(0)
     whole = max(shapely.get_parts(ragged), key=shapely.area)
-    return stroke.replaced(
-        wanted_mm=[np.array(shapely.Polygon(whole.exterior).normalize().exterior.coords)[-2::-1]]
-    )
+    return stroke.replaced(wanted_mm=[np.array(shapely.Polygon(whole.exterior).normalize().exterior.coords)[-2::-1]])
 
 
 def looks(stroke, method: str) -> tuple[float, float, int]:
@@ -158,9 +154,7 @@ def test_from_the_command_line(tmp_path, capsys):
     assert b"compensation: refined" in programs[0].read_bytes()
     capsys.readouterr()
     for name in ("p.svg", "a.html"):
-        assert (
-            cli.main(["preview", str(drawing), "-o", str(tmp_path / name), "--compensation", "refined"]) == 0
-        )
+        assert cli.main(["preview", str(drawing), "-o", str(tmp_path / name), "--compensation", "refined"]) == 0
     assert cli.main(["preview", str(drawing), "--compensation", "refined", "--details"]) == 0
     assert "compensation refined" in capsys.readouterr().out
     # Check compares the program with the drawing in the same mode.

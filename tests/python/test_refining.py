@@ -94,9 +94,7 @@ def test_a_refined_plan_reports_strokes_left_in_closed_form(tmp_path):
         d="M20 20 H70 L22 24" fill="none" stroke="#000" stroke-width="0.4"/></svg>"""
     closed, refined = works(tmp_path, text, corners="turn")
     assert is_reported(closed.notices, "off-middle-line", "z")
-    assert [notice for notice in refined.notices if notice not in said_of_nothing(refined)] == list(
-        closed.notices
-    )
+    assert [notice for notice in refined.notices if notice not in said_of_nothing(refined)] == list(closed.notices)
 
 
 TWO = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100"><g fill="none"
@@ -181,7 +179,5 @@ def test_refining_that_changes_nothing_says_so_and_why(tmp_path):
     assert not said_of_nothing(closed) and not said_of_nothing(refined)
     low, lower = (work.plan.passes[0].poses_mm[:, 2].min() for work in (closed, refined))
     cell = find_cell()
-    _, held = works(
-        tmp_path, BAR, cell=replace(cell, heights=replace(cell.heights, lowest_mm=(low + lower) / 2))
-    )
+    _, held = works(tmp_path, BAR, cell=replace(cell, heights=replace(cell.heights, lowest_mm=(low + lower) / 2)))
     assert len(said_of_nothing(held)) == 1 and FORBIDDEN in said_of_nothing(held)[0].sentence

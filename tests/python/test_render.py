@@ -157,9 +157,7 @@ def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone()
 
     def marks_of(lines):
         strokes = [
-            Stroke(
-                f"s{k}", np.array([[*a, *a, *(a + way), *(a + way)]], float), half_width=[(0, 1), (1, 1.5)]
-            )
+            Stroke(f"s{k}", np.array([[*a, *a, *(a + way), *(a + way)]], float), half_width=[(0, 1), (1, 1.5)])
             for k, (a, way) in enumerate(lines)
         ]
         return simulate(compensate(strokes, brush, sheet).plan, brush)

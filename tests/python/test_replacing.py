@@ -114,9 +114,7 @@ def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, caps
     """
     place = desk / "state" / "brushsvg" / "written.txt"
     place.mkdir(parents=True)
-    monkeypatch.setattr(
-        replacing.os, "access", lambda path, mode: not str(path).startswith(str(desk / "state"))
-    )
+    monkeypatch.setattr(replacing.os, "access", lambda path, mode: not str(path).startswith(str(desk / "state")))
     assert in_json(capsys, *CONVERT)[0] == 0
     status, _, reported = in_json(capsys, *CONVERT)
     assert status == 1 and is_reported(reported, f"file-exists {place}"), reported

@@ -182,9 +182,7 @@ def test_the_text_is_at_most_ten_lines():
     notices = tuple(Notice(f"s{k}", f"SENTENCE {k}", code=f"c{k}") for k in range(20))
     places = tuple(dataclasses.replace(PLACE, number=k) for k in range(1, 6))
     rows = (ROW,) * 30
-    full = Report(
-        "T", "b", "closed", 0.05, rows, ROW, 5, notices, notices[:3], advice="Size: fine.", places=places
-    )
+    full = Report("T", "b", "closed", 0.05, rows, ROW, 5, notices, notices[:3], advice="Size: fine.", places=places)
     lines = to_text(full, picture="p.png").splitlines()
     assert len(lines) == 10
     assert gives(lines[1], "T", "95 %", "0.951", "5 s")
@@ -230,9 +228,7 @@ def test_csv_has_a_row_for_each_stroke_and_empty_cells_for_what_is_not_known():
 def test_the_worst_place_is_where_the_lag_is_not_compensated():
     brush = find_brush("round-6")
     straight_on = straight("a", (10, 20), (70, 20), 1.5)
-    bend = Stroke(
-        "bend", np.array([[10, 40, 40, 40, 60, 50, 60, 70]], float), half_width=[(0, 1.5), (1, 1.5)]
-    )
+    bend = Stroke("bend", np.array([[10, 40, 40, 40, 60, 50, 60, 70]], float), half_width=[(0, 1.5), (1, 1.5)])
     plan = compensate([straight_on, bend], brush, (90, 90), "none").plan
     marks = simulate(plan, brush)
     places = worst_places(PaintedPlan(plan, marks, brush, [straight_on, bend], compensation="none"))

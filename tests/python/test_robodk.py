@@ -129,7 +129,5 @@ def test_it_is_written_and_not_checked(tmp_path, capsys):
     status, _, reported = call(capsys, "check", out, "--cell", str(tmp_path / "mine.toml"))
     assert status == 1 and gives(reported[-1], "a.robodk")
     (tmp_path / "mine.toml").write_text(write_cell(cell_with(tmp_path / "none.py")))
-    status, _, reported = in_json(
-        capsys, "convert", tmp_path / "a.svg", "-o", out, "--cell", tmp_path / "mine.toml"
-    )
+    status, _, reported = in_json(capsys, "convert", tmp_path / "a.svg", "-o", out, "--cell", tmp_path / "mine.toml")
     assert status == 1 and is_reported(reported, "file-unreadable")

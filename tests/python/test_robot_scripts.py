@@ -88,9 +88,7 @@ def touched(ran: Run, cell) -> list[tuple[Leg, np.ndarray]]:
     The ends are in the paper frame.
     """
     back = np.linalg.inv(robot_from_paper(cell))
-    ends = [
-        (leg, places.moved(back, np.array([leg.end]))[0]) for leg in ran.legs if leg.kind in ("feed", "arc")
-    ]
+    ends = [(leg, places.moved(back, np.array([leg.end]))[0]) for leg in ran.legs if leg.kind in ("feed", "arc")]
     return [(leg, end) for leg, end in ends if end[2] < cell.heights.clearance_mm - 2e-3]
 
 
@@ -154,9 +152,7 @@ def test_dobot_gets_whole_blends_and_whole_speeds():
     assert reported in gentle(cell)
     fine = gentle(replace(cell, blending=Blending(0.05, 2.0, 0.5)))
     assert reported.replace("r = 1", "r = 1.500") in fine
-    speeds = [
-        step.speed_mm_s for section in read_program(fine, ".lua", cell).sections for step in section.steps
-    ]
+    speeds = [step.speed_mm_s for section in read_program(fine, ".lua", cell).sections for step in section.steps]
     assert speeds == [100.0, 25.0, 10.0, *[12.0] * 5, 10.0, 100.0]
     assert [leg.speed_mm_s for leg in sound(fine, cell).legs] == speeds
 
@@ -390,9 +386,7 @@ def test_the_interpreter_refuses_broken_programs(name, old, new):
 
 
 @pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
-@pytest.mark.parametrize(
-    "broken", [None, ("MOST, is_radian", "MOST, in_radian"), ("set_mode(0)", "set_mode(0, 0, 0)")]
-)
+@pytest.mark.parametrize("broken", [None, ("MOST, is_radian", "MOST, in_radian"), ("set_mode(0)", "set_mode(0, 0, 0)")])
 def test_every_call_is_one_of_the_vendors_sdk(broken):
     from xarm.wrapper import XArmAPI
 

@@ -28,9 +28,7 @@ from brushsvg.machine.writer import text_of
 from brushsvg.verify.readback import read_program
 
 WAVE = np.linspace(0, 1, 40)
-POSES = np.column_stack(
-    [20 + 40 * WAVE, 30 + 4 * np.sin(9 * WAVE), -2 * np.minimum(1, 8 * np.minimum(WAVE, 1 - WAVE))]
-)
+POSES = np.column_stack([20 + 40 * WAVE, 30 + 4 * np.sin(9 * WAVE), -2 * np.minimum(1, 8 * np.minimum(WAVE, 1 - WAVE))])
 
 
 def made(cell):

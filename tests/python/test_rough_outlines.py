@@ -194,9 +194,7 @@ def test_rounded_coordinates_of_many_points_are_not_rough(step_mm, decimals):
 
 @pytest.mark.parametrize("sigma_mm", [0.05, 0.1, 0.2])
 def test_roughness_follows_the_noise(sigma_mm):
-    assert measure_roughness_mm(roughened(LETTERS["S"], sigma_mm, 0.3))[0] == pytest.approx(
-        sigma_mm, rel=0.35
-    )
+    assert measure_roughness_mm(roughened(LETTERS["S"], sigma_mm, 0.3))[0] == pytest.approx(sigma_mm, rel=0.35)
 
 
 @pytest.mark.parametrize("side_mm", [0.1, 0.3])
@@ -221,9 +219,7 @@ def test_specks_and_pinholes_of_a_rough_shape_are_left_out():
     letter = roughened(LETTERS["S"], 0.2, 0.25)
     speck, pinhole = 0.1 * regular(1, 4) + (60, 20), 0.1 * regular(1, 4)[::-1] + (14.5, 21.5)
     dot = 1.5 * regular(1, 12) + (60, 40)
-    assert (
-        len(smooth_rough_outlines([*letter, pinhole, speck, dot])) == len(smooth_rough_outlines(letter)) + 1
-    )
+    assert len(smooth_rough_outlines([*letter, pinhole, speck, dot])) == len(smooth_rough_outlines(letter)) + 1
 
 
 def test_a_large_rough_shape_stays_within_its_memory():

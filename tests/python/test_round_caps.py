@@ -86,9 +86,7 @@ def test_squared_ends_of_a_path_with_a_width_alone_are_straight():
 def test_the_end_of_a_stem_below_its_serif_is_covered_and_others_are_not():
     made = of("M20 10H50V13H39V37H50V40H20V37H31V13H20Z")
     (stem,) = [
-        each
-        for each in made
-        if abs(np.diff(each.middle_mm[:, 0]).sum()) + abs(np.ptp(each.middle_mm[:, 0::2])) < 3
+        each for each in made if abs(np.diff(each.middle_mm[:, 0]).sum()) + abs(np.ptp(each.middle_mm[:, 0::2])) < 3
     ]
     assert stem.start_covered and stem.end_covered
     for (bar,) in (capsule(8), line(8)):

@@ -193,9 +193,7 @@ def test_circles_that_are_run_as_lines_take_no_rest(cell):
     took_s = [
         duration_s(
             unchecked_program(
-                whole(
-                    _core.Plan("", "", SHEET_MM, [_core.Pass("one", np.array(HALF_TURN), 20.0, arcs=arcs)])
-                ),
+                whole(_core.Plan("", "", SHEET_MM, [_core.Pass("one", np.array(HALF_TURN), 20.0, arcs=arcs)])),
                 BRUSH,
                 cell,
             )

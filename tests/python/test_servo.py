@@ -81,9 +81,7 @@ def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm
     poses = np.array([(10, 10, 0), (10, 10, -1), (14, 10, -3.3), (16, 11, -1.7), (16, 11, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
-        passes=[
-            SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=(), tool_axes=(), colour="")
-        ],
+        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=5.0, arcs=(), tool_axes=(), colour="")],
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     lines = "".join(grbl_servo(program(plan, brush, cell))).splitlines()
@@ -108,9 +106,7 @@ def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, cap
     Programs once moved down to the vessel and up again at the speed for free air, and the reader refused
     them. The reader also refused a dip faster than the cell paints.
     """
-    ink = Station(
-        "ink", (-10.0, 10.0), surface_mm=-5.5, depth_mm=2.0, rim_mm=rim_mm, wipe_mm=((-8.0, 10.0, rim_mm),)
-    )
+    ink = Station("ink", (-10.0, 10.0), surface_mm=-5.5, depth_mm=2.0, rim_mm=rim_mm, wipe_mm=((-8.0, 10.0, rim_mm),))
     cell = find_cell(language)
     cell = replace(cell, name="mine", stations=(ink,), reload=Reload("stroke"))
     cell = replace(cell, speeds=replace(cell.speeds, paint_mm_s=4.0, press_mm_s=6.0))
@@ -125,9 +121,7 @@ def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, cap
 
 
 def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
-    coarse = replace(
-        CELL, servo=Servo(((-10.0, 0.0), (5.0, 50.0))), heights=replace(CELL.heights, clearance_mm=0.5)
-    )
+    coarse = replace(CELL, servo=Servo(((-10.0, 0.0), (5.0, 50.0))), heights=replace(CELL.heights, clearance_mm=0.5))
     with refused("cell-heights 0.5 '[0.6, 5] mm'", "heights.clearance_mm"):
         parse_cell(write_cell(coarse))
 
@@ -215,9 +209,7 @@ def test_lifts_that_are_none_are_left_out_up_to_the_end_of_either_program():
         return Act(1, "lift", same=(value,))
 
     def without(ours, theirs):
-        return drop_rounding_lifts(
-            ours, theirs, lambda act: act.same == (0.0,), lambda a, b: a.same == b.same
-        )
+        return drop_rounding_lifts(ours, theirs, lambda act: act.same == (0.0,), lambda a, b: a.same == b.same)
 
     ours, theirs = [lift(5.0), lift(0.0), lift(6.0), lift(0.0)], [lift(5.0), lift(6.0)]
     assert without(ours, theirs) == ([lift(5.0), lift(6.0), lift(0.0)], theirs)
@@ -314,9 +306,7 @@ def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
     poses = np.array([(10, 10, 0), (13, 10, -3.6), (20, 10, -3.6), (23, 10, 0)])
     plan = SimpleNamespace(
         sheet_mm=(100.0, 60.0),
-        passes=[
-            SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=(), tool_axes=(), colour="")
-        ],
+        passes=[SimpleNamespace(stroke="a", poses_mm=poses, speed_mm_s=20.0, arcs=(), tool_axes=(), colour="")],
     )
     brush = SimpleNamespace(name="b", max_speed_mm_s=25.0)
     feed, feeds = 0.0, {}

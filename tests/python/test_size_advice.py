@@ -149,18 +149,13 @@ def ran(capsys, *words):
 
 def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
     mine = tmp_path / "mine.json"
-    assert (
-        ran(capsys, "brush", "new", "-o", str(mine), "--lag", "1", "--width-at", "2=2", "--depth-max", "2")[0]
-        == 0
-    )
+    assert ran(capsys, "brush", "new", "-o", str(mine), "--lag", "1", "--width-at", "2=2", "--depth-max", "2")[0] == 0
     status, out, _ = ran(capsys, "preview", drawing(), "--all-brushes", "--brush", str(mine))
     assert status == 0
     names = [row.split()[0] for row in out.splitlines()[4:]]
     assert sorted(names) == ["liner-1", "mine", "rigid", "round-6", "round-6-angles"]
     assert names[0] == "round-6"
-    assert re.search(
-        r"2 [a-z]+ 2  a: [a-z]+ 3\b", next(row for row in out.splitlines() if row.startswith("mine"))
-    )
+    assert re.search(r"2 [a-z]+ 2  a: [a-z]+ 3\b", next(row for row in out.splitlines() if row.startswith("mine")))
     read = json.loads(ran(capsys, "preview", drawing(), "--all-brushes", "--json")[1])
     assert read["format"] == "brushsvg/brushes"
     best = read["brushes"][0]
@@ -186,10 +181,7 @@ def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
     made = tmp_path / f"misses{suffix}"
-    assert (
-        ran(capsys, "preview", drawing(), "--compensation", "none", "--show", "errors", "-o", str(made))[0]
-        == 0
-    )
+    assert ran(capsys, "preview", drawing(), "--compensation", "none", "--show", "errors", "-o", str(made))[0] == 0
     if suffix == ".svg":
         assert made.read_text().count("<path") == 4
         assert "clipPath" in made.read_text()

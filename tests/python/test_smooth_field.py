@@ -155,9 +155,7 @@ def test_strokes_beyond_where_it_was_measured_are_reported(desk, capsys):
     nearest = 30.0 - min(np.asarray(one.poses_mm)[:, 0].min() for one in work.plan.passes)
     said = f"beyond-field {max(farthest, nearest):.1f} 30.0 90.0 -5.0 75.0"
     assert are_reported(beyond_field(work.plan.passes, cell_with(NARROW)), said)
-    (desk / "mine.toml").write_text(
-        write_cell(replace(find_cell("linuxcnc-3axis"), name="mine", machine=NARROW))
-    )
+    (desk / "mine.toml").write_text(write_cell(replace(find_cell("linuxcnc-3axis"), name="mine", machine=NARROW)))
     status, _, err = call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "mine.toml")
     assert status == 0 and any("[30.0, 90.0]" in line for line in err)
 

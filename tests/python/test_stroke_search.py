@@ -91,10 +91,7 @@ def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
 
 
 def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
-    plans = [
-        painted(tmp_path, CORNERS["an L"], **plain)[2]
-        for plain in ({}, {"corners": "turn"}, {"end": "round"})
-    ]
+    plans = [painted(tmp_path, CORNERS["an L"], **plain)[2] for plain in ({}, {"corners": "turn"}, {"end": "round"})]
     assert len(plans[0].passes) > len(plans[1].passes) == len(plans[2].passes) == 1
 
 
@@ -132,9 +129,7 @@ def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
     )
     work = prepare(file, Options(brush=find_brush("round-6")))
     assert {stroke.settings.end for stroke in work.strokes} == {"round"}
-    assert len(work.strokes) == len(
-        prepare(file, Options(brush=find_brush("round-6"), detail="draft")).strokes
-    )
+    assert len(work.strokes) == len(prepare(file, Options(brush=find_brush("round-6"), detail="draft")).strokes)
 
 
 @pytest.mark.parametrize("plain", [{"end": "round"}, {"start": "pointed"}, {"corners": "turn"}])

@@ -83,9 +83,7 @@ def test_no_stroke_is_called_as_the_parts_of_another_are():
 
     Lifted at its corners, `a` becomes a, a~2, a~3. The name `a~2` once stood for a second stroke.
     """
-    names, notices = named(
-        ("a", 1), ("a~2", 1), ("b~2", 1), ("c~2+3", 1), ("c", 2), ("c/2~2", 1), ("c/1+2", 1)
-    )
+    names, notices = named(("a", 1), ("a~2", 1), ("b~2", 1), ("c~2+3", 1), ("c", 2), ("c/2~2", 1), ("c/1+2", 1))
     assert names == ["a", "a~2-2", "b~2", "c~2+3", "c/1", "c/2", "c/2~2-2", "c/1+2"]
     assert [(notice.where, notice.code) for notice in notices] == [
         ("a~2", "name-taken"),

@@ -82,9 +82,7 @@ def random_path(rng):
         for _ in range(counts[kind] * rng.randint(1, 3)):
             token = number()
             may_touch = token[0] in "+-" or (token[0] == "." and "." in before and "e" not in before)
-            text += (
-                rng.choice(("", " ")) if may_touch or not before else rng.choice((" ", ",", " , "))
-            ) + token
+            text += (rng.choice(("", " ")) if may_touch or not before else rng.choice((" ", ",", " , "))) + token
             before = token
         text += rng.choice(("", " ", "\n"))
     return text
@@ -106,11 +104,7 @@ def test_paths_draw_what_svgpathtools_draws():
         theirs = np.array(theirs)
         theirs = theirs[np.abs(theirs - theirs[:, :1]).max(axis=1) > 1e-6]
         points = points[np.abs(points - points[:, :1]).max(axis=1) > 1e-6]
-        lines = [
-            k
-            for k in range(len(theirs))
-            if abs(theirs[k, 1] - (0.7 * theirs[k, 0] + 0.3 * theirs[k, 3])) < 1e-9
-        ]
+        lines = [k for k in range(len(theirs)) if abs(theirs[k, 1] - (0.7 * theirs[k, 0] + 0.3 * theirs[k, 3])) < 1e-9]
         assert points.shape == theirs.shape, d
         assert np.abs(points - theirs).max() < 1e-9, d
         compared += len(theirs) - len(lines)
@@ -172,9 +166,7 @@ def test_arcs_stay_within_the_tolerance_after_the_transform(seed):
 
 @pytest.mark.parametrize(("radius", "cubics"), [(0.3, 4), (23.0, 8), (24.0, 10), (4e5, 42)])
 def test_arcs_cost_no_more_cubics_than_needed(radius, cubics):
-    line = in_user_units(
-        f"M{radius} 0A{radius} {radius} 0 1 1 {-radius} 0A{radius} {radius} 0 0 1 {radius} 0z"
-    )
+    line = in_user_units(f"M{radius} 0A{radius} {radius} 0 1 1 {-radius} 0A{radius} {radius} 0 0 1 {radius} 0z")
     found = line.subpaths[0].cubics
     assert len(found) == cubics
     assert np.abs(np.linalg.norm(points_along(found), axis=1) - radius).max() < 1e-4
@@ -324,9 +316,7 @@ def test_lengths_in_shapes_take_units_and_percentages():
     page = 'width="100mm" height="50mm" stroke="red"'
     assert ends(only('<line x1="1in" y1="5mm" x2="50%" y2="100%"/>', page)) == [[25.4, 5], [50, 50]]
     circle = only('<circle cx="50" cy="25" r="10%"/>')
-    assert np.ptp(circle.subpaths[0].cubics[:, 0, 0]) / 2 == pytest.approx(
-        0.1 * math.hypot(100, 50) / math.sqrt(2)
-    )
+    assert np.ptp(circle.subpaths[0].cubics[:, 0, 0]) / 2 == pytest.approx(0.1 * math.hypot(100, 50) / math.sqrt(2))
 
 
 @pytest.mark.parametrize(
@@ -663,9 +653,7 @@ def test_a_subpath_without_length_is_a_dab():
     assert only('<line x1="5" y1="5" x2="5" y2="5"/>').subpaths[0].cubics.shape == (1, 4, 2)
 
 
-@pytest.mark.parametrize(
-    "body", ["", "<text id='t'>x</text>", "<path id='t' d='nan'/>", "<path id='t' d='M1 1'/>"]
-)
+@pytest.mark.parametrize("body", ["", "<text id='t'>x</text>", "<path id='t' d='nan'/>", "<path id='t' d='M1 1'/>"])
 def test_nothing_to_paint_is_refused_with_a_reason(body):
     with refused("nothing-to-paint") as caught:
         read(body)
@@ -827,9 +815,7 @@ HEAVY = {"scipy", "cv2", "svgpathtools", "ezdxf"}
 
 def test_reading_a_small_drawing_loads_nothing_heavy(tmp_path):
     drawing = tmp_path / "small.svg"
-    drawing.write_text(
-        f'<svg {NAMESPACES} {PAGE}><style>path{{fill:none}}</style>{FIRST}<circle r="3"/></svg>'
-    )
+    drawing.write_text(f'<svg {NAMESPACES} {PAGE}><style>path{{fill:none}}</style>{FIRST}<circle r="3"/></svg>')
     loaded = loaded_by("import sys, brushsvg\nbrushsvg.read_drawing(sys.argv[1])", drawing)
     assert "brushsvg.read.svg" in loaded
     assert not loaded & HEAVY

@@ -150,9 +150,7 @@ def test_lengths_without_a_unit_are_none_in_css():
 
 
 def test_own_properties_are_inherited_only_when_requested():
-    body = (
-        '<g style="opacity:.5"><path id="p" style="opacity:inherit" d="M0 0H5"/><path id="q" d="M0 0H5"/></g>'
-    )
+    body = '<g style="opacity:.5"><path id="p" style="opacity:inherit" d="M0 0H5"/><path id="q" d="M0 0H5"/></g>'
     assert are_reported(read(body).notices, "css-unread opacity", "css-unread opacity p")
 
 
@@ -240,21 +238,15 @@ def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
     reports the difference.
     """
     copied = '<defs><i/><g id="g"><path id="p" d="M0 0H5"/></g></defs>'
-    design = read(
-        f'<style>{selector}{{stroke-width:7}}</style>{copied}<g class="here"><use id="u" href="#g"/></g>'
-    )
+    design = read(f'<style>{selector}{{stroke-width:7}}</style>{copied}<g class="here"><use id="u" href="#g"/></g>')
     (element,) = design.elements
     assert element.stroke_width_mm == (7 if reaches else 1)
-    assert is_reported(design.notices, "css-of-copies", "p") == (
-        selector in ("svg path", ":root path", ":scope path")
-    )
+    assert is_reported(design.notices, "css-of-copies", "p") == (selector in ("svg path", ":root path", ":scope path"))
     assert {notice.code for notice in design.notices} <= {"css-of-copies"}
 
 
 def test_a_copy_in_a_copy_is_seen_for_itself():
-    body = (
-        '<defs><g id="a"><path id="p" d="M0 0H5"/></g><g id="b"><use href="#p"/><use href="#a"/></g></defs>'
-    )
+    body = '<defs><g id="a"><path id="p" d="M0 0H5"/></g><g id="b"><use href="#p"/><use href="#a"/></g></defs>'
     design = read(f'<style>g path{{stroke-width:7}}</style>{body}<use href="#b"/>')
     assert [element.stroke_width_mm for element in design.elements] == [1, 7]
 

@@ -29,9 +29,7 @@ def test_arc_length_against_quadrature():
     number, t = parameters_at(cubics, known, at)
     begins = np.concatenate([[0], np.cumsum(known[:, -1])])
     for k, end, distance in zip(number, t, at, strict=True):
-        assert begins[k] + quad(speed, 0, end, args=(cubics[k],), limit=200)[0] == pytest.approx(
-            distance, abs=5e-3
-        )
+        assert begins[k] + quad(speed, 0, end, args=(cubics[k],), limit=200)[0] == pytest.approx(distance, abs=5e-3)
 
 
 def test_dashes_of_a_straight_line():
@@ -93,9 +91,7 @@ def test_dashes_of_a_stroke_that_does_not_scale_do_not_either(more):
     They are in px of the screen, like the stroke's width: 3 mm are 3 mm under any transform. With pathLength,
     a dash keeps its share of the line.
     """
-    body = (
-        '<path d="M0 0H5" transform="scale(4 8)" stroke-dasharray="{}" vector-effect="non-scaling-stroke"{}/>'
-    )
+    body = '<path d="M0 0H5" transform="scale(4 8)" stroke-dasharray="{}" vector-effect="non-scaling-stroke"{}/>'
     design = read(body.format(".5" if more else "5mm", more))
     assert [notice.code for notice in design.notices] == ["dashed"], "its width is as even as its dashes"
     spans = [(start[0], end[0]) for _, start, end in lines(design)]

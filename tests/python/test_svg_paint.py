@@ -38,9 +38,7 @@ def notices_of(design):
 def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
     of = "paint-unread p {} #s #000000".format
     assert are_reported(notices_of(painted("url(#s)", "none", before=server)), of("fill"))
-    assert are_reported(notices_of(painted("url(#s)", "red", before=server)), of("fill")), (
-        "under a stroke, too"
-    )
+    assert are_reported(notices_of(painted("url(#s)", "red", before=server)), of("fill")), "under a stroke, too"
     assert are_reported(notices_of(painted("red", "url(#s)", before=server)), of("stroke"))
     assert are_reported(notices_of(painted("url(#s)", "url(#s)", before=server)), of("fill"), of("stroke"))
 
@@ -90,9 +88,7 @@ def test_a_colour_of_glass_paints_nothing(colour):
 
 
 def test_opacities_are_named_for_what_is_painted():
-    assert are_reported(
-        notices_of(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1"
-    )
+    assert are_reported(notices_of(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1")
     assert notices_of(painted("none", "blue", 'fill-opacity=".5"')) == []
     assert notices_of(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
     assert are_reported(notices_of(painted("red", "blue", 'opacity="x"')), "css-invalid opacity x")
@@ -112,9 +108,7 @@ def test_a_paint_is_looked_up_once(monkeypatch):
     3,000 shapes with a gradient of 3,000 stops once took twenty seconds.
     """
     requested = []
-    monkeypatch.setattr(
-        paint_servers.PaintServers, "_stop", lambda _self, stop: requested.append(stop) or "#00ff00"
-    )
+    monkeypatch.setattr(paint_servers.PaintServers, "_stop", lambda _self, stop: requested.append(stop) or "#00ff00")
     gradient = '<linearGradient id="s">' + "<stop/>" * 50 + "</linearGradient>"
     assert len(read(gradient + BOTH.format("url(#s)", "none", "") * 50).elements) == 50
     assert len(requested) == 50
@@ -123,9 +117,7 @@ def test_a_paint_is_looked_up_once(monkeypatch):
 def test_a_box_is_measured_once(monkeypatch):
     requested = []
     bounds = element.PaintedElements.bounds
-    monkeypatch.setattr(
-        element.PaintedElements, "bounds", lambda *words: requested.append(1) or bounds(*words)
-    )
+    monkeypatch.setattr(element.PaintedElements, "bounds", lambda *words: requested.append(1) or bounds(*words))
     move = "translate(1%, 1%)" * 50
     read(f'<path d="M0 0H5V5" style="transform-box:fill-box;transform:{move};transform-origin:center"/>')
     assert len(requested) == 1
@@ -173,7 +165,5 @@ def test_dashes_around_a_shape_leave_it_whole(clip):
     shape, line = painted("#f00", "#00f", dashed, before).elements[1:]
     assert (shape.id, shape.colour, len(shape.subpaths), shape.stroke_width_mm) == ("p", "#ff0000", 1, 0.0)
     assert (line.id, line.colour, line.fill_rule) == ("p-stroke", "#0000ff", "") and len(line.subpaths) > 5
-    straight = read(
-        '<path id="l" d="M0 0H50" stroke="#000" stroke-width="1" stroke-dasharray="5 5" fill="red"/>'
-    )
+    straight = read('<path id="l" d="M0 0H50" stroke="#000" stroke-width="1" stroke-dasharray="5 5" fill="red"/>')
     assert [each.id for each in straight.elements] == ["l"], "it encloses nothing"

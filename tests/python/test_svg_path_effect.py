@@ -34,9 +34,7 @@ def test_the_line_that_was_drawn_with_its_width():
 
 @pytest.mark.parametrize("reference", ["#ä", "#%C3%A4"])
 def test_effects_are_referred_to_as_urls_do(reference):
-    effects = EFFECT.format(
-        points="0,1 | 1.5,3", kind="Linear", scale=1, effect="powerstroke", visible="true"
-    )
+    effects = EFFECT.format(points="0,1 | 1.5,3", kind="Linear", scale=1, effect="powerstroke", visible="true")
     drawn = (effects.replace('id="e"', 'id="ä"'), PATH.format("").replace('"#e"', f'"{reference}"'))
     assert width_at(read("<defs>{}</defs>{}".format(*drawn)), 0) == pytest.approx(2)
 

@@ -12,9 +12,7 @@ LINE = '<path id="l" d="M0 0H4"/>'
 
 
 def test_use_places_copies_under_its_own_name():
-    body = (
-        f'<defs>{LINE}</defs><use id="u" href="#l" x="10" y="5"/><use xlink:href="#l" transform="scale(2)"/>'
-    )
+    body = f'<defs>{LINE}</defs><use id="u" href="#l" x="10" y="5"/><use xlink:href="#l" transform="scale(2)"/>'
     design = read(body)
     assert lines(design) == [("u/l", (10, 5), (14, 5)), ("l", (0, 0), (8, 0))]
     assert [element.stroke_width_mm for element in design.elements] == [1, 2]
@@ -65,21 +63,15 @@ def test_symbols_fit_their_view_box_into_the_size_requested():
     assert design.elements[0].stroke_width_mm == 2
     assert lines(read(f'{symbol}<use id="u" href="#s"/>')) == [("u", (25, 0), (75, 50))]
     body = '<symbol id="s" preserveAspectRatio="none" viewBox="1 1 4 4" width="8" height="4">'
-    assert lines(read(f'{body}<path d="M1 1L5 5"/></symbol><use href="#s"/>')) == [
-        ("stroke1", (0, 0), (8, 4))
-    ]
+    assert lines(read(f'{body}<path d="M1 1L5 5"/></symbol><use href="#s"/>')) == [("stroke1", (0, 0), (8, 4))]
 
 
 def test_nested_svg_has_its_own_viewport():
-    inner = (
-        '<svg x="10" y="5" width="50%" height="20" viewBox="0 0 5 2"><line id="l" x2="100%" y2="50%"/></svg>'
-    )
+    inner = '<svg x="10" y="5" width="50%" height="20" viewBox="0 0 5 2"><line id="l" x2="100%" y2="50%"/></svg>'
     assert lines(read(inner)) == [("l", (10, 5), (60, 15))]
     plain = '<svg x="10" width="40" height="20"><line id="l" x2="50%" y2="100%"/></svg>'
     assert lines(read(plain)) == [("l", (10, 0), (30, 20))]
-    assert lines(read('<svg width="0" height="5"><path id="x" d="M0 0H5"/></svg>' + LINE)) == [
-        ("l", (0, 0), (4, 0))
-    ]
+    assert lines(read('<svg width="0" height="5"><path id="x" d="M0 0H5"/></svg>' + LINE)) == [("l", (0, 0), (4, 0))]
 
 
 def test_what_a_viewport_hides_is_left_out_or_reported():
@@ -173,9 +165,7 @@ def test_transforms_as_css_writes_them_and_about_an_origin():
     assert design.notices[0].damaged
 
 
-@pytest.mark.parametrize(
-    "text", ["rotate(90deg)", "translateX(2)", "scale(50%)", "translate(2px 3px)", "skew(3)"]
-)
+@pytest.mark.parametrize("text", ["rotate(90deg)", "translateX(2)", "scale(50%)", "translate(2px 3px)", "skew(3)"])
 def test_the_attribute_has_neither_units_nor_the_functions_of_css(text):
     design = read(f'<path d="M10 0H20" transform="{text}"/>')
     assert lines(design)[0][1] == (10, 0)
@@ -211,9 +201,7 @@ def test_transform_origin_in_all_its_words(origin, point):
         assert lines(read(f'<path d="M10 4H20" {said}/>'))[0][1] == pytest.approx((20 - x, 8 - y)), said
 
 
-@pytest.mark.parametrize(
-    "origin", ["top 20px", "20px left", "left left", "1 2 3 4", "10% 20% 30%", "x", "5,6"]
-)
+@pytest.mark.parametrize("origin", ["top 20px", "20px left", "left left", "1 2 3 4", "10% 20% 30%", "x", "5,6"])
 def test_a_transform_origin_that_is_none_is_reported(origin):
     design = read(f'<path id="p" d="M10 4H20" transform="scale(2)" transform-origin="{origin}"/>')
     assert lines(design)[0][1] == (20, 8)
@@ -247,9 +235,7 @@ def test_translate_rotate_and_scale_as_properties():
     assert start("translate:10%") == (20, 0)
     assert start("rotate:90deg") == pytest.approx((0, 10))
     assert start("scale:2 3", 'transform="translate(1 1)"') == (22, 3)
-    assert start("transform:translate(1px, 2px);scale:200%;rotate:90deg;translate:5px") == pytest.approx(
-        (1, 22)
-    )
+    assert start("transform:translate(1px, 2px);scale:200%;rotate:90deg;translate:5px") == pytest.approx((1, 22))
     assert start("rotate:none;scale:none;translate:none") == (10, 0)
     for style in ("rotate:x 20deg", "rotate:20", "translate:3", "scale:1 2 3", "scale:x"):
         assert [notice.damaged for notice in read(f'<path d="M0 0H5" style="{style}"/>').notices] == [True]
@@ -283,9 +269,7 @@ def test_empty_attributes_count_as_not_given():
     assert (design.elements[0].colour, design.elements[0].stroke_width_mm) == ("#ff0000", 1)
     flat = read('<path d="M0 0H1"/><rect id="r" width="5" height=""/>')
     assert are_reported(flat.notices, "geometry-empty r")
-    head = (
-        '<svg xmlns="http://www.w3.org/2000/svg" width="" height="" viewBox="0 0 9 9" preserveAspectRatio="">'
-    )
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="" height="" viewBox="0 0 9 9" preserveAspectRatio="">'
     root = head + '<rect width="1" height="1"/></svg>'
     (notice,) = read_svg(root.encode()).notices
     assert notice.code == "size-assumed"
@@ -326,9 +310,7 @@ def test_layers_in_layers_and_notices_know_where_they_are():
 
 
 def test_non_scaling_strokes_keep_their_width_in_px():
-    design = read(
-        '<path d="M0 0H5" transform="scale(7)" stroke-width="2" vector-effect="non-scaling-stroke"/>'
-    )
+    design = read('<path d="M0 0H5" transform="scale(7)" stroke-width="2" vector-effect="non-scaling-stroke"/>')
     assert design.elements[0].stroke_width_mm == pytest.approx(2 * 25.4 / 96)
 
 

@@ -39,8 +39,7 @@ FACE = 'units-per-em="1000" ascent="800" descent="-200"'
 
 def svg_font(glyphs=GLYPHS, font=FONT, face=FACE):
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg"><defs><font {font}><font-face {face}/>{glyphs}</font>'
-        "</defs></svg>"
+        f'<svg xmlns="http://www.w3.org/2000/svg"><defs><font {font}><font-face {face}/>{glyphs}</font></defs></svg>'
     ).encode()
 
 
@@ -109,9 +108,7 @@ def test_glyphs_follow_at_their_advance_or_the_fonts():
 
 def test_sub_paths_that_touch_stay_apart():
     glyph = '<glyph unicode="L" d="M 0 700 L 0 0 M 0 0 L 300 0"/>'
-    assert drawn("L", svg_font(glyph)) == [
-        "M 20.5000,20.5000 L 20.5000,27.5000 M 20.5000,27.5000 L 23.5000,27.5000"
-    ]
+    assert drawn("L", svg_font(glyph)) == ["M 20.5000,20.5000 L 20.5000,27.5000 M 20.5000,27.5000 L 23.5000,27.5000"]
 
 
 def test_a_point_stays_a_dab_and_a_closed_line_closed():
@@ -154,9 +151,7 @@ def test_a_tilted_arc_is_mirrored_with_its_letter():
     The arc is tilted by 30 degrees, drawn as in SVG's appendix B.2.4, and mirrored by hand.
     """
     arc = svgpathtools.parse_path("M 0 0 A 300 100 30 0 1 400 50")
-    ours = svgpathtools.parse_path(
-        drawn("x", svg_font('<glyph unicode="x" d="M 0 0 A 300 100 30 0 1 400 50"/>'))[0]
-    )
+    ours = svgpathtools.parse_path(drawn("x", svg_font('<glyph unicode="x" d="M 0 0 A 300 100 30 0 1 400 50"/>'))[0])
     for t in (0.2, 0.5, 0.9):
         z = arc.point(t)
         target = complex(z.real, -z.imag) * 0.01 + ours[0].start
@@ -204,9 +199,7 @@ def test_kerning(kern):
     assert starts("TTIT I", glyphs) == [0, 4, 7.5, 8.5, 16.5]
 
 
-@pytest.mark.parametrize(
-    "kern", ['u1="T" u2="o"', 'u1="I" u2="T"', 'u1="U+0055-0060" u2="I"', 'g1="T"', 'u2="I"']
-)
+@pytest.mark.parametrize("kern", ['u1="T" u2="o"', 'u1="I" u2="T"', 'u1="U+0055-0060" u2="I"', 'g1="T"', 'u2="I"'])
 def test_kerning_of_other_pairs(kern):
     assert starts("TI", GLYPHS + f'<hkern k="150" {kern}/>') == [0, 5]
 
@@ -261,10 +254,7 @@ def test_a_broken_glyph_is_skipped_and_keeps_its_room(d, said):
 
 
 def test_what_is_not_painted_of_a_glyph_is_named():
-    glyphs = (
-        GLYPHS
-        + '<glyph unicode="m" d="M 0 0 M 1 1 L 2 2"/><glyph unicode="e"><path d="M 0 0 L 1 1"/></glyph>'
-    )
+    glyphs = GLYPHS + '<glyph unicode="m" d="M 0 0 M 1 1 L 2 2"/><glyph unicode="e"><path d="M 0 0 L 1 1"/></glyph>'
     _, notices = text_svg("me", svg_font(glyphs))
     assert [(notice.where, notice.code) for notice in notices] == [
         ("glyph m", "moveto-alone"),
@@ -319,9 +309,7 @@ def test_numbers_out_of_range(value):
 
 
 def test_a_given_sheet_has_the_ink_in_its_middle_or_is_refused():
-    assert drawn("T", sheet_mm=(100, 60)) == [
-        "M 48.0000,26.5000 L 52.0000,26.5000 M 50.0000,26.5000 L 50.0000,33.5000"
-    ]
+    assert drawn("T", sheet_mm=(100, 60)) == ["M 48.0000,26.5000 L 52.0000,26.5000 M 50.0000,26.5000 L 50.0000,33.5000"]
     assert drawn("T", sheet_mm=(5, 8)) == ["M 0.5000,0.5000 L 4.5000,0.5000 M 2.5000,0.5000 L 2.5000,7.5000"]
     reported = refusal("T", svg_font(), size_mm=10, sheet_mm=(4.9, 60))
     assert agrees(reported, "text-does-not-fit '5.00 x 8.00 mm' '4.9 x 60 mm'")
@@ -501,9 +489,7 @@ def test_the_first_of_a_collection(ttf):
     header = struct.pack(">4sHHLL", b"ttcf", 1, 0, 1, 16)
     count = struct.unpack(">H", ttf[4:6])[0]
     rows = [struct.unpack(">4sLLL", ttf[12 + 16 * k : 28 + 16 * k]) for k in range(count)]
-    moved = b"".join(
-        struct.pack(">4sLLL", tag, check, offset + 16, size) for tag, check, offset, size in rows
-    )
+    moved = b"".join(struct.pack(">4sLLL", tag, check, offset + 16, size) for tag, check, offset, size in rows)
     assert filled("AV", header + ttf[:12] + moved + ttf[12 + 16 * count :]) == filled("AV", ttf)
 
 

@@ -17,12 +17,7 @@ GLYPHS = {
     "A": [[(50, 0), (300, 700), (550, 0), (300, 700)], [(150, 250), (450, 250)]],
     "I": [[(100, 0), (100, 700)]],
     "V": [[(50, 700), (300, 0), (550, 700), (300, 0)]],
-    "O": [
-        [
-            (300 + 300 * np.cos(a), 350 + 350 * np.sin(a))
-            for a in np.linspace(0, 2 * np.pi, 24, endpoint=False)
-        ]
-    ],
+    "O": [[(300 + 300 * np.cos(a), 350 + 350 * np.sin(a)) for a in np.linspace(0, 2 * np.pi, 24, endpoint=False)]],
 }
 
 
@@ -57,9 +52,7 @@ def lines_of(font, letter):
     """
     document, reported = text_svg(letter, font, size_mm=100, width_mm=2)
     design = read_svg(document.encode())
-    assert are_reported(reported, "font-of-lines") and all(
-        not element.fill_rule for element in design.elements
-    )
+    assert are_reported(reported, "font-of-lines") and all(not element.fill_rule for element in design.elements)
     lines = [np.vstack([s.cubics[:1, 0], s.cubics[:, 3]]) for e in design.elements for s in e.subpaths]
     corner = np.vstack(lines).min(axis=0)
     return [np.round((line - corner) * 10).astype(int).tolist() for line in lines]

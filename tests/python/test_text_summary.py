@@ -47,9 +47,7 @@ def test_a_kind_is_a_code_for_any_sentence():
     (one,) = summarized_notices(reworded)
     assert gives(one.where, "p0", "4") and one.code == "width"
     assert len(summarized_notices([*reworded, notice("q", "wide", "other")])) == 2
-    other_property = [
-        notice("r", "mask is not read", "css-unread", about=name) for name in ("mask", "clip-path") * 3
-    ]
+    other_property = [notice("r", "mask is not read", "css-unread", about=name) for name in ("mask", "clip-path") * 3]
     assert len(summarized_notices(other_property)) == len(other_property)
     without_codes = [Notice(f"p{k}", f"{k} mm") for k in range(5)]
     assert summarized_notices(without_codes) == without_codes, "only what has a code is of a kind"

@@ -110,9 +110,7 @@ def commanded_rapid(text, cell):
 
 def commanded_ros2(text, cell):
     """Read rows with poses of the plan, which give the flange that holds the tip."""
-    rows = np.array(
-        [line.split(",")[:8] for line in text.splitlines() if line.endswith(",pose")], dtype=float
-    )
+    rows = np.array([line.split(",")[:8] for line in text.splitlines() if line.endswith(",pose")], dtype=float)
     flange = Rotation.from_quat(rows[:, 4:])
     bent = Rotation.from_euler("xyz", cell.tool.rotation_deg, degrees=True)
     return 1e3 * rows[:, 1:4] + flange.apply(cell.tool.tcp_mm), flange * bent
@@ -299,9 +297,7 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
     lean changes evenly. A robot moves the tip straight and turns the tool evenly about one axis.
     """
     random = np.random.default_rng(seed)
-    poses = np.column_stack(
-        [np.cumsum(random.uniform(5, 15, 6)), random.uniform(10, 40, 6), -random.uniform(0, 6, 6)]
-    )
+    poses = np.column_stack([np.cumsum(random.uniform(5, 15, 6)), random.uniform(10, 40, 6), -random.uniform(0, 6, 6)])
     poses[[0, -1], 2] = 0.0
     held = axes(*random.uniform(0, 25, 6), towards_deg=random.uniform(0, 360, 6))
     one = _core.Pass("s", poses, 5.0, tool_axes=held)
@@ -409,18 +405,12 @@ def test_check_allows_random_tilts(seed, tmp_path, capsys):
     random, name = np.random.default_rng(seed), TILTING[seed % len(TILTING)]
     cell = anyhow(name) if seed < len(TILTING) else replace(brushsvg.find_cell(name), arm=None)
     tool = replace(cell.tool, spin_deg=float(random.uniform(-180, 180)), turn_deg_s=300.0)
-    machine = Machine(
-        lean_mm_per_mm=tuple(random.uniform(-0.2, 0.2, 2).tolist()), scale=(1.003, 0.998), skew=0.002
-    )
-    cell = replace(
-        cell, tool=tool, machine=machine, workspace=replace(cell.workspace, box_mm=(), reach_mm=())
-    )
+    machine = Machine(lean_mm_per_mm=tuple(random.uniform(-0.2, 0.2, 2).tolist()), scale=(1.003, 0.998), skew=0.002)
+    cell = replace(cell, tool=tool, machine=machine, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
     passes = []
     for k in range(3):
         n = int(random.integers(3, 8))
-        poses = np.column_stack(
-            [random.uniform(20, 80, n), random.uniform(15, 45, n), -random.uniform(0.2, 6, n)]
-        )
+        poses = np.column_stack([random.uniform(20, 80, n), random.uniform(15, 45, n), -random.uniform(0.2, 6, n)])
         poses[[0, -1], 2] *= k > 0  # the other strokes are set down and lifted on the spot
         held = axes(*random.uniform(0, 29.5, n), towards_deg=random.uniform(0, 360, n))
         passes.append(_core.Pass(f"s{k}", poses, float(random.uniform(3, 25)), tool_axes=np.round(held, 3)))
@@ -466,9 +456,7 @@ def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
         status, _, said = in_json(capsys, "check", made, given, *words)
         assert status == 1
         assert is_reported(said, "held-otherwise") or is_reported(said, "path-elsewhere")
-    given.write_text(
-        _core.write_plan(plan(axes(0, 8.3, 8.3, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))))
-    )
+    given.write_text(_core.write_plan(plan(axes(0, 8.3, 8.3, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130])))))
     assert in_json(capsys, "check", made, given, *words)[0] == 0  # the change is too small to show in a mark
 
 
@@ -530,9 +518,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
         elif kind == 2:
             turn = values[3:]
             turn[random.integers(len(turn))] += (
-                random.choice([-1, 1])
-                * random.uniform(0.04, 0.5)
-                * (60 if len(turn) == 3 and name != "ur5e" else 1)
+                random.choice([-1, 1]) * random.uniform(0.04, 0.5) * (60 if len(turn) == 3 and name != "ur5e" else 1)
             )
         elif kind == 3:
             turn = [*values[3:-1], -values[-1]]
@@ -731,9 +717,7 @@ def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
 )
 def test_what_is_no_tilt_is_refused_before_anything_is_made_of_it(poses, held, expected, tmp_path):
     with np.errstate(all="ignore"), refused(expected):
-        brushsvg.write_program(
-            tmp_path / "a.script", plan(held, poses=poses), BRUSH, cell=brushsvg.find_cell("ur5e")
-        )
+        brushsvg.write_program(tmp_path / "a.script", plan(held, poses=poses), BRUSH, cell=brushsvg.find_cell("ur5e"))
     with np.errstate(all="ignore"):
         split_into_loads(
             plan(held, poses=poses), BRUSH, brushsvg.find_cell("ur5e")
@@ -756,9 +740,7 @@ def test_an_arm_is_followed_as_the_brush_is_held():
     leaned away.
     """
     cell = brushsvg.find_cell("ur5e")
-    cell = replace(
-        cell, paper=Paper((-50.0, -870.0, 20.0)), workspace=replace(cell.workspace, box_mm=(), reach_mm=())
-    )
+    cell = replace(cell, paper=Paper((-50.0, -870.0, 20.0)), workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
     for far in np.arange(-870.0, -990.0, -10.0):
         there = replace(cell, paper=Paper((-50.0, far, 20.0)))
         if arm_problems(plan(axes(*[25] * 5, towards_deg=270)), there):
@@ -771,9 +753,7 @@ def test_an_arm_is_followed_as_the_brush_is_held():
 @pytest.mark.arm
 def test_a_joint_that_turns_too_fast_by_the_tilt_alone_is_refused():
     cell = brushsvg.find_cell("ur5e")
-    slow = replace(
-        cell, arm=replace(cell.arm, speeds_deg_s=(9.0,) * 6), speeds=replace(cell.speeds, travel_mm_s=20.0)
-    )
+    slow = replace(cell, arm=replace(cell.arm, speeds_deg_s=(9.0,) * 6), speeds=replace(cell.speeds, travel_mm_s=20.0))
     upright, tilted = plan(np.zeros((0, 3))), plan(TILTED)
     assert not arm_problems(upright, slow)
     assert any(each.code == "joint-too-fast" for each in arm_problems(tilted, slow))
@@ -803,9 +783,7 @@ def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
     (tmp_path / "cell.toml").write_text(text.replace("tilt_limit_deg = 12.0", "tilt_limit_deg = 31.0"))
     given = tmp_path / "a.json"
     given.write_text(json.dumps(json.loads(_core.write_plan(plan(TILTED)))))
-    status, _, said = in_json(
-        capsys, "convert", given, "-o", tmp_path / "a.script", "--cell", tmp_path / "cell.toml"
-    )
+    status, _, said = in_json(capsys, "convert", given, "-o", tmp_path / "a.script", "--cell", tmp_path / "cell.toml")
     assert status == 1
     assert is_reported(said, "out-of-range 31 30")
 

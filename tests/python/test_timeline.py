@@ -135,9 +135,7 @@ def test_a_servo_is_waited_for(works, name):
     cell = find_cell(name)
     loads = split_into_loads(work.plan, work.brush, cell)
     program = whole_program(loads, work.brush, cell)
-    assert timeline(program, simulate(loads.as_plan(), work.brush)).time_s[-1] == pytest.approx(
-        duration_s(program)
-    )
+    assert timeline(program, simulate(loads.as_plan(), work.brush)).time_s[-1] == pytest.approx(duration_s(program))
 
 
 def test_a_stroke_may_begin_and_end_pressed(works):
@@ -158,10 +156,7 @@ def test_where_the_marks_say_lifted_the_brush_is_in_the_air(works):
     work, marks = works()
     (line, _), plan = marks.passes, work.plan
     plan.passes = plan.passes[:1]
-    columns = {
-        name: np.array(getattr(line, name))
-        for name in ("pose", "tcp_mm", "contact_mm", "heading_rad", "pull")
-    }
+    columns = {name: np.array(getattr(line, name)) for name in ("pose", "tcp_mm", "contact_mm", "heading_rad", "pull")}
     depth_mm = np.where(columns["pose"] > 5, -1.0, line.depth_mm)
     lifted = SimpleNamespace(**columns, depth_mm=depth_mm)
     rows = timeline(whole_program(whole(plan), work.brush, find_cell()), SimpleNamespace(passes=[lifted]))

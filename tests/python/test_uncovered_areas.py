@@ -18,8 +18,7 @@ from brushsvg.strokes.uncovered_areas import UncoveredArea, notices_of_areas, un
 from brushsvg.strokes.wide_shapes import within_reach
 
 SVG = (
-    '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">'
-    '<path id="p" d="{}"/></svg>'
+    '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60"><path id="p" d="{}"/></svg>'
 )
 T = "M21 5H29V15H33V18H29V45H21V18H17V15H21Z"
 THIN = "M20 5H22V45H20Z"
@@ -123,9 +122,7 @@ def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_s
     work = prepared(tmp_path, BLOCK, start="pointed")
     assert work.unreached == ()
     blank = region(work.drawn[0].wanted_mm).difference(region(predict(work).outline_mm))
-    assert shapely.area(blank) / (8 * 25) == pytest.approx(
-        sum(piece.share for piece in work.missed), abs=0.05
-    )
+    assert shapely.area(blank) / (8 * 25) == pytest.approx(sum(piece.share for piece in work.missed), abs=0.05)
     assert all(blank.contains(shapely.Point(piece.at_mm)) for piece in work.missed)
     (notice,) = [each for each in work.notices if each.code == "mark-misses"]
     assert notice.where == "p"

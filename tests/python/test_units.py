@@ -34,9 +34,7 @@ def test_every_way_to_say_an_inch_in_px(text):
     assert length_px(text, 200.0) == pytest.approx(96.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    "text", ["", "mm", "5 furlongs", "2em", "nan", "inf", "1e999", "1,5mm", "\u0665mm", "0x10"]
-)
+@pytest.mark.parametrize("text", ["", "mm", "5 furlongs", "2em", "nan", "inf", "1e999", "1,5mm", "\u0665mm", "0x10"])
 def test_what_is_no_length_is_refused_with_what_was_found(text):
     with pytest.raises(Error) as refused:
         length_mm(text)

@@ -137,9 +137,7 @@ def test_the_marks_are_the_plans():
 
 
 def test_the_brush_stands_on_the_papers_normal():
-    cell = replace(
-        CELL, paper=Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0)), tool=replace(CELL.tool, spin_deg=30.0)
-    )
+    cell = replace(CELL, paper=Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0)), tool=replace(CELL.tool, spin_deg=30.0))
     robot = run(text_for(cell))
     normal = robot_from_paper(cell)[:3, 2]
     for name, *rest in robot.events:

@@ -355,9 +355,7 @@ def fields_of(value):
         return value.tolist()
     if isinstance(value, list | tuple):
         return [fields_of(each) for each in value]
-    if type(value).__module__.startswith("brushsvg") and not isinstance(
-        type(value).__dict__.get("name"), str
-    ):
+    if type(value).__module__.startswith("brushsvg") and not isinstance(type(value).__dict__.get("name"), str):
         names = [n for n in dir(value) if not n.startswith("_")]
         found = {n: getattr(value, n) for n in names}
         return {n: fields_of(f) for n, f in found.items() if not callable(f) or isinstance(f, _core.Profile)}

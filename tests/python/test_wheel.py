@@ -83,14 +83,9 @@ def test_a_wheel_has_licences_and_a_bill_of_materials(wheel):
     with zipfile.ZipFile(wheel) as file:
         bill = json.loads(file.read(f"{INFO}/{contents.BILL}"))
         metadata = file.read(f"{INFO}/METADATA").decode()
-        texts = {
-            each.name: file.read(f"{INFO}/licenses/third-party/{each.name.lower()}.txt") for each in FOUND
-        }
+        texts = {each.name: file.read(f"{INFO}/licenses/third-party/{each.name.lower()}.txt") for each in FOUND}
         record = file.read(f"{INFO}/RECORD").decode().splitlines()
-        hashes = {
-            name: base64.urlsafe_b64encode(hashlib.sha256(file.read(name)).digest())
-            for name in file.namelist()
-        }
+        hashes = {name: base64.urlsafe_b64encode(hashlib.sha256(file.read(name)).digest()) for name in file.namelist()}
     assert bill["bomFormat"] == "CycloneDX" and bill["metadata"]["component"]["version"] == "0.1.0"
     assert [each["name"] for each in bill["components"]] == ["Ceres", "libc++"]
     assert texts == {"Ceres": b"ceres\n", "libc++": b"llvm\n"}

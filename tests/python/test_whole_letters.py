@@ -21,9 +21,7 @@ def test_a_filled_shape_is_painted_no_worse_by_its_refined_passes(tmp_path):
         work = prepare(drawing, Options(compensation=compensation, wide="passes"))
         marks = _core.simulate(work.plan, work.brush)
         overlaps[compensation] = _core.common_area(marks.passes, work.strokes, work.brush).overlap
-    assert (
-        overlaps["refined"] >= overlaps["closed"]
-    )  # refined one by one, the passes left 0.03 of the shape unpainted
+    assert overlaps["refined"] >= overlaps["closed"]  # refined one by one, the passes left 0.03 of the shape unpainted
 
 
 def turned_deg(rings) -> float:

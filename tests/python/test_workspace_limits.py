@@ -80,9 +80,7 @@ def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way
         assert status == 1 and is_reported(reported, *expected), reported
 
 
-LEFT = {
-    "keep_out_mm": (((-285.0, -40.0, 0.0), (-235.0, 40.0, 300.0)), ((0.0, 300.0, 0.0), (1.0, 301.0, 1.0)))
-}
+LEFT = {"keep_out_mm": (((-285.0, -40.0, 0.0), (-235.0, 40.0, 300.0)), ((0.0, 300.0, 0.0), (1.0, 301.0, 1.0)))}
 
 
 @pytest.mark.parametrize(("limits", "x_mm"), [(RING, 20), (POST, 20), (LEFT, 20), ({}, -20)])
@@ -140,9 +138,7 @@ def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes
     ],
 )
 def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, capsys, language, box, who, said):
-    ink = Station(
-        "ink", (-20.0, 40.0), depth_mm=5.0, rim_mm=4.0, wipe_mm=((-18.0, 40.0, 5.0), (-12.0, 40.0, 5.0))
-    )
+    ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, rim_mm=4.0, wipe_mm=((-18.0, 40.0, 5.0), (-12.0, 40.0, 5.0)))
     cell = find_cell(language)
     cell = replace(
         cell,
@@ -153,9 +149,7 @@ def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, caps
         reload=Reload("stroke"),
     )
     (desk / "free.toml").write_text(write_cell(cell))
-    (desk / "mine.toml").write_text(
-        write_cell(replace(cell, workspace=replace(cell.workspace, keep_out_mm=(box,))))
-    )
+    (desk / "mine.toml").write_text(write_cell(replace(cell, workspace=replace(cell.workspace, keep_out_mm=(box,)))))
     (desk / "s.svg").write_text(BAR.replace("M40 100 H560", "M40 160 H90").replace('"bar"', '"s"'))
     program = "s.script" if language == "ur5e" else "s.ngc"
     for words, file in (
@@ -163,9 +157,7 @@ def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, caps
         (("check", program, "s.svg"), program),
     ):
         status, _, reported = in_json(capsys, *words, "--cell", "mine.toml")
-        assert status == 1 and is_reported([each for each in reported if each[0] == file], said, who), (
-            reported
-        )
+        assert status == 1 and is_reported([each for each in reported if each[0] == file], said, who), reported
         assert call(capsys, "convert", "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
 
 
@@ -179,9 +171,7 @@ def plan_of(poses, arcs=(), name="a"):
 @pytest.mark.parametrize(("turn", "x"), [(1, "25.0"), (-1, "75.0")])
 def test_a_circle_that_bulges_beyond_a_limit_is_refused(turn, x):
     cell = find_cell()
-    boxed = replace(
-        cell, workspace=replace(cell.workspace, box_mm=((40.0, -50.0, -50.0), (60.0, 50.0, 50.0)))
-    )
+    boxed = replace(cell, workspace=replace(cell.workspace, box_mm=((40.0, -50.0, -50.0), (60.0, 50.0, 50.0))))
     arc = _core.Arc(0, 1, (50.0, 5.0), turn)
     assert forbidden(plan_of(ROUND), BRUSH, boxed) == []
     (reported,) = forbidden(plan_of(ROUND, [arc]), BRUSH, boxed)
@@ -208,9 +198,7 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
     leans = replace(
         cell,
         paper=replace(cell.paper, rotation_deg=(10.0, 0.0, 0.0)),
-        workspace=replace(
-            cell.workspace, tilt_limit_deg=15.0, box_mm=((-99.0, -99.0, -99.0), (700.0, 300.0, 40.0))
-        ),
+        workspace=replace(cell.workspace, tilt_limit_deg=15.0, box_mm=((-99.0, -99.0, -99.0), (700.0, 300.0, 40.0))),
     )
     low = plan_of(np.array([(50, 20, 0), (80, 20, -2)], dtype=float))
     (reported,) = forbidden(low, BRUSH, leans)
@@ -218,9 +206,7 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
 
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "jaka-zu3"])
-@pytest.mark.parametrize(
-    ("limit", "said"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")]
-)
+@pytest.mark.parametrize(("limit", "said"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")])
 def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsys, name, limit, said):
     """A rise before the first move keeps out of the forbidden space.
 
@@ -234,9 +220,7 @@ def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsy
         "reach_mm": ((388.0, 900.0), (330.0, 900.0)),
         "keep_out_mm": (lamp, tuple(((x, -140.0, -330.0), (x + 40.0, -100.0, -300.0)) for x in (-40.0, 0.0))),
     }[limit]
-    paper = replace(
-        cell.paper, origin_mm=(-300.0, -150.0, -400.0), rotation_deg=(10.0, 0.0, 0.0), example=False
-    )
+    paper = replace(cell.paper, origin_mm=(-300.0, -150.0, -400.0), rotation_deg=(10.0, 0.0, 0.0), example=False)
     for file, value in (("mine.toml", tight), ("free.toml", free)):
         space = replace(cell.workspace, box_mm=(), reach_mm=(), tilt_limit_deg=15.0, margin_mm=0.0)
         some = replace(cell, name="mine", paper=paper, workspace=replace(space, **{limit: value}))
@@ -290,9 +274,7 @@ def test_a_way_between_two_places_says_only_what_they_do_not():
     cell = robot(**RING)
     (said,) = find_limits_broken_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
     assert agrees(said, "out-of-reach way 0.0")
-    assert find_limits_broken_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], (
-        "it begins too far away"
-    )
+    assert find_limits_broken_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
 
 
 def test_a_number_shows_that_it_is_outside():
@@ -343,8 +325,7 @@ def test_ways_are_checked_in_any_groups(monkeypatch, at_once):
     monkeypatch.setattr(limits, "MAX_MOVES_AT_ONCE", at_once)
     sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
     passes = [
-        _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0)
-        for k, x in enumerate(sides)
+        _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0) for k, x in enumerate(sides)
     ]
     reported = forbidden(_core.Plan(BRUSH.name, "", SHEET, passes), BRUSH, robot(**RING))
     assert are_reported(reported, "out-of-reach s2 way", "out-of-reach s4 way", "out-of-reach s5 way")
@@ -370,10 +351,7 @@ def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_p
     passes = {}
     for start in ("auto", "pointed"):
         plan = tmp_path / f"{start}.json"
-        assert (
-            call(capsys, "convert", str(tmp_path / "a.svg"), "-o", str(plan), "--start", start, *words)[0]
-            == 0
-        )
+        assert call(capsys, "convert", str(tmp_path / "a.svg"), "-o", str(plan), "--start", start, *words)[0] == 0
         passes[start] = _core.read_plan(plan.read_text(encoding="utf-8")).passes
     same = [
         np.array_equal(one.poses_mm, other.poses_mm)
@@ -403,9 +381,7 @@ def test_a_cut_beginning_that_the_cell_cannot_cut_is_round_or_pointed(tmp_path, 
 
     def passes(*more):
         plan = tmp_path / "a.json"
-        assert (
-            call(capsys, "convert", str(tmp_path / "a.svg"), "-o", str(plan), "--end", "round", *more)[0] == 0
-        )
+        assert call(capsys, "convert", str(tmp_path / "a.svg"), "-o", str(plan), "--end", "round", *more)[0] == 0
         return [one.poses_mm for one in _core.read_plan(plan.read_text(encoding="utf-8")).passes]
 
     chosen, butt, rounded = passes(*words), passes("--start", "butt"), passes("--start", "round")

@@ -28,9 +28,7 @@ def test_the_largest_comes_first_with_its_place_size_and_stroke():
     assert (missing.stroke, outside.stroke) == (0, 1)
     assert (missing.missing_mm2, missing.outside_mm2) == pytest.approx((2.0, 0.0), abs=0.1)
     assert (outside.missing_mm2, outside.outside_mm2) == pytest.approx((0.0, 1.5), abs=0.1)
-    assert missing.at_mm == pytest.approx((1.5, 5.0), abs=0.6) and outside.at_mm[1] == pytest.approx(
-        16.25, abs=0.2
-    )
+    assert missing.at_mm == pytest.approx((1.5, 5.0), abs=0.6) and outside.at_mm[1] == pytest.approx(16.25, abs=0.2)
     assert missing.is_missing and not outside.is_missing
     assert [area.stroke for area in found(target, painted, most=1)] == [0]
 

@@ -149,9 +149,7 @@ def test_characters_of_a_line_are_cut_at_gaps_and_each_is_one_group():
 
 def test_the_headline_of_a_word_is_written_last():
     headline, stem, bowl = "M5 5H45V11H5Z", "M36 8H42V45H36Z", "M10 18H16V30H38V36H10Z"
-    made = strokes(read(f'<path d="{headline}{stem}{bowl}" fill="red" stroke="none"/>'), script="devanagari")[
-        0
-    ]
+    made = strokes(read(f'<path d="{headline}{stem}{bowl}" fill="red" stroke="none"/>'), script="devanagari")[0]
     line = _core.flatten(made[-1], 0.02)
     assert np.ptp(line[:, 0]) > 30
     assert np.allclose(line[:, 1], 50 - 8, atol=1)
@@ -159,9 +157,7 @@ def test_the_headline_of_a_word_is_written_last():
 
 def test_a_flat_line_of_arabic_runs_to_the_left():
     def start_and_end(script):
-        line = _core.flatten(
-            strokes(read('<path d="M5 20H45V26H5Z" fill="red"/>'), script=script)[0][0], 0.02
-        )
+        line = _core.flatten(strokes(read('<path d="M5 20H45V26H5Z" fill="red"/>'), script=script)[0][0], 0.02)
         return line[0, 0], line[-1, 0]
 
     start, end = start_and_end("arabic")

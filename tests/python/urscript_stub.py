@@ -37,9 +37,7 @@ def matrix(pose):
 def pose_of(frame):
     import cv2
 
-    return Pose(
-        (*frame[:3, 3].tolist(), *cv2.Rodrigues(np.ascontiguousarray(frame[:3, :3]))[0].ravel().tolist())
-    )
+    return Pose((*frame[:3, 3].tolist(), *cv2.Rodrigues(np.ascontiguousarray(frame[:3, :3]))[0].ravel().tolist()))
 
 
 class HaltedError(Exception):

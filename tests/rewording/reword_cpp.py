@@ -34,9 +34,7 @@ def in_other_words(source: str) -> str:
 
 
 def main(folder: Path) -> None:
-    listed = subprocess.run(
-        ["git", "ls-files", *BUILT, *DATA], cwd=ROOT, capture_output=True, text=True, check=True
-    )
+    listed = subprocess.run(["git", "ls-files", *BUILT, *DATA], cwd=ROOT, capture_output=True, text=True, check=True)
     for name in listed.stdout.splitlines():
         source, copy = ROOT / name, folder / name
         copy.parent.mkdir(parents=True, exist_ok=True)

@@ -12,9 +12,7 @@ WORD = re.compile(
     r"""(?<![\w\-./\\=<>@#$%&'"`{\[:])(?:[a-z]{4,}|(?:(?<=\A)|(?<=\n)|(?<=[.:] )|(?<=\())[A-Z][a-z]{3,})"""
     r"""(?![\w\-/\\=<>@'"`}(\[\x00]|[.:]\w)"""
 )
-KEPT = re.compile(
-    r"""(?<!\w)'[^']*'|"[^"]*"|`[^`]*`|\{[^}]*\}|%\([^)]*\)|brushsvg( [a-z]+)+|-m pip [a-z]+.*|  .*"""
-)
+KEPT = re.compile(r"""(?<!\w)'[^']*'|"[^"]*"|`[^`]*`|\{[^}]*\}|%\([^)]*\)|brushsvg( [a-z]+)+|-m pip [a-z]+.*|  .*""")
 NO_SENTENCE = re.compile(  # addresses, markup, programs, patterns, lines of a header, names of faults
     r"://|</?[a-z]|=>|;\n|[{}];|\)\s*\{|\\[sdwb]|\w\(\w*\)| = |^order: | in [xy]$"
 )
@@ -29,9 +27,7 @@ SAID = {
     "need_truth",
     "refuse",
 }  # also in those
-SENTENCE = re.compile(
-    r"(?<![\w\-./=])[A-Za-z]?[a-z]{2,}[,:;]? (?:[a-z]{2,}|.* [a-z]{3,})(?![\w\-/=])", re.DOTALL
-)
+SENTENCE = re.compile(r"(?<![\w\-./=])[A-Za-z]?[a-z]{2,}[,:;]? (?:[a-z]{2,}|.* [a-z]{3,})(?![\w\-/=])", re.DOTALL)
 
 
 DIRECTIONS = {"left", "right", "upper", "lower", "clockwise"}
@@ -62,11 +58,7 @@ class Reworder(ast.NodeTransformer):
         self.everything, self.lists = everything, lists
 
     def visit(self, node: ast.AST) -> ast.AST:
-        return (
-            node
-            if isinstance(node, ast.Compare | ast.Subscript | ast.Set | ast.MatchValue)
-            else super().visit(node)
-        )
+        return node if isinstance(node, ast.Compare | ast.Subscript | ast.Set | ast.MatchValue) else super().visit(node)
 
     def visit_Constant(self, node: ast.Constant) -> ast.Constant:
         if self.everything and isinstance(node.value, str) and is_sentence(node.value):
@@ -147,8 +139,6 @@ class Reworder(ast.NodeTransformer):
 
 def reworded_module(source: str | bytes, path: str) -> ast.Module:
     module = ast.parse(source, path)
-    split = (
-        each.value for each in ast.walk(module) if isinstance(each, ast.Attribute) and each.attr == "split"
-    )
+    split = (each.value for each in ast.walk(module) if isinstance(each, ast.Attribute) and each.attr == "split")
     lists = {name.id for each in split for name in ast.walk(each) if isinstance(name, ast.Name)}
     return ast.fix_missing_locations(Reworder(PROGRAMS.search(path) is None, lists).visit(module))

@@ -48,9 +48,7 @@ def build(python: str, out: Path) -> Path:
     if not tools.is_dir():
         _run(python, "-m", "venv", tools)
         _run(tools / "bin" / "pip", "install", "-q", "-r", TOOLS / "requirements.txt")
-    zig = (
-        _output(tools / "bin" / "python", "-c", "import ziglang; print(ziglang.__path__[0])").strip() + "/zig"
-    )
+    zig = _output(tools / "bin" / "python", "-c", "import ziglang; print(ziglang.__path__[0])").strip() + "/zig"
     environment = {
         **os.environ,
         "ZIG": zig,
@@ -134,9 +132,7 @@ def _python_headers(python: Path) -> None:
 def _clean_copy(to: Path) -> Path:
     """Copy the checked-out revision and its changes, without other files in the tree."""
     shutil.rmtree(to, ignore_errors=True)
-    for name in _output(
-        "git", "-C", TREE, "ls-files", "-z", "--cached", "--others", "--exclude-standard"
-    ).split("\0"):
+    for name in _output("git", "-C", TREE, "ls-files", "-z", "--cached", "--others", "--exclude-standard").split("\0"):
         if name and (TREE / name).is_file():
             (to / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(TREE / name, to / name)
@@ -148,9 +144,7 @@ def _run(*words, env=None) -> None:
 
 
 def _output(*words, env=None) -> str:
-    return subprocess.run(
-        list(map(str, words)), check=True, env=env, stdout=subprocess.PIPE, text=True
-    ).stdout
+    return subprocess.run(list(map(str, words)), check=True, env=env, stdout=subprocess.PIPE, text=True).stdout
 
 
 if __name__ == "__main__":

@@ -63,9 +63,7 @@ def components(work: Path, tools: Path) -> list[Component]:
     """
     (zig,) = tools.glob("lib/python*/site-packages/ziglang")
     (pybind,) = tools.glob("lib/python*/site-packages/pybind11-*.dist-info")
-    clang = subprocess.run(
-        [zig / "zig", "c++", "--version"], check=True, capture_output=True, text=True
-    ).stdout
+    clang = subprocess.run([zig / "zig", "c++", "--version"], check=True, capture_output=True, text=True).stdout
     llvm = re.search(r"version (\S+)", clang)[1]
     found = [
         _debian_source("ceres-solver", "2.1.0+really2.1.0+dfsg-1", "BSD-3-Clause", work),
@@ -81,9 +79,7 @@ def components(work: Path, tools: Path) -> list[Component]:
             (pybind / "licenses" / "LICENSE").read_text(),
         ),
     ]  # fmt: skip
-    zig_version = subprocess.run(
-        [zig / "zig", "version"], check=True, capture_output=True, text=True
-    ).stdout.strip()
+    zig_version = subprocess.run([zig / "zig", "version"], check=True, capture_output=True, text=True).stdout.strip()
     purl = f"pkg:pypi/ziglang@{zig_version}"
     for name, folder in (("libc++", "libcxx"), ("libc++abi", "libcxxabi"), ("libunwind", "libunwind")):
         text = (zig / "lib" / folder / "LICENSE.TXT").read_text()
@@ -111,9 +107,7 @@ def _debian_source(name: str, version: str, licence: str, work: Path) -> Compone
 def _debian_headers(package: str, name: str, licence: str, text: str) -> Component:
     command = ["dpkg-query", "-W", "-f", "${Version}", package]
     version = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    return Component(
-        name, version, licence, f"Debian's package {package}", f"pkg:deb/debian/{package}@{version}", text
-    )
+    return Component(name, version, licence, f"Debian's package {package}", f"pkg:deb/debian/{package}@{version}", text)
 
 
 def _copyright(package: str) -> str:
@@ -149,9 +143,7 @@ def add_contents(raw: Path, wheel: Path, found: list[Component], epoch_s: int) -
     (info,) = {name.partition("/")[0] for name in files if name.partition("/")[0].endswith(".dist-info")}
     licences = {f"third-party/{_file_name(each.name)}.txt": each.text.encode() for each in found}
     files |= {f"{info}/licenses/{name}": text for name, text in licences.items()}
-    files[f"{info}/METADATA"] = _metadata(
-        files[f"{info}/METADATA"].decode(), found, sorted(licences)
-    ).encode()
+    files[f"{info}/METADATA"] = _metadata(files[f"{info}/METADATA"].decode(), found, sorted(licences)).encode()
     version = info.removesuffix(".dist-info").partition("-")[2]
     files[f"{info}/{BILL}"] = json.dumps(_bill(version, found, epoch_s), indent=1).encode() + b"\n"
     record = f"{info}/RECORD"
@@ -236,9 +228,7 @@ def problems_of(wheel: Path) -> list[str]:
             problems += _without_licence(wheel, file)
         for name in names:
             if any(word in name.lower() for word in FORBIDDEN):
-                problems.append(
-                    f"{wheel.name}: {name}: a library under the GPL, or one that needs such a library"
-                )
+                problems.append(f"{wheel.name}: {name}: a library under the GPL, or one that needs such a library")
             if re.search(r"\.so(\.|$)", name):
                 problems += [f"{wheel.name}: {name}: {why}" for why in problems_of_library(file.read(name))]
     return problems
@@ -255,9 +245,7 @@ def _without_licence(wheel: Path, file: zipfile.ZipFile) -> Iterator[str]:
 def problems_of_library(data: bytes) -> Iterator[str]:
     """Yield the reasons why a shared library must not be in a wheel."""
     # Ceres contains sentences about its own build, and the name of LAPACK, without which it was built.
-    said = re.sub(
-        rb"Ceres was (?:not built with|compiled without) support for \w+\.|\0LAPACK(?=\0)", b"", data
-    )
+    said = re.sub(rb"Ceres was (?:not built with|compiled without) support for \w+\.|\0LAPACK(?=\0)", b"", data)
     for word in FORBIDDEN:
         if re.search(rb"(?i)(?:\blib|\b)%s(?:[_-]\w+)?[(.\0]" % word.encode(), said):
             yield f"it contains or needs {word}"

@@ -88,9 +88,7 @@ class Planted:
     def pytest_runtest_protocol(self, item):
         if item.path != self.file:
             self.file = item.path
-            for each in (
-                self.caches + caches()
-            ):  # a file finds no results of another's: its tests come by all faults
+            for each in self.caches + caches():  # a file finds no results of another's: its tests come by all faults
                 each.cache_clear()
         brushsvg_faults.reset()
         self.failed, self.skipped, self.why = False, False, ""
@@ -134,8 +132,7 @@ def shared(item) -> list[str]:
         for name, fixtures in item._fixtureinfo.name2fixturedefs.items()
         for fixture in fixtures[-1:]
         if fixture.scope in ("session", "package") and not name.startswith("_")
-        if getattr(fixture.func, "__code__", None)
-        and fixture.func.__code__.co_filename.startswith(root + "/tests/")
+        if getattr(fixture.func, "__code__", None) and fixture.func.__code__.co_filename.startswith(root + "/tests/")
     ]
 
 

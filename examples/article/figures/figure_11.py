@@ -33,9 +33,7 @@ beta = laws.tip_direction(np.pi / 2, alpha, s, r, b)
 seen = [angle + rng.normal(0, np.radians(7), (repeats, 10, 5)) for angle in (alpha, beta)]
 first = np.minimum(np.pi / 2 + rng.normal(0, np.radians(7), (repeats, 10)), np.radians(95))
 found = laws.from_angles(first, s, seen[0], np.clip(seen[1], 0.02, np.pi - 0.02))
-k = [
-    laws.fit_law(z, one, 1, through_zero=True, absolute=True).law.coefficients[1] for one in found.tip_gap_mm
-]
+k = [laws.fit_law(z, one, 1, through_zero=True, absolute=True).law.coefficients[1] for one in found.tip_gap_mm]
 rmse = np.array([laws.fit_law(z, one, 4, absolute=True).law.rmse_mm for one in found.lag_mm], float)
 rows = [
     ("r(10), mm; 12.9 is (25)'s 13.0 by other means", None, laws.Profile(angles)(10.0)),

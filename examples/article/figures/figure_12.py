@@ -23,9 +23,7 @@ axes.plot(*lines[13.0].T, "r--", label="computed, r = 13.0")
 axes.plot(*lines[13.7].T, color="#3f8fd9", lw=0.9, label="r = 13.7")
 axes.set(aspect="equal", xlabel="x, mm", ylabel="y, mm", ylim=(-20, 2))
 axes.legend(frameon=False, fontsize=8)
-rows: list[tuple[str, float | None, float]] = [
-    ("r, mm", 13.0, laws.Profile([3.1, 0.86, 0.31, -5.0e-2, 2.1e-3])(10.0))
-]
+rows: list[tuple[str, float | None, float]] = [("r, mm", 13.0, laws.Profile([3.1, 0.86, 0.31, -5.0e-2, 2.1e-3])(10.0))]
 for at in (10, 20, 40, 80):
     rows.append((f"distance from the second line at s = {at}, mm", None, -lines[13.0][5 * at, 1]))
 off = np.interp(lines[13.0][:, 0], lines[13.7][:, 0], lines[13.7][:, 1]) - lines[13.0][:, 1]

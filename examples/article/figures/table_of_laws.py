@@ -31,9 +31,7 @@ for axes, (name, law, halves, r2, rmse, z) in zip(panels, printed, strict=True):
     floor = 0.0 if name == "w" else None  # (24); laws that begin with 0 go through it
     exact = np.maximum(np.polynomial.polynomial.polyval(z, law), -np.inf if floor is None else floor)
     sheets = exact + rng.normal(0, rmse, (300, z.size))
-    fits = [
-        laws.fit_law(z, sheet, len(law) - 1, through_zero=law[0] == 0, floor_mm=floor) for sheet in sheets
-    ]
+    fits = [laws.fit_law(z, sheet, len(law) - 1, through_zero=law[0] == 0, floor_mm=floor) for sheet in sheets]
     found = np.array([fit.r_squared for fit in fits])
     rows.append((f"{name}: R^2, +-{found.std():.2f}", r2, np.median(found)))
     rows.append((f"{name}: RMSE, mm", rmse, np.median(np.array([fit.law.rmse_mm for fit in fits], float))))

@@ -117,9 +117,7 @@ def _read_zip(path: str) -> dict[str, bytes]:
             if not are_known or "brushsvg_program.py" not in names.values():
                 raise Error("this is not the extension's zip", file=path, code="plugin-zip")
             if sum(each.file_size for each in members) > _MAX_UNZIPPED_BYTES:
-                raise Error(
-                    f"it holds more than {_MAX_UNZIPPED_BYTES} bytes", file=path, code="file-too-large"
-                )
+                raise Error(f"it holds more than {_MAX_UNZIPPED_BYTES} bytes", file=path, code="file-too-large")
             return {names[each.filename]: file.read(each) for each in members}
     except OSError as problem:
         raise Error(

@@ -92,9 +92,7 @@ def machine_sha256(machine: Machine | None) -> str:
     return hashlib.sha256(json.dumps(known).encode()).hexdigest()
 
 
-def select_for_machine(
-    corrections: tuple[Correction, ...], machine: Machine | None
-) -> tuple[Correction, ...]:
+def select_for_machine(corrections: tuple[Correction, ...], machine: Machine | None) -> tuple[Correction, ...]:
     """Return the corrections that belong to this machine.
 
     Raises Error if all belong to other cells: they would correct again what a corrected cell already compensates.
@@ -259,8 +257,7 @@ def _explain_no_corrections(rows: list[dict]) -> str:
         )
     if found_count:
         return (
-            f"it corrects no stroke: of {found_count} marks none is seen well enough, and near enough to its "
-            "prediction"
+            f"it corrects no stroke: of {found_count} marks none is seen well enough, and near enough to its prediction"
         )
     return "it corrects no stroke: the photograph did not show the places of marks"
 

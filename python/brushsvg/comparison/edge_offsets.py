@@ -69,9 +69,7 @@ def _sample_ring(ring: np.ndarray):
     step = travelled_mm[-1] / count
 
     def point(way):
-        return np.column_stack(
-            [np.interp(way % travelled_mm[-1], travelled_mm, closed[:, i]) for i in (0, 1)]
-        )
+        return np.column_stack([np.interp(way % travelled_mm[-1], travelled_mm, closed[:, i]) for i in (0, 1)])
 
     way = (np.arange(count) + 0.5) * step
     ahead = point(way + 0.4 * step) - point(way - 0.4 * step)

@@ -100,9 +100,7 @@ def _overshoot_mm(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target,
     places = end + t[:, None, None] * ahead + strip[:, None] * across
     inside = shapely.contains_xy(target, places[..., 0], places[..., 1]).mean(axis=1)
     flat = places.reshape(-1, 2)
-    painted = (
-        _paint_at(found, found.common.moved(flat, found.middle_mm)).reshape(inside.shape[0], -1).mean(axis=1)
-    )
+    painted = _paint_at(found, found.common.moved(flat, found.middle_mm)).reshape(inside.shape[0], -1).mean(axis=1)
     drawn_end, is_painted = _find_fall(inside, t), _find_fall(painted, t)
     if drawn_end is None or is_painted is None:
         return None

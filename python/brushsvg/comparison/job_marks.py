@@ -15,9 +15,7 @@ from .placing import Canvas
 # Share of a mark that a piece of paint covers, above which the piece belongs to the mark.
 MIN_COVERED_SHARE = 0.15
 MIN_INSIDE_SHARE = 0.5  # share of a piece of paint inside a mark, above which the piece belongs to the mark
-MAX_MISSING_FOR_OUTLINE = (
-    0.3  # share of a mark without paint, above which its edges are not those of the brush
-)
+MAX_MISSING_FOR_OUTLINE = 0.3  # share of a mark without paint, above which its edges are not those of the brush
 PAINT_A_CHART = "paint a chart, whose strokes do not touch: brushsvg chart, then calibrate --chart"
 
 
@@ -38,11 +36,7 @@ def job_marks(found: Comparison, page: JobPage, strokes: list[TargetStroke]) -> 
     """Find the outlines of the marks. strokes: the strokes that were compared."""
     painting = [number for number, stroke in enumerate(strokes) if stroke.predicted]
     rows = dict(zip(painting, found.strokes, strict=True))
-    dry = [
-        number
-        for number, row in rows.items()
-        if not row.placed.found or row.missing > MAX_MISSING_FOR_OUTLINE
-    ]
+    dry = [number for number, row in rows.items() if not row.placed.found or row.missing > MAX_MISSING_FOR_OUTLINE]
     fine = found.flat.px_per_mm
     canvas = Canvas((0.0, 0.0, *page.size_mm), fine)
     count, pieces = cv2.connectedComponents(np.uint8(found.paint > SEEN), connectivity=8)

@@ -75,9 +75,7 @@ def job_page(plan, title: str = "") -> JobPage:
         Label(f"bar: {bar.length_mm:g} mm, print at 100 %", (x, y + 2.0), room_mm),
         Label(title or "untitled", (page[0] / 2 + side, y), page[0] / 2 - 3 * side),
     )
-    labels = tuple(
-        label for label in labels if label.width_mm >= MIN_LABEL_MM
-    )  # smaller labels are unreadable
+    labels = tuple(label for label in labels if label.width_mm >= MIN_LABEL_MM)  # smaller labels are unreadable
     empty = _core.Plan(brush=plan.brush, brush_sha256=plan.brush_sha256, sheet_mm=page)
     ticks = tuple(box_ring(*corners) for corners in _tick_boxes(sheet, frame))
     return JobPage(Chart(empty, (), markers, labels, mark, bar), float(frame), ticks)

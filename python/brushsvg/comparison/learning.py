@@ -59,9 +59,7 @@ def learn(
 def _predict_strokes(plan, brush: _core.Brush) -> list[TargetStroke]:
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
-    return [
-        TargetStroke(each.stroke, None, [np.array(ring) for ring in each.outline_mm]) for each in marks.passes
-    ]
+    return [TargetStroke(each.stroke, None, [np.array(ring) for ring in each.outline_mm]) for each in marks.passes]
 
 
 def _painted_marks(plan, marks: JobMarks):

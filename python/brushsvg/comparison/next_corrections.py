@@ -95,11 +95,7 @@ def find_growing_displacements(found: Comparison, before: dict[str, float]) -> l
     notices = []
     for row in found.strokes if found.spread_mm is not None else ():
         now_mm = float(np.hypot(*displacement_mm(row, found)))
-        if (
-            row.placed.found
-            and row.stroke in before
-            and now_mm > before[row.stroke] + MIN_REPORTED_INCREASE_MM
-        ):
+        if row.placed.found and row.stroke in before and now_mm > before[row.stroke] + MIN_REPORTED_INCREASE_MM:
             sentence = (
                 f"its mark is {now_mm:.2f} mm to the side, on the sheet before {before[row.stroke]:.2f} mm: the cause "
                 "of that did not repeat"
@@ -116,9 +112,7 @@ def _repeating_share(displacement_mm: np.ndarray, found: Comparison) -> float:
     """
     by_chance = 2 * RANDOM_ERROR_MM**2
     known = max(sum(row.placed.found for row in found.strokes), MIN_MARKS)
-    spread = (
-        found.spread_mm**2 * 2 * known / (2 * known - 3)
-    )  # the shift and the turn of the sheet were fitted
+    spread = found.spread_mm**2 * 2 * known / (2 * known - 3)  # the shift and the turn of the sheet were fitted
     of_all, its_own = (
         1 - by_chance / max(square, by_chance) for square in (spread, displacement_mm @ displacement_mm / 2)
     )

@@ -133,9 +133,7 @@ def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparis
     return replace(found, strokes=tuple(row for row in found.strokes if row.stroke in names)), drawn
 
 
-def compare_sheets(
-    page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]
-) -> list[Comparison]:
+def compare_sheets(page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]) -> list[Comparison]:
     """Compare photographs that each show another sheet.
 
     Raises the errors of `compare_photos`.
@@ -174,9 +172,7 @@ def _as_job_error(refusal: Error, name: str) -> Error:
     if refusal.code == "photo-of-another-chart":
         sentence = "the picture shows the page of another job, or of another plan of this one"
         advice = "give the drawing with the flags that the page was made with, or the plan.json"
-    return Error(
-        sentence, refusal.where, refusal.value, refusal.range, name, code=refusal.code, advice=advice
-    )
+    return Error(sentence, refusal.where, refusal.value, refusal.range, name, code=refusal.code, advice=advice)
 
 
 def _read_photo(
@@ -197,8 +193,7 @@ def _read_photo(
     printed_rings = [each.mean(axis=0) + (each - each.mean(axis=0)) * 1.4 for each in corners.values()]
     printed_rings += bar_rings(printed.bar, beyond_mm=PRINT_MARGIN_MM)
     printed_rings += [
-        box_ring(*ring.min(axis=0) - PRINT_MARGIN_MM, *ring.max(axis=0) + PRINT_MARGIN_MM)
-        for ring in page.ticks
+        box_ring(*ring.min(axis=0) - PRINT_MARGIN_MM, *ring.max(axis=0) + PRINT_MARGIN_MM) for ring in page.ticks
     ]
     printed_rings += [box_ring(*label_box(label)) for label in printed.labels]
     print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
@@ -210,9 +205,7 @@ def _read_photo(
 def _sheet_paint(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:
     """Return the paint of the sheet's own pixels, 1 for the usual paint."""
     left, up = page.frame_mm, page.size_mm[1] - page.frame_mm
-    matrix = np.array(
-        [[1.0, 0.0, left * flat.px_per_mm], [0.0, 1.0, (flat.sheet_mm[1] - up) * flat.px_per_mm]]
-    )
+    matrix = np.array([[1.0, 0.0, left * flat.px_per_mm], [0.0, 1.0, (flat.sheet_mm[1] - up) * flat.px_per_mm]])
     rows, columns = canvas.shape
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
     sheet = cv2.warpAffine(paint, matrix, (columns, rows), flags=flags)
@@ -254,9 +247,7 @@ def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
     for k, stroke in enumerate(strokes):
         if stroke.predicted:
             others = [*chain(*moved[:k], *moved[k + 1 :])]
-            located.append(
-                _locate_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas)
-            )
+            located.append(_locate_stroke(stroke, moved[k], others, painted, is_painted, common, middle, canvas))
     found = located
     if not all(stroke.is_drawn for stroke in strokes):
         drawn, others = (
@@ -283,9 +274,7 @@ def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
         _overlap(_mask(rings, canvas), is_painted)
         for rings in (target_rings, [sheet.moved(ring, middle) for ring in target_rings], [*chain(*each)])
     )
-    marks = _mask(
-        [*chain(*(stroke_found.locate(stroke_found.stroke.predicted) for stroke_found in found))], canvas
-    )
+    marks = _mask([*chain(*(stroke_found.locate(stroke_found.stroke.predicted) for stroke_found in found))], canvas)
     astray = is_painted & (_distance_mm(marks, canvas.px_per_mm) > MAX_EDGE_DISTANCE_MM)
     things = _find_things(astray, canvas)
     near = _distance_mm(things, canvas.px_per_mm) < MAX_EDGE_DISTANCE_MM + EDGE_BLUR_MM
@@ -423,9 +412,7 @@ def _locate_stroke(
     local_canvas = Canvas(
         (*window, window[0] + window_paint.shape[1] / fine, window[1] + window_paint.shape[0] / fine), fine
     )
-    nearby_rings = [
-        ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()
-    ]
+    nearby_rings = [ring for ring in others if (ring.max(axis=0) > low).all() and (ring.min(axis=0) < high).all()]
     mark = local_canvas.filled(rings) > 0.5
     their_away = _distance_mm(local_canvas.filled(nearby_rings) > 0.5, fine)
     nearer = (_distance_mm(mark, fine) <= their_away) | mark
@@ -451,9 +438,7 @@ def _locate_stroke(
     is_painted[r0:r1, c0:c1] |= is_mine & (_distance_mm(at_last, fine) < MAX_EDGE_DISTANCE_MM)
     start = centroid(stroke.predicted)
     shift = locate([start[None]], found)[0][0] - start
-    whole = Placed(
-        (float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found
-    )
+    whole = Placed((float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found)
     row = Compared(
         stroke.stroke,
         _overlap(local_canvas.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
@@ -461,9 +446,7 @@ def _locate_stroke(
         whole,
         (float(start[0]), float(start[1])),
         float((at_last & ~(window_paint / strength > EDGE_LEVEL)).sum()) / float(max(at_last.sum(), 1)),
-        _overlap(
-            local_canvas.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine
-        ),
+        _overlap(local_canvas.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
     )
     return _LocatedStroke(stroke, row, lambda each: locate(each, found))
 

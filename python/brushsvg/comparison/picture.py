@@ -73,9 +73,7 @@ def comparison_png(
         size,
         flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,
     )
-    _draw_numbers(
-        image, marks > 0, [(np.array(area.at_mm) - [left, top]) * [1, -1] * px_per_mm for _, area in places]
-    )
+    _draw_numbers(image, marks > 0, [(np.array(area.at_mm) - [left, top]) * [1, -1] * px_per_mm for _, area in places])
     out = np.full((image.shape[0] + MARGIN_PX, max(image.shape[1], 900), 3), 255, np.uint8)
     out[MARGIN_PX:, : image.shape[1]] = image
     _write_text(out, title[:60], (16, 34), TEXT_COLOUR)
@@ -113,9 +111,7 @@ def _draw_numbers(image, marks: np.ndarray, places: list[np.ndarray]) -> None:
             if label.leader:
                 ends = [tuple(map(round, end)) for end in label.leader]
                 cv2.line(image, *ends, colour, thick, cv2.LINE_AA)
-        _write_text(
-            image, str(number), (round(label.left), round(label.top + height)), TEXT_COLOUR, NUMBER_SIZE
-        )
+        _write_text(image, str(number), (round(label.left), round(label.top + height)), TEXT_COLOUR, NUMBER_SIZE)
 
 
 def _draw_gains(faults: Faults, width: int) -> np.ndarray:

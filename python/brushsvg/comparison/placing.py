@@ -22,9 +22,7 @@ BLURS_MM = (1.2, 0.5, 0.2)
 # Most marks converge after 6 steps. Marks of hairy strokes that are unlike their prediction converge after 15.
 MAX_STEPS_PER_BLUR = 20
 MAX_WIDER_STEP_MM = 1.0  # largest change of wider_mm in one step
-TURN_WEIGHT = (
-    3000.0  # weight of the prior turn of 0 against the pixels: rings and dots do not show their turn
-)
+TURN_WEIGHT = 3000.0  # weight of the prior turn of 0 against the pixels: rings and dots do not show their turn
 MAX_SHIFT_MM = 8.0  # largest shift: beyond it, the mark counts as not found
 
 
@@ -141,6 +139,4 @@ def locate_mark(
             settled = length < 0.01 and abs(step[3]) < 0.02
             if length < 0.003 and abs(step[3]) < 0.003:
                 break
-    return Placed(
-        (float(estimate[0]), float(estimate[1])), float(estimate[2]), float(estimate[3]), bool(settled)
-    )
+    return Placed((float(estimate[0]), float(estimate[1])), float(estimate[2]), float(estimate[3]), bool(settled))

@@ -145,9 +145,7 @@ def _places_by_stroke(found: Comparison) -> dict[str, tuple[float, float, float]
     where too few marks are found to determine the pose of the sheet.
     """
     if found.spread_mm is None:
-        sentence = (
-            f"fewer than {MIN_MARKS} of its marks are found, which do not determine the pose of the sheet"
-        )
+        sentence = f"fewer than {MIN_MARKS} of its marks are found, which do not determine the pose of the sheet"
         raise Error(sentence, code="marks-missing")
     sheet, out = found.common, {}
     for row in found.strokes:
@@ -241,18 +239,13 @@ def report(title: str, found: Repeats) -> Report:
         else "",
         f"{plural(count, 'stroke')} {'was' if count == 1 else 'were'} not seen twice" if count else "",
     ]
-    over = (
-        f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
-    )
+    over = f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
     worst = sorted(found.rows, key=lambda row: -row.spread_mm)[:MAX_WORST_STROKES]
     lines = [
         f"{title}: {plural(len(found.rows), 'stroke')} on {over}: the same stroke is displaced by "
         f"{found.displacement_mm:.3f} mm in x and in y (standard deviation, 95 % interval {found.low_mm:.3f} to "
         f"{found.high_mm:.3f})",
-        *(
-            f"{row.stroke} spreads by {row.spread_mm:.3f} mm, {row.farthest_mm:.2f} mm at most"
-            for row in worst
-        ),
+        *(f"{row.stroke} spreads by {row.spread_mm:.3f} mm, {row.farthest_mm:.2f} mm at most" for row in worst),
         *(_describe_hysteresis(approach) for approach in found.approaches),
     ]
     if count:
@@ -279,9 +272,7 @@ def _detail_lines(found: Repeats) -> list[str]:
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0
     for edge, count in bins:
-        lines.append(
-            f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(MAX_BAR_LENGTH * count / most)}"
-        )
+        lines.append(f"  {before:5.2f} to {edge:5.2f}  {count:4d}  {'#' * round(MAX_BAR_LENGTH * count / most)}")
         before = edge
     return [
         *lines,

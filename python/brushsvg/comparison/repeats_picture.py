@@ -73,9 +73,7 @@ def _draw_spread(axes, found: Repeats) -> None:
     rows = sorted(found.rows, key=lambda row: -row.spread_mm)[:MAX_BARS][::-1]
     places = np.arange(len(rows))
     axes.barh(places, [row.spread_mm for row in rows], color=BAND, alpha=0.6, label="spread in x and in y")
-    axes.plot(
-        [row.farthest_mm for row in rows], places, "o", color=INK, markersize=4, label="farthest from mean"
-    )
+    axes.plot([row.farthest_mm for row in rows], places, "o", color=INK, markersize=4, label="farthest from mean")
     axes.set_yticks(places, [shortened(row.stroke, 18) for row in rows], fontsize=7)
     axes.axvline(found.displacement_mm, color=PREDICTED_COLOUR, linewidth=1, label="all strokes")
     left_out = len(found.rows) - len(rows)

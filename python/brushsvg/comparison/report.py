@@ -24,8 +24,7 @@ from .photographs import MAX_EDGE_DISTANCE_MM, MISSING_MARK_SHARE, Compared, Com
 MIN_STRAY_PAINT_MM2 = 1.0
 TABLE_HEAD = ("stroke", "drawn", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
 WORSE_PLACE_NOTE = (
-    " (less: the place comes from the middles of marks, which missing paint, the brush and the machine move, "
-    "too)"
+    " (less: the place comes from the middles of marks, which missing paint, the brush and the machine move, too)"
 )
 
 
@@ -56,9 +55,7 @@ def places_of(found: Comparison, strokes: list[TargetStroke]) -> list[tuple[str,
     target = [*chain(*((stroke.target if has_target else stroke.predicted) or () for stroke in strokes))]
     left, _, _, top = found.canvas.window_mm
     lines = [np.vstack([ring[:, :2] for ring in stroke.predicted]) for stroke in painting]
-    areas = worst_areas(
-        found.canvas.filled(target), found.painted, (left, top), found.canvas.px_per_mm, lines
-    )
+    areas = worst_areas(found.canvas.filled(target), found.painted, (left, top), found.canvas.px_per_mm, lines)
     names = [stroke.stroke for stroke in painting]
     return [(names[area.stroke], area) for area in areas]
 
@@ -86,9 +83,7 @@ def report(
     missing_count = sum(not row.placed.found and row.missing > MISSING_MARK_SHARE for row in found.strokes)
     reservations = [
         *low,
-        f"{plural(missing_count, 'mark')} {'is' if missing_count == 1 else 'are'} missing"
-        if missing_count
-        else "",
+        f"{plural(missing_count, 'mark')} {'is' if missing_count == 1 else 'are'} missing" if missing_count else "",
     ]
     reservations += ["something covers part of the sheet"] if found.has_things else []
     rows = {row.stroke: row for row in found.strokes}
@@ -110,9 +105,7 @@ def report(
         fix_first(faults, any_alone),
     ]
     if found.elsewhere_mm2 > MIN_STRAY_PAINT_MM2:
-        lines.append(
-            f"Paint further than {MAX_EDGE_DISTANCE_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2."
-        )
+        lines.append(f"Paint further than {MAX_EDGE_DISTANCE_MM:g} mm from all marks: {found.elsewhere_mm2:.1f} mm^2.")
     details = [
         *table(
             TABLE_HEAD,

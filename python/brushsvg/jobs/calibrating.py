@@ -238,9 +238,7 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
         if name not in option_fields:
             raise TypeError(f"{name!r} is no option of calibrate; known are {', '.join(option_fields)}")
     options = {
-        name: value
-        for name, value in options.items()
-        if value is not None or option_fields[name].default is not None
+        name: value for name, value in options.items() if value is not None or option_fields[name].default is not None
     }
     refuse_unknown_parts(options.get("machine", ()))
     for name in ("absolute", "total", "paint", "mirrored"):
@@ -374,9 +372,7 @@ def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibr
         calibration = calibrate_dabs(dabs_of(read), known_brush, name, edge_mm(read), joined_strokes)
     warn(photos[0], calibration.remarks)
     report = dab_report.report(calibration)
-    return BrushCalibration(
-        calibration.brush, "dabs", calibration, report, reading_in_words(read), _read=read
-    )
+    return BrushCalibration(calibration.brush, "dabs", calibration, report, reading_in_words(read), _read=read)
 
 
 def _fit_lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
@@ -409,6 +405,4 @@ def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
         learned = learn(plan, prior_brush, pictures, name, options.machine, spread_mm)
     with_lineage(learned.updated.brush, prior_brush, digests)
     warn(photos[0], list(learned.notices))
-    return BrushCalibration(
-        learned.updated.brush, "job", learned.updated, update_report.report(learned.updated)
-    )
+    return BrushCalibration(learned.updated.brush, "job", learned.updated, update_report.report(learned.updated))

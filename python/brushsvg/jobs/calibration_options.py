@@ -84,9 +84,7 @@ def find_contradiction(source, options: CalibrationOptions) -> str:
     ]
     if options.plan is not None or options.prior is not None:
         is_incomplete = options.plan is None or options.prior is None
-        rules.append(
-            (is_incomplete, "--plan and --prior go together: the painted plan, and the brush that painted it")
-        )
+        rules.append((is_incomplete, "--plan and --prior go together: the painted plan, and the brush that painted it"))
         for flag in ("chart", "bar_mm", "dpi", "mirrored", "total", "brush", "height_mm", "paint"):
             flag_name = flag.removesuffix("_mm")
             rules.append((bool(getattr(options, flag)), f"--{flag_name} is not for a job (--plan)"))

@@ -86,8 +86,6 @@ def _stop_thread(thread: threading.Thread) -> None:
     """
     end = time.monotonic() + MAX_CANCEL_WAIT_S
     while thread.is_alive() and time.monotonic() < end:
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(
-            ctypes.c_ulong(thread.ident), ctypes.py_object(_WorkCancelled)
-        )
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(_WorkCancelled))
         # The exception is lost where Python ignores exceptions, as in a destructor: raise it again.
         thread.join(MAX_CANCEL_WAIT_S / 4)

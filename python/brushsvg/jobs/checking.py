@@ -138,9 +138,7 @@ def check(
         raise Error("corrections need the drawing that they are of", "corrections", code="options-contradict")
     notices: list[Notice] = []
     result = cancelling.run(
-        lambda stage: check_program(
-            os.fspath(program), chosen, stage, lambda _, warnings: notices.extend(warnings)
-        ),
+        lambda stage: check_program(os.fspath(program), chosen, stage, lambda _, warnings: notices.extend(warnings)),
         progress,
         cancel,
     )
@@ -260,9 +258,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         simulated = simulate_program.simulate_program(read, brush, cell, sheet_mm, z_offset_mm)
     warn(program.path, _report_offset(z_offset_mm))
     with name_file_in_errors(program.path):
-        problems = simulated.problems + simulate_program.check_stroke_numbers(
-            read, header.first_stroke, header.strokes
-        )
+        problems = simulated.problems + simulate_program.check_stroke_numbers(read, header.first_stroke, header.strokes)
         strokes, drawn, speeds = None, None, None
         if work:
             loads = split_into_loads(work.plan, brush, cell)
@@ -321,9 +317,7 @@ def _merge_style_differences(differences: list[Notice]) -> list[Notice]:
 
     Neither the program nor its plan.json says how the strokes were planned, so they may be as requested.
     """
-    restyled = [
-        each for each in differences if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")
-    ]
+    restyled = [each for each in differences if each.code in ("path-elsewhere", "held-otherwise", "stroke-too-fast")]
     if not restyled:
         return differences
     sentence = (
@@ -359,9 +353,7 @@ def _compare_with_rewritten(
         least_s = duration_s(fastest_program)
     changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s)
     notices = (
-        [Notice("", changed_line, code="program-changed")]
-        if changed_line
-        else pace.stops(program.read, rewritten)
+        [Notice("", changed_line, code="program-changed")] if changed_line else pace.stops(program.read, rewritten)
     )
     return rewritten, notices
 
@@ -372,12 +364,7 @@ def _make_expected_header(header, work: Work | None) -> tuple[str, tuple[str, ..
     They come from the drawing, or from the header itself where nothing else is known, as for a program that was
     made from a plan.
     """
-    if (
-        work is None
-        or work.strokes is None
-        or not header.notes[:1]
-        or not header.notes[0].startswith("compensation")
-    ):
+    if work is None or work.strokes is None or not header.notes[:1] or not header.notes[0].startswith("compensation"):
         return header.title, header.notes
     order = [note for note in header.notes if note.startswith("order")]
     return work.title or "untitled", (*outputs.header_lines(work), *order)
@@ -402,9 +389,7 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
     warn(path, foreign.warnings)
     painted_work = Work("", brush, foreign.plan, None, (), Options(cell=cell), ())
     figures = outputs.make_report(painted_work, foreign.marks, cell, forbidden=foreign.problems)
-    return Check(
-        "painting", foreign.problems, is_foreign=True, work=painted_work, marks=foreign.marks, figures=figures
-    )
+    return Check("painting", foreign.problems, is_foreign=True, work=painted_work, marks=foreign.marks, figures=figures)
 
 
 def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
@@ -416,9 +401,7 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
     cell, brush = program.cell, program.brush
     with name_file_in_errors(program.path):
         if (header.heights_mm or header.first_mm) and chosen.input is not None:
-            raise Error(
-                "it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare"
-            )
+            raise Error("it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare")
         if header.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
     work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
@@ -439,9 +422,7 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
             )
         if header.first_mm:
             outcome = setup_programs.look_at_first_run(text, read, header, brush, cell)
-            return Check(
-                "first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.first_mm)
-            )
+            return Check("first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.first_mm))
         outcome = setup_programs.look_at_heights(text, read, header, brush, cell)
         return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.heights_mm))
 

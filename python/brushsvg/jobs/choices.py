@@ -294,9 +294,7 @@ def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:
                 code=f"{kind}-unknown",
                 advice=f"give --{kind}",
             )
-    return replace(
-        chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None}
-    )
+    return replace(chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None})
 
 
 def drop_overruled(chosen: Choices, settings: Mapping[str, object] | None = None) -> Choices:

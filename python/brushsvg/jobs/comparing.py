@@ -169,9 +169,7 @@ def compare(
         def warn(_, warnings):
             notices.extend(warnings)
 
-        return compare_sheet(
-            prepare_painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn
-        )
+        return compare_sheet(prepare_painted_sheet(chosen, stage, warn), [*map(os.fspath, paths)], stage, warn)
 
     return replace(cancelling.run(work, progress, cancel), notices=tuple(notices))
 
@@ -202,9 +200,7 @@ def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], o
         marks = prediction.predict(work, True, stage)
         before = replace(before, corrections=select_for_machine(before.corrections, _get_cell_machine(work)))
         plan = corrected_plan or apply_corrections(work.plan, before.corrections, work.brush)
-        target = (
-            {} if work.strokes is None else {stroke.id: target_rings([stroke]) for stroke in work.strokes}
-        )
+        target = {} if work.strokes is None else {stroke.id: target_rings([stroke]) for stroke in work.strokes}
         strokes = (
             TargetStroke(mark.stroke, target.get(mark.stroke), [*mark.outline_mm], not is_margin(a_pass))
             for mark, a_pass in zip(marks.passes, work.plan.passes, strict=True)
@@ -212,9 +208,7 @@ def _prepare_sheet(given: Choices, before: SheetBefore, stage: Callable[[str], o
         alternative = None
         if given.margin_strokes is None and any(map(is_margin, work.strokes or ())):
             without_margin = replace(given, margin_strokes="off")
-            alternative = functools.partial(
-                _prepare_sheet, without_margin, given_before, stage, ignore_notices
-            )
+            alternative = functools.partial(_prepare_sheet, without_margin, given_before, stage, ignore_notices)
         return Sheet(work, plan, before, job_page(plan, work.title), tuple(strokes), alternative)
 
 
@@ -297,9 +291,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
     )
 
 
-def _find_correctable_machine(
-    faults: Faults, middle_mm, cell: Cell, axes
-) -> tuple[Machine | None, dict[str, str]]:
+def _find_correctable_machine(faults: Faults, middle_mm, cell: Cell, axes) -> tuple[Machine | None, dict[str, str]]:
     """Return the machine for the next cell, without numbers that the cell refuses.
 
     Also returns, by key, why a number is left out.
@@ -325,15 +317,11 @@ def _report_uncorrectable(faults: Faults, cell: Cell, left_out: dict[str, str]) 
     certain_errors = [name for name, value in certain_of(faults).items() if value]
     print_scale = _estimate_print_scale(faults)
     uncorrectable = [
-        name
-        for name in certain_errors
-        if key_of(name) in left_out and not (print_scale and key_of(name) == "scale")
+        name for name in certain_errors if key_of(name) in left_out and not (print_scale and key_of(name) == "scale")
     ]
     notices = []
     if print_scale:
-        sentence = (
-            f"the page was probably printed at {100 * print_scale:.1f} %: both axes seem to be as much off"
-        )
+        sentence = f"the page was probably printed at {100 * print_scale:.1f} %: both axes seem to be as much off"
         advice = "measure its bar and print it at 100 %; the scale goes into no cell"
         notices.append(Notice("page", sentence, code="page-scale", advice=advice))
     if not uncorrectable:

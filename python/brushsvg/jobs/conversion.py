@@ -172,9 +172,7 @@ def convert(
     job = Job(chosen.z_offset or 0.0, first_stroke)
 
     def run_conversion(stage) -> tuple[Conversion, dict]:
-        return _make_conversion(
-            chosen, out, paths, tuple(formats), bool(figures), job, order, bool(lenient), stage
-        )
+        return _make_conversion(chosen, out, paths, tuple(formats), bool(figures), job, order, bool(lenient), stage)
 
     conversion, files = cancelling.run(run_conversion, progress, cancel)
     if files:
@@ -221,16 +219,12 @@ def _make_conversion(
         if out is not None:
             formats = tuple(dict.fromkeys([suffix_of(out), *formats]))
         formats = formats or (default_suffix(cell),)
-        files = (
-            {paths["page"]: outputs.make_job_page(suffix_of(paths["page"]), work)} if "page" in paths else {}
-        )
+        files = {paths["page"]: outputs.make_job_page(suffix_of(paths["page"]), work)} if "page" in paths else {}
         simulations = {}
         for suffix in formats:
             with_outlines = suffix_of(paths.get("picture")) == ".svg"
             marks = simulations[formats[0]].marks if simulations else None
-            simulations[suffix] = simulate_and_check(
-                work, suffix, job, order, lenient, with_outlines, stage, marks
-            )
+            simulations[suffix] = simulate_and_check(work, suffix, job, order, lenient, with_outlines, stage, marks)
             _raise_first_problem(simulations[suffix].problems, work.notices)
         first_simulation = simulations[formats[0]]
         stage("writing the program")
@@ -310,9 +304,7 @@ class SimulatedWork:
         Raises Error if something forbids writing it.
         """
         work = self.work
-        encoded_program = writer.encode_checked(
-            self.suffix, work.plan, self.walk, work.brush, work.title, self.notes
-        )
+        encoded_program = writer.encode_checked(self.suffix, work.plan, self.walk, work.brush, work.title, self.notes)
         return writer.in_parts(self.suffix, encoded_program)
 
     def remarks(self) -> list[Notice]:
@@ -336,9 +328,7 @@ class SimulatedWork:
 
     def time_s(self) -> float | None:
         """Return how long the machine takes for the program, or for one of the plan."""
-        return estimate_output_time_s(
-            self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell
-        )
+        return estimate_output_time_s(self.suffix, self.work.plan, self.walk, self.work.brush, self.work.options.cell)
 
 
 def _check_lowering(z_offset_mm: float) -> list[Notice]:
@@ -370,9 +360,7 @@ def _check_stroke_order(work: Work, order: str, first_stroke: int) -> list[Notic
         "strokes are pressed as deep as the paint that the drawing's order leaves asks for: "
         f"{' and '.join(changes)} they come out wider or narrower than drawn"
     )
-    return [
-        Notice("", sentence, code="paint-out-of-turn", advice="fetch paint more often: [reload] of the cell")
-    ]
+    return [Notice("", sentence, code="paint-out-of-turn", advice="fetch paint more often: [reload] of the cell")]
 
 
 def simulate_and_check(

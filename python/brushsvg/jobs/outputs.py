@@ -36,13 +36,9 @@ def header_lines(work: Work) -> tuple[str, ...]:
     lag = f", lag {options.lag_mm:g} mm" if options.lag_mm is not None else ""
     start = f", start {options.start}" if options.start != Options.start else ""
     end = f", end {options.end}" if options.end != Options.end else ""
-    compensation_line = (
-        f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
-    )
+    compensation_line = f"compensation: {options.compensation}, tolerance {options.tolerance_mm:g} mm{lag}{start}{end}"
     damaged = sum(notice.damaged for notice in work.notices)
-    warnings_line = f"warnings: {len(work.notices)}" + (
-        f", {damaged} of them damaged geometry" if damaged else ""
-    )
+    warnings_line = f"warnings: {len(work.notices)}" + (f", {damaged} of them damaged geometry" if damaged else "")
     lines = (compensation_line, warnings_line) if work.strokes is not None else (warnings_line,)
     if any(map(is_margin, work.strokes or ())):
         lines += (f"{MARGIN_KIND}: {sum(map(is_margin, work.strokes))} strokes",)
@@ -50,9 +46,7 @@ def header_lines(work: Work) -> tuple[str, ...]:
         lines += (f"{MARGIN_KIND}: 0 strokes",)
     if options.corrections:
         farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
-        lines += (
-            f"corrections: {len(options.corrections)} strokes, shifted by {farthest_mm:.2f} mm at most",
-        )
+        lines += (f"corrections: {len(options.corrections)} strokes, shifted by {farthest_mm:.2f} mm at most",)
     return lines
 
 
@@ -137,15 +131,12 @@ def overlap_picture(
     painted = _core.coverage(marks, work.brush, window, px_per_mm)
     height_mm = work.plan.sheet_mm[1]
     at_px = {
-        place.number: (place.place_mm[0] * px_per_mm, (height_mm - place.place_mm[1]) * px_per_mm)
-        for place in places
+        place.number: (place.place_mm[0] * px_per_mm, (height_mm - place.place_mm[1]) * px_per_mm) for place in places
     }
     return overlap_png(target, painted, long_side_px is None, at_px)
 
 
-def make_animation(
-    work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0
-) -> bytes:
+def make_animation(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
     """Return an HTML page that plays tool and paint over time.
 
     loads: the plan of the work in loads.

@@ -109,9 +109,7 @@ def select_colour(work: Work, colour: str) -> Work:
         sentence = f"nothing is painted in {colour}; colours of this drawing: {known_colours}"
         raise Error(sentence, "colour", code="nothing-to-paint")
     painted_colours = {"", colour} if colour == all_colours[0] else {colour}
-    return _select_rows(
-        work, [k for k, each in enumerate(work.plan.passes) if each.colour in painted_colours]
-    )
+    return _select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in painted_colours])
 
 
 def _select_rows(work: Work, rows: list[int]) -> Work:

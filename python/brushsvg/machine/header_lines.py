@@ -11,9 +11,7 @@ from .program import WHOLE_JOB, Job
 TILT_LINE = "tilt: the brush is held as each move says"
 
 
-def header_of(
-    title: str, brush: str, loads: PlanInLoads, notes, program: Program, job: Job
-) -> tuple[str, ...]:
+def header_of(title: str, brush: str, loads: PlanInLoads, notes, program: Program, job: Job) -> tuple[str, ...]:
     """Return the header of a program.
 
     Loads before the job's first stroke are only counted.

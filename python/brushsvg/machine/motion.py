@@ -84,9 +84,7 @@ class Section:
 
         For a dab, it is the speed of the landing.
         """
-        speeds = [
-            [move.speed_mm_s for move in self.moves if move.meaning == kind] for kind in ("paint", "land")
-        ]
+        speeds = [[move.speed_mm_s for move in self.moves if move.meaning == kind] for kind in ("paint", "land")]
         return max(speeds[0] or speeds[1])
 
 
@@ -235,11 +233,7 @@ def duration_of_path_s(length_mm: float, speed_mm_s: float, cell: Cell) -> float
     The speed rises with the cell's acceleration, stays constant, and falls. A short path never reaches the speed.
     """
     a = cell.speeds.acceleration_mm_s2
-    return (
-        length_mm / speed_mm_s + speed_mm_s / a
-        if length_mm > speed_mm_s**2 / a
-        else 2 * (length_mm / a) ** 0.5
-    )
+    return length_mm / speed_mm_s + speed_mm_s / a if length_mm > speed_mm_s**2 / a else 2 * (length_mm / a) ** 0.5
 
 
 def length_mm(move: Move, start_mm: np.ndarray | None) -> float:
@@ -253,9 +247,7 @@ def length_mm(move: Move, start_mm: np.ndarray | None) -> float:
     if move.arc is None:
         return sum(steps)
     diameter_mm = 2 * sum(math.dist(point[:2], move.arc.centre_mm) for point in path) / len(path)
-    return (
-        sum(diameter_mm * math.asin(min(step / diameter_mm, 1.0)) for step in steps) if diameter_mm else 0.0
-    )
+    return sum(diameter_mm * math.asin(min(step / diameter_mm, 1.0)) for step in steps) if diameter_mm else 0.0
 
 
 def distances(move: Move, here: np.ndarray | None) -> np.ndarray:

@@ -49,9 +49,7 @@ def make_paths(paths, circles=()) -> Ways:
     sweep = (np.arctan2(last[:, 1], last[:, 0]) - first) * turn % (2 * np.pi)
     sweep[sweep == 0] = 2 * np.pi
     rise = np.column_stack([np.zeros((len(end), 2)), end[:, 2] - start[:, 2]])
-    return Ways(
-        np.vstack([no_points, *starts]), np.vstack([no_points, *ends]), centre, spoke, across, rise, sweep
-    )
+    return Ways(np.vstack([no_points, *starts]), np.vstack([no_points, *ends]), centre, spoke, across, rise, sweep)
 
 
 def paths_in_frame(frame: np.ndarray, moves: Ways) -> Ways:
@@ -94,9 +92,7 @@ def distances_from_origin(moves: Ways) -> tuple[float, float]:
         return (a * b).sum(axis=1)
 
     # |centre + spoke cos t + across sin t + k rise|^2, where spoke, across and rise are at right angles
-    least, greatest = _harmonic_range(
-        dot(moves.centre, moves.spoke), dot(moves.centre, moves.across), moves.sweep_rad
-    )
+    least, greatest = _harmonic_range(dot(moves.centre, moves.spoke), dot(moves.centre, moves.across), moves.sweep_rad)
     climb, height = dot(moves.rise, moves.rise), dot(moves.centre, moves.rise)
     height_fraction = np.clip(-height / np.where(climb > 0, climb, 1), 0, 1)
     squared_radius = dot(moves.centre, moves.centre) + dot(moves.spoke, moves.spoke)
@@ -155,9 +151,7 @@ def _angles_between_planes(moves: Ways, k: int, low: np.ndarray, high: np.ndarra
     return (angles[1:] + angles[:-1]) / 2
 
 
-def _harmonic_range(
-    spoke: np.ndarray, across: np.ndarray, sweep_rad: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _harmonic_range(spoke: np.ndarray, across: np.ndarray, sweep_rad: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the range of spoke cos t + across sin t for t from 0 to sweep_rad."""
     end = spoke * np.cos(sweep_rad) + across * np.sin(sweep_rad)
     amplitude, phase = np.hypot(spoke, across), np.arctan2(across, spoke)

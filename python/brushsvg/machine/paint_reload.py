@@ -99,9 +99,7 @@ def split_into_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanIn
 
 def _split_for_map(a_pass, machine):
     axes = axes_of(a_pass)
-    rows = in_lines_mm(
-        np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine
-    )
+    rows = in_lines_mm(np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine)
     return on_way(a_pass, rows[:, :3], (), None if axes is None else normalize(rows[:, 3:]))
 
 
@@ -135,9 +133,7 @@ def report_missing_paint(brush: _core.Brush, cell: Cell) -> list[Notice]:
     """
     if not cell.reload or not cell.reload.narrower_percent or brush.paint:
         return []
-    sentence = (
-        f"brush {brush.name} does not say how its marks narrow: narrower_percent of the cell has no effect"
-    )
+    sentence = f"brush {brush.name} does not say how its marks narrow: narrower_percent of the cell has no effect"
     return [Notice("", sentence, code="paint-unknown", advice='measure it: "paint" of a brush file')]
 
 
@@ -164,8 +160,7 @@ def _start_and_end_on_paper(a_pass):
     ends = poses[[0, -1]] * (1, 1, 0) + 0.0  # adding 0.0 turns -0.0 into 0.0
     before, after = ends[:1][below[:1]], ends[1:][below[1:]]
     arcs = [
-        _core.Arc(arc.first + len(before), arc.last + len(before), arc.centre_mm, arc.direction)
-        for arc in a_pass.arcs
+        _core.Arc(arc.first + len(before), arc.last + len(before), arc.centre_mm, arc.direction) for arc in a_pass.arcs
     ]
     axes = np.asarray(a_pass.tool_axes).reshape(-1, 3)
     if len(axes):
@@ -269,9 +264,7 @@ def fetched_mm(plan: _core.Plan, brush: _core.Brush, cell: Cell | None) -> list[
 
 def dips_without_cell(passes) -> list[list[float]]:
     """Return dips_mm for passes whose paint is not fetched by a program."""
-    return [
-        [] if number and a_pass.settings.reload is False else [0.0] for number, a_pass in enumerate(passes)
-    ]
+    return [[] if number and a_pass.settings.reload is False else [0.0] for number, a_pass in enumerate(passes)]
 
 
 def _part_start_mm(stroke, part, after_mm: float) -> float:
@@ -340,8 +333,7 @@ def _pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tupl
     if not any(is_new_pen):
         return ()
     return tuple(
-        (pen(a_pass.colour),) if is_new else ()
-        for a_pass, is_new in zip(loads.loads, is_new_pen, strict=True)
+        (pen(a_pass.colour),) if is_new else () for a_pass, is_new in zip(loads.loads, is_new_pen, strict=True)
     )
 
 

@@ -56,8 +56,7 @@ def check_job(
     written = walk.written if is_paper_unchanged else make_written_form(loads, cell, WHOLE_JOB)
     return replace(
         walk,
-        problems=limit_problems
-        or find_blend_shifts(loads, brush, cell, tolerance_mm, job.first_stroke, written),
+        problems=limit_problems or find_blend_shifts(loads, brush, cell, tolerance_mm, job.first_stroke, written),
     )
 
 
@@ -141,8 +140,7 @@ def off_sheet(
             )
             for side, beyond in distances_beyond_edges(bounds_mm, sheet_mm).items()
             if beyond
-            >= 0.005
-            + _MAX_EDGE_SHIFT_RATIO * rounded_mm  # a value that would print as 0.00 mm is rounding, not paint
+            >= 0.005 + _MAX_EDGE_SHIFT_RATIO * rounded_mm  # a value that would print as 0.00 mm is rounding, not paint
         ]
     return notices
 
@@ -163,9 +161,7 @@ def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, flo
     return (*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist())
 
 
-def job_bounds_mm(
-    plan: _core.Plan, marks: _core.Marks, brush: _core.Brush
-) -> tuple[float, float, float, float]:
+def job_bounds_mm(plan: _core.Plan, marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, float, float]:
     """Return left, bottom, right and top of all paint and of the tool's path [mm].
 
     The tool's path enters strokes from outside of them. Raises Error if nothing touches the paper.
@@ -204,9 +200,7 @@ def find_blend_shifts(
         if number >= first_stroke
     ]
     for first, last in _group_passes(commanded_passes):
-        runs = as_run(
-            commanded_passes[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs)
-        )
+        runs = as_run(commanded_passes[first:last], lambda poses, arcs: blend_radii(poses, cell.blending, arcs))
         pairs = zip(commanded_passes[first:last], runs, strict=True)
         blended_runs = [(a_pass, *run) for a_pass, run in pairs if len(run[1]) > len(a_pass.poses_mm)]
         planned_and_blended = [a_pass for a_pass, _, _ in blended_runs] + [run for _, run, _ in blended_runs]
@@ -235,9 +229,7 @@ MAX_ROW_SPACING_MM = 0.02  # largest spacing of the rows of a mark, also for a c
 def _commanded_pass(a_pass, written: Written, cell: Cell):
     """Return a pass with the poses and circles of its program, but not rounded."""
     axes = np.zeros((0, 3)) if written.axes is None else written.axes
-    commanded = _core.Pass(
-        a_pass.stroke, written.commanded_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes
-    )
+    commanded = _core.Pass(a_pass.stroke, written.commanded_mm, a_pass.speed_mm_s, arcs=written.arcs, tool_axes=axes)
     return true_pass(commanded, cell)
 
 
@@ -274,10 +266,7 @@ def as_run(passes, radii_of: Callable[[np.ndarray, list], np.ndarray]) -> list[t
     for a_pass, start, end in zip(passes, starts[:-1], starts[1:], strict=True):
         first, last = points[start, 0], points[end - 1, 1] + 1
         rows = points[start:end] - first
-        arcs = [
-            _core.Arc(rows[arc.first, 1], rows[arc.last, 0], arc.centre_mm, arc.direction)
-            for arc in a_pass.arcs
-        ]
+        arcs = [_core.Arc(rows[arc.first, 1], rows[arc.last, 0], arc.centre_mm, arc.direction) for arc in a_pass.arcs]
         rows_at, axes = at[first:last] - start, np.asarray(a_pass.tool_axes)
         if len(axes):  # the brush turns along the cut as it does along the moves
             axes = interpolate_axes(axes, rows_at)
@@ -302,9 +291,7 @@ def _largest_shift_mm(planned_trace, run, at: np.ndarray, brush) -> float:
     planned_widest = np.column_stack(
         [np.interp(pose, np.asarray(planned_trace.pose)[planned_rows], axis) for axis in widest_of_plan.T]
     )
-    return float(
-        np.linalg.norm(_core.widest_points(run, brush)[run_rows][taut] - planned_widest, axis=1).max()
-    )
+    return float(np.linalg.norm(_core.widest_points(run, brush)[run_rows][taut] - planned_widest, axis=1).max())
 
 
 def _moving_rows(trace) -> slice:

@@ -129,9 +129,7 @@ def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE
         problems += find_stations_out_of_limits(brush, cell, made.robot_from_frame, loads.sheet_mm)
     if problems and cell.reload:  # name the stroke as it was drawn, once for all its parts
         stroke_of_load = dict(zip((a_pass.stroke for a_pass in loads.loads), loads.strokes(), strict=True))
-        problems = [
-            replace(notice, where=stroke_of_load.get(notice.where, notice.where)) for notice in problems
-        ]
+        problems = [replace(notice, where=stroke_of_load.get(notice.where, notice.where)) for notice in problems]
     return CheckedProgram(loads, job, made, written, list(dict.fromkeys(problems)))
 
 
@@ -220,9 +218,7 @@ def _fits_in_cache(loads: PlanInLoads, job: Job) -> bool:
     return sum(len(a_pass.poses_mm) for a_pass in left_loads) <= POSES_KEPT
 
 
-def make_written_form(
-    loads: PlanInLoads, cell: Cell, job: Job, was_read: bool = False
-) -> Callable[[int], Written]:
+def make_written_form(loads: PlanInLoads, cell: Cell, job: Job, was_read: bool = False) -> Callable[[int], Written]:
     """Return a function that gives the written form of a load by its number.
 
     Loads are numbered from 1. The results are kept for a small plan.
@@ -274,9 +270,7 @@ def point_above(point, height_mm: float) -> np.ndarray:
 
 def safe_point_above(commanded_mm, cell: Cell) -> np.ndarray:
     """Return the place (1, 3) [mm] at the safe height above a commanded place."""
-    (height_mm,) = commanded_heights_mm(
-        np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine
-    )
+    (height_mm,) = commanded_heights_mm(np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine)
     return point_above(commanded_mm, height_mm)
 
 
@@ -305,9 +299,7 @@ def find_stations_out_of_limits(brush, cell: Cell, frame: np.ndarray, sheet_mm=N
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     """
     visited = ([make_visit(station, brush, cell)] for station in cell.stations)
-    return [
-        notice for sections in visited for notice in find_astray_sections(sections, frame, cell, sheet_mm)
-    ]
+    return [notice for sections in visited for notice in find_astray_sections(sections, frame, cell, sheet_mm)]
 
 
 def make_visit(station: Station, brush, cell: Cell) -> Section:

@@ -58,9 +58,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
     high_mm = _air_run_height_mm(cell, sheet_mm) - cell.heights.safe_mm
     air_run = border((0.0, 0.0, width, height), brush, cell, sheet_mm)
     strokes = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
-    used_mm = max(
-        x for x, _ in _stroke_starts(len(stroke_heights_mm(highest_mm, lowest_mm, step_mm)), sheet_mm)
-    )
+    used_mm = max(x for x, _ in _stroke_starts(len(stroke_heights_mm(highest_mm, lowest_mm, step_mm)), sheet_mm))
     start = (width - LANE_SPACING_MM - LAST_STROKE_MM, LANE_SPACING_MM)
     if start[0] < used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + LANE_SPACING_MM:
         room_mm = used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + 2 * LANE_SPACING_MM + LAST_STROKE_MM
@@ -108,11 +106,7 @@ def _wait_for_person(message: str) -> Wait:
 
 
 def _raise_step(step: Move | Wait, by_mm: float) -> Move | Wait:
-    return (
-        step
-        if isinstance(step, Wait)
-        else replace(step, points_mm=step.points_mm + np.array([0.0, 0.0, by_mm]))
-    )
+    return step if isinstance(step, Wait) else replace(step, points_mm=step.points_mm + np.array([0.0, 0.0, by_mm]))
 
 
 def _air_run_height_mm(cell: Cell, sheet_mm) -> float:
@@ -269,9 +263,7 @@ def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program
     lanes = np.linspace(0.0, height, max(2, math.ceil(height / MAX_SHEET_LANE_SPACING_MM) + 1))
     ends = [((0.0, y), (width, y))[:: 1 if k % 2 == 0 else -1] for k, y in enumerate(lanes)]
     flat = np.array(ends).reshape(-1, 2)
-    high_points, low_points = (
-        np.column_stack([flat, np.full(len(flat), z)]) for z in (cell.heights.safe_mm, 0.0)
-    )
+    high_points, low_points = (np.column_stack([flat, np.full(len(flat), z)]) for z in (cell.heights.safe_mm, 0.0))
     moves = (
         Move("travel", high_points, cell.speeds.travel_mm_s),
         Move("look", low_points[::-1], touching_mm_s(brush, cell)),
@@ -312,10 +304,7 @@ def _stroke_starts(count: int, sheet_mm) -> list[tuple[float, float]]:
             f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}",
             code="strokes-out-of-range",
         )
-    return [
-        (LANE_SPACING_MM + pitch * (k // rows), height - LANE_SPACING_MM * (1 + k % rows))
-        for k in range(count)
-    ]
+    return [(LANE_SPACING_MM + pitch * (k // rows), height - LANE_SPACING_MM * (1 + k % rows)) for k in range(count)]
 
 
 def _checked_program(

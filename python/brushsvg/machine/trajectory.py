@@ -48,9 +48,7 @@ def make_timed_sections(program: Program) -> Iterator[tuple[str, np.ndarray]]:
                 here_mm = tuple(np.round(step.points_mm[0], decimals).tolist())
                 axis_here = axis_here if axes is None else tuple(axes[0].tolist())
                 rows.append((now_s, *here_mm, step.speed_mm_s, POSE_ROW, *axis_here))
-            now_s, here_mm, axis_here = _append_move_rows(
-                step, here_mm, axes, axis_here, now_s, a, decimals, rows
-            )
+            now_s, here_mm, axis_here = _append_move_rows(step, here_mm, axes, axis_here, now_s, a, decimals, rows)
         yield section.title, np.array(rows).reshape(-1, 6 + len(normal))
 
 
@@ -142,9 +140,7 @@ def joint_speed_limits(
     cosine = np.clip((along[1:] * along[:-1]).sum(axis=1), -1.0, 1.0)
     half_tangents = np.sqrt((1 - cosine) / np.maximum(1 + cosine, 1e-12))  # tan(t / 2)
     radii = blends_mm[at[:-1] - 1]
-    return np.sqrt(
-        np.divide(a * radii, half_tangents, out=np.full(count - 1, np.inf), where=half_tangents > 1e-7)
-    )
+    return np.sqrt(np.divide(a * radii, half_tangents, out=np.full(count - 1, np.inf), where=half_tangents > 1e-7))
 
 
 def _speeds_at_joints(lengths: list[float], caps: list[float], tops: list[float], a: float) -> list[float]:

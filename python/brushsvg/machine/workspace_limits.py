@@ -54,9 +54,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                 notices += _check_pen_height(poses, cell)
         speed = a_pass.speed_mm_s
         if not min_mm_s <= speed <= max_mm_s:
-            sentence = (
-                f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:f}, {max_mm_s:.1f}] mm/s of {owner}"
-            )
+            sentence = f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:f}, {max_mm_s:.1f}] mm/s of {owner}"
             notices.append(Notice("", sentence, code="speed-out-of-range"))
         problems += [replace(notice, where=a_pass.stroke) for notice in notices]
     for station in cell.stations:
@@ -67,9 +65,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         (x, y), r = station.place_mm, station.stir_mm
         stir_points = [(x - r, y, 0.0), (x + r, y, 0.0), (x, y - r, 0.0), (x, y + r, 0.0)]
-        if any(
-            find_place_inside(make_paths([[point]]), *on_sheet) is not None for point in (*path, *stir_points)
-        ):
+        if any(find_place_inside(make_paths([[point]]), *on_sheet) is not None for point in (*path, *stir_points)):
             sentence = f"its place is on the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
         elif find_place_inside(make_paths([path]), *on_sheet) is not None:
@@ -78,9 +74,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
     return problems
 
 
-def find_astray_sections(
-    sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None
-) -> list[Notice]:
+def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None) -> list[Notice]:
     """Report each limit of place that the moves of sections break.
 
     Moves between sections are included. Each notice names the stroke or station. The path to the first move is not
@@ -216,9 +210,7 @@ def _check_pen_height(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
     moves_sideways = np.linalg.norm(np.diff(poses[:, :2], axis=0), axis=1) > 1e-9
     drawn = np.r_[moves_sideways, False] | np.r_[False, moves_sideways]
     drawn[poses[:, 2].argmin()] = True  # the deepest place of a dab
-    for k in np.flatnonzero(drawn & (np.abs(poses[:, 2] - cell.pen.down_mm) > MAX_PEN_HEIGHT_DIFFERENCE_MM))[
-        :1
-    ]:
+    for k in np.flatnonzero(drawn & (np.abs(poses[:, 2] - cell.pen.down_mm) > MAX_PEN_HEIGHT_DIFFERENCE_MM))[:1]:
         x, y, height = poses[k]
         sentence = (
             f"near x {x:.1f}, y {y:.1f} mm the height is {height:.3f} mm: the pen of cell {cell.name} is up or at "
@@ -232,9 +224,7 @@ def _check_pen_height(poses: np.ndarray, cell: Cell) -> Iterator[Notice]:
 MAX_PEN_HEIGHT_DIFFERENCE_MM = 0.005  # a smaller difference of height is not visible
 
 
-def _check_sheet(
-    low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_mm: float
-) -> Iterator[Notice]:
+def _check_sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_mm: float) -> Iterator[Notice]:
     margin = cell.workspace.margin_mm
     for side, beyond in distances_beyond_edges((*low[:2], *high[:2]), sheet_mm).items():
         if beyond - margin > slack_mm:
@@ -269,9 +259,7 @@ def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: fl
                 yield Notice("", sentence, code="servo-out-of-range")
 
 
-def _check_reach(
-    nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm: float
-) -> Iterator[Notice]:
+def _check_reach(nearest: float, farthest: float, cell: Cell, cut_mm: float, slack_mm: float) -> Iterator[Notice]:
     min_mm, max_mm = cell.workspace.reach_mm
     # a reach from 0 on has no lower limit, so a cut corner cannot break it
     nearest = max(nearest - max(cut_mm, 0.0), 0.0)
@@ -291,9 +279,7 @@ def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
         if (place := find_place_inside(moves, low - slack, high + slack)) is None:
             continue
         where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
-        box = ", ".join(
-            f"{axis} {a:g} to {b:g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True)
-        )
+        box = ", ".join(f"{axis} {a:g} to {b:g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True))
         sentence = f"the tool goes through {where} mm, in box {number} that cell {cell.name} keeps it out of: {box} mm"
         yield Notice("", sentence, code="in-kept-out-box", about=str(number))
 

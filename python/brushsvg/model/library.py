@@ -119,8 +119,7 @@ def mistyped_keys(brush: _core.Brush) -> list[Notice]:
     """
     mistyped = [notice for notice in unknown_keys(brush) if notice.about]
     return [
-        Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code)
-        for notice in mistyped
+        Notice(f"brush {brush.name}", f"{notice.where}: {notice.sentence}", code=notice.code) for notice in mistyped
     ]
 
 

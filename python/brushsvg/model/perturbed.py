@@ -14,9 +14,7 @@ def changed_lag(brush, change: np.ndarray):
     change: (n,), added to the coefficients.
     """
     law = brush.lag
-    return _core.Profile(
-        (np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope
-    )
+    return _core.Profile((np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope)
 
 
 def with_lag(brush, change: np.ndarray):
@@ -52,18 +50,12 @@ def with_factors(brush, factors: dict[str, tuple[float, ...]]):
     for name, factor in factors.items():
         law = getattr(brush, name)
         coefficients = np.convolve(law.coefficients, factor).tolist()
-        changed_law = _core.Profile(
-            coefficients, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0]
-        )
+        changed_law = _core.Profile(coefficients, floor=law.floor * factor[0], floor_slope=law.floor_slope * factor[0])
         setattr(changed, name, changed_law)
     if "half_width" in factors:
         changed.footprints = _core.FootprintTable(
-            dragged=[
-                _scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.dragged
-            ],
-            pressed=[
-                _scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.pressed
-            ],
+            dragged=[_scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.dragged],
+            pressed=[_scale_footprint(footprint, factors["half_width"]) for footprint in brush.footprints.pressed],
         )
     return changed
 

@@ -73,9 +73,7 @@ def _draw_law(axes, depths, name, meaning, law, band) -> None:
     values = np.array([law(depth) for depth in depths])
     if band:
         half, what = band
-        axes.fill_between(
-            depths, values - half, values + half, color=BAND, alpha=0.25, linewidth=0, label=f"+- {what}"
-        )
+        axes.fill_between(depths, values - half, values + half, color=BAND, alpha=0.25, linewidth=0, label=f"+- {what}")
     measured = law.calibrated_mm or ((math.inf, -math.inf) if law.assumed else (-math.inf, math.inf))
     inside = (depths >= measured[0]) & (depths <= measured[1])
     axes.plot(
@@ -105,9 +103,7 @@ def _draw_paint(axes, paint) -> None:
     share = np.array([100 * paint.width_share(way) for way in ways])
     if paint.covariance:
         off = np.exp(1e-3 * paint_interval_per_m(paint) * ways)
-        axes.fill_between(
-            ways, share / off, np.minimum(share * off, 100.0), color=BAND, alpha=0.25, linewidth=0
-        )
+        axes.fill_between(ways, share / off, np.minimum(share * off, 100.0), color=BAND, alpha=0.25, linewidth=0)
     axes.plot(ways, share, color=INK, linestyle=":" if paint.assumed else "-")
     if paint.lasts_mm:
         axes.axvline(paint.lasts_mm, color=QUIET, linewidth=1)
@@ -191,17 +187,13 @@ def _place_notes(figure, notes: list) -> None:
         x, y = each.axes.transData.transform(each.get_position())
         bounds = (frame.x0 + 2, height - frame.y1 + 2, frame.x1 - 2, height - frame.y0 - 2)
         space = spaces.setdefault(each.axes, LabelSpace(marks, bounds=bounds))
-        label = space.place(
-            (x, height - y), [(extent.width + 2 * NOTE_MARGIN_PX, extent.height + 2 * NOTE_MARGIN_PX)]
-        )
+        label = space.place((x, height - y), [(extent.width + 2 * NOTE_MARGIN_PX, extent.height + 2 * NOTE_MARGIN_PX)])
         left, bottom = label.left + NOTE_MARGIN_PX, label.top + label.height - NOTE_MARGIN_PX
         each.set_transform(figure.transFigure)
         each.set_position((left / width, 1 - bottom / height))
         if label.leader:
             xs, ys = np.array(label.leader).T
-            line = Line2D(
-                xs / width, 1 - ys / height, linewidth=0.6, color=QUIET, transform=figure.transFigure
-            )
+            line = Line2D(xs / width, 1 - ys / height, linewidth=0.6, color=QUIET, transform=figure.transFigure)
             figure.add_artist(line)
 
 

@@ -71,9 +71,7 @@ class Marks:
     paint: np.ndarray
 
 
-def find_marks(
-    flat: Flat, stroke_boxes: list[StrokeBox], printed_mm: list[np.ndarray], labels_mm: list
-) -> Marks:
+def find_marks(flat: Flat, stroke_boxes: list[StrokeBox], printed_mm: list[np.ndarray], labels_mm: list) -> Marks:
     """Find the marks of the strokes on a flattened sheet.
 
     printed_mm: rings around markers and everything printed as dark as paint; labels_mm: boxes of pale text, which a
@@ -129,9 +127,7 @@ def _rim_px(flat: Flat) -> int:
     return max(1, round(SHEET_RIM_MM * flat.px_per_mm))
 
 
-def _estimate_paper_light(
-    light: np.ndarray, is_printed: np.ndarray, px_per_mm: float
-) -> tuple[np.ndarray, bool]:
+def _estimate_paper_light(light: np.ndarray, is_printed: np.ndarray, px_per_mm: float) -> tuple[np.ndarray, bool]:
     """Return the light of bare paper at every pixel.
 
     Returns also whether paint is lighter than paper. The light is smoothed from the bare paper around, at one pixel per
@@ -163,14 +159,11 @@ def _is_paint_lighter(coarse: np.ndarray, is_covered: np.ndarray) -> bool:
 
     Pixels that are lighter than their surroundings then outnumber darker ones, at one pixel per mm.
     """
-    levels = np.uint8(
-        np.round(255 * np.sqrt(np.clip(coarse, 0, 1)))
-    )  # a median over so many pixels needs 8 bits
+    levels = np.uint8(np.round(255 * np.sqrt(np.clip(coarse, 0, 1))))  # a median over so many pixels needs 8 bits
     surroundings = np.dstack([cv2.medianBlur(channel, MAX_PAINT_WIDTH_MM) for channel in cv2.split(levels)])
     ratio = (levels + 1.0) / (surroundings + 1.0)
     darker, lighter = (
-        (channel > 1 / np.sqrt(MIN_BARE_LIGHT_RATIO)).any(axis=2) & ~is_covered
-        for channel in (1 / ratio, ratio)
+        (channel > 1 / np.sqrt(MIN_BARE_LIGHT_RATIO)).any(axis=2) & ~is_covered for channel in (1 / ratio, ratio)
     )
     return int(lighter.sum()) > int(darker.sum())
 
@@ -200,8 +193,7 @@ def _paint_weights(absorbed: np.ndarray) -> np.ndarray:
 
 
 NO_PAINT_MESSAGE = (
-    "no paint is found where the strokes should be: is this the painted page, "
-    "and does its paint differ from the paper?"
+    "no paint is found where the strokes should be: is this the painted page, and does its paint differ from the paper?"
 )
 
 
@@ -209,9 +201,7 @@ def _box_pixels(flat: Flat, box_mm, beyond_mm: float) -> tuple[int, int, int, in
     """Return the pixel columns and rows of an enlarged box: left, top, right, bottom."""
     left, bottom, right, top = box_mm
     rows, columns = flat.pixels.shape[:2]
-    (c0, r0), (c1, r1) = flat.to_px(
-        [[left - beyond_mm, top + beyond_mm], [right + beyond_mm, bottom - beyond_mm]]
-    )
+    (c0, r0), (c1, r1) = flat.to_px([[left - beyond_mm, top + beyond_mm], [right + beyond_mm, bottom - beyond_mm]])
     return (
         int(np.clip(np.floor(c0), 0, columns)),
         int(np.clip(np.floor(r0), 0, rows)),
@@ -261,9 +251,7 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
             return _assign_marks_once(paint, flat, leaning_boxes, labels_mm)
         except Error:
             raise refusal from None
-    if (marks.joined or marks.missing) and (
-        leaning_boxes := _lean_boxes(paint, flat, stroke_boxes)
-    ) is not None:
+    if (marks.joined or marks.missing) and (leaning_boxes := _lean_boxes(paint, flat, stroke_boxes)) is not None:
         with contextlib.suppress(Error):
             retried = _assign_marks_once(paint, flat, leaning_boxes, labels_mm)
             if len(retried.joined) + len(retried.missing) < len(marks.joined) + len(marks.missing):
@@ -297,9 +285,7 @@ def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) ->
         """
 
         def total_distance_mm(factors) -> float:
-            distances = np.linalg.norm(
-                np.dstack([offsets - np.outer(by, factors), 0.5 * size_differences]), axis=2
-            )
+            distances = np.linalg.norm(np.dstack([offsets - np.outer(by, factors), 0.5 * size_differences]), axis=2)
             return float(np.minimum(distances.min(axis=1), MAX_STRAY_MM).sum())
 
         factors, reach = np.zeros(2), MAX_LEAN_MM_PER_MM
@@ -315,24 +301,17 @@ def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) ->
         return None
     moved = boxes + np.outer(depths, np.tile(lean, 2))
     return [
-        replace(stroke_box, box_mm=tuple(box))
-        for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
+        replace(stroke_box, box_mm=tuple(box)) for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
     ]
 
 
-def _assign_marks_once(
-    paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list
-) -> Marks:
+def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], labels_mm: list) -> Marks:
     px_per_mm = flat.px_per_mm
     count, part, stats, _ = cv2.connectedComponentsWithStats(np.uint8(paint > SEEN), connectivity=8)
     owner = _number_nearest_boxes(flat, stroke_boxes)
     painted_px = np.flatnonzero(part)
-    pairs_of_numbers = (
-        part.ravel()[painted_px].astype(np.int64) * (len(stroke_boxes) + 1) + owner.ravel()[painted_px]
-    )
-    areas_in_boxes = np.bincount(pairs_of_numbers, minlength=count * (len(stroke_boxes) + 1)).reshape(
-        count, -1
-    )
+    pairs_of_numbers = part.ravel()[painted_px].astype(np.int64) * (len(stroke_boxes) + 1) + owner.ravel()[painted_px]
+    areas_in_boxes = np.bincount(pairs_of_numbers, minlength=count * (len(stroke_boxes) + 1)).reshape(count, -1)
     areas = stats[:, cv2.CC_STAT_AREA].astype(float)
     is_text = np.zeros(part.shape, bool)
     for box in labels_mm:
@@ -355,15 +334,11 @@ def _assign_marks_once(
     usual = float(np.median(paint[paint > SEEN])) if (paint > SEEN).any() else 1.0
     outlines, missing, joined = {}, [], []
     for number, stroke_box in enumerate(stroke_boxes, 1):
-        is_own = is_kept & np.where(
-            is_cut, areas_in_boxes[:, number] > MIN_PART_MM2 * px_per_mm**2, own_box == number
-        )
+        is_own = is_kept & np.where(is_cut, areas_in_boxes[:, number] > MIN_PART_MM2 * px_per_mm**2, own_box == number)
         rings = _outlines_of_stroke(
             paint, part, owner, is_own, is_cut, number, stats, px_per_mm, flat.sheet_mm[1], usual
         )
-        if rings and _longest_side(rings) > MIN_LENGTH_SHARE * _longest_side(
-            [np.reshape(stroke_box.box_mm, (2, 2))]
-        ):
+        if rings and _longest_side(rings) > MIN_LENGTH_SHARE * _longest_side([np.reshape(stroke_box.box_mm, (2, 2))]):
             outlines[stroke_box.stroke] = rings
         else:
             missing.append(stroke_box.stroke)
@@ -439,8 +414,7 @@ def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox
     )
     for number in np.flatnonzero(several):
         large = np.flatnonzero(
-            areas_in_boxes[number, 1:]
-            > np.maximum(0.5 * MIN_SPLIT_SHARE * areas[number], MIN_SPLIT_MM2 * px_per_mm**2)
+            areas_in_boxes[number, 1:] > np.maximum(0.5 * MIN_SPLIT_SHARE * areas[number], MIN_SPLIT_MM2 * px_per_mm**2)
         )
         if len(large) > MAX_JOINED_STROKES and areas[number] > widest * px_per_mm**2:
             names = ", ".join(stroke_boxes[k].stroke for k in large)
@@ -463,9 +437,7 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[Stroke
         c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.5)
         is_in_box[r0:r1, c0:c1] = True
     total = max(int(painted.sum()), 1)
-    inside_share, turned_share = (
-        (painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1])
-    )
+    inside_share, turned_share = ((painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1]))
     if turned_share > inside_share + MIN_TURNED_EXCESS:
         raise Error(
             f"{100 * turned_share:.0f} % of the paint is where the strokes would be if the page were turned by 180 "

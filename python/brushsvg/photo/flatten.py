@@ -34,9 +34,7 @@ class Flat:
         return (np.asarray(mm) * [1, -1] + [0, self.sheet_mm[1]]) * self.px_per_mm - 0.5
 
 
-def flatten(
-    pixels: np.ndarray, view: View, sheet_mm: tuple[float, float], px_per_mm: float | None = None
-) -> Flat:
+def flatten(pixels: np.ndarray, view: View, sheet_mm: tuple[float, float], px_per_mm: float | None = None) -> Flat:
     """Flatten a photograph of a sheet.
 
     The resolution is that of the photograph unless px_per_mm is given.
@@ -50,9 +48,6 @@ def flatten(
     nodes = view.to_px(np.column_stack([np.tile(x, down), np.repeat(y, across)])).astype(np.float32)
     size = (across * GRID_STEP_PX, down * GRID_STEP_PX)
     inside = (slice(GRID_STEP_PX, GRID_STEP_PX + rows), slice(GRID_STEP_PX, GRID_STEP_PX + columns))
-    maps = [
-        cv2.resize(nodes[:, k].reshape(down, across), size, interpolation=cv2.INTER_LINEAR)[inside]
-        for k in (0, 1)
-    ]
+    maps = [cv2.resize(nodes[:, k].reshape(down, across), size, interpolation=cv2.INTER_LINEAR)[inside] for k in (0, 1)]
     flattened = cv2.remap(pixels, *maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return Flat(flattened, resolution, sheet_mm)

@@ -159,8 +159,7 @@ def detect_markers(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.nd
         return []
     back = np.array([grey.shape[1] / small.shape[1], grey.shape[0] / small.shape[0]])
     return [
-        (int(i), (c.reshape(4, 2).astype(float) + 0.5) * back - 0.5)
-        for i, c in zip(ids.ravel(), corners, strict=True)
+        (int(i), (c.reshape(4, 2).astype(float) + 0.5) * back - 0.5) for i, c in zip(ids.ravel(), corners, strict=True)
     ]
 
 
@@ -285,9 +284,7 @@ def _list_numbers(numbers) -> str:
     return ", ".join(map(str, sorted(numbers)))
 
 
-def _refine_corners(
-    light: np.ndarray, corners: np.ndarray, modules: int
-) -> tuple[np.ndarray, float, np.ndarray]:
+def _refine_corners(light: np.ndarray, corners: np.ndarray, modules: int) -> tuple[np.ndarray, float, np.ndarray]:
     """Refine a marker's corners (4, 2) to where lines through its edges meet.
 
     Returns the corners, the edges' blur [px] and the visibility. The visibility (4,) is true for corners between two
@@ -324,9 +321,7 @@ def _locate_edge(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
     across = np.linspace(-reach, reach, count)
     at = a + EDGE_PLACES[:, None] * (b - a)
     places = (at[:, None] + across[:, None] * outward).astype(np.float32)
-    profiles = cv2.remap(
-        light, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
-    )
+    profiles = cv2.remap(light, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     end = max(2, count // 6)
     black, white = (
         np.median(profiles[:, :end], axis=1, keepdims=True),
@@ -389,15 +384,11 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
         return View(homography, tuple(u[8:]), middle, radius)
 
     def residuals(u: np.ndarray) -> np.ndarray:
-        return np.concatenate(
-            [((view(u).to_px(mm) - px) / CORNER_SIGMA_PX).ravel(), u[8:] / DISTORTION_SIGMA]
-        )
+        return np.concatenate([((view(u).to_px(mm) - px) / CORNER_SIGMA_PX).ravel(), u[8:] / DISTORTION_SIGMA])
 
     for _ in range(15):
         now = residuals(unknowns)
-        slopes = np.column_stack(
-            [(residuals(unknowns + step) - now) / 1e-6 for step in 1e-6 * np.eye(len(unknowns))]
-        )
+        slopes = np.column_stack([(residuals(unknowns + step) - now) / 1e-6 for step in 1e-6 * np.eye(len(unknowns))])
         change = np.linalg.lstsq(slopes, -now, rcond=None)[0]
         unknowns = unknowns + change
         if np.abs(change).max() < 1e-9:
@@ -406,9 +397,7 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
     scale = _min_px_per_mm(fitted, printed.sheet_mm)
     squares = np.sum((fitted.to_px(mm) - px) ** 2, axis=1) / scale**2
     freedom = len(mm) - 4.5  # eight of the homography and k1; each corner gives two numbers
-    rms_of_marker = {
-        number: float(np.sqrt(squares[marker == number].mean())) for number in np.unique(marker).tolist()
-    }
+    rms_of_marker = {number: float(np.sqrt(squares[marker == number].mean())) for number in np.unique(marker).tolist()}
     worst = max(rms_of_marker, key=lambda number: rms_of_marker[number])
     residual = float(np.sqrt(squares.sum() / freedom))
     unsure_mm = _least_certain_px(view, unknowns, np.linalg.pinv(slopes.T @ slopes), printed.sheet_mm) / scale
@@ -458,9 +447,7 @@ def _mask_corners(corners: np.ndarray, hidden: np.ndarray) -> np.ndarray:
 def _least_certain_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:
     at = np.array([(x * sheet_mm[0], y * sheet_mm[1]) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)])
     places_px = view(unknowns).to_px(at)
-    slopes = [
-        (view(unknowns + step).to_px(at) - places_px).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))
-    ]
+    slopes = [(view(unknowns + step).to_px(at) - places_px).ravel() / 1e-6 for step in 1e-6 * np.eye(len(unknowns))]
     spread = np.einsum("ki,kl,li->i", slopes, covariance, slopes).reshape(-1, 2)
     return float(np.sqrt(spread.sum(axis=1).max()))
 

@@ -10,9 +10,7 @@ from ..geometry.rings import signed_area
 UPSAMPLING = 4  # enlargement of the picture, to place edges between pixels by their brightness
 
 
-def mask_outlines(
-    paint: np.ndarray, level: float, mm_per_px: float, left_top_mm, least_mm2: float = 0.5
-) -> list:
+def mask_outlines(paint: np.ndarray, level: float, mm_per_px: float, left_top_mm, least_mm2: float = 0.5) -> list:
     """Return rings (n, 2) [mm] around the areas above a level, y up.
 
     Outer rings are counter-clockwise, holes clockwise. paint: (rows, columns) amount of paint in each pixel, row 0 at

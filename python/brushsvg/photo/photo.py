@@ -130,9 +130,7 @@ def _decode(data: bytes) -> tuple[np.ndarray | None, str]:
         try:
             pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
             if pixels is not None and not data.startswith(b"\xff\xd8"):  # a JPEG has no transparency
-                pixels = _composite_on_white(
-                    pixels, cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-                )
+                pixels = _composite_on_white(pixels, cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED))
         except cv2.error:  # too large for OpenCV, or damaged
             pixels = None
         finally:

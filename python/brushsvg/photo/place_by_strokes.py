@@ -81,9 +81,7 @@ def find_scan_view(
     turn, shift = _match_turn_and_shift(paint, paths_mm)
     unit, shift = _refine_by_boxes(paint, sheet_mm, stroke_boxes, turn, shift, dpi)
     unit, shift = unit * px_per_mm, (shift * COARSE_PX_PER_MM + 0.5 * (1 + 1j)) / shrunk - 0.5 * (1 + 1j)
-    homography = np.array(
-        [[unit.real, unit.imag, shift.real], [unit.imag, -unit.real, shift.imag], [0.0, 0.0, 1.0]]
-    )
+    homography = np.array([[unit.real, unit.imag, shift.real], [unit.imag, -unit.real, shift.imag], [0.0, 0.0, 1.0]])
     return pixels, View(homography, (), np.zeros(2), 1.0, px_per_mm)
 
 
@@ -155,8 +153,7 @@ def _match_turn_and_shift(paint: np.ndarray, paths_mm: list[np.ndarray]) -> tupl
             for askew in range(-MAX_SKEW_DEG, MAX_SKEW_DEG + 1, TURN_STEP_DEG)
         ]
         tried = [
-            (*match_paths(spectrum, shape, [path * cmath.exp(1j * turn) for path in paths]), turn)
-            for turn in turns
+            (*match_paths(spectrum, shape, [path * cmath.exp(1j * turn) for path in paths]), turn) for turn in turns
         ]
         best[is_mirrored] = max(tried, key=lambda each: each[0])
     if best[True][0] > MIN_MIRRORED_RATIO * best[False][0]:
@@ -182,18 +179,12 @@ def paint_spectrum(paint: np.ndarray, paths: list[np.ndarray]) -> tuple[np.ndarr
     )
     # The picture and the blurred paths fit next to each other, so that neither wraps around to the other.
     all_points = np.concatenate(paths)
-    reach = (
-        math.ceil(math.hypot(np.ptp(all_points.real), np.ptp(all_points.imag)))
-        + 2 * MARGIN_MM
-        + max(small.shape)
-    )
+    reach = math.ceil(math.hypot(np.ptp(all_points.real), np.ptp(all_points.imag))) + 2 * MARGIN_MM + max(small.shape)
     size = cv2.getOptimalDFTSize(reach)
     return np.fft.rfft2(cv2.GaussianBlur(small, None, BLUR_MM), (size, size)), small.shape
 
 
-def match_paths(
-    spectrum: np.ndarray, shape: tuple[int, int], paths: list[np.ndarray]
-) -> tuple[float, complex]:
+def match_paths(spectrum: np.ndarray, shape: tuple[int, int], paths: list[np.ndarray]) -> tuple[float, complex]:
     """Return how much paint is along the paths at the best shift.
 
     Returns also this shift. Paths are given as x - iy. spectrum, shape: from `paint_spectrum`. Shifts beyond the
@@ -201,9 +192,7 @@ def match_paths(
     """
     size = len(spectrum)
     all_points = np.concatenate(paths)
-    corner = complex(math.floor(all_points.real.min()), math.floor(all_points.imag.min())) - MARGIN_MM * (
-        1 + 1j
-    )
+    corner = complex(math.floor(all_points.real.min()), math.floor(all_points.imag.min())) - MARGIN_MM * (1 + 1j)
     drawn = np.zeros((size, size), np.float32)
     for path in paths:
         points = np.column_stack([(path - corner).real, (path - corner).imag])
@@ -256,9 +245,7 @@ def _refine_by_boxes(
     return unit, shift
 
 
-def find_marks_in_boxes(
-    aligned: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox]
-) -> tuple[list[int], np.ndarray]:
+def find_marks_in_boxes(aligned: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox]) -> tuple[list[int], np.ndarray]:
     """Return the numbers of the boxes that hold one mark, and the marks' places.
 
     The places are the middles of the marks, as x - iy [mm]. aligned: mask (rows, columns) of the paint, at
@@ -271,8 +258,7 @@ def find_marks_in_boxes(
         left, bottom, right, top = stroke_box.box_mm
         c0, c1 = (round(max(x, 0.0) * px_per_mm) for x in (left - MAX_STRAY_MM / 2, right + MAX_STRAY_MM / 2))
         r0, r1 = (
-            round(max(sheet_mm[1] - y, 0.0) * px_per_mm)
-            for y in (top + MAX_STRAY_MM / 2, bottom - MAX_STRAY_MM / 2)
+            round(max(sheet_mm[1] - y, 0.0) * px_per_mm) for y in (top + MAX_STRAY_MM / 2, bottom - MAX_STRAY_MM / 2)
         )
         areas_in_box = np.bincount(part[r0:r1, c0:c1].ravel(), minlength=count)
         areas_in_box[0] = 0

@@ -64,8 +64,7 @@ def find_paint(
         corner = np.array([(middle + shift).real, -(middle + shift).imag])
         moved = (boxes - np.tile(np.array(flat.sheet_mm) / 2, 2)) * found_scale + np.tile(corner, 2)
         moved_boxes = [
-            replace(stroke_box, box_mm=tuple(box))
-            for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
+            replace(stroke_box, box_mm=tuple(box)) for stroke_box, box in zip(stroke_boxes, moved.tolist(), strict=True)
         ]
         numbers, places = find_marks_in_boxes(np.uint8(paint), flat.sheet_mm, moved_boxes)
         if len(numbers) < MIN_FOUND_SHARE * len(stroke_boxes):

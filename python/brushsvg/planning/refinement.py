@@ -74,9 +74,7 @@ def refine_where_better(painted: list, targets: list, brush, closed, compensated
     def worse_of(groups):
         return find_worse_strokes(passes, closed.plan.passes, targets, brush, groups)
 
-    unchanged = [
-        k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)
-    ]
+    unchanged = [k for k, (other, _) in enumerate(fallback) if np.array_equal(passes[k].poses_mm, other.poses_mm)]
     keep_closed(unchanged, NO_GAIN)
     if forbidden:
         keep_closed(_find_forbidden(passes, closed.plan, moved, forbidden), FORBIDDEN)

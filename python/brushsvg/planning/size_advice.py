@@ -50,9 +50,7 @@ def best_size(strokes, brush, made, quick=None) -> SizeAdvice:
     units = [[stroke] for stroke in strokes]
     tried_units = _pick_evenly(units, MAX_TRIED_STROKES)
     first_units = _pick_evenly(sorted(tried_units, key=_half_width), MAX_FIRST_STROKES)
-    first_overlaps = {
-        factor: _overlap_at(factor, first_units, brush, quick or made) for factor in COARSE_SCALES
-    }
+    first_overlaps = {factor: _overlap_at(factor, first_units, brush, quick or made) for factor in COARSE_SCALES}
     at = SCALES.index(max(first_overlaps, key=first_overlaps.get))
     for factor in SCALES[max(at - 1, 0) : at + 2]:
         if factor not in first_overlaps:
@@ -76,9 +74,7 @@ def best_letter_size(strokes, brush, made) -> SizeAdvice:
     overlaps = {1.0: _overlap_at(1.0, tried_letters, brush, made)}
     if overlaps[1.0] + MIN_OVERLAP_GAIN < 1:  # otherwise no size can be noticeably better
         overlaps |= {
-            factor: _overlap_at(factor, tried_letters, brush, made)
-            for factor in LETTER_SCALES
-            if factor != 1.0
+            factor: _overlap_at(factor, tried_letters, brush, made) for factor in LETTER_SCALES if factor != 1.0
         }
     reach = LETTER_SCALES[0], LETTER_SCALES[-1]
     return SizeAdvice(
@@ -94,9 +90,7 @@ def _choose_factor(overlaps: dict[float, float]) -> float:
     most = max(overlaps.values())
     if most <= overlaps[1.0] + MIN_OVERLAP_GAIN:
         return 1.0
-    return min(
-        (f for f in overlaps if overlaps[f] > most - MAX_EQUAL_DIFFERENCE), key=lambda f: abs(np.log(f))
-    )
+    return min((f for f in overlaps if overlaps[f] > most - MAX_EQUAL_DIFFERENCE), key=lambda f: abs(np.log(f)))
 
 
 def _pick_evenly(units: list, count: int) -> list:

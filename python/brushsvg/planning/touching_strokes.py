@@ -15,9 +15,7 @@ TURN_COST, THORN_COST = 0.15, 0.03
 MAX_STROKES = 12
 
 
-def find_worse_strokes(
-    refined: list, closed: list, targets: list, brush, groups: list[list[int]]
-) -> list[int]:
+def find_worse_strokes(refined: list, closed: list, targets: list, brush, groups: list[list[int]]) -> list[int]:
     """Return the numbers of strokes that refined passes paint worse than closed form.
 
     groups: numbers of strokes that are judged together, such as letters; targets: what the passes should become,
@@ -30,8 +28,7 @@ def find_worse_strokes(
     for members in groups:
         members_targets = [targets[k] for k in members]
         refined_areas, closed_areas = (
-            _core.common_area([marks[k] for k in members], members_targets, brush)
-            for marks in (first, second)
+            _core.common_area([marks[k] for k in members], members_targets, brush) for marks in (first, second)
         )
         if refined_areas.overlap < closed_areas.overlap:
             worse += members
@@ -40,9 +37,7 @@ def find_worse_strokes(
     return worse
 
 
-def _find_restless(
-    members: list[int], refined: list, closed: list, members_targets: list, brush
-) -> list[int]:
+def _find_restless(members: list[int], refined: list, closed: list, members_targets: list, brush) -> list[int]:
     """Return a letter's strokes without whose refined marks it is better, one by one."""
     shape = _core.unite([ring for each in members_targets for ring in _core.wanted_outline(each, 0.01)])
 

@@ -58,9 +58,7 @@ def refuse_invalid_options(options: ReadOptions) -> None:
     if options.sheet_mm is not None:
         require_type(options.sheet_mm, (tuple, list), "a sheet's width and height [mm]")
         if len(options.sheet_mm) != 2:
-            raise Error(
-                f"sheet_mm has {len(options.sheet_mm)} numbers, not two", "sheet_mm", code="wrong-type"
-            )
+            raise Error(f"sheet_mm has {len(options.sheet_mm)} numbers, not two", "sheet_mm", code="wrong-type")
         for side in options.sheet_mm:
             need_number(side, "a side of the sheet [mm]", *SIZE_MM)
     if options.units is not None:
@@ -100,9 +98,7 @@ class HasTree(Protocol):
 
 
 if TYPE_CHECKING:
-    Source = (
-        str | os.PathLike[str] | InMemory | ElementTree.ElementTree | ElementTree.Element | HasTree | Drawing
-    )
+    Source = str | os.PathLike[str] | InMemory | ElementTree.ElementTree | ElementTree.Element | HasTree | Drawing
 
 
 def _read_svg_bytes(data: bytes, options: ReadOptions) -> Design:

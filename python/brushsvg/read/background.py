@@ -10,9 +10,7 @@ from ..geometry.cubics import extremes, flattened
 from ..geometry.rings import signed_area
 from .design import Design, Element, Notice
 
-MIN_LIGHT_CHANNEL = (
-    0xF0  # lowest value of each channel of a light colour; tracing programs write #fdfdfd for white
-)
+MIN_LIGHT_CHANNEL = 0xF0  # lowest value of each channel of a light colour; tracing programs write #fdfdfd for white
 MIN_COVERED_SHARE = 0.99  # a background fills at least this share of the page and of its own bounding box
 
 
@@ -25,16 +23,12 @@ def remove_background(design: Design, page_mm: tuple[float, float]) -> Design:
     page_mm: (width, height) of the drawing's own page, at the upper left corner of the sheet.
     """
     count = 0
-    while count < len(design.elements) and _is_background(
-        design.elements[count], design.sheet_mm[1], page_mm
-    ):
+    while count < len(design.elements) and _is_background(design.elements[count], design.sheet_mm[1], page_mm):
         count += 1
     if not 0 < count < len(design.elements):
         return design
     backgrounds = design.elements[:count]
-    frames = tuple(
-        shape.by_colour()[1] for shape in backgrounds if shape.fill_colour and not is_light(shape.colour)
-    )
+    frames = tuple(shape.by_colour()[1] for shape in backgrounds if shape.fill_colour and not is_light(shape.colour))
     left_out = [shape.id for shape in backgrounds]
     sentence = f"white background is left out: {', '.join(left_out)}"
     notice = Notice("svg", sentence, code="background", advice="--background keep paints it")

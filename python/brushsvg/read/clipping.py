@@ -13,9 +13,7 @@ from ..geometry.cubics import at, between, flattened
 from .design import Element, SubPath
 from .layout import half_width_mm
 
-FLATTENING_TOLERANCE_MM = (
-    0.005  # largest distance of a polyline from its curve: a tenth of what a brush can show
-)
+FLATTENING_TOLERANCE_MM = 0.005  # largest distance of a polyline from its curve: a tenth of what a brush can show
 _CHORDS_PER_CUBIC = 64  # chords per cubic on which its crossings with an edge are found
 
 
@@ -108,8 +106,7 @@ def _clip_line(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
     for k in np.flatnonzero(shapely.intersects(chords, region.boundary)):
         crossings = shapely.get_coordinates(chords[k].intersection(region.boundary))
         places += [
-            (k + chords[k].project(shapely.Point(place), normalized=True)) / _CHORDS_PER_CUBIC
-            for place in crossings
+            (k + chords[k].project(shapely.Point(place), normalized=True)) / _CHORDS_PER_CUBIC for place in crossings
         ]
     places = np.unique(places)
     middle = (places[1:] + places[:-1]) / 2
@@ -126,9 +123,7 @@ def _clip_line(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
     if spans == [[0.0, float(len(cubics))]]:
         return [subpath]
     pieces = [_cut_subpath(subpath, *span) for span in spans]
-    is_through_start = (
-        subpath.closed and len(spans) > 1 and spans[0][0] == 0.0 and spans[-1][1] == len(cubics)
-    )
+    is_through_start = subpath.closed and len(spans) > 1 and spans[0][0] == 0.0 and spans[-1][1] == len(cubics)
     if is_through_start and subpath.widths is None:  # otherwise each part has its own widths
         last = pieces.pop()
         pieces[0] = SubPath(np.concatenate([last.cubics, pieces[0].cubics]))
@@ -147,10 +142,7 @@ def _cut_subpath(subpath: SubPath, begin: float, end: float) -> SubPath:
         return SubPath(cubics)
     total = knots(subpath.cubics)[:, -1]
     fractions = [
-        (
-            float(total[:k].sum())
-            + (float(knots(between(subpath.cubics, (k, 0.0), (k, t)))[:, -1].sum()) if t else 0.0)
-        )
+        (float(total[:k].sum()) + (float(knots(between(subpath.cubics, (k, 0.0), (k, t)))[:, -1].sum()) if t else 0.0))
         / float(total.sum())
         for k, t in ends
     ]

@@ -69,9 +69,7 @@ class Element:
         return shape, replace(self, id=name, fill_rule="", fill_colour="")
 
     def __repr__(self) -> str:
-        painted = [f"stroked {self.stroke_width_mm:g} mm wide"] * self.is_stroked + ["filled"] * bool(
-            self.fill_rule
-        )
+        painted = [f"stroked {self.stroke_width_mm:g} mm wide"] * self.is_stroked + ["filled"] * bool(self.fill_rule)
         return f"<Element {self.id!r}: {len(self.subpaths)} sub-paths, {', '.join(painted) or 'nothing painted'}>"
 
 

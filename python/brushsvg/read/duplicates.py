@@ -54,10 +54,7 @@ def _element_key(element: Element) -> tuple:
 def _path_key(path: SubPath) -> tuple[bytes, bytes]:
     directions = [path.cubics, path.cubics[::-1, ::-1]]
     widths = [np.empty(0)] * 2 if path.widths is None else [path.widths, path.widths[::-1] * (-1, 1) + (1, 0)]
-    keys = [
-        (_rounded_bytes(cubics), _rounded_bytes(width))
-        for cubics, width in zip(directions, widths, strict=True)
-    ]
+    keys = [(_rounded_bytes(cubics), _rounded_bytes(width)) for cubics, width in zip(directions, widths, strict=True)]
     return min(keys)
 
 

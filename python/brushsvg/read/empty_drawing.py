@@ -20,9 +20,7 @@ def empty_drawing_error(notices: Iterable[Notice], left_out: Mapping[str, int] |
     notices_by_kind: dict[tuple, list[Notice]] = {}
     for notice in notices:
         notices_by_kind.setdefault(notice.kind, []).append(notice)
-    reasons = [
-        (group[0].damaged, len(group), _summarize_notices(group)) for group in notices_by_kind.values()
-    ]
+    reasons = [(group[0].damaged, len(group), _summarize_notices(group)) for group in notices_by_kind.values()]
     for why, count in (left_out or {}).items():
         reasons.append((False, count, f"{count} {'element is' if count == 1 else 'elements are'} {why}"))
     reasons.sort(key=lambda reason: (not reason[0], -reason[1]))

@@ -68,9 +68,7 @@ def arrange(design: Design, layout: Layout) -> Design:
     else:
         shift = (marks[:2] + marks[2:]) / 2 - (scaled[:2] + scaled[2:]) / 2
     width_scale = 1.0 if keeps_width else scale
-    return replace(
-        design, elements=tuple(_scale_and_move(e, scale, shift, width_scale) for e in design.elements)
-    )
+    return replace(design, elements=tuple(_scale_and_move(e, scale, shift, width_scale) for e in design.elements))
 
 
 def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
@@ -95,9 +93,7 @@ def half_width_mm(element: Element, subpath: SubPath) -> float:
     return (element.stroke_width_mm if subpath.widths is None else float(subpath.widths[:, 1].max())) / 2
 
 
-def _fitting_scale(
-    lines: np.ndarray, marks: np.ndarray, fit_mm: tuple[float, float], keeps_width: bool
-) -> float:
+def _fitting_scale(lines: np.ndarray, marks: np.ndarray, fit_mm: tuple[float, float], keeps_width: bool) -> float:
     """Return the largest scale at which the marks are not larger than fit_mm."""
     size, margin = lines[2:] - lines[:2], (marks[2:] - marks[:2]) - (lines[2:] - lines[:2])
     room = np.array(fit_mm) - (margin if keeps_width else 0.0)
@@ -194,8 +190,7 @@ def _scale_and_move(element: Element, scale: float, shift: np.ndarray, width_sca
         element,
         stroke_width_mm=element.stroke_width_mm * width_scale,
         settings={
-            name: value * width_scale if name == "width_mm" else value
-            for name, value in element.settings.items()
+            name: value * width_scale if name == "width_mm" else value for name, value in element.settings.items()
         },
         subpaths=tuple(
             replace(

@@ -15,9 +15,7 @@ from .design import Design, Element, Notice, SubPath
 
 MAX_GAP_SHARE = 0.1  # share of a line's width: ends that are closer are the same point, rounded differently
 MIN_PIECES = 3  # two lines that meet at a corner with two widths may be drawn on purpose
-MAX_WIDTH_RATIO = (
-    2.0  # largest ratio of the widths of neighbouring pieces; pressure changes less between two samples
-)
+MAX_WIDTH_RATIO = 2.0  # largest ratio of the widths of neighbouring pieces; pressure changes less between two samples
 
 
 def join_pressure_strokes(design: Design) -> Design:

@@ -48,9 +48,7 @@ class LabelSpace:
     default all of marks; anchors: (n, 2) places that labels keep free, with a disc of radius around them.
     """
 
-    def __init__(
-        self, marks: np.ndarray, cell: float = 1.0, bounds=None, anchors: Sequence = (), radius: float = 0.0
-    ):
+    def __init__(self, marks: np.ndarray, cell: float = 1.0, bounds=None, anchors: Sequence = (), radius: float = 0.0):
         rows, columns = marks.shape
         self.cell, self.radius = cell, radius
         self.bounds = np.array(bounds if bounds is not None else (0, 0, columns * cell, rows * cell), float)

@@ -93,9 +93,7 @@ def table(head, rows, notes=()) -> list[str]:
     """
     cells = [tuple(head), *(tuple(row) for row in rows)]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    lines = [
-        "  ".join([first.ljust(widths[0]), *(map(str.rjust, others, widths[1:]))]) for first, *others in cells
-    ]
+    lines = ["  ".join([first.ljust(widths[0]), *(map(str.rjust, others, widths[1:]))]) for first, *others in cells]
     if notes:
         lines = [f"{line}  {note}" for line, note in zip(lines, notes, strict=True)]
     return [line.rstrip() for line in lines]

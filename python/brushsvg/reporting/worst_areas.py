@@ -43,9 +43,7 @@ class WorstArea:
         For example, "1.2 mm^2 unpainted, 0.3 mm^2 painted outside".
         """
         parts = (self.missing_mm2, "unpainted"), (self.outside_mm2, "painted outside")
-        named = [
-            f"{mm2:.{1 if mm2 < 10 else 0}f} mm^2 {what}" for mm2, what in parts if mm2 >= MIN_AREA_MM2 / 2
-        ]
+        named = [f"{mm2:.{1 if mm2 < 10 else 0}f} mm^2 {what}" for mm2, what in parts if mm2 >= MIN_AREA_MM2 / 2]
         return ", ".join(named if self.is_missing else named[::-1])
 
 
@@ -66,8 +64,7 @@ def worst_areas(
     size = max(2, round(MIN_THICKNESS_MM * px_per_mm))
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     missing, outside = (
-        cv2.morphologyEx((sign * differences > 0.5).astype(np.uint8), cv2.MORPH_OPEN, kernel)
-        for sign in (1, -1)
+        cv2.morphologyEx((sign * differences > 0.5).astype(np.uint8), cv2.MORPH_OPEN, kernel) for sign in (1, -1)
     )
     differs = missing | outside
     rows, columns = np.nonzero(differs)

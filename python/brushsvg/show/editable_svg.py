@@ -80,9 +80,7 @@ def _effect_and_path(stroke, name: str, height_mm: float) -> tuple[str, str]:
     half_widths = np.array([half for _, half in stroke.half_width])
     line = _line_path(stroke, height_mm)
     outline_attribute = ' data-outline="yes"' * bool(stroke.wanted_mm)
-    path_start = (
-        f'<path id="{name}" data-stroke={_quoted(stroke.id)}{outline_attribute}{_setting_attributes(stroke)}'
-    )
+    path_start = f'<path id="{name}" data-stroke={_quoted(stroke.id)}{outline_attribute}{_setting_attributes(stroke)}'
     if np.ptp(half_widths) <= WIDTH_TOLERANCE * half_widths.max():
         style = (
             f"fill:none;stroke:{stroke.colour};stroke-width:{half_widths.min() + half_widths.max():.6g};"

@@ -83,9 +83,7 @@ def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _C
 
     def place(points_mm: np.ndarray) -> np.ndarray:
         points = np.asarray(points_mm, float)[:, :2]
-        return np.column_stack(
-            [MARGIN_PX + (points[:, 0] - x0) * px_per_mm, top + (y1 - points[:, 1]) * px_per_mm]
-        )
+        return np.column_stack([MARGIN_PX + (points[:, 0] - x0) * px_per_mm, top + (y1 - points[:, 1]) * px_per_mm])
 
     canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX, design.title or "Drawing as understood", TEXT, 28)
     count = f"{len(strokes)} strokes" if len(strokes) != 1 else "1 stroke"
@@ -140,9 +138,7 @@ def _draw_direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
         along_mm = polylines.lengths(line)
         head = min(14.0, 0.4 * length)
         for end in np.arange(min(length, 90.0), length + 1e-9, 180.0) if length > 180 else (0.6 * length,):
-            tip, tail = (
-                np.array([np.interp(s, along_mm, line[:, k]) for k in (0, 1)]) for s in (end, end - head)
-            )
+            tip, tail = (np.array([np.interp(s, along_mm, line[:, k]) for k in (0, 1)]) for s in (end, end - head))
             if (norm := np.hypot(*(tip - tail))) > 0:
                 along = (tip - tail) / norm
                 side = np.array([-along[1], along[0]]) * head * 0.45
@@ -151,9 +147,7 @@ def _draw_direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
     canvas.area([line[0] + 4.0 * np.column_stack([np.cos(dot), np.sin(dot)])], ink)
 
 
-def _draw_numbers(
-    canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float
-) -> None:
+def _draw_numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float) -> None:
     """Write each stroke's number near its start, where there is room.
 
     The place behind the start is preferred. Of many dashes, only some are numbered.
@@ -163,11 +157,7 @@ def _draw_numbers(
         last_start = None
         for number in range(run.first, run.last + 1):
             start = lines[number][0]
-            if (
-                run.is_one_element
-                and last_start is not None
-                and math.dist(last_start, start) < MIN_LABEL_SPACING_PX
-            ):
+            if run.is_one_element and last_start is not None and math.dist(last_start, start) < MIN_LABEL_SPACING_PX:
                 continue
             label = str(number + 1)
             size = (11.0 * len(label), 16.0)
@@ -242,9 +232,7 @@ def _write_svg(canvas: _Canvas) -> str:
             lines.append(f'<path d="{data}" fill="{colour}" fill-opacity="{opacity:g}"/>')
         elif kind == "line":
             points, colour, width = item
-            lines.append(
-                f'<path d="{_path_data(points)}" fill="none" stroke="{colour}" stroke-width="{width:g}"/>'
-            )
+            lines.append(f'<path d="{_path_data(points)}" fill="none" stroke="{colour}" stroke-width="{width:g}"/>')
         else:
             (x, y), words, colour, size = item
             style = f'font-family="sans-serif" font-size="{size}" fill="{colour}" xml:space="preserve"'

@@ -72,9 +72,7 @@ def marks_svg(
     if blank:
         data = "".join(path_data(ring, height) for ring in blank)
         line_width = round(LINE_WIDTH_SHARE * max(width, height), 3)
-        lines.append(
-            f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{line_width:g}" d="{data}"/>'
-        )
+        lines.append(f'<path class="blank" fill="none" stroke="{MISSING}" stroke-width="{line_width:g}" d="{data}"/>')
     if toolpath_mm:
         lines += _toolpath_elements(toolpath_mm, width, height)
     if band is not None:

@@ -38,15 +38,11 @@ def overlap_png(
     return encode_png(image)
 
 
-def _number_places(
-    image: np.ndarray, marks: np.ndarray, places: Mapping[int, tuple[float, float]], size: int
-) -> None:
+def _number_places(image: np.ndarray, marks: np.ndarray, places: Mapping[int, tuple[float, float]], size: int) -> None:
     """Draw a ring around each place, and its number next to the ring."""
     space = LabelSpace(marks, anchors=[*places.values()], radius=RING_RADIUS * size)
     for number, (x, y) in places.items():
-        cv2.circle(
-            image, (round(x), round(y)), round(RING_RADIUS * size), bgr(TEXT), max(1, size // 12), cv2.LINE_AA
-        )
+        cv2.circle(image, (round(x), round(y)), round(RING_RADIUS * size), bgr(TEXT), max(1, size // 12), cv2.LINE_AA)
         label = space.place((x, y), [(text_width(str(number), size, 700), size)])
         if label.leader:
             ends = [tuple(map(round, end)) for end in label.leader]

@@ -55,9 +55,7 @@ def overlap_svg(
     lines += _number_places([*target, *painted], sheet_mm, places, size) if places else []
     x = size
     for colour, words in OVERLAP_COLOURS:
-        lines.append(
-            f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>'
-        )
+        lines.append(f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>')
         lines.append(
             f'<text x="{x + 1.5 * size:g}" y="{height + 1.85 * size:g}" font-family="sans-serif" '
             f'font-size="{size:g}" fill="#22252b">{words}</text>'
@@ -66,9 +64,7 @@ def overlap_svg(
     return "\n".join([*lines, "</svg>", ""])
 
 
-def _number_places(
-    rings: list, sheet_mm, places: Mapping[int, tuple[float, float]], size: float
-) -> list[str]:
+def _number_places(rings: list, sheet_mm, places: Mapping[int, tuple[float, float]], size: float) -> list[str]:
     """Return the SVG elements of a ring and a number at each place."""
     width, height = sheet_mm
     cells = LABEL_GRID_CELLS / max(width, height)
@@ -82,11 +78,7 @@ def _number_places(
         lines.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{RING_RADIUS * size:.3g}"/>')
         label = space.place((x, y), [(DIGIT_WIDTH * size * len(str(number)), size)])
         if label.leader:
-            lines.append(
-                '<path d="M{:.2f},{:.2f}L{:.2f},{:.2f}"/>'.format(*label.leader[0], *label.leader[1])
-            )
+            lines.append('<path d="M{:.2f},{:.2f}L{:.2f},{:.2f}"/>'.format(*label.leader[0], *label.leader[1]))
         at = f'x="{label.left:.2f}" y="{label.top + 0.86 * size:.2f}"'
-        texts.append(
-            f'<text {at} font-family="sans-serif" font-weight="bold" font-size="{size:g}">{number}</text>'
-        )
+        texts.append(f'<text {at} font-family="sans-serif" font-weight="bold" font-size="{size:g}">{number}</text>')
     return [*lines, "</g>", *texts]

@@ -68,9 +68,7 @@ def _draw_png(table: Table, step_mm: float, low, high, sheets, title: str) -> by
     half = step_mm / 2
     for y, row in zip(table.y_mm, table.what, strict=True):
         for x, what in zip(table.x_mm, row, strict=True):
-            cv2.rectangle(
-                image, at(x - half, y + half), at(x + half, y - half), bgr(REACH_COLOURS[int(what)][0]), -1
-            )
+            cv2.rectangle(image, at(x - half, y + half), at(x + half, y - half), bgr(REACH_COLOURS[int(what)][0]), -1)
     for x in _ticks(low[0], high[0]):
         cv2.line(image, at(x, low[1]), at(x, high[1]), bgr(GRID_LINE), 1)
         write_text(image, f"{x:g}", (at(x, 0)[0] + 3, head + height - 4), TEXT_PX * 3 // 4, 400, TEXT)
@@ -119,9 +117,7 @@ def _draw_svg(table: Table, step_mm: float, low, high, sheets, title: str) -> st
         lines.append(f'<path fill="{colour}" d="{squares}"/>')
     for x in _ticks(low[0], high[0]):
         lines.append(f'<path stroke="{GRID_LINE}" d="M{at(x, low[1])}L{at(x, high[1])}"/>')
-        lines.append(
-            f'<text x="{x - low[0] + 2:.1f}" y="{head + height - 3:.1f}" font-size="10">{x:g}</text>'
-        )
+        lines.append(f'<text x="{x - low[0] + 2:.1f}" y="{head + height - 3:.1f}" font-size="10">{x:g}</text>')
     for y in _ticks(low[1], high[1]):
         lines.append(f'<path stroke="{GRID_LINE}" d="M{at(low[0], y)}L{at(high[0], y)}"/>')
         if high[1] - y < height - 2 * size:  # keep clear of the numbers of x

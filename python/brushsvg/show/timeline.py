@@ -81,9 +81,7 @@ def timeline(program: Program, marks) -> Timeline:
                     block = np.vstack([block, _landing_rows(trace, block[-1])])
             if block is None:
                 continue
-            if not isinstance(step, Wait) and (
-                settling_time_s := settling_s(step, last_tcp_mm, program.cell)
-            ):
+            if not isinstance(step, Wait) and (settling_time_s := settling_s(step, last_tcp_mm, program.cell)):
                 block = np.vstack([block, block[-1:]])
                 block[-1, 0] += settling_time_s
             block[:, 0] += now_s

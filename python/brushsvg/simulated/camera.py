@@ -84,10 +84,7 @@ class Sheet:
         Overlapping rings count by the even-odd rule. The window is (r0, r1, c0, c1).
         """
         rows, columns = self.shown.shape[:2]
-        rings = [
-            np.column_stack([r[:, 0], self.size_mm[1] - r[:, 1]]) * self.texels
-            for r in map(np.asarray, rings)
-        ]
+        rings = [np.column_stack([r[:, 0], self.size_mm[1] - r[:, 1]]) * self.texels for r in map(np.asarray, rings)]
         points = np.vstack(rings)
         c0, c1 = max(0, int(points[:, 0].min()) - 1), min(columns, int(points[:, 0].max()) + 2)
         r0, r1 = max(0, int(points[:, 1].min()) - 1), min(rows, int(points[:, 1].max()) + 2)
@@ -203,9 +200,7 @@ def exposed(sheet, camera=Camera(), seed=1, mirrored=False):
 
 
 @lru_cache(maxsize=2)  # most photographs in one test file differ only in their paint
-def _sheet_points_of_pixels(
-    sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, displacement_mm, sag_mm
-):
+def _sheet_points_of_pixels(sheet_mm, size_px, focal, tilt_deg, turn_deg, bend, fill, displacement_mm, sag_mm):
     """Return the point on the sheet that each pixel shows, (rows, columns, 2) in mm.
 
     Also returns the distance of each pixel from the optical axis. The distance (rows, columns) is relative to that of

@@ -34,9 +34,7 @@ class PaintedStroke:
     way: np.ndarray
 
 
-def painted(
-    plan, brush, studio: Studio, undone: Machine | None, seed: int, dips_mm=None
-) -> list[PaintedStroke]:
+def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int, dips_mm=None) -> list[PaintedStroke]:
     """Simulate the strokes that the studio paints for a plan.
 
     undone: the part of the machine's errors that the cell corrects; dips_mm: positions along each stroke where paint
@@ -48,9 +46,7 @@ def painted(
     brush = with_factors(brush, {"lag": (studio.brush.lag,), "half_width": (studio.brush.half_width,)})
     run = _realised_passes(plan, studio, undone)
     try:
-        marks = _core.simulate(
-            _core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush, may_rise=True
-        )
+        marks = _core.simulate(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, run), brush, may_rise=True)
     except Error as refusal:
         if refusal.code == "depth-out-of-range" and _deepest_mm(plan.passes) <= brush.depth_range_mm[1]:
             refusal = Error(
@@ -66,9 +62,7 @@ def painted(
         _core.narrow(marks, brush.paint, dips_mm or dips_without_cell(plan.passes))
     _core.trace_outlines(marks, brush)
     repeatable_rng = np.random.default_rng(0)  # the displacement of each stroke that repeats on this machine
-    stroke_shifts = {
-        a_pass.stroke: repeatable_rng.normal(0, 1, 2) * machine_errors.own_mm for a_pass in plan.passes
-    }
+    stroke_shifts = {a_pass.stroke: repeatable_rng.normal(0, 1, 2) * machine_errors.own_mm for a_pass in plan.passes}
     rng = np.random.default_rng(seed + 1)
     turn = rotation(np.radians(studio.sheet.turn_deg))
     out = []
@@ -125,9 +119,7 @@ def _realised_passes(plan, studio: Studio, undone: Machine | None) -> list:
         machine_errors.tilt_mm_per_mm,
         **field,
     )
-    return as_run(
-        [_commanded_pass(a_pass, undone) for a_pass in plan.passes], machine, machine_errors.backlash_mm
-    )
+    return as_run([_commanded_pass(a_pass, undone) for a_pass in plan.passes], machine, machine_errors.backlash_mm)
 
 
 def _commanded_pass(a_pass, undone: Machine | None):

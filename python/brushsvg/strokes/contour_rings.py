@@ -115,9 +115,7 @@ def _cut_ring(points: np.ndarray, half: float, is_outermost: bool) -> list[Line]
     ring = np.roll(ring, -first, axis=0)
     ring = np.vstack([ring, ring[:1]])
     return [
-        _fit_line(
-            *_shorten_at_cusps(ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half), half, False
-        )
+        _fit_line(*_shorten_at_cusps(ring[a : b + 1], [int(k - a) for k in corners if a < k < b], half), half, False)
         for a, b in itertools.pairwise([*sharp, len(ring) - 1])
     ]
 
@@ -189,9 +187,7 @@ def _begin_amid_longest(ring: np.ndarray, corners: np.ndarray) -> tuple[np.ndarr
     middle = (ends[longest] + ends[longest + 1]) / 2
     place = [np.interp(middle, at, np.append(ring[:, k], ring[0, k])) for k in (0, 1)]
     after = int(np.searchsorted(at[:-1], middle))
-    return np.vstack([place, ring[after:], ring[:after]]), sorted(
-        int((k - after) % len(ring)) + 1 for k in corners
-    )
+    return np.vstack([place, ring[after:], ring[:after]]), sorted(int((k - after) % len(ring)) + 1 for k in corners)
 
 
 def _fit_line(points: np.ndarray, corners: list[int], half: float, closed: bool) -> Line:

@@ -140,9 +140,7 @@ def _cut_at_corners(stroke, brush) -> list:
         line = line.begun_at(lifts[0])
         lifts = [at - lifts[0] for at in lifts[1:]]
     ends = [0, *lifts, len(line.cubics)]
-    return [
-        line_stroke(line.between(*pair), stroke, lane) for lane, pair in enumerate(pairwise(ends), start=1)
-    ]
+    return [line_stroke(line.between(*pair), stroke, lane) for lane, pair in enumerate(pairwise(ends), start=1)]
 
 
 def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -> bool:
@@ -153,9 +151,7 @@ def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -
     parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
     target = _core.wanted_outline(whole, 0.01)
     try:
-        single_mm2, lifted_mm2 = (
-            misplaced_mm2(trial_marks(trial, brush), target, brush) for trial in ([whole], parts)
-        )
+        single_mm2, lifted_mm2 = (misplaced_mm2(trial_marks(trial, brush), target, brush) for trial in ([whole], parts))
     except Error:
         return False
     return single_mm2 - lifted_mm2 > _MIN_LIFT_GAIN * (2 * max(half for _, half in whole.half_width)) ** 2

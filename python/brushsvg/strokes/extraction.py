@@ -38,9 +38,7 @@ class _Line:
     covered: tuple[bool, bool] = (False, False)
 
 
-def strokes(
-    design: Design, paths_as: str | None = None, script: str = "auto"
-) -> tuple[list[Stroke], list[Notice]]:
+def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -> tuple[list[Stroke], list[Notice]]:
     """Return the strokes of a design in document order, and notices about it.
 
     Strokes are in mm, in the paper frame. A path with a stroke alone is the drawn line, in its direction. A filled
@@ -93,11 +91,7 @@ def _report_left_out(elements: list[Element], paths_as: str | None) -> list[Noti
         return []
     first = next((element.id for element in elements if element.id), "filled")
     reason = "has no stroke" if paths_as == "stroke" else "holds no area"
-    others = (
-        f", nor do {len(elements) - 1} others"
-        if len(elements) > 2
-        else ", nor does another" * (len(elements) - 1)
-    )
+    others = f", nor do {len(elements) - 1} others" if len(elements) > 2 else ", nor does another" * (len(elements) - 1)
     for_lines = "lines need a stroke instead of a fill; brushsvg text sets single-line fonts as lines"
     advice = "--as stroke counts fills as none" if paths_as == "stroke" else for_lines
     return [Notice(first, f"its outline {reason}{others}: left out", code="outline-empty", advice=advice)]
@@ -146,9 +140,7 @@ def _grow_by_stroke(element: Element) -> list | None:
 
     drawn = [_make_line(element, subpath) for subpath in element.subpaths]
     marks = [
-        _core.wanted_outline(
-            _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02
-        )
+        _core.wanted_outline(_core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02)
         for line in drawn
     ]
     stroke_rings = _core.unite([ring for mark in marks for ring in mark])
@@ -225,9 +217,7 @@ def _name_elements(elements: list[tuple[Element, int]]) -> tuple[list[str], list
         if name != base:
             last_suffix[base] = suffix
             why = f"that of a part of {part_of!r}" if part_of else "taken"
-            notices.append(
-                Notice(base, f"the name {base!r} is {why}: this one is called {name!r}", code="name-taken")
-            )
+            notices.append(Notice(base, f"the name {base!r} is {why}: this one is called {name!r}", code="name-taken"))
         taken.update((name, *names))
         taken_of.update(filter(None, map(_find_lane_owner, names)))
         whole.update(names)

@@ -53,9 +53,7 @@ def find_wide_shapes(strokes: list, wider: list[int], least: float, greatest: fl
         wide = [k for k in members if k in beyond]
         narrow = [strokes[k] for k in members if k not in beyond]
         part = _core.unite([ring for k in wide for ring in strokes[k].wanted_mm])
-        wide_shapes.append(
-            WideShape(wide, narrow, rings_of(shape), find_contour_passes(shape, least, greatest), part)
-        )
+        wide_shapes.append(WideShape(wide, narrow, rings_of(shape), find_contour_passes(shape, least, greatest), part))
     return wide_shapes
 
 
@@ -72,9 +70,7 @@ def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
         shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
         shapes = np.array([_without_slits(shape) for shape in shapes])
         members: list[list[int]] = [[] for _ in shapes]
-        for k, home in zip(
-            numbers, _find_shape_of_strokes(shapes, [strokes[k] for k in numbers]), strict=True
-        ):
+        for k, home in zip(numbers, _find_shape_of_strokes(shapes, [strokes[k] for k in numbers]), strict=True):
             members[home].append(k)
         if all(members):  # otherwise a stroke paints in two of the shapes
             pairs += [pair for pair in zip(shapes, members, strict=True) if not wide.isdisjoint(pair[1])]
@@ -86,9 +82,7 @@ def _without_slits(shape):
 
     Rings would run round the slits.
     """
-    closed = shape.buffer(_MAX_HALF_SLIT_MM, join_style="mitre").buffer(
-        -_MAX_HALF_SLIT_MM, join_style="mitre"
-    )
+    closed = shape.buffer(_MAX_HALF_SLIT_MM, join_style="mitre").buffer(-_MAX_HALF_SLIT_MM, join_style="mitre")
     return closed if closed.geom_type == "Polygon" else shape
 
 

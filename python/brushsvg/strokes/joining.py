@@ -44,19 +44,14 @@ def join_lines(strokes: list) -> tuple[list, list[Notice]]:
         used.add(k)
         chain, names = _Chain(stroke), []
         for at_end in (True, False):
-            while (
-                not chain.is_ring
-                and (other := _find_continuation(chain, at_end, near, lines, used)) is not None
-            ):
+            while not chain.is_ring and (other := _find_continuation(chain, at_end, near, lines, used)) is not None:
                 used.add(other)
                 names.append(lines[other].id)
                 chain.add(lines[other], at_end)
         joined_strokes.append(chain.stroke() if names else stroke)
         if names:
             listed = ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
-            notices.append(
-                Notice(stroke.id, f"joined with {listed}, which meet it end to end", code="lines-joined")
-            )
+            notices.append(Notice(stroke.id, f"joined with {listed}, which meet it end to end", code="lines-joined"))
     return joined_strokes, notices
 
 
@@ -95,9 +90,7 @@ class _Chain:
 
     def stroke(self):
         cubics, widths = self.cubics, self.widths / [self.widths[-1, 0], 1]
-        half_width = (
-            [tuple(knot) for knot in widths.tolist()] if np.ptp(widths[:, 1]) else [(0.0, widths[0, 1])]
-        )
+        half_width = [tuple(knot) for knot in widths.tolist()] if np.ptp(widths[:, 1]) else [(0.0, widths[0, 1])]
         if self.is_ring:
             cubics = cubics.copy()
             cubics[-1, 3] = cubics[0, 0]
@@ -119,10 +112,7 @@ def _find_continuation(chain: _Chain, at_end: bool, near: dict, lines: dict, use
             continue
         cubics, widths = other.middle_mm.reshape(-1, 4, 2), other.half_width
         for points, knot in ((cubics[0], widths[0]), (cubics[-1][::-1], widths[-1])):
-            if (
-                np.hypot(*(points[0] - place)) <= MAX_GAP_MM
-                and abs(knot[1] - half) <= _MAX_WIDTH_DIFFERENCE * half
-            ):
+            if np.hypot(*(points[0] - place)) <= MAX_GAP_MM and abs(knot[1] - half) <= _MAX_WIDTH_DIFFERENCE * half:
                 onward = -_end_direction(points[::-1])
                 turn = abs(np.arctan2(out[0] * onward[1] - out[1] * onward[0], out @ onward))
                 turns.append((round(float(turn), 6), k))

@@ -39,9 +39,7 @@ def stroke_from_path(
     require_type(width_mm, (int, float, np.number), "a width in mm")
     require_type(id, str, "a stroke's id")
     if not (np.isfinite(width_mm) and width_mm > 0):
-        raise Error(
-            f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range"
-        )
+        raise Error(f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range")
     if isinstance(path, str):
         cubics, closed = _read_text(path, id)
     elif hasattr(path, "d") and hasattr(path, "isclosed"):
@@ -49,11 +47,7 @@ def stroke_from_path(
         closed = bool(len(path)) and path.isclosed()
     else:
         cubics = _read_array(path, id)
-        closed = (
-            len(cubics) > 0
-            and np.ptp(cubics.reshape(-1, 2), axis=0).any()
-            and _meets(cubics[-1, 3], cubics[0, 0])
-        )
+        closed = len(cubics) > 0 and np.ptp(cubics.reshape(-1, 2), axis=0).any() and _meets(cubics[-1, 3], cubics[0, 0])
     _need_height(page_height_mm)
     if page_height_mm is not None:
         cubics = cubics * (1.0, -1.0) + (0.0, page_height_mm)
@@ -109,9 +103,7 @@ def _read_text(text: str, id: str) -> tuple[np.ndarray, bool]:
             code="list-too-long",
         )
     if damaged_at is not None:
-        raise Error(
-            f"the path data are damaged at {snippet(text, damaged_at)}", where=id, code="geometry-damaged"
-        )
+        raise Error(f"the path data are damaged at {snippet(text, damaged_at)}", where=id, code="geometry-damaged")
     line = trace(commands, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 1.0)
     if line.beyond is not None:
         raise Error(

@@ -81,9 +81,7 @@ def search_strokes(
         rows = _replace_paths(rows, shape, strokes, changed, following)
         added_strokes += _name_added(shape, added, following, are_corners_filled)
     if not are_sides_painted:  # no strokes next to one that was drawn wider than the brush
-        added_strokes = [
-            each for each in added_strokes if not each.is_rim and _part_key(each.stroke) not in wide
-        ]
+        added_strokes = [each for each in added_strokes if not each.is_rim and _part_key(each.stroke) not in wide]
     for shape in shapes:
         of_shape = [each for each in added_strokes if each.stroke.origin.element == shape.element]
         if of_shape:
@@ -113,9 +111,7 @@ def _find_drawn_wider(drawn: list, brush) -> set[tuple[str, int]]:
     }
 
 
-def _add_strokes(
-    drawn: list, rows: list[tuple], shape: _Shape, added: list[_AddedStroke]
-) -> tuple[list, list[tuple]]:
+def _add_strokes(drawn: list, rows: list[tuple], shape: _Shape, added: list[_AddedStroke]) -> tuple[list, list[tuple]]:
     """Add strokes to a shape, as often as it is painted.
 
     Returns the strokes as found, and the rows (stroke, target, number of its pass).
@@ -175,14 +171,11 @@ def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Sh
             sorted(repeats[element]),
         )
         for element, strokes in strokes_of.items()
-        if paint[element]
-        and (brush.width_follows_depth() or not all(stroke.wanted_mm for stroke, _ in paint[element]))
+        if paint[element] and (brush.width_follows_depth() or not all(stroke.wanted_mm for stroke, _ in paint[element]))
     ]
 
 
-def _replace_paths(
-    rows: list[tuple], shape: _Shape, strokes: list, changed: list[bool], following
-) -> list[tuple]:
+def _replace_paths(rows: list[tuple], shape: _Shape, strokes: list, changed: list[bool], following) -> list[tuple]:
     """Replace the paths of a shape's strokes by those that the search found.
 
     rows: (stroke, target, number of its pass); a replaced stroke has no pass yet. changed: which of the strokes
@@ -194,8 +187,7 @@ def _replace_paths(
         if is_changed
     }
     lanes = {
-        (part, lane): [lane, *(following(part) for _ in new_strokes[1:])]
-        for (part, lane), new_strokes in paths.items()
+        (part, lane): [lane, *(following(part) for _ in new_strokes[1:])] for (part, lane), new_strokes in paths.items()
     }
     new_rows = []
     for row in rows:
@@ -206,9 +198,7 @@ def _replace_paths(
             continue
         parts = [
             new_stroke.replaced(id=_core.StrokeId(of.element, of.part, of.repeat, lane))
-            for new_stroke, lane in zip(
-                paths[key], lanes[key], strict=False
-            )  # a stroke that is left out has no parts
+            for new_stroke, lane in zip(paths[key], lanes[key], strict=False)  # a stroke that is left out has no parts
         ]
         new_rows += [(part, target, None) for part, target in _share_target(parts, row[1])]
     return new_rows

@@ -22,12 +22,8 @@ def region(rings: list[np.ndarray]):
 
 def rings_of(shape) -> list[np.ndarray]:
     """Return the rings of shapely geometry, as _core.unite returns them."""
-    polygons = [
-        one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"
-    ]
-    return _core.unite(
-        [np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)]
-    )
+    polygons = [one for one in shapely.get_parts(shapely.orient_polygons(shape)) if one.geom_type == "Polygon"]
+    return _core.unite([np.array(ring.coords)[:-1] for one in polygons for ring in (one.exterior, *one.interiors)])
 
 
 def painted_area(strokes: list):

@@ -45,9 +45,7 @@ def within_reach(
     strokes, notices = _without_slivers(strokes, least, brush) if wide != "refuse" else (strokes, [])
     least = max(least, MIN_HALF_WIDTH_MM)
     beyond = {
-        k: _find_out_of_reach(stroke, least, greatest)
-        if stroke.wanted_mm or brush.width_follows_depth()
-        else None
+        k: _find_out_of_reach(stroke, least, greatest) if stroke.wanted_mm or brush.width_follows_depth() else None
         for k, stroke in enumerate(strokes)
     }
     if wide == "refuse":

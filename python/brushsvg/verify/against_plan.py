@@ -46,9 +46,7 @@ def with_plan(
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)
     for a_pass, lines, k in rows:
         problems += _check_pass(a_pass, lines, due[k], cell) if k is not None else []
-    if not problems and len(ran.visits) == len(
-        due
-    ):  # otherwise a stroke is not one touch, which is reported elsewhere
+    if not problems and len(ran.visits) == len(due):  # otherwise a stroke is not one touch, which is reported elsewhere
         planned_visits = station_visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
         problems += _check_station_visits(ran, due, planned_visits)
     return [None if k is None else first - 1 + k for k in partners], problems
@@ -72,11 +70,7 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
     partners: list[int | None] = []
     for name in names:
         numbers = by_name.get(name)
-        number = (
-            numbers.pop()
-            if numbers
-            else next((k for k in unmatched if _is_same_name(name, unmatched[k])), None)
-        )
+        number = numbers.pop() if numbers else next((k for k in unmatched if _is_same_name(name, unmatched[k])), None)
         if number is not None:
             unmatched.pop(number, None)
             partners.append(number)
@@ -88,8 +82,7 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
         if k is None
     ]
     problems += [
-        Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted")
-        for k in unmatched
+        Notice(due[k].stroke, "the program does not paint this stroke", code="stroke-not-painted") for k in unmatched
     ]
     matched = [k for k in partners if k is not None]
     if not problems and matched != sorted(matched):
@@ -129,13 +122,9 @@ def _check_pass(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
                 _max_distance_mm(_with_midpoints(found), reference),
                 _max_distance_mm(_with_midpoints(reference), found),
             )
-            sentence = (
-                f"line {lines[owner[min(at, len(owner) - 1)]]}: {_deviation_sentence(away_mm, limit_mm)}"
-            )
+            sentence = f"line {lines[owner[min(at, len(owner) - 1)]]}: {_deviation_sentence(away_mm, limit_mm)}"
             problems.append(Notice(a_pass.stroke, sentence, code="path-elsewhere"))
-    is_dab = not np.ptp(
-        planned.poses_mm[:, :2], axis=0
-    ).any()  # a dab is pressed on the spot, as slowly as a landing
+    is_dab = not np.ptp(planned.poses_mm[:, :2], axis=0).any()  # a dab is pressed on the spot, as slowly as a landing
     if a_pass.speed_mm_s > planned.speed_mm_s + 0.1 and not is_dab:
         requested = f"the drawing asks for {planned.speed_mm_s:.1f} mm/s"
         sentence = f"it is painted at {a_pass.speed_mm_s:.1f} mm/s, {requested}"
@@ -274,9 +263,7 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
     the limit form a convex region. A cell is entered from the previous move of `found` or from the previous move of
     `reference`. The algorithm keeps how early on the other move it can be entered.
     """
-    found, reference = (
-        (path if len(path) > 1 else np.repeat(path, 2, axis=0)).tolist() for path in (found, reference)
-    )
+    found, reference = ((path if len(path) > 1 else np.repeat(path, 2, axis=0)).tolist() for path in (found, reference))
     if math.dist(found[0], reference[0]) > limit_mm:
         return 0
     cells = len(reference) - 1
@@ -409,9 +396,7 @@ def _check_station_visits(ran: SimulatedProgram, due, planned_visits) -> Problem
     """Report the first stroke with other paint stations than the cell requires."""
     for a_pass, found, required in zip(due, ran.visits, planned_visits, strict=True):
         if found != required:
-            stations = [
-                " and ".join(station.name for station in each) or "nothing" for each in (found, required)
-            ]
+            stations = [" and ".join(station.name for station in each) or "nothing" for each in (found, required)]
             sentence = f"before it the program visits {stations[0]}, the cell asks for {stations[1]}"
             return [Notice(a_pass.stroke, sentence, code="other-station")]
     return []

@@ -56,9 +56,7 @@ def regenerate_program(
     program = unchecked_program(loads, brush, cell, job, make_written_form(loads, cell, job, was_read=True))
     if header_notes is None:
         return program
-    return replace(
-        program, header=header_of(header_notes.title, brush.name, loads, header_notes.notes, program, job)
-    )
+    return replace(program, header=header_of(header_notes.title, brush.name, loads, header_notes.notes, program, job))
 
 
 @dataclass(frozen=True)
@@ -92,9 +90,7 @@ def differing_line(
         upright = program.robot_from_frame[:3, :3] @ upright
     rules = _ActComparison(cell, _header_ranges(program, least_time_s), upright)
     if cell.servo:
-        both = drop_rounding_lifts(
-            join_lifts(ours), join_lifts(theirs), rules.is_rounding_lift, rules.is_same
-        )
+        both = drop_rounding_lifts(join_lifts(ours), join_lifts(theirs), rules.is_rounding_lift, rules.is_same)
         ours, theirs = map(join_paths, both)
     here: tuple = ()
     held: tuple = ()  # the tool's rotation here
@@ -109,37 +105,18 @@ def differing_line(
             i += 1
         elif b and rules.is_idle(b, here) and rules.is_same_rotation(b.turned, held):
             k += 1
-        elif (
-            a
-            and b
-            and rules.is_on_path(a, here, b)
-            and rules.is_no_faster(a, b)
-            and rules.keep_rotation(a, b, held)
-        ):
+        elif a and b and rules.is_on_path(a, here, b) and rules.is_no_faster(a, b) and rules.keep_rotation(a, b, held):
             i, here = i + 1, a.place
-        elif (
-            a
-            and b
-            and rules.is_on_path(b, here, a)
-            and rules.is_no_faster(a, b)
-            and rules.keep_rotation(a, b, held)
-        ):
+        elif a and b and rules.is_on_path(b, here, a) and rules.is_no_faster(a, b) and rules.keep_rotation(a, b, held):
             k += 1
         else:
-            if sentence := _describe_header_difference(
-                ours, theirs, text.splitlines(), theirs_text.splitlines(), a, b
-            ):
+            if sentence := _describe_header_difference(ours, theirs, text.splitlines(), theirs_text.splitlines(), a, b):
                 return sentence
             if a and b and a.kind == b.kind == "lift":
                 a, b = _first_differing_acts(
                     _acts_of_lift(read.acts, ours, i), _acts_of_lift(regenerated.acts, theirs, k), rules
                 )
-            elif (
-                a
-                and b
-                and a.kind == b.kind == "way"
-                and rules.begins_with_other_lift(ours[i + 1 :], theirs[k + 1 :])
-            ):
+            elif a and b and a.kind == b.kind == "way" and rules.begins_with_other_lift(ours[i + 1 :], theirs[k + 1 :]):
                 a = _acts_of_lift(read.acts, ours, i + 1)[0]
             return _describe_difference(text.splitlines(), theirs_text.splitlines(), a, b, rules)
     return None
@@ -168,9 +145,7 @@ def _first_differing_acts(found: list[Act], reference: list[Act], rules: _ActCom
     ours_at, theirs_at = _acts_by_servo_value(found), _acts_by_servo_value(reference)
 
     def off_s(value: float) -> float:
-        waits = [
-            [act.same[0] for act in at.get(value, ()) if act.kind == "wait"] for at in (ours_at, theirs_at)
-        ]
+        waits = [[act.same[0] for act in at.get(value, ()) if act.kind == "wait"] for at in (ours_at, theirs_at)]
         return abs(sum(waits[0]) - sum(waits[1]))
 
     value = max([*ours_at, *theirs_at], key=off_s)
@@ -311,14 +286,8 @@ class _ActComparison:
             return False
         if a.kind == "text":
             return a.text == b.text or self._is_same_statement(a.text, b.text)
-        if (
-            a.kind == "move" and a.text != "movel"
-        ):  # `same` is how far its corners are cut, by G64 P or by a blend
-            slack = (
-                max(BLEND_TOLERANCE_MM, self.blend_share * b.same[0])
-                if a.text
-                else self.place_tolerance_mm / 2
-            )
+        if a.kind == "move" and a.text != "movel":  # `same` is how far its corners are cut, by G64 P or by a blend
+            slack = max(BLEND_TOLERANCE_MM, self.blend_share * b.same[0]) if a.text else self.place_tolerance_mm / 2
             is_cut = a.same[0] > 0 or b.same[0] <= max(slack, self.min_blend_mm(b))
             return a.text == b.text and (a.same == b.same or (is_cut and a.same[0] <= b.same[0] + slack))
         return a.text == b.text and all(
@@ -373,12 +342,7 @@ class _ActComparison:
         _, waited_s, least, most = lift.same
         going_s = (most - least) * self.time_per_value_s
         goes = most > least or waited_s <= WAIT_TOLERANCE_S
-        return (
-            bool(lift.text)
-            and goes
-            and most - least <= self.step_values
-            and waited_s <= self.rest_s + going_s
-        )
+        return bool(lift.text) and goes and most - least <= self.step_values and waited_s <= self.rest_s + going_s
 
     def is_idle(self, act: Act, here: tuple) -> bool:
         """Return whether a move stays at a place, or moves less than a brush shows."""
@@ -419,9 +383,7 @@ class _ActComparison:
             return (WAIT_TOLERANCE_S,)
         if act.kind == "lift":
             waits_s = max(LIFT_WAIT_TOLERANCE_S, LIFT_WAIT_TOLERANCE_S * act.same[1]) + self.time_per_value_s
-            waits_s += (
-                self.rest_s if act.text else 0.0
-            )  # the rest after a first part that is an effect of rounding
+            waits_s += self.rest_s if act.text else 0.0  # the rest after a first part that is an effect of rounding
             return (self.step_values, waits_s, self.step_values, self.step_values)
         if act.kind == "way":
             return (self.step_values,)
@@ -456,9 +418,7 @@ class _ActComparison:
         )
 
 
-_ABOUT_LINE = re.compile(
-    r"\((?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)"
-)
+_ABOUT_LINE = re.compile(r"\((?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)")
 
 
 def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:

@@ -28,9 +28,7 @@ Z_CELL, SERVO_VALUE_CELL, SERVO_ANGLE_CELL = (
     "marlin-servo",
 )  # cells that brushsvg ships
 Lift = Callable[[float | None], float]
-ADVICE_BY_SIDE = dict.fromkeys(
-    ("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines"
-)
+ADVICE_BY_SIDE = dict.fromkeys(("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines")
 ADVICE_BY_SIDE |= dict.fromkeys(("right", "upper"), "give the sheet's size with --sheet WxH")
 
 
@@ -63,9 +61,7 @@ def foreign_program(
     ways, power = ways_and_end(text)
     lift = _lift_of_program(ways, cell)
     if lift and paper_z_mm is not None:
-        sentence = (
-            f"its pen goes by a servo, whose heights cell {cell.name} gives: --paper-z would change nothing"
-        )
+        sentence = f"its pen goes by a servo, whose heights cell {cell.name} gives: --paper-z would change nothing"
         raise Error(sentence, code="flag-without-effect")
     if not lift and paper_z_mm is None:
         _refuse_inverted(ways)
@@ -84,10 +80,7 @@ def foreign_program(
         *_check_brush_lifted(ways, lift(power) if lift else float(ways[-1].points_mm[-1, 2])),
         *outside,
         *broken_limits(passes, sheet_mm, brush, cell),
-        *(
-            replace(notice, advice=ADVICE_BY_SIDE[notice.about])
-            for notice in off_sheet(marks, brush, sheet_mm)
-        ),
+        *(replace(notice, advice=ADVICE_BY_SIDE[notice.about]) for notice in off_sheet(marks, brush, sheet_mm)),
     ]
     return SimulatedForeignProgram(plan, marks, tuple(dict.fromkeys(problems)), _unit_warnings(ways))
 
@@ -128,9 +121,7 @@ def _check_brush_lifted(ways: list[Way], height_mm: float) -> list[Notice]:
     """
     if not height_mm < 0:
         return []
-    sentence = (
-        f"the program ends with the brush on the paper, at z {height_mm:.4g} mm: lift it behind its last line"
-    )
+    sentence = f"the program ends with the brush on the paper, at z {height_mm:.4g} mm: lift it behind its last line"
     return [Notice(f"line {ways[-1].line}", sentence, code="ends-on-paper")]
 
 
@@ -147,9 +138,7 @@ def _touches_to_passes(ways: list[Way], cell: Cell) -> tuple[list, list[Notice]]
     def finish_pass() -> None:
         if poses and min(pose[2] for pose in poses) < 0:
             over = [np.array([*pose[:2], 0.0]) for pose in (poses[0], poses[-1])]
-            way = (
-                poses if len(poses) > 1 else [over[0], *poses, over[1]]
-            )  # a servo's dot goes straight down and up
+            way = poses if len(poses) > 1 else [over[0], *poses, over[1]]  # a servo's dot goes straight down and up
             passes.append(_core.Pass(name, np.array(way), max(speeds, default=cell.speeds.press_mm_s)))
         poses.clear()
         speeds.clear()
@@ -164,9 +153,7 @@ def _touches_to_passes(ways: list[Way], cell: Cell) -> tuple[list, list[Notice]]
             continue
         points = points[~np.isnan(points).any(axis=1)]
         for start, end in zip(points, [*points[1:], points[-1]], strict=True):
-            if min(start[2], end[2]) > 0 or (
-                max(start[2], end[2]) >= 0 and min(start[2], end[2]) == 0 and not poses
-            ):
+            if min(start[2], end[2]) > 0 or (max(start[2], end[2]) >= 0 and min(start[2], end[2]) == 0 and not poses):
                 finish_pass()
                 continue
             ends = _part_on_paper(start, end)
@@ -237,9 +224,7 @@ def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
     if pen_kind(ways) == "z":
         if (cell.servo or up_and_down) and any(np.isfinite(way.points_mm[:, 2]).any() for way in ways):
             sentence = f"its pen goes by Z, and cell {cell.name} lifts its brush by a servo"
-            raise Error(
-                sentence, code="servo-unknown", advice=f"give a cell without a servo, --cell {Z_CELL}"
-            )
+            raise Error(sentence, code="servo-unknown", advice=f"give a cell without a servo, --cell {Z_CELL}")
         return None
     values = sorted({way.power for way in ways if way.power is not None})
     line = next(way.line for way in ways if way.power is not None)
@@ -258,9 +243,7 @@ def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
     if not cell.servo:
         sentence = f"line {line}: its pen goes by M3 and M5, and cell {cell.name} has no servo"
         fits = _is_in_table(values, find_cell(SERVO_VALUE_CELL))
-        advice = (
-            f"--cell {SERVO_VALUE_CELL}, or one of your own like it" if fits else _advise_own_table(values)
-        )
+        advice = f"--cell {SERVO_VALUE_CELL}, or one of your own like it" if fits else _advise_own_table(values)
         raise Error(sentence, code="servo-unknown", advice=advice)
     if not _is_in_table(values, cell):
         least, most = _table_range(cell)
@@ -306,14 +289,8 @@ def _nothing_painted_error(ways: list[Way], cell: Cell, lift: Lift | None, paper
     heights = np.concatenate([way.points_mm[:, 2] for way in ways]) if ways else np.array([])
     heights = heights[np.isfinite(heights)]
     if lift:
-        sentence = (
-            f"the brush never touches the paper: by cell {cell.name} all values of the servo are above it"
-        )
-        advice = (
-            ""
-            if cell.pen
-            else _advise_own_table(sorted({way.power for way in ways if way.power is not None}))
-        )
+        sentence = f"the brush never touches the paper: by cell {cell.name} all values of the servo are above it"
+        advice = "" if cell.pen else _advise_own_table(sorted({way.power for way in ways if way.power is not None}))
     elif not len(heights):
         sentence = "the brush never touches the paper: no line names a height (Z) or moves a servo (M3, M280)"
         advice = ""

@@ -49,9 +49,7 @@ def stops(read: Readback, program: Program) -> list[Notice]:
             most_s = np.maximum(most_s, _longest_times_with_lift_s(ours, np.diff(along), program))
         late_s = took_s - slower * most_s
         if late_s[worst := int(late_s.argmax())] > MAX_PAUSE_S:
-            sentence = (
-                f"line {ours[worst + 1].line}: the brush stands still in the paint for {late_s[worst]:.3f} s"
-            )
+            sentence = f"line {ours[worst + 1].line}: the brush stands still in the paint for {late_s[worst]:.3f} s"
             return [Notice(name, sentence, code="stands-in-paint")]
     return []
 
@@ -78,11 +76,7 @@ def _moves_by_stroke(acts: list[Act], touching_mm_s: float) -> list[tuple[str, l
             is_stroke = act.text.startswith("(stroke ")
             if is_stroke:
                 found.append((act.text.strip("()").partition(": ")[2], []))
-        elif (
-            is_stroke
-            and act.kind in ("way", "move")
-            and act.at_most[0] <= touching_mm_s + SPEED_ROUNDING_MM_S
-        ):
+        elif is_stroke and act.kind in ("way", "move") and act.at_most[0] <= touching_mm_s + SPEED_ROUNDING_MM_S:
             found[-1][1].append(act)
     return found
 

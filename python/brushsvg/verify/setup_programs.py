@@ -39,9 +39,7 @@ def look_at_border(
     """
     expected = border(origin.border_mm, brush, cell, sheet_mm, z_offset_mm)
     job, notes = Job(z_offset_mm), origin.notes
-    header = border_header(
-        origin.title, brush.name, origin.strokes, sheet_mm, notes, origin.border_mm, expected, job
-    )
+    header = border_header(origin.title, brush.name, origin.strokes, sheet_mm, notes, origin.border_mm, expected, job)
     expected = replace(expected, header=header)
     sections = [*walk_sections(read, brush, cell, sheet_mm, z_offset_mm)]
     return _check_setup_program(text, read, expected, sections, cell, cell.heights.safe_mm, "safe height")
@@ -58,9 +56,7 @@ def look_at_heights(text: str, read: Readback, origin: ProgramHeader, brush, cel
     expected = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
     expected = replace(expected, header=height_header(brush.name, sheet_mm, origin.heights_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
-    return _check_setup_program(
-        text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke"
-    )
+    return _check_setup_program(text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke")
 
 
 def look_at_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
@@ -74,9 +70,7 @@ def look_at_first_run(text: str, read: Readback, origin: ProgramHeader, brush, c
     expected = replace(expected, header=first_header(brush.name, sheet_mm, origin.first_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     deepest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)
-    return _check_setup_program(
-        text, read, expected, sections, cell, deepest_mm, "height of the deepest stroke"
-    )
+    return _check_setup_program(text, read, expected, sections, cell, deepest_mm, "height of the deepest stroke")
 
 
 def _check_setup_program(

@@ -71,9 +71,7 @@ def slack_mm(cell: Cell) -> float:
     return max(MAX_ROUNDING_LIFT_MM, 1.1 * unit_mm(cell)) + (value_mm(cell) / 2 if cell.servo else 0.0)
 
 
-def simulate_program(
-    read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0
-) -> SimulatedProgram:
+def simulate_program(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> SimulatedProgram:
     """Simulate the program as a machine of this cell runs it.
 
     Raises Error for poses deeper than the brush allows.
@@ -111,13 +109,9 @@ def simulate_program(
             # The simulation checks the depths of the planned poses themselves.
             is_allowed = poses[:, 2].min(initial=0.0) >= -brush.depth_range_mm[1]
             run_mm = _clamp_to_deepest(run.poses_mm, brush, np.inf if is_allowed else slack)
-            run_passes.append(
-                _core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes)
-            )
+            run_passes.append(_core.Pass(name, run_mm, run.speed_mm_s, arcs=run.arcs, tool_axes=run.tool_axes))
             lines.append(np.array([section.steps[number].line for number in track.step[touch]]))
-            rests.append(
-                np.array([_servo_rests_after(section.steps[number], cell) for number in track.step[touch]])
-            )
+            rests.append(np.array([_servo_rests_after(section.steps[number], cell) for number in track.step[touch]]))
     plan = _core.Plan(brush.name, "", tuple(sheet_mm), programmed)
     run_plan = _core.Plan(brush.name, "", tuple(sheet_mm), run_passes)
     marks = _core.simulate(run_plan, brush, may_rise=True)
@@ -129,9 +123,7 @@ def simulate_program(
         _core.narrow(marks, brush.paint, dips)
     problems += broken_limits(programmed, sheet_mm, brush, _with_rounding_allowance(cell))
     problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
-    return SimulatedProgram(
-        plan, run_plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests)
-    )
+    return SimulatedProgram(plan, run_plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
 
 def _clamp_to_deepest(poses_mm, brush, slack: float) -> np.ndarray:
@@ -198,9 +190,7 @@ def walk_sections(
             here, here_low = track.points[-1], low.points[-1]
 
 
-def _check_rises(
-    read: Readback, ends: np.ndarray, frame: np.ndarray, cell: Cell, z_offset_mm: float
-) -> Problems:
+def _check_rises(read: Readback, ends: np.ndarray, frame: np.ndarray, cell: Cell, z_offset_mm: float) -> Problems:
     """Report the limits that the rise before the first move breaks.
 
     ends: (n, 3) first and last place of the program [mm], in the paper frame; frame: (4, 4) pose of the paper in the
@@ -250,9 +240,7 @@ def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
 
     Raises Error for a station that the cell does not have.
     """
-    by_title = {
-        _comparable_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()
-    }
+    by_title = {_comparable_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()}
     visits, pending_stations = [], []
     for section in read.sections:
         if section.title.startswith("paint: "):
@@ -319,9 +307,7 @@ def _section_name(section: ReadSection) -> str:
 
 def _track_of_section(section: ReadSection, frame: np.ndarray, here: np.ndarray | None) -> Track:
     steps, back = section.steps, np.linalg.inv(frame)
-    ends = transform_points(
-        back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3)
-    )
+    ends = transform_points(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
     known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the other steps go straight up, from any place
     stays = (np.diff(ends[known], axis=0) == 0).all(
         axis=1

@@ -194,9 +194,7 @@ def change_pixels(data: bytes, seeds: list[bytes], choose: random.Random) -> byt
     elif kind == 5:
         pixels = cv2.GaussianBlur(pixels, (0, 0), choose.uniform(0.3, 5))
     elif kind == 6:
-        pixels = (
-            255 - pixels if choose.random() < 0.3 else (pixels * choose.uniform(0.0, 1.0)).astype(np.uint8)
-        )
+        pixels = 255 - pixels if choose.random() < 0.3 else (pixels * choose.uniform(0.0, 1.0)).astype(np.uint8)
     else:
         (left, top), (right, bottom) = np.sort(places[:2], axis=0)
         pixels = pixels[top : bottom + 1, left : right + 1]

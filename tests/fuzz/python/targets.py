@@ -74,9 +74,7 @@ def judged(target: Target, data: bytes) -> None:
 def _design(design) -> None:
     require(all(np.isfinite(design.sheet_mm)), f"the sheet is {design.sheet_mm}")
     for element in design.elements:
-        require(
-            np.isfinite(element.stroke_width_mm), f"{element.id[:40]!r} is {element.stroke_width_mm} mm wide"
-        )
+        require(np.isfinite(element.stroke_width_mm), f"{element.id[:40]!r} is {element.stroke_width_mm} mm wide")
         for part in element.subpaths:
             require(part.cubics.ndim == 3 and part.cubics.shape[1:] == (4, 2), f"cubics {part.cubics.shape}")
             require(bool(np.isfinite(part.cubics).all()), f"{element.id[:40]!r} is not finite")
@@ -109,9 +107,7 @@ SHAPES = (
     '<marker id="k"><path d="M0 0 1 1"/></marker><path d="M1 1 9 9" marker-end="url(#k)" stroke="red"/>',
     '<text x="3" y="9">abc</text><image href="x.png"/><switch><path d="M0 0 9 9" stroke="red"/></switch>',
 )
-STYLE = (
-    "<style>path, .a > g:nth-child(2n+1) {{ stroke: rgb(1, 2, 3); stroke-width: calc(2px + 1mm) }} {}</style>"
-)
+STYLE = "<style>path, .a > g:nth-child(2n+1) {{ stroke: rgb(1, 2, 3); stroke-width: calc(2px + 1mm) }} {}</style>"
 
 
 def _svg_seeds() -> Iterator[bytes]:
@@ -357,9 +353,7 @@ def _json_measurement_seeds() -> Iterator[bytes]:
 
     line = [[float(x), 0.0] for x in range(8)] + [[8.0 + x, 0.1 * x] for x in range(8)]
     yield file(name="b", lag=rows(2.0), width=rows(1.0), tip_gap=rows(0.5), depth_range_mm=[0, 8])
-    yield file(
-        lag=rows(2.0), half_width=rows(0.4), tip_to_widest=rows(1.0), side_view=rows(0.5), max_speed_mm_s=20
-    )
+    yield file(lag=rows(2.0), half_width=rows(0.4), tip_to_widest=rows(1.0), side_view=rows(0.5), max_speed_mm_s=20)
     yield file(
         width=rows(1.0),
         angles=[
@@ -413,9 +407,7 @@ def _read_cell(data: bytes) -> None:
     from brushsvg.machine.cells.cell_file import parse_cell, write_cell
 
     cell = parse_cell(data.decode("utf-8", "replace"))
-    require(
-        write_cell(parse_cell(write_cell(cell))) == write_cell(cell), "a cell is written and read the same"
-    )
+    require(write_cell(parse_cell(write_cell(cell))) == write_cell(cell), "a cell is written and read the same")
 
 
 def _cell_seeds() -> Iterator[bytes]:
@@ -456,9 +448,7 @@ def _read_chart(data: bytes) -> None:
     from brushsvg.calibration.chart.file import read_chart, write_chart
 
     chart = read_chart(data)
-    require(
-        write_chart(read_chart(write_chart(chart).encode())) == write_chart(chart), "a chart is read back"
-    )
+    require(write_chart(read_chart(write_chart(chart).encode())) == write_chart(chart), "a chart is read back")
 
 
 def _chart_seeds() -> Iterator[bytes]:
@@ -554,9 +544,7 @@ def _read_back(name: str) -> Callable[[bytes], None]:
             for step in section.steps:
                 numbers = np.array([step.x, step.y, step.z])
                 require(not np.isinf(numbers).any(), f"line {step.line} goes to {numbers}")
-                require(
-                    step.speed_mm_s > 0 or np.isnan(step.speed_mm_s), f"line {step.line} at {step.speed_mm_s}"
-                )
+                require(step.speed_mm_s > 0 or np.isnan(step.speed_mm_s), f"line {step.line} at {step.speed_mm_s}")
         simulate_program(found, find_brush("round-6"), cell, (297.0, 210.0))
 
     return read

@@ -80,9 +80,7 @@ def quick_check():
         return []
 
     checking.preparation, checking.load_cell = types.SimpleNamespace(prepare=prepare), cell_of
-    checking.outputs = types.SimpleNamespace(
-        header_lines=outputs.header_lines, make_report=lambda *_, **__: None
-    )
+    checking.outputs = types.SimpleNamespace(header_lines=outputs.header_lines, make_report=lambda *_, **__: None)
     command.print_text, command.report = lambda text: None, types.SimpleNamespace(as_text=lambda *_: "")
     try:
         yield refusals

@@ -717,9 +717,7 @@ def offset(page, random):
     """Shift, scale or turn all later moves, or change a robot's paper or tool."""
     if script := page.script:
         k = _pick(random, [k for k in page.code if re.search(script.offsets, page.lines[k])])
-        return _at_number(
-            page, random, [k], lambda n: f"{float(n) + random.choice(script.shifts):.{script.decimals}f}"
-        )
+        return _at_number(page, random, [k], lambda n: f"{float(n) + random.choice(script.shifts):.{script.decimals}f}")
     line = _pick(
         random,
         (

@@ -80,9 +80,7 @@ class _Board:
             raise RefusedError(f"line {self.number}: !8 Err: Unknown command {word[:10]!r}")
         if not all(re.fullmatch(r"[+-]?\d+", each) for each in reported):
             raise RefusedError(f"line {self.number}: !7 Err: Invalid parameter")
-        {"SM": self._move, "S2": self._servo, "SR": self._power, "EM": self._enable}[word](
-            *map(int, reported[:6])
-        )
+        {"SM": self._move, "S2": self._servo, "SR": self._power, "EM": self._enable}[word](*map(int, reported[:6]))
 
     def _at(self) -> tuple:
         x, y = np.linalg.solve(self.rows, self.steps)
@@ -103,9 +101,7 @@ class _Board:
         self.run.legs.append(Leg(self.number, "feed", here, there, math.dist(here, there) / time_ms * 1e3))
 
     def _servo(self, value: int = -1, pin: int = -1, rate: int = 0, wait_ms: int = 0, *more: int) -> None:
-        if more or not (
-            0 <= value <= 65535 and 0 <= pin <= 24 and 0 <= rate <= 65535 and 0 <= wait_ms <= 65535
-        ):
+        if more or not (0 <= value <= 65535 and 0 <= pin <= 24 and 0 <= rate <= 65535 and 0 <= wait_ms <= 65535):
             raise RefusedError(f"line {self.number}: !0 Err: parameter out of range")
         if pin != self.pin or not value or rate:
             self._act("another pin, or a servo that is switched off or slow")

@@ -49,9 +49,7 @@ def paper_of(cell: dict, z_offset_mm: float) -> np.ndarray:
         y /= np.linalg.norm(y)
         made = frame(origin, np.column_stack([x, y, np.cross(x, y)]))
     else:
-        made = frame(
-            paper.get("origin_mm", (0, 0, 0)), turned_deg(*map(float, paper.get("rotation_deg", (0, 0, 0))))
-        )
+        made = frame(paper.get("origin_mm", (0, 0, 0)), turned_deg(*map(float, paper.get("rotation_deg", (0, 0, 0)))))
     made[:3, 3] += z_offset_mm * made[:3, 2]
     return made
 
@@ -141,9 +139,7 @@ def commanded_in_air(place, height: float, machine: dict | None) -> np.ndarray:
     commanded = np.array([(place[0] - machine.get("skew", 0.0) * y) / along, y])
     if "field_mm" in machine:
         axes = np.array([[along, machine.get("skew", 0.0)], [0.0, across]])
-        commanded = least_squares(
-            lambda at: axes @ at + bent(at, machine) - place[:2], commanded, xtol=1e-15
-        ).x
+        commanded = least_squares(lambda at: axes @ at + bent(at, machine) - place[:2], commanded, xtol=1e-15).x
     return np.array([*commanded, height + paper_height(commanded[None], machine)[0]])
 
 

@@ -109,9 +109,7 @@ def dxf(random, at: Path) -> Path:
         x, y = random.uniform((15, 15), (50, 35))
         kind = int(random.integers(4))
         if kind == 0:
-            points = [
-                (x + dx, y + dy, 0, 0, b) for dx, dy, b in random.uniform(-10, 10, (4, 3)) * (1, 1, 0.1)
-            ]
+            points = [(x + dx, y + dy, 0, 0, b) for dx, dy, b in random.uniform(-10, 10, (4, 3)) * (1, 1, 0.1)]
             space.add_lwpolyline(points, format="xyseb", close=bool(random.integers(2)))
         elif kind == 1:
             space.add_circle((x, y), float(random.uniform(0.5, 10)))
@@ -256,14 +254,10 @@ def stepped(source: Path, plan: dict, brush, toml: Path, flags) -> list[str]:
     work = None
     # Butt ends, turned corners and refined strokes leave their line on purpose. For these, only marks are
     # checked.
-    if said_of(flags, "--start")[1:] in (("pointed",), ("round",)) and not {"--corners", "refined"} & set(
-        flags
-    ):
+    if said_of(flags, "--start")[1:] in (("pointed",), ("round",)) and not {"--corners", "refined"} & set(flags):
         work = preparation.prepare(
             source,
-            make_options(
-                make_choices(parse(["convert", str(source), "-o", "x.json", "--cell", str(toml), *flags]))
-            ),
+            make_options(make_choices(parse(["convert", str(source), "-o", "x.json", "--cell", str(toml), *flags]))),
         )
     laws = [Lag(brush)]
     for k, a_pass in enumerate(_core.read_plan(json.dumps(plan)).passes):
@@ -335,6 +329,4 @@ def batches_differ(sources: list[Path], folder: Path) -> list[str]:
         brushsvg.batch(sources, out, jobs=jobs)
         programs = out / "programs"
         made[jobs] = {p.relative_to(programs): p.read_bytes() for p in programs.rglob("*") if p.is_file()}
-    return [
-        f"{name}: another one from two processes" for name in made[1] if made[1][name] != made[2].get(name)
-    ]
+    return [f"{name}: another one from two processes" for name in made[1] if made[1][name] != made[2].get(name)]

@@ -116,9 +116,7 @@ def judged(
         if said := converted(source, twin, "--cell", exact, *flags):
             wrong.append(f"no program without backlash: {said}")
         else:
-            of = job_for(
-                exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags
-            )
+            of = job_for(exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
             wrong += apart(way, way_of(of.interpret(_whole(twin)), of), cell, has_circles)
     words = [word for flag in requested for word in said_of(flags, flag)]

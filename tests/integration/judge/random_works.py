@@ -58,9 +58,7 @@ def random_svg(random) -> str:
             )[kind]
         )
         width, colour = random.uniform(1.2, 4.5), random.choice(("#000000", "#ff0000"))
-        drawn.append(
-            f'<path id="s{number}" d="{path}" fill="none" stroke="{colour}" stroke-width="{width:.2f}"/>'
-        )
+        drawn.append(f'<path id="s{number}" d="{path}" fill="none" stroke="{colour}" stroke-width="{width:.2f}"/>')
     size = f'width="{SHEET[0]:g}mm" height="{SHEET[1]:g}mm" viewBox="0 0 {SHEET[0]:g} {SHEET[1]:g}"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}><title>random</title>{"".join(drawn)}</svg>'
 
@@ -71,9 +69,7 @@ def random_cell(random, dialect: str):
     safe = round(float(random.uniform(4, 25)), 2)
     clear = round(float(random.uniform(0.3, 2.5)), 2)
     lowest = -round(float(random.uniform(5, 10)), 2)
-    cell = replace(
-        cell, name="mine", heights=replace(cell.heights, safe_mm=safe, clearance_mm=clear, lowest_mm=lowest)
-    )
+    cell = replace(cell, name="mine", heights=replace(cell.heights, safe_mm=safe, clearance_mm=clear, lowest_mm=lowest))
     speeds = replace(
         cell.speeds,
         travel_mm_s=float(random.uniform(30, 200)),
@@ -85,9 +81,7 @@ def random_cell(random, dialect: str):
     paper = Paper()
     if dialect in FLAT:
         if random.random() < 0.4:
-            paper = Paper(
-                (*random.uniform(-300, 300, 2).tolist(), 0.0), (0.0, 0.0, float(random.uniform(0, 360)))
-            )
+            paper = Paper((*random.uniform(-300, 300, 2).tolist(), 0.0), (0.0, 0.0, float(random.uniform(0, 360))))
         if dialect == "grbl-servo":
             cell = replace(cell, servo=_servo(random, lowest, safe))
         elif dialect == "ebb":
@@ -99,9 +93,7 @@ def random_cell(random, dialect: str):
             cell = replace(cell, speeds=replace(cell.speeds, **speeds), decimals=3)
     elif random.random() < 0.8:
         leans = random.uniform(-1, 1, 2) * (0 if random.random() < 0.4 else 9 if dialect in ROBOTS else 1.3)
-        paper = Paper(
-            tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360)))
-        )
+        paper = Paper(tuple(random.uniform(-500, 500, 3).tolist()), (*leans.tolist(), float(random.uniform(0, 360))))
     if dialect == "ebb" and paper.rotation_deg[2]:  # the motors begin over the sheet
         turn = np.radians(paper.rotation_deg[2])
         x, y = random.uniform((0, 0), SHEET)
@@ -238,9 +230,7 @@ def _with_space(random, cell):
     box, reach = (), ()
     if random.random() < 0.6:
         room = random.uniform(0, 50, (2, 3))
-        box = tuple(
-            map(tuple, (np.r_[[corners.min(axis=0) - room[0], corners.max(axis=0) + room[1]]]).tolist())
-        )
+        box = tuple(map(tuple, (np.r_[[corners.min(axis=0) - room[0], corners.max(axis=0) + room[1]]]).tolist()))
     if random.random() < 0.7:
         away = np.linalg.norm(corners, axis=1)
         middle = moved(frame, np.array([[SHEET[0] / 2, SHEET[1] / 2, 0.0]]))[0]
@@ -258,9 +248,7 @@ def _with_a_clip(random, cell):
     from .places import moved, paper_of
 
     pose = {"origin_mm": cell.paper.origin_mm, "rotation_deg": cell.paper.rotation_deg}
-    place = np.array(
-        [*random.uniform((-20, -20), np.array(SHEET) + 20), random.uniform(-2, cell.heights.safe_mm)]
-    )
+    place = np.array([*random.uniform((-20, -20), np.array(SHEET) + 20), random.uniform(-2, cell.heights.safe_mm)])
     (middle,) = moved(paper_of({"paper": pose}, 0.0), place[None])
     half = random.uniform(1, 6, 3)
     box = (tuple((middle - half).tolist()), tuple((middle + half).tolist()))
@@ -277,17 +265,12 @@ def _with_paint(random, cell):
         depth = float(random.uniform(0.5, 3.0))
         if surface - depth < lowest:
             continue
-        x = (
-            -float(random.uniform(2, 30))
-            if random.random() < 0.7
-            else SHEET[0] + float(random.uniform(2, 25))
-        )
+        x = -float(random.uniform(2, 30)) if random.random() < 0.7 else SHEET[0] + float(random.uniform(2, 25))
         wipes = ()
         if random.random() < 0.5:
             heights = random.uniform(rim, safe, 2)
             wipes = tuple(
-                (x + (k + 1) * float(random.uniform(-5, 5)), y + 2.0 * k, float(z))
-                for k, z in enumerate(heights)
+                (x + (k + 1) * float(random.uniform(-5, 5)), y + 2.0 * k, float(z)) for k, z in enumerate(heights)
             )
         station = Station(name, (x, y), colours, False, surface, depth, rim, 0.2, 0.3, wipes)
         stations.append(station)

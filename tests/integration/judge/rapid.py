@@ -29,10 +29,7 @@ FIELDS = {  # the fields of each record type: names and types
     "speeddata": (("v_tcp", "num"), ("v_ori", "num"), ("v_leax", "num"), ("v_reax", "num")),
     "zonedata": (
         ("finep", "bool"),
-        *(
-            (name, "num")
-            for name in ("pzone_tcp", "pzone_ori", "pzone_eax", "zone_ori", "zone_leax", "zone_reax")
-        ),
+        *((name, "num") for name in ("pzone_tcp", "pzone_ori", "pzone_eax", "zone_ori", "zone_leax", "zone_reax")),
     ),
     "loaddata": (
         ("mass", "num"),
@@ -488,9 +485,7 @@ class _Robot(Arm):
     def _do_pathacclim(self, number: int, given: list, options: dict) -> None:
         if len(given) != 2 or not all(type(each) is bool for each in given):
             raise RefusedError(f"line {number}: PathAccLim of two switches")
-        limits = [
-            self._option(number, options, name, "num") for name in ("accmax", "decelmax") if name in options
-        ]
+        limits = [self._option(number, options, name, "num") for name in ("accmax", "decelmax") if name in options]
         if len(limits) != sum(given) or (limits and min(limits) < 0.1):
             raise RefusedError(f"line {number}: no acceleration of 0.1 m/s2 and more")
         self.acceleration = max(limits) if all(given) else np.inf

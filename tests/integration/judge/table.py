@@ -79,10 +79,7 @@ def is_paced_alike(text: str, other: str) -> bool:
     ours, theirs = STEP_OR_WAIT.findall(text), STEP_OR_WAIT.findall(other)
     return len(ours) == len(theirs) and all(
         word == its
-        and (
-            value == other_value
-            or (value and other_value and abs(int(value) - int(other_value)) <= SAME_STEP)
-        )
+        and (value == other_value or (value and other_value and abs(int(value) - int(other_value)) <= SAME_STEP))
         for (word, value), (its, other_value) in zip(ours, theirs, strict=True)
     )
 

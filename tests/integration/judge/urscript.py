@@ -52,9 +52,7 @@ PATTERNS = {
 MAIN = "brushsvg"
 
 
-def run_urscript(
-    text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, force_n: float = 0.0
-) -> Run:
+def run_urscript(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, force_n: float = 0.0) -> Run:
     """Run a program in URScript.
 
     start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell. At

@@ -165,9 +165,7 @@ class Job:
         if robot := ROBOTS.get(self.language):
             more = [self.cell["blending"].get("ramp_s", 0.5)] if self.language == "fanuc" else []
             more += [
-                self.cell["contact"][key]
-                for key in ("force_n", "sensitivity")
-                if key in self.cell.get("contact", ())
+                self.cell["contact"][key] for key in ("force_n", "sensitivity") if key in self.cell.get("contact", ())
             ]
             of = self.start, self.paper, places.down_of(self.cell), places.tool_of(self.cell)
             return robot(text, *of, *more)
@@ -296,9 +294,7 @@ def _beyond(way: Way, job: Job):
     workspace = cell["workspace"]
     slack = SLACK_MM + job.servo_mm[0] / 2
     margin = np.array([workspace["margin_mm"]] * 2) + SLACK_MM
-    over = np.maximum(-margin - points[:, :2], points[:, :2] - margin - np.array(job.plan["sheet_mm"])).max(
-        axis=1
-    )
+    over = np.maximum(-margin - points[:, :2], points[:, :2] - margin - np.array(job.plan["sheet_mm"])).max(axis=1)
     if over.max() > 0:
         yield f"{over.max():.3f} mm beyond the sheet's margin, line {_line(way, over.argmax() + first)}"
     if heights.min() < cell["heights"]["lowest_mm"] - slack:
@@ -345,10 +341,7 @@ def _fast(way: Way, job: Job):
     lengths = np.maximum(np.linalg.norm(way.ends - way.starts, axis=1), 1e-9)
     rounded = 2e-5 * speeds / lengths if job.language == "ros2" else 0.0
     fast = (
-        low
-        & ~still
-        & (kinds != "jump")
-        & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01 + rounded))
+        low & ~still & (kinds != "jump") & ((kinds == "rapid") | (speeds > job.fastest_mm_s * 1.001 + 0.01 + rounded))
     )
     # By the map of the paper, a vessel may stand lower than the paper.
     for k in np.flatnonzero(fast):
@@ -400,9 +393,7 @@ def _low(way: Way, job: Job):
     low, high = np.minimum(way.starts[:, 2], way.ends[:, 2]), np.maximum(way.starts[:, 2], way.ends[:, 2])
     sideways = np.linalg.norm(way.ends[:, :2] - way.starts[:, :2], axis=1)
     bad = (
-        (low < safe - 0.05 - job.servo_mm[0] / 2)
-        & (high > job.touch_mm + job.servo_mm[1] + 1e-6)
-        & (sideways > OFF_MM)
+        (low < safe - 0.05 - job.servo_mm[0] / 2) & (high > job.touch_mm + job.servo_mm[1] + 1e-6) & (sideways > OFF_MM)
     )
     for k in np.flatnonzero(bad):
         a, b = legs[way.leg[k]].start, legs[way.leg[k]].end
@@ -484,9 +475,7 @@ def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> 
         last = len(stroke) - (n - 1 - int(same[-1]) if len(same) else n)
         if first < last:
             middle = stroke[max(0, first - 1) : last + 1]
-            gap = _to_path(
-                middle[:: max(1, len(middle) // 200)], target[:: max(1, len(target) // 2000)]
-            ).max()
+            gap = _to_path(middle[:: max(1, len(middle) // 200)], target[:: max(1, len(target) // 2000)]).max()
             if gap > 3 * OFF_MM:
                 return float(gap)
     if walkable(stroke, target, near):
@@ -700,9 +689,7 @@ def judged(text: str, whole: Sound) -> tuple[str, str]:
         return "neither", "the header or a title says something else"
     commanded = _commanded(way, whole.job)
     return (
-        ("harmless", "")
-        if _same(commanded, whole.steps, whole.job)
-        else ("neither", "other moves, yet not dangerous")
+        ("harmless", "") if _same(commanded, whole.steps, whole.job) else ("neither", "other moves, yet not dangerous")
     )
 
 
@@ -793,9 +780,7 @@ def _alike(one, other, near: float, job: Job) -> bool:
         return False
     if a.kind == "lift" and a.cut_mm > max(b.cut_mm, 1.5 * job.servo_mm[1] + job.servo_mm[0] + SLACK_MM):
         return False
-    if a.speed_mm_s > b.speed_mm_s + FASTER_MM_S or (
-        a.kind != "lift" and abs(a.seconds - b.seconds) > 0.0011
-    ):
+    if a.speed_mm_s > b.speed_mm_s + FASTER_MM_S or (a.kind != "lift" and abs(a.seconds - b.seconds) > 0.0011):
         return False
     if a.centre and max(abs(p - q) for p, q in zip(a.centre, b.centre, strict=True)) > near:
         return False
@@ -803,7 +788,5 @@ def _alike(one, other, near: float, job: Job) -> bool:
     return all(abs(p - q) <= n for p, q, n in zip((*a.start, *a.end), (*b.start, *b.end), nears, strict=True))
 
 
-def job_of(
-    cell: dict, plan_json: str, brush_mm_s: float, z_offset_mm: float = 0.0, first_stroke: int = 1
-) -> Job:
+def job_of(cell: dict, plan_json: str, brush_mm_s: float, z_offset_mm: float = 0.0, first_stroke: int = 1) -> Job:
     return Job(cell, json.loads(plan_json), brush_mm_s, z_offset_mm, first_stroke)

@@ -52,8 +52,7 @@ OPEN = '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewB
 
 def lines(*paths: str, width="2") -> str:
     drawn = "".join(
-        f'<path id="p{k}" d="{d}" fill="none" stroke="#000" stroke-width="{width}"/>'
-        for k, d in enumerate(paths, 1)
+        f'<path id="p{k}" d="{d}" fill="none" stroke="#000" stroke-width="{width}"/>' for k, d in enumerate(paths, 1)
     )
     return f"{OPEN}{drawn}</svg>"
 
@@ -118,9 +117,7 @@ def _higher(cell):
     if cell.language == "grbl-servo":
         return replace(cell, servo=replace(cell.servo, table=((-10.0, 200.0), (0.0, 600.0), (8.0, 920.0))))
     if cell.language == "ebb":
-        return replace(
-            cell, servo=replace(cell.servo, table=((-10.0, 9000.0), (0.0, 17000.0), (8.0, 24000.0)))
-        )
+        return replace(cell, servo=replace(cell.servo, table=((-10.0, 9000.0), (0.0, 17000.0), (8.0, 24000.0))))
     return cell
 
 
@@ -141,9 +138,7 @@ WORKS = {
     "two lines": Work(lines("M20 25 L48 27", "M20 35 L50 33")),
     "a curve": Work(lines("M18 30 C28 10 42 10 52 32", "M20 40 C30 36 40 44 50 40", width="3")),
     "corners": Work(lines("M20 38 L34 14 L48 38", "M27 28 L42 28")),
-    "circles": Work(
-        lines("M20 38 L34 16 L48 38", "M22 42 L44 42"), ("--compensation", "constant", "--lag", "4")
-    ),
+    "circles": Work(lines("M20 38 L34 16 L48 38", "M22 42 L44 42"), ("--compensation", "constant", "--lag", "4")),
     "a dab and a hook": Work(lines("M25 20 L25 20", "M30 16 L44 16 L44 30", "M25 38 L32 38")),
     "askew": Work(lines("M20 25 L46 30", "M24 34 C34 30 40 40 48 36"), change=_turned),
     "leaning": Work(lines("M20 22 L46 30", "M24 34 L34 38 L48 33"), change=_leaning),
@@ -212,9 +207,7 @@ def make(name: str, dialect: str, folder: Path) -> Made:
     plan, program = folder / "plan.json", folder / f"program{suffix}"
     flags = flags_for(work.flags, dialect)
     planned = [
-        flag
-        for k, flag in enumerate(flags)
-        if not {"--z-offset", "--from-stroke"} & set(flags[max(0, k - 1) : k + 1])
+        flag for k, flag in enumerate(flags) if not {"--z-offset", "--from-stroke"} & set(flags[max(0, k - 1) : k + 1])
     ]
     assert not (said := converted(svg, plan, "--cell", cell, *planned)), said
     source = plan if work.by_plan else svg
@@ -223,6 +216,4 @@ def make(name: str, dialect: str, folder: Path) -> Made:
     brush = json.loads(plan.read_text())["brush"]
     job = job_for(cell_toml, plan.read_text(), brush, flags)
     whole = sound(text, job)
-    return Made(
-        name, dialect, whole, folder / f"damaged{suffix}", (source, "--cell", cell, *work.check_flags)
-    )
+    return Made(name, dialect, whole, folder / f"damaged{suffix}", (source, "--cell", cell, *work.check_flags))

@@ -23,9 +23,7 @@ NOT_READY = 9
 FILE = "<program>"
 
 
-def run_xarm(
-    text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, sensitivity: int = 0
-) -> Run:
+def run_xarm(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.ndarray, sensitivity: int = 0) -> Run:
     """Run a program for xArm.
 
     start is the place of the brush's tip [mm, robot's frame]. paper, down and tool come from the cell.
@@ -47,9 +45,7 @@ def executed(text: str, arm: XArmAPI) -> XArmAPI:
     known |= {"__import__": arm.imported, "input": arm.requested, "print": arm.printed}
     try:
         exec(code, {"__name__": "__main__", "__builtins__": known})
-        run.frame.append(
-            f"ends in mode {arm.mode}, state {arm.state}, waits {arm.is_waiting}, closed {arm.is_closed}"
-        )
+        run.frame.append(f"ends in mode {arm.mode}, state {arm.state}, waits {arm.is_waiting}, closed {arm.is_closed}")
     except RefusedError as refusal:
         run.refused = str(refusal)
     except SystemExit as ended:
@@ -208,9 +204,7 @@ class XArmAPI(Arm):
             self.run.acts.append(f"line {number}: a move of another kind")
         last = self.last or self.get_position()[1]
         self.last = [old if new is None else new for new, old in zip(given, last, strict=True)]
-        if not all(
-            isinstance(each, (int, float)) and math.isfinite(each) for each in (*self.last, speed, mvacc)
-        ):
+        if not all(isinstance(each, (int, float)) and math.isfinite(each) for each in (*self.last, speed, mvacc)):
             raise RefusedError(f"line {number}: no number")
         if self.world is None:
             self.run.acts.append(f"line {number}: in a frame that somebody has left")

@@ -23,9 +23,7 @@ HEADINGS_DEG = (
     90.0,
     270.0,
 )
-MIN_DEPTH_SHARE = (
-    0.2  # least depth as a share of the greatest; below it, outlines shrink in proportion to depth
-)
+MIN_DEPTH_SHARE = 0.2  # least depth as a share of the greatest; below it, outlines shrink in proportion to depth
 MIN_HALF_WIDTH_MM = 0.5  # least half width of the shallowest dab; narrower dabs look like splashes
 # Length of the run as a share of the lag. With a larger share, a brush that trails a little less than expected is
 # dragged, and its dab gets longer.

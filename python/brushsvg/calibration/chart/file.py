@@ -42,8 +42,7 @@ def write_chart(chart: Chart) -> str:
             for each in chart.strokes
         ],
         "labels": [
-            {"text": each.text, "at_mm": mm(each.at_mm), "width_mm": round(each.width_mm, 4)}
-            for each in chart.labels
+            {"text": each.text, "at_mm": mm(each.at_mm), "width_mm": round(each.width_mm, 4)} for each in chart.labels
         ],
     }
     lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items() if value]
@@ -92,16 +91,14 @@ def read_chart(data: bytes) -> Chart:
         for i, row in enumerate(rows(content.get("markers"), "markers"))
     ]
     strokes = [
-        _read_stroke(row, f"strokes[{i}]", most_mm)
-        for i, row in enumerate(rows(content.get("strokes"), "strokes"))
+        _read_stroke(row, f"strokes[{i}]", most_mm) for i, row in enumerate(rows(content.get("strokes"), "strokes"))
     ]
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
         raise Error("the strokes are not those of the plan, in its order", "strokes", code="chart-strokes")
     if len({each.id for each in markers}) < len(markers):
         raise Error("two markers have the same id", "markers", code="chart-markers")
     labels = [
-        _read_label(row, f"labels[{i}]", most_mm)
-        for i, row in enumerate(rows(content.get("labels", []), "labels"))
+        _read_label(row, f"labels[{i}]", most_mm) for i, row in enumerate(rows(content.get("labels", []), "labels"))
     ]
     mark = content.get("id", "")
     if mark and mark != chart_id(plan):
@@ -119,9 +116,7 @@ def _read_marker(row: dict, where: str, most_mm: float, marker_count: int) -> Ma
         sentence = f"{number!r:.24} is outside the range [0, {marker_count - 1}]"
         raise Error(sentence, f"{where}.id", code="out-of-range")
     at = f"{where}.corners_mm"
-    return Marker(
-        number, tuple(_read_lengths(each, f"{at}[{i}]", 2, most_mm) for i, each in enumerate(corners))
-    )
+    return Marker(number, tuple(_read_lengths(each, f"{at}[{i}]", 2, most_mm) for i, each in enumerate(corners)))
 
 
 def _read_bar(row, most_mm: float) -> Bar:
@@ -145,9 +140,7 @@ def _read_stroke(row: dict, where: str, most_mm: float) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
         raise Error("a stroke needs an id and a kind, in words", where, code="wrong-type")
     depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm", 0, MAX_DEPTH_MM)
-    return Stroke(
-        row["id"], row["kind"], depth_mm, _read_lengths(row.get("box_mm"), f"{where}.box_mm", 4, most_mm)
-    )
+    return Stroke(row["id"], row["kind"], depth_mm, _read_lengths(row.get("box_mm"), f"{where}.box_mm", 4, most_mm))
 
 
 def _read_lengths(values, where: str, count: int, most_mm: float) -> tuple[float, ...]:

@@ -185,9 +185,7 @@ def chart(
     sheet_mm = as_listed(sheet_mm)
     if not isinstance(sheet_mm, (list, tuple)) or len(sheet_mm) != 2:
         raise Error("a sheet is (width, height) in mm", "sheet", code="wrong-type")
-    sheet_mm = tuple(
-        need_number(side, "a side of the sheet [mm]", 0.0, MAX_SHEET_SIDE_MM) for side in sheet_mm
-    )
+    sheet_mm = tuple(need_number(side, "a side of the sheet [mm]", 0.0, MAX_SHEET_SIDE_MM) for side in sheet_mm)
     need_one_of(strokes, (None, *DEPTH_COUNTS), "how many strokes")
     deepest_mm = need_number(deepest_mm, "how deep the machine reaches [mm]", 0.0, math.inf)
     if brush.is_rigid():
@@ -206,9 +204,7 @@ def chart(
             code="sheet-too-small",
         )
     best, marker_gap = None, None
-    for depths, repeats in (
-        [(DEPTH_COUNTS[strokes], 1)] if strokes else _dab_choices() if dabs else _depth_choices()
-    ):
+    for depths, repeats in [(DEPTH_COUNTS[strokes], 1)] if strokes else _dab_choices() if dabs else _depth_choices():
         if dabs:
             units = _dab_units(brush, dab_depths(brush, depths, deepest_mm), repeats)
         else:
@@ -286,9 +282,7 @@ def _stroke_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]
 
 def _dab_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]:
     dabs = [
-        Drawn(KIND, depth, dab_poses(brush, depth, heading))
-        for depth in depths
-        for heading in HEADINGS_DEG * repeats
+        Drawn(KIND, depth, dab_poses(brush, depth, heading)) for depth in depths for heading in HEADINGS_DEG * repeats
     ]
     boxes = room_for(brush, dabs, DAB_LAG_SHARES, DAB_WIDTH_FACTOR, DAB_MARGIN_MM)
     return [_StrokeUnit((dab,), (next(boxes),)) for dab in dabs]
@@ -397,9 +391,7 @@ def room_for(
         bounds.append([_core.painted_bounds(trace, other_brush) for trace in marks.passes])
     bounds = np.array(bounds)
     low, high = bounds[..., :2].min(axis=0), bounds[..., 2:].max(axis=0)
-    grown = np.array([(wider - 1) * brush.half_width(stroke.depth_mm) + beyond_mm for stroke in strokes])[
-        :, None
-    ]
+    grown = np.array([(wider - 1) * brush.half_width(stroke.depth_mm) + beyond_mm for stroke in strokes])[:, None]
     yield from (tuple(box) for box in np.hstack([low - grown, high + grown]).tolist())
 
 
@@ -434,18 +426,16 @@ def _pack_units(
     return best
 
 
-def _pack_in_order(
-    units: list[_StrokeUnit], width: float, side: float, marker_gap: tuple[float, float] | None
-):
+def _pack_in_order(units: list[_StrokeUnit], width: float, side: float, marker_gap: tuple[float, float] | None):
     heights = np.full(int(width), BAR_MM)
     corner = side + QUIET * side
     columns = math.ceil(corner)
     heights[:columns] = heights[-columns:] = corner  # space of the upper markers
     if width + 2 * EDGE_MM >= BETWEEN * side:
         middle = len(heights) / 2
-        heights[
-            math.floor(middle - side / 2 - QUIET * side) : math.ceil(middle + side / 2 + QUIET * side)
-        ] = _top_of_middle_marker(side) + corner
+        heights[math.floor(middle - side / 2 - QUIET * side) : math.ceil(middle + side / 2 + QUIET * side)] = (
+            _top_of_middle_marker(side) + corner
+        )
     placed = []
     for unit in units:
         wide, tall = math.ceil(unit.size_mm[0]), unit.size_mm[1]
@@ -455,9 +445,7 @@ def _pack_in_order(
         if marker_gap:
             lefts = np.arange(len(tops))
             at_edge = (lefts < columns) | (lefts + wide > len(heights) - columns)
-            tops = np.where(
-                at_edge & (tops < marker_gap[1]) & (tops + tall > marker_gap[0]), marker_gap[1], tops
-            )
+            tops = np.where(at_edge & (tops < marker_gap[1]) & (tops + tall > marker_gap[0]), marker_gap[1], tops)
         left = int(tops.argmin())
         placed.append((unit, float(left), float(tops[left])))
         heights[left : left + wide] = tops[left] + tall
@@ -492,8 +480,7 @@ def _turn_unit(unit: _StrokeUnit) -> _StrokeUnit:
     for stroke in unit.strokes:
         x, y, z = stroke.poses_mm.T
         arcs = tuple(
-            _core.Arc(arc.first, arc.last, (-arc.centre_mm[1], arc.centre_mm[0]), arc.direction)
-            for arc in stroke.arcs
+            _core.Arc(arc.first, arc.last, (-arc.centre_mm[1], arc.centre_mm[0]), arc.direction) for arc in stroke.arcs
         )
         strokes.append(replace(stroke, poses_mm=np.column_stack([-y, x, z]), arcs=arcs))
     return _StrokeUnit(tuple(strokes), tuple((-y1, x0, -y0, x1) for x0, y0, x1, y1 in unit.boxes_mm))

@@ -42,9 +42,7 @@ def chart_page(chart: Chart, more=()) -> str:
         lines.append(f'<path data-marker="{marker.id}" fill="{INK_COLOUR}" d="{_path_data(rings, height)}"/>')
     if chart.bar:
         rings = bar_rings(chart.bar)
-        lines.append(
-            f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK_COLOUR}" d="{_path_data(rings, height)}"/>'
-        )
+        lines.append(f'<path data-bar="{chart.bar.length_mm:g}" fill="{INK_COLOUR}" d="{_path_data(rings, height)}"/>')
     lines += [f'<path fill="{INK_COLOUR}" d="{_path_data([ring], height)}"/>' for ring in more]
     lines += [_label_svg(label, height) for label in chart.labels]
     return "\n".join([*lines, "</svg>", ""])

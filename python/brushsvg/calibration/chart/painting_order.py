@@ -34,12 +34,7 @@ def early_and_late(strokes: list[tuple[str, float]]) -> list[int]:
     ]
     rounds = max(map(len, by_depth), default=0)
     turns = (by_depth[:: 1 if round_number % 2 == 0 else -1] for round_number in range(rounds))
-    dealt = [
-        left[round_number]
-        for round_number, turn in enumerate(turns)
-        for left in turn
-        if round_number < len(left)
-    ]
+    dealt = [left[round_number] for round_number, turn in enumerate(turns) for left in turn if round_number < len(left)]
     return [*references[:1], *dealt, *references[1:]]
 
 
@@ -51,6 +46,4 @@ def _by_kind(strokes: list[tuple[str, float]], alike: list[int], first: int) -> 
     of_kind = {kind: [k for k in alike if strokes[k][0] == kind] for kind in KINDS}
     kinds = KINDS[first % len(KINDS) :] + KINDS[: first % len(KINDS)]
     repeats = max(map(len, of_kind.values()))
-    return [
-        of_kind[kind][repeat] for repeat in range(repeats) for kind in kinds if repeat < len(of_kind[kind])
-    ]
+    return [of_kind[kind][repeat] for repeat in range(repeats) for kind in kinds if repeat < len(of_kind[kind])]

@@ -37,9 +37,7 @@ MAX_PLACE_ERROR_MM = 0.1  # standard deviation of a place on the sheet from whic
 # Standard deviation of the position of a sheet on a scan, from boxes that contain the marks of brushes that trail as
 # expected.
 SCAN_PLACEMENT_MM = 3.0
-UPSIDE_DOWN_DEG = (
-    179.0  # from this turn on, the sheet is upside down and the direction of the turn is not reported
-)
+UPSIDE_DOWN_DEG = 179.0  # from this turn on, the sheet is upside down and the direction of the turn is not reported
 # Codes of errors about paint outside the strokes of the page. The page may then have been printed at another scale.
 DISPLACED_PAGE_CODES = ("photo-paint-elsewhere", "photo-covered", "mark-missing")
 # Least visible difference between the scale of the paint and of its page. Brushes that trail differently scatter the
@@ -101,9 +99,7 @@ def read_chart_photos(
                 pixels, view = find_scan_view(
                     pixels, dpi, chart.plan.sheet_mm, stroke_boxes, _stroke_paths(chart), chart.dictionary
                 )
-                reads.append(
-                    _read_photo(chart, replace(page, rings=(), labels=()), stroke_boxes, pixels, view, fine)
-                )
+                reads.append(_read_photo(chart, replace(page, rings=(), labels=()), stroke_boxes, pixels, view, fine))
                 continue
             view = _find_view(pixels, page.printed, mirrored)
             try:
@@ -160,8 +156,7 @@ def _make_page(chart: Chart, size: float, shift_mm=None) -> _Page:
 
     corners = {marker.id: placed(marker.corners_mm) for marker in chart.markers}
     rings = [
-        square.mean(axis=0) + (square - square.mean(axis=0)) * (1 + 2 * MARKER_MARGIN)
-        for square in corners.values()
+        square.mean(axis=0) + (square - square.mean(axis=0)) * (1 + 2 * MARKER_MARGIN) for square in corners.values()
     ]
     rings += [placed(ring) for ring in bar_rings(chart.bar, beyond_mm=0.5)] if chart.bar else []
     labels = [placed(np.reshape(label_box(label), (2, 2))).ravel() for label in chart.labels]
@@ -169,9 +164,7 @@ def _make_page(chart: Chart, size: float, shift_mm=None) -> _Page:
     return _Page(printed, tuple(rings), tuple(labels), size != 1.0)
 
 
-def _read_photo(
-    chart: Chart, page: _Page, stroke_boxes: list[StrokeBox], pixels: np.ndarray, view: View, fine
-) -> Read:
+def _read_photo(chart: Chart, page: _Page, stroke_boxes: list[StrokeBox], pixels: np.ndarray, view: View, fine) -> Read:
     refuse_cropped(pixels, view, stroke_boxes)
     refuse_unsure(pixels, view, page.printed.corners_mm)
     flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
@@ -180,9 +173,7 @@ def _read_photo(
     return Read(chart, flat, view, marks, is_rescaled=page.is_rescaled)
 
 
-def _moved_page(
-    chart: Chart, page: _Page, size: float, stroke_boxes, pixels, view: View, refusal: Error
-) -> _Page:
+def _moved_page(chart: Chart, page: _Page, size: float, stroke_boxes, pixels, view: View, refusal: Error) -> _Page:
     """Return the page at the position of its strokes.
 
     It is needed if the strokes are not where the page should have them.
@@ -219,9 +210,7 @@ def _find_view(pixels: np.ndarray, shown: Printed, mirrored: bool) -> View:
     except Error as refusal:
         if not mirrored or refusal.code != "photo-mirrored":
             raise
-        sentence = (
-            "the picture shows the page from above, not mirrored as from below through glass: no --mirrored"
-        )
+        sentence = "the picture shows the page from above, not mirrored as from below through glass: no --mirrored"
         raise Error(sentence, code="photo-mirrored") from None
 
 
@@ -248,8 +237,7 @@ def _refuse_another_sheet(photo_marks: Marks, mean_marks: Marks, name: str) -> N
     """
     both = [stroke for stroke in photo_marks.outlines_mm if stroke in mean_marks.outlines_mm]
     offsets = [
-        np.vstack(photo_marks.outlines_mm[stroke]).mean(axis=0)
-        - np.vstack(mean_marks.outlines_mm[stroke]).mean(axis=0)
+        np.vstack(photo_marks.outlines_mm[stroke]).mean(axis=0) - np.vstack(mean_marks.outlines_mm[stroke]).mean(axis=0)
         for stroke in both
     ]
     distance = float(np.sqrt(np.mean(np.sum(np.square(offsets), axis=1)))) if offsets else np.inf
@@ -347,9 +335,7 @@ def remarks(read: Read) -> list[Notice]:
         notices.append(Notice("", sentence, code="photo-overexposed"))
     if missing := read.marks.missing:
         each = "stroke" if len(missing) == 1 else "strokes"
-        sentence = (
-            f"no paint is found of {each} {', '.join(missing)}, left out{_describe_remaining(read, missing)}"
-        )
+        sentence = f"no paint is found of {each} {', '.join(missing)}, left out{_describe_remaining(read, missing)}"
         notices.append(Notice("", sentence, code="mark-missing"))
     for stroke, other in read.marks.joined:
         sentence = f"its mark touches that of {other}: they are cut apart half way between their places"
@@ -367,9 +353,7 @@ def _describe_remaining(read: Read, missing: list[str]) -> str:
     """Describe how many strokes are left at the depths where strokes are missing."""
     strokes = read.chart.strokes
     depths = sorted({stroke.depth_mm for stroke in strokes if stroke.id in missing})
-    strokes_by_depth = {
-        depth: [stroke.id for stroke in strokes if stroke.depth_mm == depth] for depth in depths
-    }
+    strokes_by_depth = {depth: [stroke.id for stroke in strokes if stroke.depth_mm == depth] for depth in depths}
     parts = [
         f"{sum(name not in missing for name in names)} of {len(names)} at {depth:g} mm"
         for depth, names in strokes_by_depth.items()

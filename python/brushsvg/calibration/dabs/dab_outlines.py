@@ -20,9 +20,7 @@ POINT_SPACING_MM = 0.05  # greatest distance of the points along a ring
 VERTEX_COUNT = 96  # vertices of an outline; more cost time in every sweep
 MAX_HOLLOW_SHARE = 0.03  # largest bare share inside the edge of a dab; with more, its middle has no paint
 MAX_SEPARATE_SHARE = 0.1  # largest share of the paint of a dab outside its largest part
-MAX_BARE_HULL_SHARE = (
-    0.15  # largest bare share of the hull of a dab; with more, paint was dry or it is not a footprint
-)
+MAX_BARE_HULL_SHARE = 0.15  # largest bare share of the hull of a dab; with more, paint was dry or it is not a footprint
 # Largest distance from the other dabs of a depth: times the usual distance, and at least this many mm.
 MAX_DISTANCE_RATIO, MIN_DISTANCE_LIMIT_MM = 4.0, 0.15
 MAX_DISPLACEMENT_RATIO, MIN_DISPLACEMENT_LIMIT_MM = 6.0, 0.6  # the same two limits for the place of a dab
@@ -157,9 +155,7 @@ def average_dabs(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
             code="dabs-turned",
         )
     finished = tuple(shape.finish(slid_mm(shape.seen[0].dab), is_even) for shape in shapes)
-    return Outlines(
-        finished, sheet.shift_mm, sheet.turn_rad, sheet.middle_mm, turned, is_even, tuple(remarks)
-    )
+    return Outlines(finished, sheet.shift_mm, sheet.turn_rad, sheet.middle_mm, turned, is_even, tuple(remarks))
 
 
 def _find_defect(dab: Dab, joined: set[str]) -> Notice | None:
@@ -171,9 +167,7 @@ def _find_defect(dab: Dab, joined: set[str]) -> Notice | None:
         return Notice(dab.name, "it runs together with another dab: left out", code="dabs-touch")
     bare, paint = -areas[areas < 0].sum() / areas.max(), areas[areas > 0]
     if bare > MAX_HOLLOW_SHARE:
-        return Notice(
-            dab.name, f"{100 * bare:.0f} % of it has no paint, amid the rest: left out", code="dab-hollow"
-        )
+        return Notice(dab.name, f"{100 * bare:.0f} % of it has no paint, amid the rest: left out", code="dab-hollow")
     if 1 - areas.max() / paint.sum() > MAX_SEPARATE_SHARE:
         sentence = f"its paint is in {len(paint)} parts, as where paint runs dry: left out"
         return Notice(dab.name, sentence, code="dab-dry")
@@ -257,9 +251,7 @@ def _fit_sheet(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab
         solution = np.linalg.lstsq(columns, target, rcond=None)[0]
         distances = np.hypot(*(target - columns @ solution).reshape(-1, 2).T)
         worst = int(distances.argmax())
-        if distances[worst] <= max(
-            MAX_DISPLACEMENT_RATIO * float(np.median(distances)), MIN_DISPLACEMENT_LIMIT_MM
-        ):
+        if distances[worst] <= max(MAX_DISPLACEMENT_RATIO * float(np.median(distances)), MIN_DISPLACEMENT_LIMIT_MM):
             return _Sheet(solution[:2], float(solution[2]), place.mean(axis=0)), dabs
         sentence = f"it is {distances[worst]:.1f} mm from where the others say it should: left out"
         remarks.append(Notice(dabs[worst].name, sentence, code="mark-astray"))
@@ -294,9 +286,7 @@ def _fit_axis_offset(seen: list[PatchDab]) -> tuple[Callable[[float], float], fl
 def _group_by_depth(seen: list[PatchDab], across) -> list[_DabsOfDepth]:
     depths = sorted({patch_dab.dab.depth_mm for patch_dab in seen})
     return [
-        _DabsOfDepth(
-            depth, [patch_dab for patch_dab in seen if patch_dab.dab.depth_mm == depth], across(depth)
-        )
+        _DabsOfDepth(depth, [patch_dab for patch_dab in seen if patch_dab.dab.depth_mm == depth], across(depth))
         for depth in depths
     ]
 
@@ -419,9 +409,7 @@ def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
     for shape in shapes:
         for heading, distance in shape.by_heading_mm().items():
             off.setdefault(heading, []).append(distance)
-    return max(
-        float(np.sqrt(np.mean(np.square(np.mean(differences, axis=0))))) for differences in off.values()
-    )
+    return max(float(np.sqrt(np.mean(np.square(np.mean(differences, axis=0))))) for differences in off.values())
 
 
 def _smooth_outline(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:

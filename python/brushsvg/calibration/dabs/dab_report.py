@@ -49,9 +49,7 @@ def report(calibration) -> Report:
     columns = [("dabs", counts), ("one dab from the mean, rms", repeats)]
     details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _MEASURED_LAWS)])
     edges = (
-        f"; in it that all edges may be {calibration.edge_mm:.2f} mm off together"
-        if calibration.edge_mm > 0
-        else ""
+        f"; in it that all edges may be {calibration.edge_mm:.2f} mm off together" if calibration.edge_mm > 0 else ""
     )
     sides = "both sides alike" if outlines.is_even else "one side larger than the other, by more than chance"
     details += [f"{HALF_95}{edges}", f"outlines: {sides}; smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
@@ -66,9 +64,7 @@ def _find_hidden_fronts(brush: _core.Brush) -> list[float]:
     shapes = brush.footprints.dragged
     fronts = [float(shape.outline_mm[:, 0].max()) - brush.tip_gap(shape.depth_mm) for shape in shapes]
     return [
-        shape.depth_mm
-        for k, shape in enumerate(shapes)
-        if k and fronts[k] < max(fronts[:k]) + MIN_FRONT_ADVANCE_MM
+        shape.depth_mm for k, shape in enumerate(shapes) if k and fronts[k] < max(fronts[:k]) + MIN_FRONT_ADVANCE_MM
     ]
 
 
@@ -95,9 +91,7 @@ def report_picture(calibration, suffix: str) -> bytes:
         _draw_depth(panel, shape, calibration.before)
     for panel in axes[len(shapes) :]:
         panel.set_axis_off()
-    lower.legend(
-        *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, frameon=False
-    )
+    lower.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return encoded(figure, suffix)
 
 
@@ -105,9 +99,7 @@ def _draw_depth(axes, shape: Shape, before: _core.Brush) -> None:
     tip = np.array([-shape.tip_gap_mm, 0.0])
     label = "dabs"
     for patch_dab in shape.seen:
-        axes.plot(
-            *_close_ring(patch_dab.outline_mm - tip), color=DAB_COLOUR, linewidth=0.6, alpha=0.7, label=label
-        )
+        axes.plot(*_close_ring(patch_dab.outline_mm - tip), color=DAB_COLOUR, linewidth=0.6, alpha=0.7, label=label)
         label = None
     assumed = _core.footprint_at(before.footprints, shape.depth_mm, 1.0)
     axes.plot(
@@ -117,9 +109,7 @@ def _draw_depth(axes, shape: Shape, before: _core.Brush) -> None:
         linestyle="--",
         label=f"before: brush {before.name}",
     )
-    axes.plot(
-        *_close_ring(shape.outline_mm), color=INK, linewidth=1.3, label="mean, smoothed: the new outline"
-    )
+    axes.plot(*_close_ring(shape.outline_mm), color=INK, linewidth=1.3, label="mean, smoothed: the new outline")
     axes.set_aspect("equal")
     axes.set_title(f"{shape.depth_mm:g} mm", fontsize=8)
     axes.tick_params(labelsize=6)

@@ -130,18 +130,12 @@ def _values_of_law(law: str, shape: Shape) -> np.ndarray:
     depth = shape.depth_mm
     if law == "tip_to_widest":
         tops = np.array([_broad_middle(patch_dab.outline_mm) for patch_dab in shape.seen])
-        return np.column_stack(
-            [np.full(len(tops), depth), _widest_place(shape.outline_mm) + tops - tops.mean()]
-        )
+        return np.column_stack([np.full(len(tops), depth), _widest_place(shape.outline_mm) + tops - tops.mean()])
     if law == "tip_gap":
         # A dab that is displaced forward has its tip nearer to the place where it was set down.
-        return np.array(
-            [[depth, shape.tip_gap_mm - patch_dab.displacement_mm[0]] for patch_dab in shape.seen]
-        )
+        return np.array([[depth, shape.tip_gap_mm - patch_dab.displacement_mm[0]] for patch_dab in shape.seen])
     spans = np.array([_breadth(patch_dab.outline_mm) for patch_dab in shape.seen])
-    return np.column_stack(
-        [np.full(len(spans), depth), _greatest_half_width(shape) + (spans - spans.mean()) / 2]
-    )
+    return np.column_stack([np.full(len(spans), depth), _greatest_half_width(shape) + (spans - spans.mean()) / 2])
 
 
 def _breadth(outline: np.ndarray) -> float:

@@ -32,9 +32,7 @@ ROUND_TAIL = (
     1.0,
     0.4,
 )  # distance from tip to widest section with a round tail, in half widths: mean and sigma
-MAX_OUTLYING_SHARE = (
-    0.2  # a mark with a larger share of outlying points does not count for the choice of the tail
-)
+MAX_OUTLYING_SHARE = 0.2  # a mark with a larger share of outlying points does not count for the choice of the tail
 MIN_CHI_SQUARE = 4.0  # chi-square by which one tail must fit better than the other to be chosen
 # A law is undetermined if its 95 % interval exceeds this share of its value and this length [mm], at this share of
 # the depths.
@@ -150,9 +148,7 @@ def calibrate_marks(
         setattr(brush, law, profile)
     _refuse_undetermined(brush, fit)
     _core.check(brush)
-    return MarkCalibration(
-        brush, fit, painted, options, scale, gain, edge_mm, covariance, astray, leave_out_strays
-    )
+    return MarkCalibration(brush, fit, painted, options, scale, gain, edge_mm, covariance, astray, leave_out_strays)
 
 
 def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale | None = None) -> None:
@@ -570,9 +566,7 @@ def _refuse_undetermined(brush: _core.Brush, fit) -> None:
         undetermined = (half > MAX_RELATIVE_INTERVAL * values) & (half > MAX_INTERVAL_MM)
         if undetermined.mean() > MAX_UNDETERMINED_SHARE:
             worst = int(np.argmax(np.where(undetermined, half / np.maximum(values, 1e-9), 0.0)))
-            advice = (
-                fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
-            )
+            advice = fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
             raise Error(
                 f"these marks do not determine the {law.replace('_', ' ')}: {values[worst]:.1f} +- {half[worst]:.1f} "
                 f"mm (95 %) at depth {depths[worst]:g} mm: {advice}",

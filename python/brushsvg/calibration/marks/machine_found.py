@@ -117,14 +117,11 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
 
 def describe_numbers(found: list[Number]) -> list[str]:
     """Return a line for each number, and a line about a field that is not used."""
-    lines = [
-        f"{number.name}: {number.value:.4f} +- {number.half:.4f} {number.unit}".rstrip() for number in found
-    ]
+    lines = [f"{number.name}: {number.value:.4f} +- {number.half:.4f} {number.unit}".rstrip() for number in found]
     field = [number for number in found if number.part == "field"]
     if (
         field
-        and min(number.half for number in field)
-        > MAX_INTERVAL_PER_PRIOR * _core.deviations_of_95() * PARTS["field"][1]
+        and min(number.half for number in field) > MAX_INTERVAL_PER_PRIOR * _core.deviations_of_95() * PARTS["field"][1]
     ):
         lines.append("field: the marks do not show it; strokes all over the sheet would")
     elif field and not has_field(found):
@@ -134,11 +131,7 @@ def describe_numbers(found: list[Number]) -> list[str]:
 
 def has_field(found: list[Number]) -> bool:
     """Return whether there is a field at all: one test for all of its six numbers."""
-    return any(
-        abs(number.value) > MIN_FIELD_HALF_INTERVALS * number.half
-        for number in found
-        if number.part == "field"
-    )
+    return any(abs(number.value) > MIN_FIELD_HALF_INTERVALS * number.half for number in found if number.part == "field")
 
 
 def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:

@@ -136,17 +136,13 @@ def _read_passes(plan, read) -> dict[str, _core.Pass]:
         except Error as refusal:
             raise Error(str(refusal), f"plan.{refusal.where}", refusal.value, code=refusal.code) from None
     else:
-        raise Error(
-            'marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing"
-        )
+        raise Error('marks need "plan": the path of the plan.json that was painted', "plan", code="key-missing")
     _core.refuse_tilted(parsed.passes, UPRIGHT)
     passes: dict[str, _core.Pass] = {}
     for number, plan_pass in enumerate(parsed.passes, 1):
         name = plan_pass.stroke or f"stroke{number}"
         if name in passes:
-            raise Error(
-                f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice"
-            )
+            raise Error(f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice")
         if plan_pass.settings.kind == DAB:
             raise Error(
                 f"{name!r} is a dab: dabs show the outline of the brush, but no lag",
@@ -206,9 +202,7 @@ def _orient_rings(rings: list[np.ndarray]) -> list[np.ndarray]:
 
 
 def _list_some(names: list[str]) -> str:
-    return ", ".join(name[:60] for name in names[:5]) + (
-        f" and {len(names) - 5} more" if len(names) > 5 else ""
-    )
+    return ", ".join(name[:60] for name in names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
 def middle(points: np.ndarray) -> np.ndarray:
@@ -287,9 +281,7 @@ def _refuse_moved_sheet(planned: np.ndarray, seen: np.ndarray) -> None:
     centred_marks = seen - seen.mean(axis=0)
     slopes = np.linalg.lstsq(centred_plan, centred_marks, rcond=None)[0].T
     size = math.sqrt(abs(np.linalg.det(slopes)))
-    if not size > 0 or np.linalg.norm(centred_marks - centred_plan @ slopes.T) > 0.2 * np.linalg.norm(
-        centred_marks
-    ):
+    if not size > 0 or np.linalg.norm(centred_marks - centred_plan @ slopes.T) > 0.2 * np.linalg.norm(centred_marks):
         return  # not a single movement of the sheet
     for matrix, words in SHEET_ORIENTATIONS:
         if np.linalg.norm(slopes / size - matrix) < 0.5:

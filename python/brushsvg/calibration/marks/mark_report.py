@@ -61,12 +61,8 @@ def report(calibration, of_photo: bool = False) -> Report:
         "was expected"
         if unexpected
         else "",
-        f"{100 * fit.left_aside:.0f} % of the edges had to be masked"
-        if fit.left_aside > MAX_MASKED_SHARE
-        else "",
-        f"only {calibration.painted.depths} depths were painted"
-        if len(brush.lag.coefficients) < LAG_TERMS
-        else "",
+        f"{100 * fit.left_aside:.0f} % of the edges had to be masked" if fit.left_aside > MAX_MASKED_SHARE else "",
+        f"only {calibration.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
     machine_numbers = machine_found.numbers(fit, calibration.covariance, calibration.expected)
     cell = machine_found.cell_table(fit, calibration.expected, machine_numbers)
@@ -155,9 +151,7 @@ def _describe_tail(calibration) -> str:
     if abs(gain) < MIN_CHI_SQUARE:
         return "these marks do not show whether the footprint's tail is pointed or round; it is taken to be pointed"
     kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
-    return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(
-        *kinds, abs(gain)
-    )
+    return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(*kinds, abs(gain))
 
 
 def _warn_of_few_depths(calibration) -> list[str]:
@@ -284,9 +278,7 @@ def list_strays(calibration) -> list[Notice]:
                 f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
                 "is on the mark, or it is smeared or torn"
             )
-        sentence = (
-            f"{what}; found in {found}, expected in {expected}; {_describe_cost(calibration, stray.mark)}"
-        )
+        sentence = f"{what}; found in {found}, expected in {expected}; {_describe_cost(calibration, stray.mark)}"
         notices.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
     return notices
 
@@ -349,9 +341,7 @@ def _describe_sheet_and_machine(calibration) -> list[str]:
         f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
         f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
     ]
-    lines += machine_found.describe_numbers(
-        machine_found.numbers(fit, calibration.covariance, calibration.expected)
-    )
+    lines += machine_found.describe_numbers(machine_found.numbers(fit, calibration.covariance, calibration.expected))
     if calibration.scale:
         lines.append(
             f"by the places of its marks the sheet is "
@@ -375,18 +365,12 @@ def _describe_residuals(calibration) -> list[str]:
         bound = f"residual above {MAX_RESIDUAL_SIGMAS:g} standard deviations"
         lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
     if fit.slim > 0.01:
-        lines.append(
-            f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals"
-        )
+        lines.append(f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals")
     outliers = [
-        mark.stroke
-        for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True)
-        if residual.outlier
+        mark.stroke for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True) if residual.outlier
     ]
     if outliers:
-        lines.append(
-            f"masked marks, outliers as a whole: {', '.join(outliers)}: look at them, and paint them again"
-        )
+        lines.append(f"masked marks, outliers as a whole: {', '.join(outliers)}: look at them, and paint them again")
     return lines
 
 
@@ -401,9 +385,7 @@ def overlaps(calibration) -> tuple[float, float]:
     predicted = predict_outlines(calibration, marks)
     for mark, residual, rings in zip(marks, calibration.fit.marks, predicted, strict=True):
         in_place.append(_core.overlap(_to_plan_frame(calibration, mark.outline_mm, (0.0, 0.0)), rings))
-        moved.append(
-            _core.overlap(_to_plan_frame(calibration, mark.outline_mm, residual.displacement_mm), rings)
-        )
+        moved.append(_core.overlap(_to_plan_frame(calibration, mark.outline_mm, residual.displacement_mm), rings))
     return float(np.mean(in_place)), float(np.mean(moved))
 
 

@@ -66,9 +66,7 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         raise Error(sentence, "paint", change, code="paint-undetermined")
     if abs(rate_errors[-1][0] - rate_errors[0][0]) < RATE_STEP_SIGMAS * sigma:
         other_rate = rate_errors[-1][0] + RATE_STEP_SIGMAS * sigma
-        fit_with_other = calibrate_marks(
-            restore_fresh_marks(painted, calibration, other_rate), name, *args, **kwargs
-        )
+        fit_with_other = calibrate_marks(restore_fresh_marks(painted, calibration, other_rate), name, *args, **kwargs)
         rate_errors = [(other_rate, _estimate_rate_error(fit_with_other)[0]), rate_errors[-1]]
     sigma /= _share_in_residuals(rate_errors[0], rate_errors[-1])
     deviations = _core.deviations_of_95(freedom)
@@ -85,9 +83,7 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     calibration = calibrate_marks(
         fresh, name, *args, **kwargs, off=restore_fresh_marks(painted, calibration, rate + sigma)
     )
-    last_mm = max(
-        painted.before_mm[mark.stroke] + _path_lengths(mark)[-1] for mark in calibration.painted.marks
-    )
+    last_mm = max(painted.before_mm[mark.stroke] + _path_lengths(mark)[-1] for mark in calibration.painted.marks)
     dry = find_ink_depletion(fresh, predict_outlines(calibration, fresh.marks))
     calibration.brush.paint = _core.Paint(
         rate,
@@ -123,9 +119,7 @@ def restore_fresh_marks(painted: Painted, calibration: MarkCalibration, rate_per
     paint = _core.Paint(abs(rate_per_m))
     marks = []
     for mark, trace in zip(painted.marks, traces, strict=True):
-        displacement = (
-            np.array(residuals[mark.stroke].displacement_mm) if mark.stroke in residuals else np.zeros(2)
-        )
+        displacement = np.array(residuals[mark.stroke].displacement_mm) if mark.stroke in residuals else np.zeros(2)
         locator = SectionLocator(brush, trace, painted.before_mm[mark.stroke])
         rings = []
         for ring in map(np.asarray, mark.outline_mm):
@@ -212,9 +206,7 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
     before_mm, _ = ways_before_mm({plan_pass.stroke: plan_pass for plan_pass in plan.passes})
     complete = replace(to_painted(painted), before_mm=before_mm)
-    calibration = MarkCalibration(
-        brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options
-    )
+    calibration = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)
     flanks = _collect_flanks(calibration)
     own = flanks.own()
     correlation = np.exp(-options.spacing_mm / 1.0)  # neighbouring points are correlated, over 1 mm
@@ -279,9 +271,7 @@ def _collect_flanks(calibration: MarkCalibration) -> Flanks:
         share = np.abs(at.across_mm) / np.maximum(half, 1e-6)
         distance = np.asarray(residual.distance_mm)
         is_flank = (
-            (share > FLANK_RANGE_HALF_WIDTHS[0])
-            & (share < FLANK_RANGE_HALF_WIDTHS[1])
-            & (at.ends_mm > end_zone_mm)
+            (share > FLANK_RANGE_HALF_WIDTHS[0]) & (share < FLANK_RANGE_HALF_WIDTHS[1]) & (at.ends_mm > end_zone_mm)
         )
         is_flank &= np.abs(distance) < MAX_RESIDUAL_SIGMAS * calibration.fit.noise_mm
         powers = at.depth_mm[:, None] ** np.arange(3 if calibration.painted.depths > 1 else 1)
@@ -320,9 +310,7 @@ def _estimate_rate_error(calibration: MarkCalibration) -> tuple[float, float, fl
     columns, own = np.column_stack([flanks.moved, flanks.powers]), flanks.own()
     rate = _fit_first_number(columns, flanks.off_mm)
     residuals = remove_powers(flanks.off_mm, flanks.powers) - rate * own
-    contributions = np.array([float((own * residuals)[mark].sum()) for mark in flanks.marks()]) / float(
-        own @ own
-    )
+    contributions = np.array([float((own * residuals)[mark].sum()) for mark in flanks.marks()]) / float(own @ own)
     rates_without = _refit_without_each(columns, flanks)
     return rate, float(np.sqrt(max(contributions @ (rate - rates_without), 0.0))), flanks.freedom
 

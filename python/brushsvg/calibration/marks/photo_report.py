@@ -47,9 +47,7 @@ def dabs_picture(read, calibration) -> bytes:
     calibration: a from_dabs.DabCalibration. Each dab is labelled with its depth and, if there is space, its
     displacement. Dabs that were left out are orange.
     """
-    return _draw_picture(
-        read, lambda picture, flat: _draw_dab_predictions(picture, flat, read, calibration.outlines)
-    )
+    return _draw_picture(read, lambda picture, flat: _draw_dab_predictions(picture, flat, read, calibration.outlines))
 
 
 def _draw_picture(read, compared) -> bytes:
@@ -120,9 +118,7 @@ def _draw_predictions(picture, flat, read, calibration) -> dict[str, list[str]]:
 def _draw_dab_predictions(picture, flat, read, outlines) -> dict[str, list[str]]:
     drawn, words = outlines.predicted_mm(), {}
     for shape in outlines.shapes:
-        for name, displaced in (
-            (patch_dab.dab.name, np.hypot(*patch_dab.displacement_mm)) for patch_dab in shape.seen
-        ):
+        for name, displaced in ((patch_dab.dab.name, np.hypot(*patch_dab.displacement_mm)) for patch_dab in shape.seen):
             _draw_rings(picture, flat, [drawn[name]], PREDICTED_COLOUR, PREDICTED_MM)
             label = f"{shape.depth_mm:g} mm deep, displaced {displaced:.2f} mm"
             words[name] = [f"{name}: {label}", label, f"{shape.depth_mm:g} mm", f"{shape.depth_mm:g}"]

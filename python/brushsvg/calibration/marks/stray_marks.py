@@ -57,8 +57,6 @@ def find_strays(marks: list, fit) -> list[Stray]:
         displacement = tuple((displaced[k] - middle).tolist())
         masked_share = float(np.mean(np.abs(residual.distance_mm) > MAX_RESIDUAL_SIGMAS * fit.noise_mm))
         stray = Stray(mark, displacement, spread, residual.rms_mm, usual)
-        if stray.is_displaced or (
-            residual.rms_mm > MAX_RMS_RATIO * usual and masked_share > MAX_MASKED_SHARE
-        ):
+        if stray.is_displaced or (residual.rms_mm > MAX_RMS_RATIO * usual and masked_share > MAX_MASKED_SHARE):
             found.append(stray)
     return found

@@ -43,9 +43,7 @@ def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -
     too much weight. The second value is nan if the series has no beta.
     """
     alpha0, s, alpha, beta = _series_in_radians(row)
-    alpha0 = min(
-        alpha0, MAX_ALPHA0_RAD - DERIVATIVE_STEP_RAD
-    )  # a step must stay in the range that can be read
+    alpha0 = min(alpha0, MAX_ALPHA0_RAD - DERIVATIVE_STEP_RAD)  # a step must stay in the range that can be read
     usable = [k for k in range(len(s)) if s[k] > 0 and 0 < alpha[k] < alpha0]
     s = np.array(s)[usable]
     # No angle is closer to 0 or 180 degrees, where it could not be read, than the angles that were read.
@@ -72,9 +70,7 @@ def scatter_of_series(row: Row, lag_mm: float, tip_gap_mm: float, total: bool) -
 
 def _clip_to_readings(angles: np.ndarray, read: np.ndarray, most: float) -> np.ndarray:
     """Clip the angles to the range of the angles that were read, and inside (0, most)."""
-    return np.clip(
-        angles, max(read.min(), 2 * DERIVATIVE_STEP_RAD), min(read.max(), most - 2 * DERIVATIVE_STEP_RAD)
-    )
+    return np.clip(angles, max(read.min(), 2 * DERIVATIVE_STEP_RAD), min(read.max(), most - 2 * DERIVATIVE_STEP_RAD))
 
 
 def _series_in_radians(row: Row) -> tuple[float, list[float], list[float], list[float]]:

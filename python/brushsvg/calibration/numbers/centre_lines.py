@@ -152,8 +152,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
     reach = float(-points[:, 1].min())
     if not reach > 0.0 or points[:, 0].max() <= 0.0:
         raise Error(
-            "the points are not along the handle's second line: that line is y = 0, x counts along it from the "
-            "corner",
+            "the points are not along the handle's second line: that line is y = 0, x counts along it from the corner",
             where,
             code="not-a-turn",
         )
@@ -210,6 +209,4 @@ def _covariance_and_rmse(fit, freedom: int) -> tuple[np.ndarray, float]:
     lag, share = fit.x
     variance = 2.0 * fit.cost / freedom
     to_lengths = np.array([[1.0, 0.0], [share, lag]])
-    return variance * to_lengths @ np.linalg.pinv(fit.jac.T @ fit.jac) @ to_lengths.T, float(
-        np.sqrt(variance)
-    )
+    return variance * to_lengths @ np.linalg.pinv(fit.jac.T @ fit.jac) @ to_lengths.T, float(np.sqrt(variance))

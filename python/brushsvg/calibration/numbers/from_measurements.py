@@ -45,9 +45,7 @@ TURN_SUMS = (
 )  # the two lengths of a Turn: r and r - e
 MAX_SIGN_ROUNDS = 5  # rounds in which the signs of e may change for centre lines
 MAX_GAUSS_NEWTON_STEPS = 20  # Gauss-Newton steps
-READING_ERROR_MM = (
-    0.01  # nobody reads points more exactly, so lines that fit better than this are equally certain
-)
+READING_ERROR_MM = 0.01  # nobody reads points more exactly, so lines that fit better than this are equally certain
 MIN_OTHER_PROBABILITY = 0.025  # 95 % intervals ignore a reading that is less likely than this
 
 
@@ -113,10 +111,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     """
     need_fits()
     plausibility.refuse_halves_as_widths(measured.rows)
-    turns = {
-        row.where: read_turn(row.numbers["points_mm"], row.where)
-        for row in measured.rows.get("centre_line", [])
-    }
+    turns = {row.where: read_turn(row.numbers["points_mm"], row.where) for row in measured.rows.get("centre_line", [])}
     fitter = _LawFitter(measured, absolute, turns)
     points, remarks = _collect_points(measured, total, turns)
     fitter.fit("half_width", points)
@@ -143,9 +138,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     plausibility.refuse_inconsistent_laws(brush)
     for law in ("lag", "half_width"):  # a plan only depends on these laws
         plausibility.refuse_undetermined_law(brush, fitter.fitted[law])
-    return Calibration(
-        brush, laws, (*remarks, *fitter.remarks), tuple(plausibility.find_odd_values(brush, laws))
-    )
+    return Calibration(brush, laws, (*remarks, *fitter.remarks), tuple(plausibility.find_odd_values(brush, laws)))
 
 
 def _collect_points(
@@ -171,9 +164,7 @@ def _collect_points(
         if math.isfinite(series["tip_gap_mm"]):
             points["tip_gap"].append(Point(row.where, row.depth_mm, series["tip_gap_mm"]))
         if series["left_out"]:
-            sentence = (
-                f"{series['left_out']} readings left out: their angle is not between 0 and the first one"
-            )
+            sentence = f"{series['left_out']} readings left out: their angle is not between 0 and the first one"
             remarks.append(f"{row.where}: {sentence}")
     return points, remarks
 
@@ -223,18 +214,14 @@ class _LawFitter:
         scatters: dict[str, dict[str, float]] = {law: {} for law in laws}
         for row in self.measured.rows["angles"]:
             lengths = [max(law(row.depth_mm), MIN_LAG_MM) for law in laws.values()]
-            series_scatters = scatter_of_series(
-                row, lengths[0], lengths[1] if len(lengths) > 1 else 0.0, total
-            )
+            series_scatters = scatter_of_series(row, lengths[0], lengths[1] if len(lengths) > 1 else 0.0, total)
             for law, scatter in zip(laws, series_scatters, strict=False):
                 if math.isfinite(scatter):
                     scatters[law][row.where] = scatter
         for law, by_row in scatters.items():
             if by_row:
                 typical = math.sqrt(np.mean(np.square(list(by_row.values()))))
-                points[law] = [
-                    replace(p, scatter=by_row.get(p.where, typical) / typical) for p in points[law]
-                ]
+                points[law] = [replace(p, scatter=by_row.get(p.where, typical) / typical) for p in points[law]]
                 self.fit(law, points)
 
     def fit_sums(self, points: dict[str, list[Point]]) -> None:
@@ -267,9 +254,7 @@ class _LawFitter:
                 other_law = self.fitted["tip_gap" if law == "lag" else "lag"].fit.law
                 self._refuse_lag_from_touch(law)
                 differences = [self._sum(row) - other_law(row.depth_mm) for row in rows]
-                remaining_points = [
-                    Point(r.where, r.depth_mm, v) for r, v in zip(rows, differences, strict=True)
-                ]
+                remaining_points = [Point(r.where, r.depth_mm, v) for r, v in zip(rows, differences, strict=True)]
                 self._fit_law(law, remaining_points, to_start_from=True)
         widest = any(row.kind not in KINDS_FROM_TOUCH for row in rows)
         laws = ("lag", "tip_gap", "tip_to_widest") if widest else ("lag", "tip_gap")
@@ -305,9 +290,7 @@ class _LawFitter:
                 before = self.turns[row.where]
                 after = read_turn_near(row.numbers["points_mm"], lag, turning)
                 self.turns[row.where] = replace(after, other=before.other)
-                moved = max(
-                    moved, abs(after.lag_mm - before.lag_mm), abs(after.turning_mm - before.turning_mm)
-                )
+                moved = max(moved, abs(after.lag_mm - before.lag_mm), abs(after.turning_mm - before.turning_mm))
             self.joint = fit()
             if moved < READING_ERROR_MM / 10:
                 break
@@ -328,9 +311,7 @@ class _LawFitter:
                 turn = self.turns[row.where]
                 others = fit(without=row)
                 misfits = [self._misfit(row, reading, others) for reading in (turn, turn.other)]
-                other_probabilities[row.where] = 1.0 / (
-                    1.0 + math.exp(min(0.5 * (misfits[1] - misfits[0]), 700.0))
-                )
+                other_probabilities[row.where] = 1.0 / (1.0 + math.exp(min(0.5 * (misfits[1] - misfits[0]), 700.0)))
                 if misfits[1] < misfits[0]:
                     self.turns[row.where] = replace(turn.other, other=replace(turn, other=None))
                     other_probabilities[row.where] = 1.0 - other_probabilities[row.where]
@@ -377,9 +358,7 @@ class _LawFitter:
         Its degree is raised to the degree that all readings of it allow.
         """
         single_fit = self.fitted[law]
-        depths = [
-            reading.depth_mm for reading in readings if any(law in law_signs for law_signs in reading.sums)
-        ]
+        depths = [reading.depth_mm for reading in readings if any(law in law_signs for law_signs in reading.sums)]
         degree, remarks = _choose_degree(law, depths)
         self.fitted[law] = Fitted(law, single_fit.points, single_fit.fit, tuple(remarks))
         profile = single_fit.fit.law
@@ -573,9 +552,7 @@ class _LawFitter:
             plausibility.refuse_unexplained(law, points, fit)
         if fit.held:
             what = "falls" if law == "half_width" else "is not positive"
-            remarks.append(
-                f"fitted with a constraint: without it the law {what} somewhere in the depth range"
-            )
+            remarks.append(f"fitted with a constraint: without it the law {what} somewhere in the depth range")
         first = int(law in LAWS_THROUGH_ZERO)
         if widest:
             outliers = plausibility.find_outliers_above_floor(depths, values, self.range_mm, degree)
@@ -616,9 +593,7 @@ class _LawFitter:
         return _core.Profile(
             fitted.coefficients,
             floor=fitted.floor,
-            floor_slope=MIN_WIDEST_PER_HALF_WIDTH * half(deepest) / deepest
-            if law == "tip_to_widest"
-            else 0.0,
+            floor_slope=MIN_WIDEST_PER_HALF_WIDTH * half(deepest) / deepest if law == "tip_to_widest" else 0.0,
             calibrated_mm=fitted.calibrated_mm,
             source=f"Fitted to {len(points)} values from {read}.",
             half_interval_95=fitted.half_interval_95,

@@ -82,9 +82,7 @@ def new_brush(
         brush.tip_gap = _assumed_profile(brush.half_width, GAP_PER_HALF, "The centre of friction")
         brush.tip_to_widest = _assumed_profile(brush.half_width, WIDEST_PER_HALF, "The widest section")
     else:
-        brush.tip_gap = brush.tip_to_widest = _assumed_profile(
-            brush.half_width, 1.0, "The middle of a round nib"
-        )
+        brush.tip_gap = brush.tip_to_widest = _assumed_profile(brush.half_width, 1.0, "The middle of a round nib")
     brush.footprints = _core.FootprintTable(
         [_assumed_footprint(brush, deepest * k / OUTLINE_COUNT) for k in range(1, OUTLINE_COUNT + 1)]
     )
@@ -157,9 +155,7 @@ def _check_lags(pairs) -> list[tuple[float, float]]:
             sentence = f"the depth {depth:g} mm of a lag is outside the range [0, {MAX_LENGTH_MM:g}] mm"
             raise Error(sentence, "lag", depth, code="depth-out-of-range")
         if not (math.isfinite(lag) and 0 < lag <= MAX_LENGTH_MM):
-            sentence = (
-                f"the lag {lag:g} mm at depth {depth:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm"
-            )
+            sentence = f"the lag {lag:g} mm at depth {depth:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm"
             raise Error(sentence, "lag", lag, code="out-of-range")
     return list(pairs)
 
@@ -218,9 +214,7 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
 
 
 def _constant_half_width(width: tuple[float, float]) -> _core.Profile:
-    source = (
-        f"Width as typed in: {width[1]:g} mm at depth {width[0]:g} mm; that it is the same at all is assumed."
-    )
+    source = f"Width as typed in: {width[1]:g} mm at depth {width[0]:g} mm; that it is the same at all is assumed."
     return _core.Profile([width[1] / 2], source=source, assumed=True)
 
 

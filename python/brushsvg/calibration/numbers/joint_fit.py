@@ -105,13 +105,9 @@ class JointFit:
 
         share: the probability that the laws of the other fit are the true ones.
         """
-        coefficients = [
-            np.concatenate([fit.laws[name].coefficients for name in self.places]) for fit in (self, other)
-        ]
+        coefficients = [np.concatenate([fit.laws[name].coefficients for name in self.places]) for fit in (self, other)]
         difference = coefficients[1] - coefficients[0]
-        covariance = (1.0 - share) * self.covariance + share * (
-            other.covariance + np.outer(difference, difference)
-        )
+        covariance = (1.0 - share) * self.covariance + share * (other.covariance + np.outer(difference, difference))
         laws = {}
         for name, law in self.laws.items():
             variance = np.diag(covariance)[self.places[name]]
@@ -201,9 +197,7 @@ def fit_together(
     for group, white in zip(groups, whites, strict=True):
         spread = unknowns.spread_mm[group.at[:, :, None], group.at[:, None, :]] @ np.linalg.inv(white)
         scatter[group.at] = np.sqrt((spread**2).sum(axis=2))
-    return JointFit(
-        laws, full_covariance, places, unknowns.spread_mm @ residuals, spare, scatter, kinds, held
-    )
+    return JointFit(laws, full_covariance, places, unknowns.spread_mm @ residuals, spare, scatter, kinds, held)
 
 
 class _Unknowns:
@@ -221,9 +215,7 @@ class _Unknowns:
         self.places = {name: slice(a, b) for name, a, b in zip(start, ends[:-1], ends[1:], strict=True)}
         powers = np.concatenate([self.first[name] + np.arange(n) for name, n in self.sizes.items()])
         self.scale = range_mm[1] ** -powers.astype(float)
-        self.start = (
-            np.concatenate([law.coefficients[self.first[n] :] for n, law in start.items()]) / self.scale
-        )
+        self.start = np.concatenate([law.coefficients[self.first[n] :] for n, law in start.items()]) / self.scale
         # Values and rows are divided by their spread, so that all values of one kind scatter equally.
         self.spread_mm = block_diag(*[reading.spread_mm() for reading in readings])
         values = [value for reading in readings for value in reading.values_mm]

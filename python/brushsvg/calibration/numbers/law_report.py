@@ -22,18 +22,12 @@ def report(calibration) -> Report:
     outlier_count = sum(len(fitted.list_outliers()) for fitted in calibration.laws)
     assumed = [fitted.name for fitted in calibration.laws if fitted.fit is None]
     without_interval = [
-        fitted.name
-        for fitted in calibration.laws
-        if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
+        fitted.name for fitted in calibration.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
     ]
     reservations = [
-        f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured"
-        if assumed
-        else "",
+        f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured" if assumed else "",
         f"{plural(outlier_count, 'value')} should be measured again" if outlier_count else "",
-        f"{' and '.join(without_interval)} has too few values for a confidence interval"
-        if without_interval
-        else "",
+        f"{' and '.join(without_interval)} has too few values for a confidence interval" if without_interval else "",
         *(notice.sentence for notice in calibration.doubts),
     ]
     lines = [

@@ -87,9 +87,7 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         return measurements
     depths = sorted({row.depth_mm for rows in measurements.rows.values() for row in rows})
     if not depths:
-        sentence = (
-            "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
-        )
+        sentence = "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
         raise Error(sentence, code="measurement-missing")
     if depths[-1] <= MIN_GREATEST_DEPTH_MM:
         raise Error(
@@ -124,16 +122,10 @@ def read_widths(text: str) -> list[tuple[float, float]]:
 
 def _read_table(text: str) -> Measurements:
     rows: dict[str, list[Row]] = {}
-    for where, row in _read_table_rows(
-        text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")
-    ):
+    for where, row in _read_table_rows(text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")):
         kind = row.pop("kind")
         if kind not in _TABLE_KINDS:
-            other = (
-                "; it has several numbers a row, so write a JSON file"
-                if kind in KINDS or kind in _READERS
-                else ""
-            )
+            other = "; it has several numbers a row, so write a JSON file" if kind in KINDS or kind in _READERS else ""
             raise Error(
                 f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE_KINDS)}{other}",
                 where,
@@ -168,9 +160,7 @@ def _read_table_rows(
     cells = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
     for where, cell in cells:
         if not _NUMBER.fullmatch(cell):
-            advice = (
-                "write a number of mm, without its unit" if _NUMBER.match(cell) else "write a number of mm"
-            )
+            advice = "write a number of mm, without its unit" if _NUMBER.match(cell) else "write a number of mm"
             raise Error(f"{cell!r} is not a number: {advice}", where, code="not-a-number")
     points, commas = ([cell for cell in cells if mark in cell[1]] for mark in ".,")
     if points and commas:
@@ -180,9 +170,7 @@ def _read_table_rows(
             commas[0][0],
             code="table-separators",
         )
-    return [
-        (where, row | {name: float(row[name].replace(",", ".")) for name in numbers}) for where, row in rows
-    ]
+    return [(where, row | {name: float(row[name].replace(",", ".")) for name in numbers}) for where, row in rows]
 
 
 # Thousands have no separator. Lengths are at most 1000 mm, so 1,234 and 1.234 can only mean little more than 1.
@@ -210,9 +198,7 @@ def _open_table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
     complete = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
     if len(complete) > 1:
         both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in complete)
-        raise Error(
-            f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators"
-        )
+        raise Error(f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators")
     names = complete[0].fieldnames
     if twice := [name for name in names if name and names.count(name) > 1]:
         raise Error(f"the column {twice[0]} stands twice", "line 1", code="key-twice")
@@ -256,8 +242,7 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
     if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
         advice = "numbers are written with a point, as in 4.6, or semicolons stand between columns"
         raise Error(
-            f"{surplus[0]!r} stands beyond the columns of the first line"
-            + (f": {advice}" if separator == "," else ""),
+            f"{surplus[0]!r} stands beyond the columns of the first line" + (f": {advice}" if separator == "," else ""),
             where,
             code="table-columns",
         )
@@ -270,9 +255,7 @@ def _read_json(text: str) -> Measurements:
     for kind in KINDS:
         if listed := json_fields.objects(content.get(kind, []), kind):
             read = _READERS.get(kind, _read_row)
-            rows[kind] = [
-                read_row for i, row in enumerate(listed) for read_row in read(kind, row, f"{kind}[{i}]")
-            ]
+            rows[kind] = [read_row for i, row in enumerate(listed) for read_row in read(kind, row, f"{kind}[{i}]")]
     name, about = content.get("name", ""), content.get("about", "")
     if not isinstance(name, str) or not isinstance(about, str):
         raise Error("name and about must be text", "name", code="wrong-type")
@@ -296,9 +279,7 @@ def _read_json(text: str) -> Measurements:
         )
     if "marks" not in content:
         if misplaced := [key for key in _MARK_KEYS if key in content]:
-            raise Error(
-                "this says something of marks, and there are none", misplaced[0], code="measurements-mixed"
-            )
+            raise Error("this says something of marks, and there are none", misplaced[0], code="measurements-mixed")
         return Measurements(rows, name, about, depth_range, speed)
     if rows:
         raise Error(
@@ -367,9 +348,7 @@ def _read_points(values, where: str) -> tuple[tuple[float, ...], ...]:
     points = tuple(json_fields.numbers(xy, f"{where}[{i}]", 2) for i, xy in enumerate(values))
     for i, xy in enumerate(points):
         if max(map(abs, xy)) > MAX_LENGTH_MM:
-            sentence = (
-                f"({xy[0]:g}, {xy[1]:g}) mm is further than the {MAX_LENGTH_MM:g} mm that are taken for true"
-            )
+            sentence = f"({xy[0]:g}, {xy[1]:g}) mm is further than the {MAX_LENGTH_MM:g} mm that are taken for true"
             raise Error(sentence, f"{where}[{i}]", code="out-of-range")
     return points
 
@@ -441,9 +420,7 @@ def _video(kind: str, row: dict, where: str) -> list[Row]:
     touch = int(touch)
     apart = [f[0] - t[0] for f, t in zip(ferrule, tip, strict=True)]
     at_touch = apart[touch]
-    sign = (
-        1.0 if apart[-1] >= at_touch else -1.0
-    )  # -1 if the brush sweeps to the left, where the ferrule leads
+    sign = 1.0 if apart[-1] >= at_touch else -1.0  # -1 if the brush sweeps to the left, where the ferrule leads
     rows = []
     for i in range(touch + 1, len(ferrule)):
         depth = ferrule[touch][1] - ferrule[i][1]

@@ -35,9 +35,7 @@ HALF_WIDTH_PER_DEPTH, USUAL_HALF_WIDTH_PER_DEPTH = (0.01, 20.0), (0.05, 5.0)
 # Share of a lag by which it may fall at the next depth. If lags are read to half a millimetre, a rising lag seems to
 # fall this much once in fifty times.
 MAX_LAG_FALL = 0.1
-VISIBLE_MM = (
-    0.3  # the start of a mark is visible to some tenths of a mm: lags that differ by less may be equal
-)
+VISIBLE_MM = 0.3  # the start of a mark is visible to some tenths of a mm: lags that differ by less may be equal
 MAX_DEPTH_PER_MEASURED = 1.5  # times the deepest measurement: deeper, a law of fourth degree is meaningless
 MIN_USUAL_DEPTH_MM = 1.0  # a brush that is never pressed deeper may have been measured in inches
 
@@ -122,9 +120,7 @@ class Outlier:
     off_mm: float
 
 
-def find_outliers(
-    depths_mm: list[float], residual_mm, free: int, powers_from: int, scatter=1.0
-) -> dict[int, Outlier]:
+def find_outliers(depths_mm: list[float], residual_mm, free: int, powers_from: int, scatter=1.0) -> dict[int, Outlier]:
     """Find values that do not belong to the others, by index.
 
     free: number of fitted coefficients; the lowest power is powers_from. scatter: standard deviation of each value,
@@ -140,9 +136,7 @@ def find_outliers(
     columns = columns / unit[:, None]
     free_share = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
     free_share = np.maximum(free_share, 1e-9)
-    other_variance = np.maximum(
-        (scaled_residuals @ scaled_residuals - scaled_residuals**2 / free_share) / spare, 1e-18
-    )
+    other_variance = np.maximum((scaled_residuals @ scaled_residuals - scaled_residuals**2 / free_share) / spare, 1e-18)
     size = _core.as_normal(scaled_residuals / np.sqrt(free_share * other_variance), spare)
     return {
         int(k): Outlier(float(size[k]), float(unit[k] * scaled_residuals[k] / free_share[k]))
@@ -175,9 +169,7 @@ def find_outliers_of_kinds(
     return outliers
 
 
-def find_outliers_above_floor(
-    depths_mm, values_mm, range_mm: tuple[float, float], degree: int
-) -> dict[int, Outlier]:
+def find_outliers_above_floor(depths_mm, values_mm, range_mm: tuple[float, float], degree: int) -> dict[int, Outlier]:
     """Find outliers of a law that is the greater of a polynomial and 0."""
     return {
         k: Outlier(size, off)
@@ -329,9 +321,7 @@ def refuse_inconsistent_laws(brush) -> None:
     Most of them come from mixed units.
     """
     depth = brush.depth_range_mm[1]
-    lag, gap, widest, half = (
-        law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
-    )
+    lag, gap, widest, half = (law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width))
     refuse_width(depth, 2 * half)
     if not LAG_PER_HALF_WIDTH[0] <= lag / half <= LAG_PER_HALF_WIDTH[1]:
         raise Error(
@@ -432,9 +422,7 @@ def _find_odd_lags(fitted) -> list[Notice]:
         np.median(np.abs(fitted.fit.residual_mm))
     )  # a median, so one bad reading hardly changes it
     depths = sorted({point.depth_mm for point in fitted.points})
-    read = [
-        np.mean([point.value_mm for point in fitted.points if point.depth_mm == depth]) for depth in depths
-    ]
+    read = [np.mean([point.value_mm for point in fitted.points if point.depth_mm == depth]) for depth in depths]
     for k in range(len(depths) - 1):
         # A law follows few values badly; then the scatter is that of the law.
         if read[k] - read[k + 1] > max(VISIBLE_MM, min(2 * scatter_mm, MAX_LAG_FALL * read[k])):

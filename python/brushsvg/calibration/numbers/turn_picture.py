@@ -28,9 +28,7 @@ _DIRECTIONS = {
 }  # direction of the second line, y up
 
 
-def centre_line(
-    data: bytes, mm_per_px: float, corner_px, towards: str = "right", where: str = ""
-) -> np.ndarray:
+def centre_line(data: bytes, mm_per_px: float, corner_px, towards: str = "right", where: str = "") -> np.ndarray:
     """Find the middle line of the mark in a picture of an angular stroke.
 
     data: a picture of one dark stroke on light paper, seen straight from above, with the second line of the stroke

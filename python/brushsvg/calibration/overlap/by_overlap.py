@@ -112,9 +112,7 @@ def _make_calibration(calibration: MarkCalibration, found: Predicting) -> Overla
             for residual in fit.marks
         ),
     )
-    return OverlapCalibration(
-        replace(calibration, brush=brush, fit=placed, covariance=None), calibration, found
-    )
+    return OverlapCalibration(replace(calibration, brush=brush, fit=placed, covariance=None), calibration, found)
 
 
 def _to_plan_frame(mark, residual, calibration: MarkCalibration) -> _core.PaintedMark:

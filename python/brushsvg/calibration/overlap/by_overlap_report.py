@@ -83,13 +83,12 @@ def _describe_machine(edges, offsets) -> list[str]:
     if offsets.lean_mm_per_mm.any():
         x, y = offsets.lean_mm_per_mm + machine_by_edges.lean_mm_per_mm
         lines.append(
-            f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y "
-            "({:+.3f} and {:+.3f} by edges)".format(*machine_by_edges.lean_mm_per_mm)
+            f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y ({{:+.3f}} and {{:+.3f}} by edges)".format(
+                *machine_by_edges.lean_mm_per_mm
+            )
         )
     if offsets.map.any():
-        axes = np.array(
-            [[machine_by_edges.scale[0], machine_by_edges.skew], [0.0, machine_by_edges.scale[1]]]
-        )
+        axes = np.array([[machine_by_edges.scale[0], machine_by_edges.skew], [0.0, machine_by_edges.scale[1]]])
         (a, b), (c, d) = (np.eye(2) + offsets.map) @ axes - np.eye(2)
         lines.append(
             f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y (scale "

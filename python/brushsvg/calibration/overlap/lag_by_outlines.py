@@ -24,9 +24,7 @@ from ..marks.stray_marks import MAX_RESIDUAL_SIGMAS
 
 MAX_ROUNDS = 8  # Gauss-Newton steps
 SETTLED_MM = 0.01  # the fit has settled if the lag changes by less at any depth
-DERIVATIVE_STEP_MM = (
-    0.05  # step of the derivatives; with a smaller one, the chords of the outlines have an effect
-)
+DERIVATIVE_STEP_MM = 0.05  # step of the derivatives; with a smaller one, the chords of the outlines have an effect
 MIN_NOISE_MM = 0.05  # least noise of an edge, as in the usual fit
 MAX_LAG_CHANGE = 0.3  # largest relative change of a lag; with more, the outlines belong to another brush
 
@@ -97,9 +95,7 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
         )
     # The lag has at least as many coefficients as the tip gap, because an error of the tip gap changes the lag by the
     # opposite amount.
-    lag = _add_polynomials(
-        _add_polynomials(fitted_lag, to_law @ lag_changes), np.zeros(len(own.tip_gap.coefficients))
-    )
+    lag = _add_polynomials(_add_polynomials(fitted_lag, to_law @ lag_changes), np.zeros(len(own.tip_gap.coefficients)))
     _refuse_changed_lag(lag, fitted_lag, depths, own)
     brush = _with_lag(own, lag, name)
     lag_covariance = _lag_covariance(calibration, to_law @ covariance[:terms, :terms] @ to_law.T)
@@ -119,9 +115,7 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
         for residual, by in zip(fit.marks, displaced, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
-    return LagByOutlines(
-        replace(calibration, brush=brush, fit=placed), calibration, own, float(height), noise
-    )
+    return LagByOutlines(replace(calibration, brush=brush, fit=placed), calibration, own, float(height), noise)
 
 
 @dataclass(frozen=True)
@@ -155,8 +149,7 @@ class _Edges:
     def __init__(self, calibration: MarkCalibration, own: _core.Brush):
         self.made, self.own = calibration, own
         self.points = [
-            np.array(residual.point_mm) + np.array(residual.displacement_mm)
-            for residual in calibration.fit.marks
+            np.array(residual.point_mm) + np.array(residual.displacement_mm) for residual in calibration.fit.marks
         ]
         self.mark_of_point = np.repeat(np.arange(len(self.points)), [len(points) for points in self.points])
 
@@ -170,9 +163,7 @@ class _Edges:
         rings = self._predict_rings(lag, height)
         off = self._distances(rings, displaced)
         columns = [
-            self._distances(
-                self._predict_rings(_add_polynomials(lag, DERIVATIVE_STEP_MM * row), height), displaced
-            )
+            self._distances(self._predict_rings(_add_polynomials(lag, DERIVATIVE_STEP_MM * row), height), displaced)
             for row in to_law.T
         ]
         columns.append(self._distances(self._predict_rings(lag, height + DERIVATIVE_STEP_MM), displaced))
@@ -259,9 +250,7 @@ def _lag_covariance(calibration: MarkCalibration, of_step: np.ndarray) -> np.nda
     It is the covariance of the step. If the usual fit has more coefficients, the covariance of the part that the fewer
     coefficients cannot follow is added.
     """
-    fitted = np.array(calibration.covariance)[
-        : len(calibration.fit.laws.lag), : len(calibration.fit.laws.lag)
-    ]
+    fitted = np.array(calibration.covariance)[: len(calibration.fit.laws.lag), : len(calibration.fit.laws.lag)]
     few, many = len(of_step), max(len(of_step), len(fitted))
     out = np.zeros((many, many))
     out[:few, :few] = of_step

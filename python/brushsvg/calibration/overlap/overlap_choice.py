@@ -81,9 +81,7 @@ def best_predicting(
     results = _search_without_parts(marks, targets, begin.laws.round_tail, options, look)
     if not results:
         return largest_overlap(targets, begin, options, look)
-    left_out = {
-        kind: np.vstack([result.overlaps for result in results[kind]]).mean(axis=0) for kind in results
-    }
+    left_out = {kind: np.vstack([result.overlaps for result in results[kind]]).mean(axis=0) for kind in results}
     kind = max(left_out, key=lambda result: left_out[result].sum())
     search = Search(begin, options, targets, mean_place(targets))
     starts = [result.x for result in results[kind] if len(result.x) == len(search.begin)]
@@ -107,9 +105,7 @@ def largest_overlap(
     return _finish_search(search, *_search_few(search, targets, look), targets, look)
 
 
-def _search_few(
-    search: Search, targets: list[Target], look, last: str | None = None
-) -> tuple[str, np.ndarray]:
+def _search_few(search: Search, targets: list[Target], look, last: str | None = None) -> tuple[str, np.ndarray]:
     """Search with few marks, and return the last kind and its vector.
 
     last: the last kind to try; None for all possible kinds.

@@ -142,8 +142,7 @@ class Search:
         self.begin = np.concatenate([np.asarray(numbers, float) for numbers in parts.values()])
         ends = np.cumsum([len(numbers) for numbers in parts.values()])
         self.at = {
-            name: slice(end - len(numbers), end)
-            for (name, numbers), end in zip(parts.items(), ends, strict=True)
+            name: slice(end - len(numbers), end) for (name, numbers), end in zip(parts.items(), ends, strict=True)
         }
         self.steps = np.concatenate([np.full(len(numbers), STEPS[name]) for name, numbers in parts.items()])
         self.has_machine = bool(len(parts["lean"]) + len(parts["map"]))
@@ -215,9 +214,7 @@ class Search:
         laws, height, shift, machine = self.read(x)
         if self._is_impossible(x, laws, height):
             return None
-        pictures = predict_pictures(
-            _move_targets(targets, machine, height), laws, height, shift, self.deepest_mm
-        )
+        pictures = predict_pictures(_move_targets(targets, machine, height), laws, height, shift, self.deepest_mm)
         out = [
             blur_px / np.sqrt(target.paint.sum()) * _blur(picture - target.paint, blur_px).ravel()
             for target, picture in zip(targets, pictures, strict=True)
@@ -229,9 +226,7 @@ class Search:
         laws, height, shift, machine = self.read(x)
         return self._overlaps(targets, laws, height, shift, machine)
 
-    def _overlaps(
-        self, targets: list[Target], laws, height: float, shift, machine: MachineOffsets
-    ) -> np.ndarray:
+    def _overlaps(self, targets: list[Target], laws, height: float, shift, machine: MachineOffsets) -> np.ndarray:
         def compared(target: Target, picture: np.ndarray) -> tuple[float, float]:
             moved, _ = best_shift(picture, target.paint, 1 / target.px_per_mm, self.farthest_mm)
             return soft_overlap(target.paint, picture), moved
@@ -250,9 +245,7 @@ class Search:
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
             friction = 0.0  # a drop contains no disc
-        off = (
-            np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUNDNESS_SIGMAS
-        )
+        off = np.array([behind - self.usual_shape[0], front - self.usual_shape[1], friction]) / ROUNDNESS_SIGMAS
         lean, by_map = x[self.at["lean"]] / (self.lean_sigma or 1.0), x[self.at["map"]] / MAP_SIGMA
         return np.sqrt(OVERLAP_SIGMA / 2) * np.concatenate([off, lean, by_map])
 
@@ -319,9 +312,7 @@ def _search_from_starts(loss, starts: list[np.ndarray], steps, free) -> np.ndarr
     return _minimise(loss, best.all_x, steps, free, CONTINUED_EVALUATIONS, best.final_simplex[0]).all_x
 
 
-def refine_with_all(
-    search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]
-) -> np.ndarray:
+def refine_with_all(search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
     """Continue a search that used few marks with all marks."""
     if kind == "edges":
         return x
@@ -330,9 +321,7 @@ def refine_with_all(
         look()
         return search.loss(search.as_disc(x) if kind == "disc" else x, targets)
 
-    refined = _minimise(
-        loss, x, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]), FINAL_EVALUATIONS
-    ).all_x
+    refined = _minimise(loss, x, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]), FINAL_EVALUATIONS).all_x
     return search.as_disc(refined) if kind == "disc" else refined
 
 
@@ -341,9 +330,7 @@ def mean_place(targets: list[Target]) -> np.ndarray:
     return np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
 
 
-def best_from(
-    search: Search, kind: str, starts: list[np.ndarray], few: list[Target], look: Callable[[], None]
-):
+def best_from(search: Search, kind: str, starts: list[np.ndarray], few: list[Target], look: Callable[[], None]):
     """Return the vector of one kind that overlaps most.
 
     starts: results of searches of this kind with parts of the marks.
@@ -368,9 +355,7 @@ def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: flo
     return [replace(target, poses_mm=machine.way(target.poses_mm, height_mm)) for target in targets]
 
 
-def _register_pictures(
-    search: Search, x, free, targets: list[Target], look: Callable[[], None]
-) -> np.ndarray:
+def _register_pictures(search: Search, x, free, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
     """Register predicted and painted pictures by least squares.
 
     The more blurred pictures come first.
@@ -410,9 +395,7 @@ def _register_pictures(
             return np.column_stack(out)
 
         x = fill_free(
-            least_squares(
-                differences_or_ones, x[free], slopes, x_scale=steps, max_nfev=REGISTRATION_STEPS, ftol=1e-3
-            ).x
+            least_squares(differences_or_ones, x[free], slopes, x_scale=steps, max_nfev=REGISTRATION_STEPS, ftol=1e-3).x
         )
     return x
 
@@ -436,9 +419,7 @@ def _minimise(loss, x, steps, free, most: int, corners=None):
     if corners is None:
         corners = np.vstack([x[free], *(x[free] + d for d in np.diag(steps[free]))])
     simplex = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
-    result = minimize(
-        lambda changed: loss(fill_free(changed)), x[free], method="Nelder-Mead", options=simplex
-    )
+    result = minimize(lambda changed: loss(fill_free(changed)), x[free], method="Nelder-Mead", options=simplex)
     result.all_x = fill_free(result.x)
     return result
 
@@ -459,9 +440,7 @@ def _add_polynomials(law, change) -> list[float]:
     return out.tolist()
 
 
-def predict_pictures(
-    targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
-) -> list[np.ndarray]:
+def predict_pictures(targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float) -> list[np.ndarray]:
     """Return anti-aliased pictures of the marks of a brush.
 
     They change smoothly with its laws.
@@ -471,18 +450,14 @@ def predict_pictures(
     return map_predicted(lambda target, picture: picture, targets, laws, height_mm, shift_mm, deepest_mm)
 
 
-def map_predicted(
-    what: Callable, targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
-) -> list:
+def map_predicted(what: Callable, targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float) -> list:
     """Call what(target, picture) with the predicted picture of each target.
 
     Return the results. All processors are used.
     """
     deepest = max(deepest_mm, *(-target.poses_mm[:, 2].min() for target in targets))
     brush = brush_of(laws, "fitted", (0.0, deepest + max(0.0, height_mm)))
-    outlines = [
-        (footprint.depth_mm, np.array(footprint.outline_mm)[::2]) for footprint in brush.footprints.dragged
-    ]
+    outlines = [(footprint.depth_mm, np.array(footprint.outline_mm)[::2]) for footprint in brush.footprints.dragged]
     brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
 
     def evaluate(target: Target):

@@ -130,9 +130,7 @@ def update_brush(
     changed = {law for law in LAWS if interval_ratios[law][0] < MAX_LEARNED_RATIO}
     updated_brush = _merge_brush(brush, known, laws, covariance, changed, name, painted)
     _core.check(updated_brush)
-    return Updated(
-        updated_brush, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options
-    )
+    return Updated(updated_brush, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options)
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
@@ -165,9 +163,7 @@ def _allow_for_polynomial_error(
     root, after = root_of_inverse(before), np.array(fit.covariance)
     values, vectors = np.linalg.eigh(root @ after[:size, :size] @ root.T)
     information = (vectors * np.maximum(1.0 / np.maximum(values, 1e-12) - 1.0, 0.0)) @ vectors.T
-    evidence = (
-        (np.eye(size) + information) @ root @ (_numbers_of_laws(fit.laws) - _numbers_of_laws(known.laws))
-    )
+    evidence = (np.eye(size) + information) @ root @ (_numbers_of_laws(fit.laws) - _numbers_of_laws(known.laws))
     unfollowed = np.linalg.inv(root @ known.unfollowed(UNFOLLOWED_SIGMA, deepest_mm) @ root.T)
     kept = np.eye(size) - information @ np.linalg.inv(information + unfollowed)
     posterior = np.linalg.inv(np.eye(size) + kept @ information)
@@ -294,18 +290,14 @@ def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], n
         setattr(
             updated_brush,
             law,
-            _choose_law(
-                getattr(brush, law), getattr(updated_brush, law), law in learned, painted, brush.name
-            ),
+            _choose_law(getattr(brush, law), getattr(updated_brush, law), law in learned, painted, brush.name),
         )
     updated_brush.kind, updated_brush.max_speed_mm_s, updated_brush.paint_depth_mm = (
         brush.kind,
         brush.max_speed_mm_s,
         brush.paint_depth_mm,
     )
-    updated_brush.covariance = _join_covariance(
-        brush, updated_brush, learned, brush_covariance, fitted
-    ).tolist()
+    updated_brush.covariance = _join_covariance(brush, updated_brush, learned, brush_covariance, fitted).tolist()
     updated_brush.extra, updated_brush.footprints, updated_brush.paint = (
         brush.extra,
         brush.footprints,

@@ -58,9 +58,7 @@ class KnownLaws:
             if law == "tip_to_widest":
                 sd, size = np.sqrt(self.covariance[place, place][0]), np.array([own.widest_per_half])
             else:
-                powers = np.vander(depths, len(values[law]) + (law != "lag"), increasing=True)[
-                    :, law != "lag" :
-                ]
+                powers = np.vander(depths, len(values[law]) + (law != "lag"), increasing=True)[:, law != "lag" :]
                 sd = np.sqrt(np.einsum("ij,jk,ik->i", powers, self.covariance[place, place], powers))
                 size = powers @ values[law]
             out[law] = max(1.0, share * float(np.sqrt(np.mean(size**2) / max(np.mean(sd**2), 1e-18))))
@@ -143,9 +141,7 @@ def known_laws(brush: _core.Brush) -> KnownLaws:
             )
         elif law == "tip_to_widest":
             half = _core.deviations_of_95() * RATIO_SIGMA
-            how[law] = (
-                f"nothing it says: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip (95 %)"
-            )
+            how[law] = f"nothing it says: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip (95 %)"
             block = RATIO_SIGMA**2
         else:
             block, how[law] = _covariance_without_file(
@@ -197,9 +193,7 @@ def _covariance_in_file(brush) -> np.ndarray:
     return np.array(brush.covariance) if len(brush.covariance) else np.zeros((size, size))
 
 
-def _covariance_without_file(
-    law, name: str, depths: np.ndarray, to_numbers: np.ndarray
-) -> tuple[np.ndarray, str]:
+def _covariance_without_file(law, name: str, depths: np.ndarray, to_numbers: np.ndarray) -> tuple[np.ndarray, str]:
     """Return the covariance of a law without one, and a description of its origin.
 
     It comes from the RMSE of the law, from its half intervals, or from the assumption for unmeasured laws. The RMSE
@@ -259,9 +253,7 @@ def _has_round_tail(brush) -> bool:
         widest = float(x[np.argmax(np.abs(y))])
         tail = x <= widest
         order = np.argsort(x[tail])
-        shares.append(
-            np.interp(widest / 2, x[tail][order], np.abs(y[tail][order])) / max(np.abs(y).max(), 1e-9)
-        )
+        shares.append(np.interp(widest / 2, x[tail][order], np.abs(y[tail][order])) / max(np.abs(y).max(), 1e-9))
     return float(np.median(shares)) > MIN_ROUND_TAIL_WIDTH
 
 
@@ -274,8 +266,6 @@ def _largest_distances(brush, laws, depths: np.ndarray) -> dict[str, float]:
         "half_width": half,
     }
     return {
-        law: float(
-            max(abs(getattr(brush, law)(d) - v) for d, v in zip(depths, fitted_values[law], strict=True))
-        )
+        law: float(max(abs(getattr(brush, law)(d) - v) for d, v in zip(depths, fitted_values[law], strict=True)))
         for law in LAWS
     }

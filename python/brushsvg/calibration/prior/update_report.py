@@ -47,9 +47,7 @@ def report(calibration) -> Report:
     machine_numbers = numbers(fit, calibration.covariance, calibration.options)
     table = cell_table(fit, calibration.options, machine_numbers)
     details = [*_compare_laws(calibration, laws), *_describe_residuals(calibration)]
-    details += [
-        f"{law}, the prior: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS
-    ]
+    details += [f"{law}, the prior: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS]
     details += [
         *(["", "of the machine:"] if machine_numbers else []),
         *describe_numbers(machine_numbers),
@@ -98,9 +96,7 @@ def _compare_laws(calibration, laws: list[str]) -> list[str]:
     depths = depths_shown(calibration.brush)
     columns = []
     for law in laws:
-        pairs = zip(
-            values(calibration.brush, law, depths), values(calibration.before, law, depths), strict=True
-        )
+        pairs = zip(values(calibration.brush, law, depths), values(calibration.before, law, depths), strict=True)
         columns.append((law, [f"{now} ({was})" for now, was in pairs]))
     return [
         *law_table(depths, columns),

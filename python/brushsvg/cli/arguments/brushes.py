@@ -22,13 +22,9 @@ from .usage_checks import PICTURES, PROGRAMS, check_extension, check_files, chec
 def add_chart(commands) -> None:
     chart = commands.add_parser("chart", help="write a chart: the strokes to calibrate a brush with")
     add_output(chart, f"a plan (.json) or {PROGRAM_HELP}")
-    chart.add_argument(
-        "--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6"
-    )
+    chart.add_argument("--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6")
     chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
-    chart.add_argument(
-        "--drawing", metavar="FILE", help="take brush and cell from this drawing, unless given"
-    )
+    chart.add_argument("--drawing", metavar="FILE", help="take brush and cell from this drawing, unless given")
     chart.add_argument(
         "--sheet",
         metavar="WxH",
@@ -50,9 +46,7 @@ def add_chart(commands) -> None:
         help="painted with one load, each depth early and late: for calibrate --paint, which finds how marks narrow as "
         "paint runs out",
     )
-    chart.add_argument(
-        "--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)"
-    )
+    chart.add_argument("--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)")
     chart.add_argument(
         "--chart",
         metavar="FILE",
@@ -127,8 +121,7 @@ def add_calibrate(commands) -> None:
         metavar="PARTS",
         type=values.machine_parts,
         default=(),
-        help="also estimate these errors of the machine from painted marks: any of "
-        "lean,axes,tilt,backlash,field",
+        help="also estimate these errors of the machine from painted marks: any of lean,axes,tilt,backlash,field",
     )
     calibrate.add_argument(
         "--cell",
@@ -271,9 +264,7 @@ def add_brush(commands) -> None:
     subcommands = add_list_show_check(
         commands, "brush", "list, show, check, draw and create brushes", "laws and ranges", "brush.json"
     )
-    new = subcommands.add_parser(
-        "new", help="write a brush file from a few numbers; asks for them if you give none"
-    )
+    new = subcommands.add_parser("new", help="write a brush file from a few numbers; asks for them if you give none")
     add_output(new, "the brush file (.json); its name becomes the brush's name")
     new.add_argument(
         "--lag",
@@ -298,20 +289,12 @@ def add_brush(commands) -> None:
         help="width painted at a press depth, in mm; give it once per measured depth",
     )
     new.add_argument("--widths", metavar="FILE", help="the same as a table, depth_mm,width_mm (.csv)")
-    new.add_argument(
-        "--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width"
-    )
-    new.add_argument(
-        "--like", metavar="BRUSH", help="take all laws from this one, a name or a brush.json, as assumed"
-    )
-    new.add_argument(
-        "--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it"
-    )
+    new.add_argument("--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width")
+    new.add_argument("--like", metavar="BRUSH", help="take all laws from this one, a name or a brush.json, as assumed")
+    new.add_argument("--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it")
     add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
-    plot = subcommands.add_parser(
-        "plot", help="draw the brush laws with confidence bands, and the footprints"
-    )
+    plot = subcommands.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
     add_output(plot, "a picture (.svg .png)")
     add_write_options(plot)

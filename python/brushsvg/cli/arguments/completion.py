@@ -63,9 +63,7 @@ def _make_completer(kind: str, files) -> Callable[..., list[str]]:
         folder = SHIPPED / ("brushes" if kind == "brush" else "cells")
         names = sorted(path.stem for path in folder.glob(f"*{SUFFIXES[kind]}"))
         matching_names = [name for name in names if name.startswith(prefix)]
-        matching_paths = (
-            path for path in files(prefix, **others) if path.endswith((SUFFIXES[kind], os.sep, "/"))
-        )
+        matching_paths = (path for path in files(prefix, **others) if path.endswith((SUFFIXES[kind], os.sep, "/")))
         return matching_names + sorted(matching_paths)
 
     return completer

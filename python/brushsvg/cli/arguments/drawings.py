@@ -89,17 +89,13 @@ def add_batch(commands) -> None:
         "brushsvg.toml near the first one serves all",
     )
     add_output(batch, "a folder for programs, pictures and tables")
-    batch.add_argument(
-        "--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)"
-    )
+    batch.add_argument("--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)")
     batch.add_argument("--font", metavar="FILE", help="of --words, as for brushsvg text")
     batch.add_argument("--size", metavar="MM", type=values.width, help="of the em of --font; default: 20")
     batch.add_argument(
         "--format", metavar="EXT", choices=(".json", *PROGRAMS), help="of programs; default: the cell's first"
     )
-    batch.add_argument(
-        "--jobs", metavar="N", type=values.jobs, help="processes; default: one for each processor"
-    )
+    batch.add_argument("--jobs", metavar="N", type=values.jobs, help="processes; default: one for each processor")
     batch.add_argument(
         "--cluster", metavar="ADDRESS", help="of a scheduler of Dask's, whose workers do it (tcp://host:8786)"
     )
@@ -144,9 +140,7 @@ def add_compare(commands) -> None:
     add_choices(compare)
     add_corrections(compare)
     add_margin_strokes(compare)
-    add_output(
-        compare, "the figures and the corrections for the next sheet (.json), or the report (.txt)", False
-    )
+    add_output(compare, "the figures and the corrections for the next sheet (.json), or the report (.txt)", False)
     add_picture(compare, "the paint, the drawing and the prediction; with --sheets the spread", ".png")
     compare.add_argument(
         "--corrected-cell",
@@ -171,9 +165,7 @@ def add_compare(commands) -> None:
 
 def _check_compare(args) -> None:
     if suffix_of(args.input) in PHOTOS and any(suffix_of(path) in DRAWINGS for path in args.photos):
-        args.parser.error(
-            f"the drawing or plan stands last, behind the photographs: {args.input} is a photograph"
-        )
+        args.parser.error(f"the drawing or plan stands last, behind the photographs: {args.input} is a photograph")
     check_drawing(args)
     for flag, value in (
         ("corrected-cell", args.corrected_cell),
@@ -221,9 +213,7 @@ def _check_simulate_photo(args) -> None:
 
 
 def add_preview(commands) -> None:
-    preview = commands.add_parser(
-        "preview", help="show what will be painted, and how close it is to the drawing"
-    )
+    preview = commands.add_parser("preview", help="show what will be painted, and how close it is to the drawing")
     add_input(preview)
     add_output(
         preview,
@@ -253,9 +243,7 @@ def add_preview(commands) -> None:
         type=values.speed,
         help="with .html: how much faster than the robot the page begins; default: 1",
     )
-    preview.add_argument(
-        "--all-brushes", action="store_true", help="report one line for each brush, the best first"
-    )
+    preview.add_argument("--all-brushes", action="store_true", help="report one line for each brush, the best first")
     add_report(preview)
     add_write_options(preview)
     preview.set_defaults(parser=preview, check=_check_preview)
@@ -312,9 +300,7 @@ def add_text(commands) -> None:
         help="an SVG font of single lines, the name of one of Inkscape's, or a TrueType or OpenType font",
     )
     text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="of the em; default: 20")
-    text.add_argument(
-        "--width", metavar="MM", type=values.width, help="of the lines of an SVG font; default: 1"
-    )
+    text.add_argument("--width", metavar="MM", type=values.width, help="of the lines of an SVG font; default: 1")
     text.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )

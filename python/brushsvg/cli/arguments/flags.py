@@ -166,8 +166,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add(
         "--terminals",
         choices=TERMINALS,
-        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each; "
-        "default: auto",
+        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each; default: auto",
     )
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
     add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")
@@ -265,9 +264,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
     )
     add("--pen", choices=PENS, help="what lifts the pen of G-code: Z, or a servo (M3); default: found out")
-    add(
-        "--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and beyond it"
-    )
+    add("--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and beyond it")
     add(
         "--skip-region",
         metavar="X0,Y0,X1,Y1",
@@ -293,9 +290,7 @@ def add_layout(command: argparse.ArgumentParser) -> None:
     size.add_argument(
         "--fit", metavar="WxH", type=values.size, help="scale the marks to this size, centred on the sheet"
     )
-    size.add_argument(
-        "--scale", metavar="FACTOR", type=values.scale, help="scale it, widths too: 1.5 or 150%%"
-    )
+    size.add_argument("--scale", metavar="FACTOR", type=values.scale, help="scale it, widths too: 1.5 or 150%%")
     add(
         "--origin",
         metavar="X,Y",

@@ -51,13 +51,9 @@ def commands_text(parser: argparse.ArgumentParser, commands: argparse._SubParser
     for title, names in COMMANDS.items():
         lines += ["", f"{title}:", *(f"  {name:<16}{helps[name]}" for name in names)]
     options = [
-        f"  {', '.join(action.option_strings):<16}{action.help}"
-        for action in parser._actions
-        if action.option_strings
+        f"  {', '.join(action.option_strings):<16}{action.help}" for action in parser._actions if action.option_strings
     ]
-    return "\n".join(
-        [*lines, "", "Options:", *options, "", f"{parser.prog} COMMAND --help explains a command.", ""]
-    )
+    return "\n".join([*lines, "", "Options:", *options, "", f"{parser.prog} COMMAND --help explains a command.", ""])
 
 
 def group_options(parser: argparse.ArgumentParser) -> None:
@@ -66,17 +62,13 @@ def group_options(parser: argparse.ArgumentParser) -> None:
     Options without a topic stay with the output.
     """
     own_options = parser._optionals
-    own_options.title = (
-        "output and more" if len(own_options._group_actions) > MAX_UNGROUPED_OPTIONS else "options"
-    )
+    own_options.title = "output and more" if len(own_options._group_actions) > MAX_UNGROUPED_OPTIONS else "options"
     for title, names in TOPICS.items() if len(own_options._group_actions) > MAX_UNGROUPED_OPTIONS else ():
         flags = {f"--{name}" for name in names.split()}
         topic_options = [action for action in own_options._group_actions if flags & {*action.option_strings}]
         if topic_options:
             topic_options.sort(
-                key=lambda action: min(
-                    names.split().index(flag[2:]) for flag in flags & {*action.option_strings}
-                )
+                key=lambda action: min(names.split().index(flag[2:]) for flag in flags & {*action.option_strings})
             )
             parser.add_argument_group(title)._group_actions.extend(topic_options)
             for action in topic_options:

@@ -22,7 +22,5 @@ def _check_demo(args) -> None:
 
 
 def add_doctor(commands) -> None:
-    doctor = commands.add_parser(
-        "doctor", help="list versions, extras, fonts and Inkscape, and what is missing"
-    )
+    doctor = commands.add_parser("doctor", help="list versions, extras, fonts and Inkscape, and what is missing")
     doctor.set_defaults(run="list_installation", parser=doctor)

@@ -42,9 +42,7 @@ def _add_first_run(commands) -> None:
     first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
     add_output(first, PROGRAM_HELP)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
-    first.add_argument(
-        "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
-    )
+    first.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
     add_explain(first, None)
     add_write_options(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
@@ -75,9 +73,7 @@ def _add_height(commands) -> None:
     add_output(height, PROGRAM_HELP)
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
-    height.add_argument(
-        "--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100"
-    )
+    height.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
     height.add_argument(
         "--from",
         metavar="MM",
@@ -94,9 +90,7 @@ def _add_height(commands) -> None:
         default=-1.0,
         help="height of the last stroke; default: -1",
     )
-    height.add_argument(
-        "--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1"
-    )
+    height.add_argument("--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1")
     add_explain(height, None)
     add_write_options(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
@@ -108,9 +102,7 @@ def _check_height(args) -> None:
 
 def _add_inkscape(commands) -> None:
     install = commands.add_parser("inkscape", help="install the extension for Inkscape")
-    install.add_argument(
-        "zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree"
-    )
+    install.add_argument("zip", metavar="ZIP", nargs="?", help="brushsvg-inkscape.zip; not needed in a source tree")
     install.add_argument("--remove", action="store_true", help="remove the extension again")
     install.set_defaults(run="install_plugin", parser=install, check=_check_inkscape)
 
@@ -121,13 +113,9 @@ def _check_inkscape(args) -> None:
 
 
 def add_check(commands) -> None:
-    check = commands.add_parser(
-        "check", help="read a program back, simulate it, and compare it with its drawing"
-    )
+    check = commands.add_parser("check", help="read a program back, simulate it, and compare it with its drawing")
     check.add_argument("program", metavar="PROGRAM", help=PROGRAM_HELP)
-    check.add_argument(
-        "input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint"
-    )
+    check.add_argument("input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint")
     check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
     add_layout(check)
@@ -139,9 +127,7 @@ def add_check(commands) -> None:
     add_join(check)
     add_speed(check)
     add_corrections(check)
-    check.add_argument(
-        "--z-offset", metavar="MM", type=values.height, help="default: the one that the program names"
-    )
+    check.add_argument("--z-offset", metavar="MM", type=values.height, help="default: the one that the program names")
     check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
     add_picture(check, "what will be painted")
     add_explain(check)
@@ -193,9 +179,7 @@ def add_cell(commands) -> None:
 
 
 def _add_cell_place(subcommands) -> None:
-    place = subcommands.add_parser(
-        "place", help="find where the paper can be for an arm to reach the drawing"
-    )
+    place = subcommands.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
     place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
     add_output(place, "a picture of the table (.png .svg)", False)

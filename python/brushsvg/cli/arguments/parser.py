@@ -48,9 +48,7 @@ class _Parser(argparse.ArgumentParser):
     def _check_value(self, action, value):
         if action.choices is not None and value not in action.choices:
             choices = [str(choice) for choice in action.choices]
-            sentence = (
-                f"{value!r} is not known{did_you_mean(str(value), choices)} Known are {', '.join(choices)}"
-            )
+            sentence = f"{value!r} is not known{did_you_mean(str(value), choices)} Known are {', '.join(choices)}"
             raise argparse.ArgumentError(action, sentence)
 
     def parse_known_args(self, args=None, namespace=None):
@@ -66,9 +64,7 @@ class _Parser(argparse.ArgumentParser):
         return parsed, unknown
 
     def format_help(self) -> str:
-        commands = next(
-            (each for each in self._actions if isinstance(each, argparse._SubParsersAction)), None
-        )
+        commands = next((each for each in self._actions if isinstance(each, argparse._SubParsersAction)), None)
         if commands is not None and commands.metavar == "COMMAND":
             return help_text.commands_text(self, commands)
         return help_text.command_text(self, is_whole=False)
@@ -97,9 +93,7 @@ class _Version(argparse.Action):
 
 @functools.cache  # adding the flags of all commands needs more time than a short command
 def command_parser() -> argparse.ArgumentParser:
-    parser = _Parser(
-        prog="brushsvg", description="Turn vector lettering into brush strokes that a robot can paint."
-    )
+    parser = _Parser(prog="brushsvg", description="Turn vector lettering into brush strokes that a robot can paint.")
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     parser.add_argument(
         "--messages",

@@ -15,9 +15,7 @@ from ..arguments import values
 from ..console import RefusedError, say
 
 # Medians over 12 hidden brushes, see benchmarks/typed_brushes.py.
-ACCURACY_GAIN = (
-    "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
-)
+ACCURACY_GAIN = "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
 HOW_TO_MEASURE = (
     "Choose three press depths, for example a quarter, half and all of the deepest that you use.",
     "At each depth paint a straight line of 40 mm, turn by 90 degrees, and paint 40 mm more.",
@@ -35,9 +33,7 @@ def can_answer(args) -> bool:
 
     This needs a terminal for input and for messages, and messages as text.
     """
-    return args.messages == "text" and all(
-        stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr)
-    )
+    return args.messages == "text" and all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
 
 
 def ask_measurements(name: str) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
@@ -88,12 +84,8 @@ def warn_of_few_depths(args, widths) -> list[Notice]:
     """
     if args.like is not None or args.lag == 0:
         return []
-    depth_count = min(
-        len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths)
-    )
+    depth_count = min(len({depth for depth, _ in each}) for each in (args.lag_at or [(0.0, args.lag)], widths))
     if depth_count >= len(DEPTH_NAMES):
         return []
-    sentence = (
-        f"lag or width is known at {depth_count} depth{'s' * (depth_count > 1)}. Typically {ACCURACY_GAIN}"
-    )
+    sentence = f"lag or width is known at {depth_count} depth{'s' * (depth_count > 1)}. Typically {ACCURACY_GAIN}"
     return [Notice("", sentence, code="few-depths", advice=f"measure at three depths: {MEASUREMENT_FLAGS}")]

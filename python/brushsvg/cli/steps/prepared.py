@@ -94,9 +94,7 @@ def prepare_and_simulate(
         if not tilt_notices and (work.plan.passes or not work.refused):
             known_walk = None if at_loads else work.walk(cell)
             tolerance_mm = work.options.tolerance_mm
-            walk = preflight.check_job(
-                loads, brush, marks, cell, tolerance_mm, walk=known_walk, of_drawing=is_drawing
-            )
+            walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, walk=known_walk, of_drawing=is_drawing)
         forbidden = [replace(problem, refused=True) for problem in walk.problems] if walk else []
         sheet_mm = work.plan.sheet_mm
         off_sheet_notices = preflight.off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []

@@ -38,17 +38,13 @@ def use_project(args, argv: list[str] | None) -> None:
     excluded = {name for dest in EXCLUDED_BY if getattr(args, dest, False) for name in EXCLUDED_BY[dest]}
     if _writes_plan(args):  # the poses of a plan are relative to the paper, at any height of the paper
         excluded.add("z_offset")
-    filled = [
-        name for name in project.settings if name in settable_options and name not in typed_options | excluded
-    ]
+    filled = [name for name in project.settings if name in settable_options and name not in typed_options | excluded]
     for name in filled:
         value = project.settings[name]
         is_listed = isinstance(settable_options[name], argparse._AppendAction)
         setattr(args, name, value if not is_listed or isinstance(value, list) else [value])
     # A list of all brushes has the shipped brushes and the project's brush, not the brush that the drawing names.
-    args.from_project = tuple(
-        name for name in filled if not (name == "brush" and getattr(args, "all_brushes", False))
-    )
+    args.from_project = tuple(name for name in filled if not (name == "brush" and getattr(args, "all_brushes", False)))
     if args.explain:
         _print_sources(args, project, typed_options)
     elif filled and args.messages == "text" and not getattr(args, "quiet", False):
@@ -98,18 +94,14 @@ def _print_sources(args, project: Project, typed: set[str]) -> None:
     rows = [
         (
             _get_flag(action),
-            *_describe_source(
-                args, project, typed, name, getattr(final_choices, name), final_choices.from_project
-            ),
+            *_describe_source(args, project, typed, name, getattr(final_choices, name), final_choices.from_project),
         )
         for name, action in _list_settable_options(args.parser).items()
     ]
     widths = [max(len(row[column]) for row in rows) for column in (0, 1)]
     for name, value, source in rows:
         if args.messages == "json":
-            say_notice(
-                _find_start_path(args), Notice(name, f"{value}, from {source}", code="setting-explained")
-            )
+            say_notice(_find_start_path(args), Notice(name, f"{value}, from {source}", code="setting-explained"))
         else:
             say(f"{name:<{widths[0]}}  {value:<{widths[1]}}  {source}")
 
@@ -147,9 +139,7 @@ def _describe_source(args, project: Project, typed, name: str, value, from_proje
         return _format_value(value), "command line"
     if name in from_project or (name in project.settings and value == project.settings[name]):
         program_settings = ("brush", "cell", "sheet", "z_offset")
-        exception = (
-            ", unless the program names another" if _is_of_program(args) and name in program_settings else ""
-        )
+        exception = ", unless the program names another" if _is_of_program(args) and name in program_settings else ""
         return _format_value(value), project.path + exception
     default = getattr(args, name)
     if value is None or value == default:

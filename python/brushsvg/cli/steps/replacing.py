@@ -83,9 +83,7 @@ def _explain_unwritable() -> str:
     with suppress(RuntimeError):
         record_path = _find_record_path()
         existing_folder = next(folder for folder in record_path.parents if folder.exists())
-        if not os.access(existing_folder, os.W_OK) or (
-            record_path.exists() and not os.access(record_path, os.W_OK)
-        ):
+        if not os.access(existing_folder, os.W_OK) or (record_path.exists() and not os.access(record_path, os.W_OK)):
             return f": {record_path}, where brushsvg keeps this, cannot be written"
     return ""
 

@@ -107,9 +107,7 @@ def attribute_errors(
     strokes = [stroke for stroke in painting if stroke.stroke in largest]
     common, middle = seen_of.common, seen_of.middle_mm
     neighbours = [
-        [common.moved(ring, middle) for ring in stroke.predicted]
-        for stroke in painting
-        if stroke.stroke not in largest
+        [common.moved(ring, middle) for ring in stroke.predicted] for stroke in painting if stroke.stroke not in largest
     ]
     names = [stroke.stroke for stroke in strokes]
     model = FaultModel(plan, brush, tuple(names), middle, learned)
@@ -126,9 +124,7 @@ def attribute_errors(
         Found(number, float(value), float(half))
         for number, value, half in zip(model.numbers, fault_values, halves, strict=True)
     )
-    shares, overlap = _gains_of_causes(
-        model, names, strokes, fault_values, own, covariance, outline, slopes, seen_of
-    )
+    shares, overlap = _gains_of_causes(model, names, strokes, fault_values, own, covariance, outline, slopes, seen_of)
     certain = [share for share in shares if share.low > 0.005]
     return Faults(
         found,
@@ -214,10 +210,7 @@ def _jacobian(model, names, fault_values, own, outline: Outline, rings) -> np.nd
         step = np.zeros(len(fault_values))
         step[k] = number.step
         columns.append(
-            (
-                signed_offsets_mm(outline, _rings_with_own_places(model, names, fault_values + step, own))
-                - base
-            )
+            (signed_offsets_mm(outline, _rings_with_own_places(model, names, fault_values + step, own)) - base)
             / number.step
         )
     out = np.zeros((len(outline.at), len(columns) + 2 * len(names) + 1))
@@ -228,9 +221,7 @@ def _jacobian(model, names, fault_values, own, outline: Outline, rings) -> np.nd
     return out
 
 
-def _gains_of_causes(
-    model, names, strokes, fault_values, own, covariance, outline, slopes, found: Comparison
-):
+def _gains_of_causes(model, names, strokes, fault_values, own, covariance, outline, slopes, found: Comparison):
     fine = min(found.canvas.px_per_mm, MAX_PX_PER_MM)
     canvas = Canvas(found.canvas.window_mm, fine)
     has_target = all(stroke.target is not None for stroke in strokes)
@@ -320,9 +311,7 @@ def _inseparable_causes(model: FaultModel, covariance, slopes) -> tuple[tuple[st
     """
     causes = (SHEET, MACHINE, PAPER, BRUSH, OWN_PLACE)
     count = len(model.numbers)
-    columns_of = {
-        cause: np.flatnonzero([number.cause == cause for number in model.numbers]) for cause in causes[:-1]
-    }
+    columns_of = {cause: np.flatnonzero([number.cause == cause for number in model.numbers]) for cause in causes[:-1]}
     columns_of[OWN_PLACE] = np.arange(count, len(covariance) - 1)
 
     def doubt(cause, block):

@@ -21,9 +21,7 @@ SHEET, MACHINE, PAPER, BRUSH = "place of the sheet", "machine", "height and tilt
 LAW_SIZE_SIGMA, LAW_BEND_SIGMA = 0.15, 0.1
 MIN_LAW_SIGMA = 0.005  # smallest relative standard deviation of a law: on real paper no brush is more certain
 MAX_THREADS = min(8, os.cpu_count() or 1)
-MARK_ROW_SPACING_MM = (
-    0.02  # distance between rows of a mark: with 0.1 outlines are as rough as a number moves them
-)
+MARK_ROW_SPACING_MM = 0.02  # distance between rows of a mark: with 0.1 outlines are as rough as a number moves them
 
 
 @dataclass(frozen=True)
@@ -92,9 +90,7 @@ class FaultModel:
             Number(PAPER, "tilt in x", "mm per mm", 1.0 / half[0], 0.1 / half[0]),
             Number(PAPER, "tilt in y", "mm per mm", 1.0 / half[1], 0.1 / half[1]),
             Number(BRUSH, "lag", "of it", law_sigmas.get("lag", LAW_SIZE_SIGMA), lag_step),
-            Number(
-                BRUSH, "lag, deepest against usual", "of it", law_sigmas.get("lag", LAW_BEND_SIGMA), lag_step
-            ),
+            Number(BRUSH, "lag, deepest against usual", "of it", law_sigmas.get("lag", LAW_BEND_SIGMA), lag_step),
             Number(BRUSH, "width", "of it", law_sigmas.get("half_width", LAW_SIZE_SIGMA), width_step),
             Number(
                 BRUSH,

@@ -58,9 +58,7 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
         f"  edges beyond all that: {faults.rest_mm:.3f} mm (rms)",
     ]
     for cause, other in faults.alike:
-        lines.append(
-            f"Hard to separate on these marks: {cause}, and {other}; their sum is surer than either."
-        )
+        lines.append(f"Hard to separate on these marks: {cause}, and {other}; their sum is surer than either.")
     if machine:
         lines += [
             "",
@@ -84,8 +82,7 @@ def faults_as_json(faults: Faults | None) -> dict | None:
         "overlap": faults.overlap,
         "mend_first": faults.first,
         "causes": [
-            {"cause": item.cause, "gain": item.gain, "gain_95": [item.low, item.high]}
-            for item in faults.shares
+            {"cause": item.cause, "gain": item.gain, "gain_95": [item.low, item.high]} for item in faults.shares
         ],
         "numbers": [
             {

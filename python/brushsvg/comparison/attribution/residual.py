@@ -23,9 +23,7 @@ def subtract_faults(
     model = FaultModel(plan, brush, names, found.middle_mm)
     fault_values = np.array([certain.get(number.name, 0.0) for number in model.numbers])
     straight, moved = (model.rings(numbers) for numbers in (np.zeros_like(fault_values), fault_values))
-    displacements = {
-        name: _displacement_by_faults(straight.get(name), moved.get(name), found.canvas) for name in names
-    }
+    displacements = {name: _displacement_by_faults(straight.get(name), moved.get(name), found.canvas) for name in names}
     return subtract_displacements(found, displacements)
 
 

@@ -54,17 +54,14 @@ def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
     for operand in map(os.fspath, operands):
         if os.path.isdir(operand):
             items += [
-                _make_drawing_item(path, path.relative_to(operand))
-                for path in _find_drawings_below(Path(operand))
+                _make_drawing_item(path, path.relative_to(operand)) for path in _find_drawings_below(Path(operand))
             ]
         elif Path(operand).suffix.lower() == LIST_SUFFIX:
             items += list_drawings(_read_list(operand))
         elif os.path.exists(operand) or not glob.has_magic(operand):
             items.append(_make_drawing_item(Path(operand), Path(Path(operand).name)))
         else:
-            matches = [
-                Path(path) for path in sorted(glob.glob(operand, recursive=True)) if os.path.isfile(path)
-            ]
+            matches = [Path(path) for path in sorted(glob.glob(operand, recursive=True)) if os.path.isfile(path)]
             matching_drawings = [path for path in matches if path.suffix.lower() in READERS]
             items += [_make_drawing_item(path, Path(path.name)) for path in matching_drawings]
             if not matching_drawings:
@@ -73,9 +70,7 @@ def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
 
 
 def _find_drawings_below(folder: Path) -> list[Path]:
-    paths = sorted(
-        path for path in folder.rglob("*") if path.suffix.lower() in FOLDER_SUFFIXES and path.is_file()
-    )
+    paths = sorted(path for path in folder.rglob("*") if path.suffix.lower() in FOLDER_SUFFIXES and path.is_file())
     if not paths:
         sentence = f"no drawing is in this folder; looked for {', '.join(FOLDER_SUFFIXES)}"
         raise Error(sentence, file=str(folder), code="file-unreadable")
@@ -107,9 +102,7 @@ def _make_drawing_item(path: Path, name: Path) -> Item:
         extension = path.suffix.lower()
         if extension not in READERS and (extension or path.exists()):
             known_formats = ", ".join(READERS)
-            sentence = (
-                f"{extension or 'no extension'} is not a drawing format that is read; known: {known_formats}"
-            )
+            sentence = f"{extension or 'no extension'} is not a drawing format that is read; known: {known_formats}"
             raise Error(sentence, file=str(path), code="drawing-format")
         return InMemory(extension, read_bytes(path))
 
@@ -124,9 +117,7 @@ def _make_refused_item(name: str, source: str) -> Item:
     """Make an item that is refused when it is read, as no file can have its name."""
 
     def read() -> InMemory:
-        sentence = (
-            f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
-        )
+        sentence = f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
         raise Error(sentence, code="name-invalid", advice="rename the drawing")
 
     return Item(name, source, "", read)
@@ -135,8 +126,7 @@ def _make_refused_item(name: str, source: str) -> Item:
 def _escape_unprintable(text: str) -> str:
     """Escape characters that cannot be printed, such as line ends, as Python does."""
     return "".join(
-        each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode()
-        for each in text
+        each if each.isprintable() else each.encode("unicode_escape", "surrogatepass").decode() for each in text
     )
 
 

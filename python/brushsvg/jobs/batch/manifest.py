@@ -179,9 +179,7 @@ class Manifest:
             unchanged = [file for file in row.files.items() if self._has_file(file)]
             if unchanged and row.path not in ("", path) and (self.folder / row.path).exists():
                 sentence = f"{unchanged[0][0]} was made of {row.source}: that of {item.source} would be written over it"
-                raise Error(
-                    sentence, file=str(self.folder), code="name-taken", advice="give another folder (-o)"
-                )
+                raise Error(sentence, file=str(self.folder), code="name-taken", advice="give another folder (-o)")
 
     def find_other_source(self, item: Item, path: str) -> str:
         """Return the other drawing that an earlier run made this file from.
@@ -204,9 +202,7 @@ class Manifest:
         """
         removed: list[str] = []
         endings = {Path(name).suffix for name in row.files}
-        for file in dict.fromkeys(
-            file for each in self._by_name.get(row.name, []) for file in each.files.items()
-        ):
+        for file in dict.fromkeys(file for each in self._by_name.get(row.name, []) for file in each.files.items()):
             is_outdated = file[0] not in row.files and (not row.figures or Path(file[0]).suffix in endings)
             if is_outdated and self._has_file(file):
                 try:

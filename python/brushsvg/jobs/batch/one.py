@@ -121,9 +121,7 @@ def _convert(task: Task) -> TaskResult:
     chosen = fill_from_drawing(check_choices(chosen), task.drawing)
     work = preparation.prepare(task.drawing, make_options(chosen))
     suffix = task.suffix or conversion.default_suffix(work.options.cell)
-    simulated = conversion.simulate_and_check(
-        work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient
-    )
+    simulated = conversion.simulate_and_check(work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient)
     if simulated.problems:
         problem, *others = simulated.problems
         rest = f", and {len(others)} more of other kinds" if others else ""

@@ -119,9 +119,7 @@ def batch(
     is_cancelled = getattr(cancel, "is_set", cancel) or (lambda: False)
     require_type(is_cancelled, Callable, "a callable or an event, which cancel is")
     if "corrections" in choices:
-        raise Error(
-            "corrections are of one drawing, not of a batch", "corrections", code="options-contradict"
-        )
+        raise Error("corrections are of one drawing, not of a batch", "corrections", code="options-contradict")
     count = int(need_number(os.cpu_count() if jobs is None else jobs, "jobs", 1, 1000))
     if parquet:
         tables.need_parquet()
@@ -136,8 +134,7 @@ def batch(
     try:
         keys = [settings.key(item) for item in drawings]
         rows: list[Row | None] = [
-            manifest.find_finished(key, item) if item.digest else None
-            for key, item in zip(keys, drawings, strict=True)
+            manifest.find_finished(key, item) if item.digest else None for key, item in zip(keys, drawings, strict=True)
         ]
         resumed = len(drawings) - rows.count(None)
         remaining = [index for index, row in enumerate(rows) if row is None]
@@ -155,9 +152,7 @@ def batch(
                     else executors.start_processes(min(count, len(remaining)))
                 )
                 executor = stack.enter_context(executor_context)
-            for index, result in _convert_remaining(
-                executor, is_ours, remaining, drawings, settings, is_cancelled
-            ):
+            for index, result in _convert_remaining(executor, is_ours, remaining, drawings, settings, is_cancelled):
                 row = _write_result(folder, drawings[index], keys[index], result, places)
                 row = rows[index] = replace(row, path=manifest.make_relative_path(drawings[index]))
                 removed += manifest.remove_outdated(row)
@@ -237,10 +232,7 @@ def _convert_remaining(
     numbers = iter(remaining)
     try:
         while True:
-            while (
-                len(pending) < MAX_PENDING_DRAWINGS
-                and sum(size for _, size in pending.values()) < MAX_PENDING_BYTES
-            ):
+            while len(pending) < MAX_PENDING_DRAWINGS and sum(size for _, size in pending.values()) < MAX_PENDING_BYTES:
                 index = next(numbers, None)
                 if index is None:
                     break
@@ -290,9 +282,7 @@ class _TakenPlaces:
         self.manifest = manifest
         self.sources = {file_name_key(item.name): item.source for item in items}
         self.folders = {
-            file_name_key(folder.as_posix()): item.source
-            for item in items
-            for folder in Path(item.name).parents
+            file_name_key(folder.as_posix()): item.source for item in items for folder in Path(item.name).parents
         }
 
     def refuse_taken(self, item: Item, paths: Iterable[str]) -> None:
@@ -314,9 +304,7 @@ class _TakenPlaces:
 def _write_result(folder: Path, item: Item, key: str, result: TaskResult, places: _TakenPlaces) -> Row:
     """Write all files of a drawing or none, and return its row."""
     if result.figures is None:
-        return Row(
-            item.name, item.source, key, None, result.code, result.where, result.sentence, result.notices
-        )
+        return Row(item.name, item.source, key, None, result.code, result.where, result.sentence, result.notices)
     program_folder = Path(PROGRAMS, item.name) if len(result.texts) > 1 else Path(PROGRAMS, item.name).parent
     first = program_folder / f"{Path(item.name).name}{result.suffix}"
     contents = {Path(path_next_to(first, name)).as_posix(): text for name, text in result.texts.items()}
@@ -324,9 +312,7 @@ def _write_result(folder: Path, item: Item, key: str, result: TaskResult, places
     try:
         places.refuse_taken(item, contents)
     except Error as refusal:
-        return Row(
-            item.name, item.source, key, None, refusal.code, refusal.where, str(refusal), result.notices
-        )
+        return Row(item.name, item.source, key, None, refusal.code, refusal.where, str(refusal), result.notices)
     write_files({make_path_below(folder, name): text for name, text in contents.items()})
     hashes = {name: sha256(text) for name, text in contents.items()}
     return Row(item.name, item.source, key, result.figures, notices=result.notices, files=hashes)

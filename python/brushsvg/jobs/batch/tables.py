@@ -51,9 +51,7 @@ def format_parquet(rows: Iterable[Row]) -> bytes:
     from pyarrow import parquet
 
     integer_columns = ("strokes", "poses", "widths_out_of_reach", "warnings")
-    kinds = {
-        name: pyarrow.int64() if name in integer_columns else pyarrow.float64() for name in FIGURE_COLUMNS
-    }
+    kinds = {name: pyarrow.int64() if name in integer_columns else pyarrow.float64() for name in FIGURE_COLUMNS}
     schema = pyarrow.schema((name, kinds.get(name, pyarrow.string())) for name in make_columns([]))
     stream = pyarrow.BufferOutputStream()
     parquet.write_table(pyarrow.table(make_columns(rows), schema=schema), stream)

@@ -54,9 +54,7 @@ def fit_ends_to_machine(
 
     def simulate(a_plan) -> KnownSimulation:
         loads = split_into_loads(a_plan, brush, options.cell)
-        marks = _core.simulate(
-            a_plan, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes")
-        )
+        marks = _core.simulate(a_plan, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes"))
         walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
         return KnownSimulation(copy(a_plan), marks, walk)
 
@@ -76,9 +74,7 @@ def fit_ends_to_machine(
         {"start": "pointed", "end": "round"},
     ):
         candidates = {
-            stroke.id: _replace_auto_ends(stroke, options, terminals)
-            for stroke in automatic
-            if stroke.id in unresolved
+            stroke.id: _replace_auto_ends(stroke, options, terminals) for stroke in automatic if stroke.id in unresolved
         }
         fits = (
             candidates.keys() - find_refused(simulate(compensated(list(candidates.values())).plan))

@@ -53,11 +53,7 @@ def add_margin_strokes(work: Work) -> Work:
     The work stays as it is, with a notice, where the sheet is too narrow or the cell cannot paint the strokes.
     """
     requested, deepest_mm = work.options.margin_strokes, _find_deepest_mm(work.plan)
-    if (
-        requested == "off"
-        or deepest_mm <= 0
-        or (requested == "auto" and is_calibrated(work.brush, deepest_mm))
-    ):
+    if requested == "off" or deepest_mm <= 0 or (requested == "auto" and is_calibrated(work.brush, deepest_mm)):
         return work
     if work.brush.is_rigid():
         return _warn_left_out(work, f"brush {work.brush.name} is a pen, which marks teach nothing")
@@ -94,9 +90,7 @@ def remove_margin_strokes(work: Work, marks, as_run=None) -> tuple[Work, _core.M
     drawn_rows = [k for k, stroke in enumerate(work.strokes) if not is_margin(stroke)]
     drawn_marks = _core.Marks()
     drawn_marks.passes = [marks.passes[k] for k in drawn_rows]
-    plans = [
-        each and _replace_passes(each, [each.passes[k] for k in drawn_rows]) for each in (work.plan, as_run)
-    ]
+    plans = [each and _replace_passes(each, [each.passes[k] for k in drawn_rows]) for each in (work.plan, as_run)]
     errors = tuple(work.tracking_errors[k] for k in drawn_rows) if work.tracking_errors else ()
     strokes = [work.strokes[k] for k in drawn_rows]
     return replace(work, plan=plans[0], strokes=strokes, tracking_errors=errors), drawn_marks, plans[1]
@@ -114,9 +108,7 @@ def describe_expected_accuracy(work: Work) -> str:
         return ""
     brush, _ = expected_brush(_replace_passes(work.plan, passes), work.brush, EDGE_NOISE_MM)
     depths = np.array([_find_deepest_mm(_replace_passes(work.plan, [each])) for each in passes])
-    seconds = sum(
-        np.hypot(*np.diff(each.poses_mm[:, :2], axis=0).T).sum() / each.speed_mm_s for each in passes
-    )
+    seconds = sum(np.hypot(*np.diff(each.poses_mm[:, :2], axis=0).T).sum() / each.speed_mm_s for each in passes)
     bands = {name: law_band(brush, name, depths)[0] for name, _ in LAWS}
     accuracies = "; ".join(
         f"at {depth:.1f} mm depth lag +- {lag:.2f} mm and width +- {2 * half_width:.2f} mm"
@@ -158,13 +150,9 @@ def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, flo
     charted = [straight(brush, shallowest), *(angular(brush, depth) for depth in deeper)]
     left, bottom, top, passes = 0.0, height + GAP_MM, height, []
     names, last_pass = {each.stroke for each in work.plan.passes}, work.plan.passes[-1]
-    free_names = (
-        name for k in range(1, len(names) + DEPTH_COUNT + 1) if (name := f"{MARGIN_KIND}-{k}") not in names
-    )
+    free_names = (name for k in range(1, len(names) + DEPTH_COUNT + 1) if (name := f"{MARGIN_KIND}-{k}") not in names)
     speed = min(work.options.speed_of_all_mm_s or work.options.speed_mm_s, brush.max_speed_mm_s)
-    for a_pass, (x0, y0, x1, y1) in zip(
-        charted, room_for(brush, charted, LAG_FACTORS, WIDTH_FACTOR), strict=True
-    ):
+    for a_pass, (x0, y0, x1, y1) in zip(charted, room_for(brush, charted, LAG_FACTORS, WIDTH_FACTOR), strict=True):
         if x1 - x0 > width:
             return None
         if left + x1 - x0 > width:
@@ -180,9 +168,7 @@ def _find_problems(plan, work: Work) -> list[Notice]:
     if not (cell := work.options.cell):
         return []
     loads, marks = split_into_loads(plan, work.brush, cell), _core.simulate(plan, work.brush)
-    return check_job(
-        loads, work.brush, marks, cell, work.options.tolerance_mm, Job(work.options.z_offset_mm)
-    ).problems
+    return check_job(loads, work.brush, marks, cell, work.options.tolerance_mm, Job(work.options.z_offset_mm)).problems
 
 
 def _make_predicted_strokes(plan, brush) -> list:

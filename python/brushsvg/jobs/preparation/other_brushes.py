@@ -30,9 +30,7 @@ class Suit:
     why: str = ""  # the first refused stroke, and the reason
 
 
-def rank_brushes(
-    path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None
-) -> list[Suit]:
+def rank_brushes(path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None) -> list[Suit]:
     """Return how well each brush paints a drawing, the best brush first."""
     results = []
     for brush in brushes:
@@ -40,9 +38,7 @@ def rank_brushes(
         marks = predict(work, outlines=False, stage=stage)
         drawn = [*work.strokes, *work.left_out]
         rows, total = report.measure(
-            report.PaintedPlan(
-                work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation
-            )
+            report.PaintedPlan(work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation)
         )
         results.append(rate_brush(brush.name, rows, total.overlap if rows else 0.0, work.refused))
     return sort_best_first(results)

@@ -20,9 +20,7 @@ def advise_on_size(work: Work) -> str:
     if not work.drawn or options.layout.width_mm is not None:
         return ""
     outline_elements = {stroke.origin.element for stroke in work.drawn if stroke.wanted_mm}
-    lane_elements = {
-        each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.wanted_mm
-    }
+    lane_elements = {each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.wanted_mm}
     are_filled = options.wide == "passes" or not outline_elements.isdisjoint(lane_elements)
     if options.wide == "auto" and not are_filled:
         # Strokes are tried one at a time, but a shape is only filled as a whole.
@@ -47,9 +45,7 @@ def _make_trial(brush, options: Options):
         search = _search_strokes(strokes, brush, options, compensated)
         plan = search.done.plan
         if options.compensation == "refined":
-            plan.passes = refine_where_better(
-                search.painted, search.targets, brush, search.done, compensated
-            ).passes
+            plan.passes = refine_where_better(search.painted, search.targets, brush, search.done, compensated).passes
         return _core.simulate(plan, brush).passes, search.targets
 
     return run_trial

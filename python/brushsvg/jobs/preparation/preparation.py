@@ -222,9 +222,7 @@ def _search_strokes(
         options.wide != "clamp",
         compensation,
     )
-    lines = replace(
-        lines, drawn=search.drawn, painted=search.painted, targets=search.targets, added=search.added
-    )
+    lines = replace(lines, drawn=search.drawn, painted=search.painted, targets=search.targets, added=search.added)
     return lines, search.done
 
 
@@ -245,9 +243,7 @@ def _compensate(lines: _StrokeSet, compensated, partly: bool) -> tuple[_StrokeSe
     return lines, compensated(lines.painted)
 
 
-def _plan_strokes(
-    lines: _StrokeSet, compensation, brush, compensated, options: Options, stage
-) -> _PlannedStrokes:
+def _plan_strokes(lines: _StrokeSet, compensation, brush, compensated, options: Options, stage) -> _PlannedStrokes:
     """Choose ends that the machine can run, and press deeper as paint runs out."""
     painted, targets, notices, simulation, cell = lines.painted, lines.targets, [], None, options.cell
     if cell is not None and _leads_paint(options):
@@ -256,9 +252,7 @@ def _plan_strokes(
         )
         if fitting is not painted:
             kept_ids = {stroke.id for stroke in fitting}
-            targets = [
-                target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept_ids
-            ]
+            targets = [target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept_ids]
             painted, compensation = fitting, compensated(fitting)
     if brush.paint and brush.width_follows_depth() and _leads_paint(options):
         lowest_mm = cell.heights.lowest_mm if cell else -np.inf
@@ -295,9 +289,7 @@ def _refine(planned: _PlannedStrokes, brush, compensated, options: Options) -> _
     if options.compensation != "refined":
         return planned
     forbidden = _make_limit_check(brush, options)
-    refinement = refine_where_better(
-        planned.painted, planned.targets, brush, planned.done, compensated, forbidden
-    )
+    refinement = refine_where_better(planned.painted, planned.targets, brush, planned.done, compensated, forbidden)
     planned.plan.passes = refinement.passes
     unmoved = refinement.nothing_moved()
     return replace(
@@ -431,16 +423,12 @@ def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> li
         is_moved or stroke.origin.element in shapes
         for stroke, is_moved in zip(planned.targets, planned.moved, strict=True)
     ]
-    lines = [
-        None if is_by_paint else stroke for stroke, is_by_paint in zip(planned.painted, by_paint, strict=True)
-    ]
+    lines = [None if is_by_paint else stroke for stroke, is_by_paint in zip(planned.painted, by_paint, strict=True)]
     is_off_tolerance = [
         is_by_paint and not error.within_tolerance
         for is_by_paint, error in zip(by_paint, planned.tracking_errors, strict=True)
     ]
-    runs = [
-        run if is_off else None for run, is_off in zip(planned.plan.passes, is_off_tolerance, strict=True)
-    ]
+    runs = [run if is_off else None for run, is_off in zip(planned.plan.passes, is_off_tolerance, strict=True)]
     return [
         *find_off_middle_line(lines, planned.tracking_errors, brush, options.tolerance_mm),
         *find_paint_outside(planned.targets, runs, brush),
@@ -468,6 +456,4 @@ def _prepare_plan(plan, options: Options) -> Work:
         )
     _check_speed(brush, options)
     plan = _set_requested_speed(plan, options)
-    return Work(
-        "", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices)
-    )
+    return Work("", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices))

@@ -29,18 +29,14 @@ def add_width_advice(painted, compensation, brush, compensated) -> list[Notice]:
         for stroke, run in strokes_and_passes
         if measured and _is_shallow_only_at_ends(stroke, run, brush, *measured)
     }
-    unmeasured = {
-        each.where for each in compensation.warnings if each.code == "depth-not-measured"
-    } - shallow_at_ends
+    unmeasured = {each.where for each in compensation.warnings if each.code == "depth-not-measured"} - shallow_at_ends
     advice, advisable = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
         advisable = [stroke for stroke in painted if stroke.id in unmeasured and not stroke.wanted_mm]
         advice = _make_width_advice(advisable[:1], brush, measured, compensated)
     advised = {stroke.id for stroke in advisable}
     return [
-        replace(each, advice=advice if each.where in advised else "")
-        if each.code == "depth-not-measured"
-        else each
+        replace(each, advice=advice if each.where in advised else "") if each.code == "depth-not-measured" else each
         for each in compensation.warnings
         if each.code != "depth-not-measured" or each.where not in shallow_at_ends
     ]

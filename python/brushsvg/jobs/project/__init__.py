@@ -182,8 +182,7 @@ def _read_settings(document: dict, folder: str) -> dict[str, object]:
     for key in document:
         _refuse_unknown(key, CHOICE_BY_TOP_KEY, choice_by_key, "write it below [defaults]")
     settings = {
-        CHOICE_BY_TOP_KEY[key]: read_value(CHOICE_BY_TOP_KEY[key], value, key)
-        for key, value in document.items()
+        CHOICE_BY_TOP_KEY[key]: read_value(CHOICE_BY_TOP_KEY[key], value, key) for key, value in document.items()
     }
     for key, value in defaults.items():
         _refuse_unknown(key, choice_by_key, CHOICE_BY_TOP_KEY, "write it above [defaults]", "defaults.")

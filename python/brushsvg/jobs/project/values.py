@@ -32,9 +32,7 @@ def read_value(choice: str, value: object, key: str) -> object:
         return _read_typed(choice, text, key)
     except Error as refusal:
         sentence = refusal.sentence if key in refusal.sentence else f"{key}: {refusal.sentence}"
-        raise Error(
-            sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice
-        ) from None
+        raise Error(sentence, key, refusal.value, refusal.range, code=refusal.code, advice=refusal.advice) from None
 
 
 def _format_as_typed(value: object, key: str) -> str:
@@ -108,9 +106,7 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
         )
     file_name = f"{text}{suffix}"
     advice = (
-        f"{file_name} is in this folder: write it with its ending"
-        if _is_file(os.path.join(folder, file_name))
-        else ""
+        f"{file_name} is in this folder: write it with its ending" if _is_file(os.path.join(folder, file_name)) else ""
     )
     raise Error(
         f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "

@@ -140,9 +140,9 @@ def follow(program: Program, joints: JointSolver, to_the_end: bool = True) -> Fo
     postures: list[_Posture] | None = None
     before = None
     for number, place in enumerate(places_of_program(program)):
-        solutions = (
-            _continue_solutions(arm, postures, flange(place), place, frame) if postures else None
-        ) or solve(place)
+        solutions = (_continue_solutions(arm, postures, flange(place), place, frame) if postures else None) or solve(
+            place
+        )
         if not len(solutions.angles_rad):
             return FollowedProgram((_reach_notice(place, arm),), None)
         if postures is None:
@@ -168,15 +168,11 @@ def follow(program: Program, joints: JointSolver, to_the_end: bool = True) -> Fo
     return FollowedProgram((max(postures, key=lambda each: each.failed_at).failure,), None)
 
 
-def _rate_solutions(
-    angles: np.ndarray, joint_frames: np.ndarray, place: Place, frame: np.ndarray
-) -> _Solutions:
+def _rate_solutions(angles: np.ndarray, joint_frames: np.ndarray, place: Place, frame: np.ndarray) -> _Solutions:
     jacobian = flange_rates_at(joint_frames, place.robot_mm)
     turns = _invert_jacobian(jacobian)
     fastest = np.sqrt((turns[..., :3] ** 2).sum(axis=-1)).max(axis=-1, initial=0.0)
-    return _Solutions(
-        angles, turns, fastest, np.sign(np.linalg.det(jacobian)), lowest_joint_mm(joint_frames, frame)
-    )
+    return _Solutions(angles, turns, fastest, np.sign(np.linalg.det(jacobian)), lowest_joint_mm(joint_frames, frame))
 
 
 def lowest_joint_mm(joint_frames: np.ndarray, frame: np.ndarray) -> np.ndarray:
@@ -224,9 +220,7 @@ def far_from_singular(arm: Arm, joints_rad: np.ndarray, robot_mm: np.ndarray) ->
 
     There, no joint turns faster than MAX_JOINT_RATE_RAD_MM.
     """
-    return (
-        np.linalg.norm(joint_rates(arm, joints_rad, robot_mm), axis=-1).max(axis=-1) <= MAX_JOINT_RATE_RAD_MM
-    )
+    return np.linalg.norm(joint_rates(arm, joints_rad, robot_mm), axis=-1).max(axis=-1) <= MAX_JOINT_RATE_RAD_MM
 
 
 def places_of_program(program: Program) -> Iterator[Place]:
@@ -264,9 +258,7 @@ def _places_along(name, points, axes, speeds, ends, frame, is_first: bool) -> It
     steps = np.diff(robot, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     along = np.r_[0.0, np.cumsum(lengths)]
-    sampled = np.unique(
-        np.r_[0.0, along[ends], np.arange(MAX_PLACE_SPACING_MM, along[-1], MAX_PLACE_SPACING_MM)]
-    )
+    sampled = np.unique(np.r_[0.0, along[ends], np.arange(MAX_PLACE_SPACING_MM, along[-1], MAX_PLACE_SPACING_MM)])
     turns = np.zeros_like(steps)
     if axes is not None:
         about = rotation_axes(axes[:-1], axes[1:]) @ frame[:3, :3].T
@@ -280,9 +272,7 @@ def _places_along(name, points, axes, speeds, ends, frame, is_first: bool) -> It
     for k, at in enumerate(sampled):
         if k == 0 and not is_first:
             continue  # the place where the previous section ended
-        paper_mm, robot_mm = (
-            np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot)
-        )
+        paper_mm, robot_mm = (np.array([np.interp(at, along, axis) for axis in path.T]) for path in (points, robot))
         axis = (
             UPRIGHT_AXIS
             if axes is None
@@ -374,9 +364,7 @@ def _find_failure(posture: _Posture, place: Place, turns: np.ndarray, arm: Arm) 
     return None
 
 
-def _leaves_limits(
-    arm: Arm, least_rad: np.ndarray, greatest_rad: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _leaves_limits(arm: Arm, least_rad: np.ndarray, greatest_rad: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which joints leave their limits, and the whole turns of the others.
 
     A joint leaves its limits if no number of whole turns helps.
@@ -409,9 +397,7 @@ def _reach_notice(place: Place, arm: Arm) -> Notice:
 
 
 def _crossed_singularity_notice(place: Place, arm: Arm) -> Notice:
-    sentence = (
-        f"{_near(place)} arm {arm.name} passes through a singularity, where its joints rush or it stops"
-    )
+    sentence = f"{_near(place)} arm {arm.name} passes through a singularity, where its joints rush or it stops"
     return Notice(place.name, sentence, code="singularity")
 
 

@@ -133,13 +133,8 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     for half_turns in (0.0, 180.0):
         ssik_from_robot = frame_of_pose((0, 0, 0), (0, 0, half_turns))
         ssik_flange_offset = np.linalg.inv(our_flanges[0]) @ np.linalg.inv(ssik_from_robot) @ ssik_flanges[0]
-        if (
-            np.abs(ssik_from_robot @ our_flanges @ ssik_flange_offset - ssik_flanges).max()
-            < MAX_PREBUILT_DIFFERENCE_MM
-        ):
-            solve_roughly = _make_solver(
-                manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh))
-            )
+        if np.abs(ssik_from_robot @ our_flanges @ ssik_flange_offset - ssik_flanges).max() < MAX_PREBUILT_DIFFERENCE_MM:
+            solve_roughly = _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh)))
             return lambda flange: _refine_on_links(arm, solve_roughly(flange), flange)
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
     raise Error(sentence, where="arm.prebuilt", code="cell-arm")
@@ -170,9 +165,7 @@ def refine_angles(
         rates = flange_rates_at(joint_frames, flange[:3, 3])
         turned = flange[:3, :3] @ joint_frames[:, -1, :3, :3].swapaxes(-1, -2)
         turn = [turned[:, k - 1, k - 2] - turned[:, k - 2, k - 1] for k in (0, 1, 2)]
-        error = np.concatenate(
-            [flange[:3, 3] - joint_frames[:, -1, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1
-        )
+        error = np.concatenate([flange[:3, 3] - joint_frames[:, -1, :3, 3], np.stack(turn, axis=-1) / 2], axis=-1)
         if (
             np.abs(error).max(initial=0.0) < NEWTON_TOLERANCE
             and np.abs(joint_frames[:, -1] - flange).max(initial=0.0) < NEWTON_TOLERANCE

@@ -95,9 +95,7 @@ def at(program: Program, frame: np.ndarray) -> Program:
 
 def cell_at(cell: Cell, frame: np.ndarray) -> Cell:
     """Return the cell with the paper at a pose (4, 4) in the robot's frame."""
-    origin, turned = (
-        tuple((np.round(each, 6) + 0.0).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3]))
-    )
+    origin, turned = (tuple((np.round(each, 6) + 0.0).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3])))
     return replace(cell, paper=replace(cell.paper, origin_mm=origin, rotation_deg=turned, taught_mm=()))
 
 
@@ -160,10 +158,7 @@ def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> Table:
     what = np.full((len(y), len(x)), REACHED)
     for row, there_y in enumerate(y):
         for column, there_x in enumerate(x):
-            there_z = (
-                origin[2]
-                - ((there_x - origin[0]) * normal[0] + (there_y - origin[1]) * normal[1]) / normal[2]
-            )
+            there_z = origin[2] - ((there_x - origin[0]) * normal[0] + (there_y - origin[1]) * normal[1]) / normal[2]
             paper_point = np.array([there_x, there_y, there_z])
             for height in (0.0, cell.heights.safe_mm):
                 what[row, column] = min(

@@ -35,9 +35,7 @@ def _number(help: str, least: float, greatest: float, default=MISSING):
 class Paper:
     """Place of the sheet's lower left corner in the robot's frame: a pose, or points that were taught."""
 
-    origin_mm: tuple = _key(
-        "lower left corner of the sheet in the robot's frame", (3,), default=(0.0, 0.0, 0.0)
-    )
+    origin_mm: tuple = _key("lower left corner of the sheet in the robot's frame", (3,), default=(0.0, 0.0, 0.0))
     rotation_deg: tuple = _key(
         "about the robot's x, then its y, then its z axis", (3,), -360, 360, default=(0.0, 0.0, 0.0)
     )
@@ -47,9 +45,7 @@ class Paper:
         (None, 3),
         default=(),
     )
-    flatness_mm: float = _number(
-        "how far off the plane of three the fourth point may be", 0.01, 10, default=0.5
-    )
+    flatness_mm: float = _number("how far off the plane of three the fourth point may be", 0.01, 10, default=0.5)
     example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
 
 
@@ -98,14 +94,10 @@ class Speeds:
     """Of the tool's tip."""
 
     travel_mm_s: float = _number("at or above the safe height", 0.01, 5000)
-    approach_mm_s: float = _number(
-        "on the way down to the clearance; the brush's limit where that is less", 0.01, 5000
-    )
+    approach_mm_s: float = _number("on the way down to the clearance; the brush's limit where that is less", 0.01, 5000)
     press_mm_s: float = _number("straight down into the paper or paint, and up again", 0.01, 5000)
     paint_mm_s: float = _number("the most while painting; the brush has a limit of its own", 0.01, 5000)
-    acceleration_mm_s2: float = _number(
-        "for the time estimate, and where the language asks for one", 1, 50000
-    )
+    acceleration_mm_s2: float = _number("for the time estimate, and where the language asks for one", 1, 50000)
 
 
 DEFAULT_BLEND_STEP_MM = 1.0
@@ -149,9 +141,7 @@ class Servo:
     """A pen lift that knows no millimetres: heights over the paper and the values that give them."""
 
     table: tuple = _key("rows of height in mm and value; both rise or fall steadily", (None, 2))
-    step_mm: float = _number(
-        "the value is renewed when the height has changed by so much", 0.01, 10, default=0.1
-    )
+    step_mm: float = _number("the value is renewed when the height has changed by so much", 0.01, 10, default=0.1)
     settle_s: float = _number("wait after a move of the lift alone", 0, 60, default=0.0)
 
 
@@ -181,9 +171,7 @@ class Pen:
         "marlin-servo: values that lift the pen and let it down, in degrees", (2,), 0, 180, default=()
     )
     servo_number: int = _key("marlin-servo: which of the board's servos it is", "whole", 0, 3, default=0)
-    settle_s: float = _number(
-        "marlin-servo: wait behind each value until the pen is there", 0, 60, default=0.3
-    )
+    settle_s: float = _number("marlin-servo: wait behind each value until the pen is there", 0, 60, default=0.3)
 
 
 @dataclass(frozen=True)
@@ -211,9 +199,7 @@ class Machine:
     )
     scale: tuple = _key("how far x and y go for each commanded mm", (2,), 0.9, 1.1, (1.0, 1.0))
     skew: float = _number("how far x goes for each commanded mm of y", -0.1, 0.1, default=0.0)
-    height_mm: float = _number(
-        "how much higher the paper is at its corner than it was taught", -5, 5, default=0.0
-    )
+    height_mm: float = _number("how much higher the paper is at its corner than it was taught", -5, 5, default=0.0)
     tilt_mm_per_mm: tuple = _key("by how much it rises along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
     map_mm: tuple = _key(
         "x, y and how much higher still it is there, at all places of a grid: straight in between, and beyond the "
@@ -292,18 +278,14 @@ class Station:
 
     name: str = _key("as the program's comments call it", "text")
     place_mm: tuple = _key("x and y of its middle", (2,))
-    colours: tuple = _key(
-        "colours of strokes it serves, as in the drawing, '#rrggbb'; none: all", "texts", default=()
-    )
+    colours: tuple = _key("colours of strokes it serves, as in the drawing, '#rrggbb'; none: all", "texts", default=())
     by_hand: bool = _key("the program stops here until a person has dipped the brush", "yes", default=False)
     surface_mm: float = _number("height of the paint's surface", -1e3, 1e3, default=0.0)
     depth_mm: float = _number("how deep the tip goes below the paint's surface", 0, 100, default=0.0)
     rim_mm: float = _number("height of the vessel's rim", -1e3, 1e3, default=0.0)
     hold_s: float = _number("wait in the paint", 0, 600, default=0.0)
     drip_s: float = _number("wait above it", 0, 600, default=0.0)
-    wipe_mm: tuple = _key(
-        "points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=()
-    )
+    wipe_mm: tuple = _key("points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=())
     stir_mm: float = _number(
         "radius of circles in the paint before it is taken, or in the water; 0: none", 0, 100, default=0.0
     )
@@ -527,9 +509,7 @@ def ends_rounded_mm(cell: Cell) -> float:
     return 2**0.5 * unit_mm(cell)
 
 
-def is_too_steep_for_servo(
-    ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False
-) -> np.ndarray:
+def is_too_steep_for_servo(ways_mm: np.ndarray, speed_mm_s: float, cell: Cell, are_rounded: bool = False) -> np.ndarray:
     """Return which straight paths are too steep for a moving servo, (n,).
 
     A path is too steep in three cases:
@@ -624,9 +604,7 @@ def not_undone(cell: Cell) -> dict[str, str]:
     """
     reasons = {}
     if cell.servo:  # the tool would jump sideways at each step of the servo
-        reasons |= dict.fromkeys(
-            ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps"
-        )
+        reasons |= dict.fromkeys(("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm"), "a servo's depth goes in steps")
     if cell.pen:
         keys = ("lean_mm_per_mm", "tilt_mm_per_mm", "map_mm", "height_mm")
         reasons |= dict.fromkeys(keys, "a pen knows no height")

@@ -101,9 +101,7 @@ def _check_tables(cell: Cell) -> None:
         if cell.language in languages and not is_given:
             raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
         if is_given and cell.language not in languages:
-            sentence = (
-                f"language {cell.language!r} does not use a table {table}: it is for {', '.join(languages)}"
-            )
+            sentence = f"language {cell.language!r} does not use a table {table}: it is for {', '.join(languages)}"
             raise Error(sentence, where=table, code="key-unused")
 
 
@@ -118,9 +116,7 @@ def _check_contact(cell: Cell) -> None:
     for key in CONTACT_KEYS.values():
         if bool(getattr(cell.contact, key)) != (key == used_key):
             says = "needs" if key == used_key else "does not use"
-            raise Error(
-                f"language {cell.language!r} {says} {key}", where=f"contact.{key}", code="cell-contact"
-            )
+            raise Error(f"language {cell.language!r} {says} {key}", where=f"contact.{key}", code="cell-contact")
 
 
 def _check_arm(cell: Cell) -> None:
@@ -128,9 +124,7 @@ def _check_arm(cell: Cell) -> None:
     if cell.tool is None:
         raise Error("an arm needs a table tool: the brush on its flange", where="tool", code="key-missing")
     if len(arm.dh) != ARM_JOINT_COUNT:
-        raise Error(
-            f"the arm has {len(arm.dh)} rows of links, not {ARM_JOINT_COUNT}", where="arm.dh", code="cell-arm"
-        )
+        raise Error(f"the arm has {len(arm.dh)} rows of links, not {ARM_JOINT_COUNT}", where="arm.dh", code="cell-arm")
     for key in ("limits_deg", "speeds_deg_s", "posture_deg", "numbers"):
         if len(values := getattr(arm, key)) != ARM_JOINT_COUNT and (values or key == "limits_deg"):
             sentence = f"{len(values)} values are given for {ARM_JOINT_COUNT} joints"
@@ -241,9 +235,7 @@ def _check_workspace(cell: Cell) -> None:
             sentence = f"box {number}: the first corner must be the lower one in x, y and z"
             raise Error(sentence, where="workspace.keep_out_mm", code="cell-workspace")
     if reach_mm and not reach_mm[0] < reach_mm[1]:
-        raise Error(
-            "the least distance must be below the greatest", where="workspace.reach_mm", code="cell-workspace"
-        )
+        raise Error("the least distance must be below the greatest", where="workspace.reach_mm", code="cell-workspace")
 
 
 LARGEST_SHEET_MM = 1e5
@@ -276,11 +268,7 @@ def _sheet_out_of_reach(cell: Cell, height_mm: float) -> list[Notice]:
     if reach_mm:
         nearest_mm, farthest_mm = _distances_from_origin_mm(reachable)
         if nearest_mm > reach_mm[1] or farthest_mm < reach_mm[0]:
-            away = (
-                f"{nearest_mm:.0f} mm and more"
-                if nearest_mm > reach_mm[1]
-                else f"at most {farthest_mm:.0f} mm"
-            )
+            away = f"{nearest_mm:.0f} mm and more" if nearest_mm > reach_mm[1] else f"at most {farthest_mm:.0f} mm"
             bounds = "[{:g}, {:g}] mm".format(*reach_mm)
             sentence = f"{at} is {away} from the robot's origin, outside the range {bounds} of its reach"
             return [Notice("workspace.reach_mm", sentence, code="sheet-out-of-reach")]
@@ -322,9 +310,7 @@ def _distances_from_origin_mm(corners: np.ndarray) -> tuple[float, float]:
 def _check_pen(cell: Cell) -> None:
     pen = cell.pen
     if cell.language == "marlin-servo" and len(set(map(round, pen.servo_values))) != 2:
-        sentence = (
-            "the servo needs two values, whole degrees: one that lifts the pen, another that lets it down"
-        )
+        sentence = "the servo needs two values, whole degrees: one that lifts the pen, another that lets it down"
         raise Error(sentence, where="pen.servo_values", code="servo-table")
     if cell.language == "marlin-servo" and pen.colours:
         sentence = "the servo holds one pen: it stops for those of other colours"
@@ -340,9 +326,7 @@ def _check_pen(cell: Cell) -> None:
         sentence = "a pen that is up or down goes into no vessel: stations and reload must go"
         raise Error(sentence, where="stations", code="cell-station")
     for number, colour in enumerate(pen.colours, 1):
-        if not re.fullmatch("#[0-9a-fA-F]{6}", colour) or colour.lower() in map(
-            str.lower, pen.colours[: number - 1]
-        ):
+        if not re.fullmatch("#[0-9a-fA-F]{6}", colour) or colour.lower() in map(str.lower, pen.colours[: number - 1]):
             sentence = f"colour {colour[:24]!r} of pen {number} is not written as #rrggbb, or given twice"
             raise Error(sentence, where="pen.colours", code="colour-invalid")
 
@@ -388,9 +372,7 @@ def _check_servo(cell: Cell) -> None:
             code="servo-table",
         )
     if not ((steps[:, 1] > 0).all() or (steps[:, 1] < 0).all()):
-        raise Error(
-            "the values must steadily rise or fall with the height", where="servo.table", code="servo-table"
-        )
+        raise Error("the values must steadily rise or fall with the height", where="servo.table", code="servo-table")
     if (table[:, 1] < 0).any():
         raise Error(f"value {table[:, 1].min():g} is below 0", where="servo.table", code="servo-table")
     low, high = table[:, 0].min(), table[:, 0].max()
@@ -449,9 +431,7 @@ def _check_map(map_mm: tuple) -> None:
             code="cell-machine",
         )
     if min(len(xs), len(ys)) < 2:
-        raise Error(
-            f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine"
-        )
+        raise Error(f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine")
     for axis, lines in (("x", xs), ("y", ys)):
         for before, after in pairwise(lines):
             if after - before < MIN_GRID_SPACING_MM:
@@ -492,25 +472,17 @@ def _check_paint(cell: Cell) -> None:
         _check_station_heights(station, cell, where)
         for colour in station.colours:
             if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
-                raise Error(
-                    f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid"
-                )
+                raise Error(f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid")
         if station.by_hand and (station.depth_mm or station.wipe_mm or station.stir_mm):
             raise Error(
                 "with by_hand a person loads the brush: depth_mm, wipe_mm and stir_mm must go",
                 where=where,
                 code="cell-station",
             )
-        if (
-            not station.by_hand
-            and not station.depth_mm
-            and station.name != getattr(cell.reload, "wash", None)
-        ):
+        if not station.by_hand and not station.depth_mm and station.name != getattr(cell.reload, "wash", None):
             raise Error("depth_mm 0 takes no paint", where=where, code="cell-station")
     if cell.stations and not cell.reload:
-        raise Error(
-            "stations need a table reload that says when to visit them", where="reload", code="cell-reload"
-        )
+        raise Error("stations need a table reload that says when to visit them", where="reload", code="cell-reload")
     if not cell.reload:
         return
     if cell.reload.when not in RELOAD_OCCASIONS:

@@ -50,9 +50,7 @@ def read_cell(path: str | os.PathLike[str]) -> Cell:
     try:
         return parse_cell(data.decode("utf-8"))
     except UnicodeDecodeError:
-        raise Error(
-            "the file is not a cell: it is not text in UTF-8", file=str(path), code="not-toml"
-        ) from None
+        raise Error("the file is not a cell: it is not text in UTF-8", file=str(path), code="not-toml") from None
     except Error as refusal:
         refusal.file = str(path)
         raise
@@ -65,9 +63,7 @@ def parse_cell(text: str) -> Cell:
     """
     document = toml_document(text, "cell")
     if document.pop("format", None) != FORMAT:
-        raise Error(
-            f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown"
-        )
+        raise Error(f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown")
     if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
         raise Error(
             f"version {str(version)[:40]} of the cell file is not known; known: {VERSION}",
@@ -85,8 +81,7 @@ def parse_cell(text: str) -> Cell:
         **_read_table(Cell, document, ""),
         **{name: TABLES[name](**_read_table(TABLES[name], part, name)) for name, part in parts.items()},
         stations=tuple(
-            Station(**_read_table(Station, part, f"station {number}"))
-            for number, part in enumerate(stations, 1)
+            Station(**_read_table(Station, part, f"station {number}")) for number, part in enumerate(stations, 1)
         ),
     )
     check(cell)
@@ -130,15 +125,11 @@ def _read_value(entry: Entry, value, where: str):
         return _read_text(value, where)
     if entry.kind == "texts":
         if not isinstance(value, list):
-            raise Error(
-                f"{where} must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type"
-            )
+            raise Error(f"{where} must be a list of texts, not {str(value)[:40]}", where=where, code="wrong-type")
         return tuple(_read_text(item, where) for item in value)
     if entry.kind == "yes":
         if not isinstance(value, bool):
-            raise Error(
-                f"{where} must be true or false, not {str(value)[:40]}", where=where, code="wrong-type"
-            )
+            raise Error(f"{where} must be true or false, not {str(value)[:40]}", where=where, code="wrong-type")
         return value
     if entry.kind in ("number", "whole"):
         return _read_number(entry, value, where)

@@ -43,9 +43,7 @@ def cell_page(cell) -> str:
         rows.append(("contact", f"{limit_text} ends the program"))
     if cell.reload:
         rows.append(("fetches paint", _reload_text(cell.reload)))
-    rows += [
-        ("station", f"{station.name} at {_point_text(station.place_mm)} mm") for station in cell.stations
-    ]
+    rows += [("station", f"{station.name} at {_point_text(station.place_mm)} mm") for station in cell.stations]
     width = max(len(name) for name, _ in rows)
     lines = [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
     return "\n".join(lines)
@@ -70,9 +68,7 @@ def _reload_text(reload) -> str:
         "stroke": "before every stroke",
         "layer": "before every layer",
     }
-    narrower = (
-        f", or where marks would be {reload.narrower_percent:g} % narrower" if reload.narrower_percent else ""
-    )
+    narrower = f", or where marks would be {reload.narrower_percent:g} % narrower" if reload.narrower_percent else ""
     return when[reload.when] + (narrower if reload.when == "length" else "")
 
 

@@ -207,9 +207,7 @@ POSTS = {  # by the language that a cell names
     "klipper": Post("G-code for Klipper", GCODE, _dialect),
     "grbl-servo": Post("G-code for grbl, the brush on a servo", GCODE, _grbl_servo, circles_by=""),
     "marlin-servo": Post("G-code for Marlin, a pen on a servo", GCODE, _marlin_servo, circles_by=""),
-    "urscript": Post(
-        "URScript for Universal Robots", (".script",), _urscript, False, "pose", parted=_urscript_parts
-    ),
+    "urscript": Post("URScript for Universal Robots", (".script",), _urscript, False, "pose", parted=_urscript_parts),
     "jaka": Post("JAKA script", (".jks",), _jaka, circles_by="pose"),
     "rapid": Post("RAPID for ABB", (".mod",), _rapid, False, "pose", "\r\n"),
     "xarm": Post("Python for UFACTORY xArm", (".py",), _xarm, circles_by=""),

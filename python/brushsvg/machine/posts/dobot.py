@@ -24,9 +24,7 @@ from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
-INDEX = (
-    1  # index of the user frame and the tool in the controller's lists; index 0 is the base and the flange
-)
+INDEX = 1  # index of the user frame and the tool in the controller's lists; index 0 is the base and the flange
 DOBOT_END = "end: the brush is held up"
 
 
@@ -83,9 +81,7 @@ def _move_lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) 
         blends = np.floor(blends_mm(move, decimals) / step_mm + 1e-9) * step_mm
     blend = "r = %.0f" if step_mm == 1 else f"r = %.{decimals}f"
     if move.axes is not None:
-        for point, turned, r in zip(
-            move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True
-        ):
+        for point, turned, r in zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True):
             place = join_numbers(point, decimals)
             angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
             options = f"{speed}, {blend % r}" if r > 0 else speed

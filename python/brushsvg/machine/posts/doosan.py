@@ -91,9 +91,7 @@ def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     if move.axes is not None:
-        for point, turned, blend in zip(
-            move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True
-        ):
+        for point, turned, blend in zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True):
             place = join_numbers(point, decimals)
             angles = "" if turned is None else f", {join_numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
             radius = f", radius={format_number(blend, decimals)}" if blend > 0 else ""

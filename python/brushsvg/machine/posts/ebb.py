@@ -111,9 +111,7 @@ class _EbbWriter:
             return ""
         self.value = lifts[-1][0]
         set_lifts = "".join(self._servo_command(*lift) for lift in lifts)
-        return (
-            self._feed_line(feed_of_speed_mm_min(move.speed_mm_s)) + set_lifts + _wait_command(servo.settle_s)
-        )
+        return self._feed_line(feed_of_speed_mm_min(move.speed_mm_s)) + set_lifts + _wait_command(servo.settle_s)
 
     def _feed_line(self, feed: float) -> str:
         """Return the line with the highest feed of the next moves.
@@ -126,9 +124,7 @@ class _EbbWriter:
     def _servo_command(self, value: int, wait_ms: int) -> str:
         return f"S2,{value},{self.cell.motors.servo_pin},0,{wait_ms}\n"
 
-    def _line_commands(
-        self, path: np.ndarray, feeds: np.ndarray, blends_mm: np.ndarray | None, run: np.ndarray
-    ) -> str:
+    def _line_commands(self, path: np.ndarray, feeds: np.ndarray, blends_mm: np.ndarray | None, run: np.ndarray) -> str:
         """Return the commands of straight lines, each in parts and in slices of time.
 
         The height of a part is the height at its middle.
@@ -144,9 +140,7 @@ class _EbbWriter:
         heights = path[line_numbers, 2] + ways[line_numbers, 2] * (part_numbers + 0.5) / counts[line_numbers]
         values = servo_values_at(cell.servo, heights)
         parts_mm, part_speeds = (lengths / counts)[line_numbers], feeds[line_numbers] / 60
-        part, when_s, done_mm = self._time_parts(
-            parts_mm.tolist(), joint_limits.tolist(), part_speeds.tolist()
-        )
+        part, when_s, done_mm = self._time_parts(parts_mm.tolist(), joint_limits.tolist(), part_speeds.tolist())
         line_of_row = line_numbers[part]
         along = (part_numbers[part] * parts_mm[part] + done_mm) / lengths[line_of_row]
         part, when_s, places = _split_long_rows(
@@ -154,9 +148,7 @@ class _EbbWriter:
         )
         return self._slice_commands(part, when_s, places, values, feeds[line_numbers])
 
-    def _time_parts(
-        self, parts_mm: list[float], caps: list[float], tops: list[float]
-    ) -> tuple[np.ndarray, ...]:
+    def _time_parts(self, parts_mm: list[float], caps: list[float], tops: list[float]) -> tuple[np.ndarray, ...]:
         """Return the part, the time [s] and the path length [mm] of each row.
 
         No slice is shorter than the shortest part of a move.
@@ -199,9 +191,7 @@ class _EbbWriter:
         values, feeds = values[part], feeds[part]
         new_value, new_feed = _differences(values, self.value) != 0, _differences(feeds, self.feed) != 0
         rows = zip(times_ms.astype(int).tolist(), *moves.T.tolist(), strict=True)
-        lines = [
-            f"SM,{time_ms},{first_steps},{second_steps}\n" for time_ms, first_steps, second_steps in rows
-        ]
+        lines = [f"SM,{time_ms},{first_steps},{second_steps}\n" for time_ms, first_steps, second_steps in rows]
         for k in np.flatnonzero(new_value):
             lines[k] = self._servo_command(values[k], 0) + lines[k]
         for k in np.flatnonzero(new_feed):
@@ -246,9 +236,7 @@ def _split_long_rows(
     if (counts == 1).all():
         return part, when_s, places
     row_numbers = np.repeat(np.arange(len(part)), counts)
-    left_fraction = (np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(row_numbers))) / counts[
-        row_numbers
-    ]
+    left_fraction = (np.repeat(np.cumsum(counts), counts) - 1 - np.arange(len(row_numbers))) / counts[row_numbers]
     previous_places = np.vstack([start, places[:-1]])
     places = places[row_numbers] - (places - previous_places)[row_numbers] * left_fraction[:, None]
     return part[row_numbers], when_s[row_numbers] - times_s[row_numbers] * left_fraction, places

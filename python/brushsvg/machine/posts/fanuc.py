@@ -72,9 +72,7 @@ def programs(text: str) -> dict[str, str]:
     The main program has the name "".
     """
     program_texts = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
-    texts_by_name = {
-        re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in program_texts
-    }
+    texts_by_name = {re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in program_texts}
     return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
 
 
@@ -220,13 +218,9 @@ def _move_lines(move: Move, points: _ProgramPoints, ramp_s: float) -> Iterator[s
     numbers = points.add(move, move.points_mm)
     percent = np.zeros(len(numbers))
     if move.blends_mm is not None:
-        percent = np.minimum(
-            np.floor(blends_mm(move, points.decimals) / cnt_mm(1, speed, ramp_s) + 1e-9), 100
-        )
+        percent = np.minimum(np.floor(blends_mm(move, points.decimals) / cnt_mm(1, speed, ramp_s) + 1e-9), 100)
     ends = (f"CNT{each}" if each else "FINE" for each in percent.astype(int).tolist())
-    yield "".join(
-        f" : L P[{each}] {speed}mm/sec {end} ;\n" for each, end in zip(numbers.tolist(), ends, strict=True)
-    )
+    yield "".join(f" : L P[{each}] {speed}mm/sec {end} ;\n" for each, end in zip(numbers.tolist(), ends, strict=True))
 
 
 def cnt_mm(percent: float, speed_mm_s: float, ramp_s: float) -> float:

@@ -40,9 +40,7 @@ def gcode(program: Program) -> Iterator[str]:
     They do not know G64. A setting of the firmware decides how joints between moves are run.
     """
     dialect = DIALECTS[program.cell.language]
-    yield from _write_program(
-        program, [MODE_WORDS] if dialect.has_blocks else MODE_WORDS.split()[:2], dialect
-    )
+    yield from _write_program(program, [MODE_WORDS] if dialect.has_blocks else MODE_WORDS.split()[:2], dialect)
 
 
 def comment(text: str) -> str:
@@ -106,12 +104,8 @@ DIALECTS = {  # the line length and radii of LinuxCNC were measured with version
     # Protocol.h: 255 letters. GCode.cpp: radii that differ by more than 0.005 mm may be an error. Comments that
     # begin with (MSG, or (PRINT, are obeyed.
     "fluidnc": Dialect(grbl_comment, 255, acts=r"\s*\w+\s*,", radii_mm=MAX_RADIUS_DIFFERENCE_MM["fluidnc"]),
-    "marlin": Dialect(
-        printer_comment, 95, True, "; ?(.*)", has_blocks=False, per_s=1e3, stops=("M400", "M0")
-    ),
-    "klipper": Dialect(
-        printer_comment, 255, True, "; ?(.*)", has_blocks=False, per_s=1e3, stops=("M400", "PAUSE")
-    ),
+    "marlin": Dialect(printer_comment, 95, True, "; ?(.*)", has_blocks=False, per_s=1e3, stops=("M400", "M0")),
+    "klipper": Dialect(printer_comment, 255, True, "; ?(.*)", has_blocks=False, per_s=1e3, stops=("M400", "PAUSE")),
 }
 DIALECTS["grbl-servo"] = DIALECTS["grbl"]
 DIALECTS["marlin-servo"] = DIALECTS["marlin"]
@@ -158,9 +152,7 @@ def _move_lines(move: Move, here: np.ndarray | None, decimals: int) -> Iterator[
         start = np.round(here[:2], decimals)
         values = np.array([[*move.points_mm[-1], *(np.array(move.arc.centre_mm) - start)]])
         word = "G3" if move.arc.turn > 0 else "G2"
-        yield from format_rows(
-            " ".join([word, *(f"{axis}%.{decimals}f" for axis in "XYZIJ")]), values, decimals
-        )
+        yield from format_rows(" ".join([word, *(f"{axis}%.{decimals}f" for axis in "XYZIJ")]), values, decimals)
         return
     word = "G0" if move.meaning in MEANINGS_AT_SAFE_HEIGHT else "G1"
     yield from format_rows(f"{word} X%.{decimals}f Y%.{decimals}f Z%.{decimals}f", move.points_mm, decimals)

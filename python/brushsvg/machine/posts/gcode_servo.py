@@ -162,9 +162,7 @@ def _line_parts(
         part_numbers = np.arange(1, len(line_numbers) + 1) - (np.cumsum(counts) - counts)[line_numbers]
         start, way, counts = start[line_numbers], way[line_numbers], counts[line_numbers]
         points = start + way * (part_numbers / counts)[:, None]
-        points[:, 2] = values = servo_values_at(
-            cell.servo, start[:, 2] + way[:, 2] * (part_numbers - 0.5) / counts
-        )
+        points[:, 2] = values = servo_values_at(cell.servo, start[:, 2] + way[:, 2] * (part_numbers - 0.5) / counts)
         text = "".join(format_rows(pattern, points, decimals))
         part_feeds = feeds[first + line_numbers]
         changed_rows = [0] * bool(part_feeds[0] != feed) + (

@@ -94,11 +94,7 @@ def _move_lines(
     values = np.column_stack([move.points_mm, np.floor(cut_mm * 10.0**decimals) / 10.0**decimals])
     if move.axes is not None:
         for row, rotation_there in zip(values, tool_rotations_at(move, upright), strict=True):
-            angles = (
-                turned
-                if rotation_there is None
-                else join_numbers(rotation_deg(rotation_there), DEGREE_DECIMALS)
-            )
+            angles = turned if rotation_there is None else join_numbers(rotation_deg(rotation_there), DEGREE_DECIMALS)
             yield f"to = [{join_numbers(row[:3], decimals)}, {angles}]\n"
             yield f"movl(to, 0, {speed}, {acceleration}, {format_number(row[3], decimals)})\n"
         return

@@ -48,13 +48,9 @@ def krl(program: Program) -> Iterator[str]:
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     header = "".join(map(comment, program.header))
     setup = "BAS(#INITMOV, 0)\n"
-    setup += (
-        f"$TOOL = {_frame_text(tool, decimals)}\n$BASE = {_frame_text(program.robot_from_frame, decimals)}\n"
-    )
+    setup += f"$TOOL = {_frame_text(tool, decimals)}\n$BASE = {_frame_text(program.robot_from_frame, decimals)}\n"
     if program.tilts:
-        setup += (
-            "$ORI_TYPE = #VAR\n"  # #CONSTANT, set by an earlier program, would keep the tool's orientation
-        )
+        setup += "$ORI_TYPE = #VAR\n"  # #CONSTANT, set by an earlier program, would keep the tool's orientation
     setup += f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
     upright = upright_tool_rotation(cell.tool.spin_deg)
     turned = _abc_text(rotation_deg(upright))
@@ -63,9 +59,7 @@ def krl(program: Program) -> Iterator[str]:
         lambda speed: _rise_lines(format_number(program.rise_mm, decimals), speed),
         _wait_lines,
         lambda move: (
-            _move_lines(move, turned, decimals)
-            if move.axes is None
-            else _tilted_lines(move, upright, decimals)
+            _move_lines(move, turned, decimals) if move.axes is None else _tilted_lines(move, upright, decimals)
         ),
     )
     part_texts = split_into_parts(program, words, LINES_AROUND_PART, rises_again=False)
@@ -111,8 +105,7 @@ def comment(text: str) -> str:
 
 def _rise_lines(height: str, speed_mm_s: float) -> str:
     return (
-        f"here = $POS_ACT\n{_speed_line(speed_mm_s)}"
-        f"IF here.Z < {height} THEN\n  here.Z = {height}\n  LIN here\nENDIF\n"
+        f"here = $POS_ACT\n{_speed_line(speed_mm_s)}IF here.Z < {height} THEN\n  here.Z = {height}\n  LIN here\nENDIF\n"
     )
 
 
@@ -146,11 +139,7 @@ def _tilted_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[st
         x, y, z = join_numbers(point, decimals).split(", ")
         angles = upright_angles if turned is None else _abc_text(rotation_deg(turned))
         place = f"{{X {x}, Y {y}, Z {z}, {angles}}}"
-        yield (
-            f"$APO.CDIS = {format_number(blend, decimals)}\nLIN {place} C_DIS\n"
-            if blend > 0
-            else f"LIN {place}\n"
-        )
+        yield (f"$APO.CDIS = {format_number(blend, decimals)}\nLIN {place} C_DIS\n" if blend > 0 else f"LIN {place}\n")
 
 
 def _wait_lines(step: Wait) -> str:

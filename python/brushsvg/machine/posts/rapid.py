@@ -107,17 +107,13 @@ def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]
     point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
     if move.arc is not None:
         values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from format_rows(
-            f"    MoveC {point}, {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", values, decimals
-        )
+        yield from format_rows(f"    MoveC {point}, {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", values, decimals)
         return
     if move.axes is not None:
         yield from _tilted_lines(move, upright, speed, decimals)
         return
     if move.blends_mm is None:
-        yield from format_rows(
-            f"    MoveL {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", move.points_mm, decimals
-        )
+        yield from format_rows(f"    MoveL {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", move.points_mm, decimals)
         return
     values = np.column_stack([move.points_mm, blends_mm(move, decimals)])
     yield from format_rows(

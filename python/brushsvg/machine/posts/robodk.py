@@ -56,9 +56,7 @@ def robodk(program: Program) -> Iterator[str]:
             raise
         except (Exception, SystemExit) as error:
             message = plain_text(f"{type(error).__name__}: {error}", LINE_LIMIT)
-            raise Error(
-                f"the post {where} fails: {message}", where="robodk.post", code="post-failed"
-            ) from None
+            raise Error(f"the post {where} fails: {message}", where="robodk.post", code="post-failed") from None
         if log:
             message = plain_text(log.splitlines()[0], LINE_LIMIT)
             raise Error(f"the post {where} complains: {message}", where="robodk.post", code="post-failed")
@@ -164,9 +162,7 @@ def _write_move(post, settings: _PostSettings, move: Move, at, upright: np.ndarr
         post.MoveC(at(via_point(move.points_mm)), None, at(move.points_mm[-1]), None)
         return
     zones = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, cell.decimals)
-    for point, turned, zone in zip(
-        move.points_mm, tool_rotations_at(move, upright), zones.tolist(), strict=True
-    ):
+    for point, turned, zone in zip(move.points_mm, tool_rotations_at(move, upright), zones.tolist(), strict=True):
         settings.set(move.speed_mm_s, zone if zone > 0 else EXACT_ZONE)
         post.MoveL(at(point, upright if turned is None else turned), None)
 

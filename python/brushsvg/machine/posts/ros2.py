@@ -71,9 +71,7 @@ def cdr(program: Program) -> Iterator[bytes]:
     header = struct.pack("<iI", 0, 0)
     for text in (tool.base_frame, None, tool.flange_frame):
         header += bytes(-len(header) % 4)
-        header += (
-            struct.pack("<I", 1) if text is None else struct.pack("<I", len(text) + 1) + text.encode() + b"\0"
-        )
+        header += struct.pack("<I", 1) if text is None else struct.pack("<I", len(text) + 1) + text.encode() + b"\0"
     header += bytes(-len(header) % 4)
     with SpooledTemporaryFile(MAX_BYTES_IN_MEMORY) as held_file:
         for _, table in make_timed_sections(program):
@@ -140,22 +138,18 @@ def _flange_poses(table: np.ndarray, cell: Cell) -> tuple[np.ndarray, np.ndarray
         tip_rotations = turned_to(table[:, AXIS_COLUMN:], tip_rotations)
         is_upright_at = is_parallel(table[:, AXIS_COLUMN:], robot_from_paper(cell)[:3, 2])
         tip_rotations[is_upright_at] = rotation(upright_deg(cell))
-        turned = np.array(
-            [quaternion(rotation_matrix) for rotation_matrix in tip_rotations @ flange[:3, :3]]
-        ).reshape(-1, 4)[:, [1, 2, 3, 0]]
+        turned = np.array([quaternion(rotation_matrix) for rotation_matrix in tip_rotations @ flange[:3, :3]]).reshape(
+            -1, 4
+        )[:, [1, 2, 3, 0]]
     else:
         w, *xyz = quaternion(tip_rotations @ flange[:3, :3])
         turned = np.array([*xyz, w])
     places_m = (table[:, 1:4] + tip_rotations @ flange[:3, 3]) / 1e3
-    return np.round(places_m, cell.decimals + EXTRA_METRE_DECIMALS) + 0.0, np.round(
-        turned, TURN_DECIMALS
-    ) + 0.0
+    return np.round(places_m, cell.decimals + EXTRA_METRE_DECIMALS) + 0.0, np.round(turned, TURN_DECIMALS) + 0.0
 
 
 def _speed_text(limit_mm_s: float) -> str:
-    return (
-        format_rounded_down(limit_mm_s / 1e3, SPEED_DECIMALS).rstrip("0").rstrip(".") if limit_mm_s else "0"
-    )
+    return format_rounded_down(limit_mm_s / 1e3, SPEED_DECIMALS).rstrip("0").rstrip(".") if limit_mm_s else "0"
 
 
 def _row_lines(table: np.ndarray, cell: Cell) -> Iterator[tuple[str, str]]:

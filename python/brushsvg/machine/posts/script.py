@@ -42,9 +42,7 @@ def write_sections(program: Program, words: LanguageWords) -> Iterator[str]:
         risen = risen or bool(section.moves)
 
 
-def split_into_parts(
-    program: Program, words: LanguageWords, lines_around: int, rises_again: bool
-) -> Iterator[str]:
+def split_into_parts(program: Program, words: LanguageWords, lines_around: int, rises_again: bool) -> Iterator[str]:
     """Split the sections into parts that each fit in one program.
 
     The language limits the lines of one program. A section with more lines is a part by itself.

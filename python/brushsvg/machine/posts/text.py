@@ -14,9 +14,7 @@ IMMEDIATE_COMMANDS = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"
 STATEMENT_ENDS = {ord(";"): ","}  # ends an instruction of TP and of HP-GL
 QUOTES = {ord('"'): "'"}  # ends a comment of HP-GL
 NAMED = 40  # length of a name that fits in a line of any program
-MAX_ROWS_AT_ONCE = (
-    10_000  # points that become text at once; limits the memory to some megabytes for long strokes
-)
+MAX_ROWS_AT_ONCE = 10_000  # points that become text at once; limits the memory to some megabytes for long strokes
 
 
 def plain_text(text: str, room: int) -> str:
@@ -26,9 +24,7 @@ def plain_text(text: str, room: int) -> str:
     """
     letters = unicodedata.normalize("NFKD", text)
     letters = "".join(letter for letter in letters if not unicodedata.combining(letter))
-    letters = "".join(
-        letter if " " <= letter <= "~" else " " if letter.isspace() else "?" for letter in letters
-    )
+    letters = "".join(letter if " " <= letter <= "~" else " " if letter.isspace() else "?" for letter in letters)
     return letters if len(letters) <= room else letters[: room - 3] + "..."
 
 

@@ -76,9 +76,7 @@ def programs(text: str) -> dict[str, str]:
     The keys are the ends of their file names. The first program has the key "".
     """
     part_texts = re.split(rf"^(?={re.escape(BEGIN)})", text, flags=re.MULTILINE)[1:]
-    return {
-        part_suffix(count) if count > 1 else "": part_text for count, part_text in enumerate(part_texts, 1)
-    }
+    return {part_suffix(count) if count > 1 else "": part_text for count, part_text in enumerate(part_texts, 1)}
 
 
 def part_suffix(count: int) -> str:
@@ -141,9 +139,7 @@ def _move_lines(move: Move, upright: np.ndarray, acceleration: str, decimals: in
     blends = np.where(blends < MIN_BLEND_M, 0.0, blends)
     # movep keeps the speed of the tool. The last move stops, because the next one may turn back, which movep cannot.
     values = np.hstack([points[:-1], blends])
-    yield from format_rows(
-        f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals
-    )
+    yield from format_rows(f"  movep({point}, a={acceleration}, v={speed}, r=%.{decimals}f)", values, decimals)
     yield from format_rows(f"  movel({point}, a={acceleration}, v={speed})", points[-1:], decimals)
 
 
@@ -155,13 +151,9 @@ def _tilted_lines(move: Move, upright: np.ndarray, at_most: str, decimals: int) 
     """
     last = len(move.points_mm) - 1
     blends = np.zeros(last + 1) if move.blends_mm is None else move.blends_mm * M_PER_MM
-    for k, (point, turned) in enumerate(
-        zip(move.points_mm * M_PER_MM, tool_rotations_at(move, upright), strict=True)
-    ):
+    for k, (point, turned) in enumerate(zip(move.points_mm * M_PER_MM, tool_rotations_at(move, upright), strict=True)):
         place = ", ".join(format_number(value, decimals) for value in point)
-        place = (
-            f"on_paper({place})" if turned is None else f"tilted({place}, {_rotation_text(turned, decimals)})"
-        )
+        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_rotation_text(turned, decimals)})"
         if move.blends_mm is None or k == last:
             yield f"  movel({place}, {at_most})\n"
         else:

@@ -36,9 +36,7 @@ def add_chords(poses: np.ndarray, dense, arcs) -> tuple[np.ndarray, list]:
         return poses, list(arcs)
     rows = _dense_rows(poses, dense)
     new_rows = np.concatenate([[0], np.cumsum([len(points) for points in rows])]).tolist()
-    moved_arcs = [
-        _core.Arc(new_rows[arc.first], new_rows[arc.last], arc.centre_mm, arc.direction) for arc in arcs
-    ]
+    moved_arcs = [_core.Arc(new_rows[arc.first], new_rows[arc.last], arc.centre_mm, arc.direction) for arc in arcs]
     return np.vstack(rows), moved_arcs
 
 
@@ -64,16 +62,11 @@ def split_arcs_at_extremes(a_pass: _core.Pass, turned_rad: float) -> _core.Pass:
             cuts[number] += [(row, 0)] * is_cut + [(row, k) for k in range(1, len(places))]
     counts = [1 + len(extremes_after.get(row, ())) for row in range(len(poses))]
     new_rows = np.concatenate([[0], np.cumsum(counts)]).tolist()
-    dense = np.vstack(
-        [np.vstack([pose[None], extremes_after.get(row, poses[:0])]) for row, pose in enumerate(poses)]
-    )
+    dense = np.vstack([np.vstack([pose[None], extremes_after.get(row, poses[:0])]) for row, pose in enumerate(poses)])
     arcs = []
     for number, arc in enumerate(a_pass.arcs):
         ends = [new_rows[arc.first], *(new_rows[row] + k for row, k in cuts[number]), new_rows[arc.last]]
-        arcs += [
-            _core.Arc(first, last_quarter, arc.centre_mm, arc.direction)
-            for first, last_quarter in pairwise(ends)
-        ]
+        arcs += [_core.Arc(first, last_quarter, arc.centre_mm, arc.direction) for first, last_quarter in pairwise(ends)]
     return on_way(a_pass, dense, arcs)
 
 
@@ -98,9 +91,7 @@ def _overshoot_in_quarters(arc, pose: np.ndarray) -> float:
 def _extreme_at_pose(arc, pose: np.ndarray, turned_rad: float) -> int | None:
     """Return the quarter at which a circle turns back at a pose, else None."""
     quarters = _angle_in_quarters(arc, pose, turned_rad)
-    return (
-        round(quarters) % 4 if abs(quarters - round(quarters)) < _overshoot_in_quarters(arc, pose) else None
-    )
+    return round(quarters) % 4 if abs(quarters - round(quarters)) < _overshoot_in_quarters(arc, pose) else None
 
 
 def _extremes_between(arc, begin: np.ndarray, end: np.ndarray, turned_rad: float) -> list[np.ndarray]:

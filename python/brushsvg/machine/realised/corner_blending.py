@@ -74,9 +74,7 @@ def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray
     return blend_radii_and_angles(poses_mm, blending, arcs)[0]
 
 
-def blend_radii_and_angles(
-    poses_mm: np.ndarray, blending: Blending, arcs=()
-) -> tuple[np.ndarray, np.ndarray]:
+def blend_radii_and_angles(poses_mm: np.ndarray, blending: Blending, arcs=()) -> tuple[np.ndarray, np.ndarray]:
     """Return the results of blend_radii and corner_angles_rad."""
     radii = np.zeros(len(poses_mm))
     moves = _move_geometry(poses_mm, arcs)
@@ -85,9 +83,7 @@ def blend_radii_and_angles(
         return radii, all_turns
     turns = all_turns[1:-1]
     quarter = np.tan(turns / 4)
-    max_radii = np.divide(
-        blending.tolerance_mm, quarter, out=np.full_like(quarter, np.inf), where=quarter > 0
-    )
+    max_radii = np.divide(blending.tolerance_mm, quarter, out=np.full_like(quarter, np.inf), where=quarter > 0)
     if len(arcs):  # on a circle, only as far as its tangent is close enough
         bends = np.abs(moves.bends)
         curvature = np.maximum(bends[:-1], bends[1:])

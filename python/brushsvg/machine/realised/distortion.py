@@ -123,9 +123,7 @@ def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
     target = np.asarray(points_mm, dtype=float)
     if has_field(machine):
         target = _split_evenly(target, count_line_parts(commanded_mm(target[:, :3], machine)[:, :2], machine))
-        target = _split_at_shares(
-            target, cuts_at_field_edge(commanded_mm(target[:, :3], machine)[:, :2], machine)
-        )
+        target = _split_at_shares(target, cuts_at_field_edge(commanded_mm(target[:, :3], machine)[:, :2], machine))
     if not machine.map_mm:
         return target
     commanded = commanded_mm(target[:, :3], machine)[:, :2]
@@ -159,9 +157,7 @@ def _map_cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
     """
     xs, ys, heights = _map_grid(machine.map_mm)
     crossed = [
-        (lines - start) / (end - start)
-        for lines, start, end in zip((xs, ys), a, b, strict=True)
-        if start != end
+        (lines - start) / (end - start) for lines, start, end in zip((xs, ys), a, b, strict=True) if start != end
     ]
     inside = np.concatenate([[0.0, 1.0], *crossed])
     ends = np.unique(inside[(inside >= 0.0) & (inside <= 1.0)])
@@ -186,9 +182,7 @@ def _paper_height_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
     if not machine.map_mm:
         return plane_mm
     xs, ys, heights = _map_grid(machine.map_mm)
-    (i, u), (j, v) = (
-        _grid_cell_and_share(grid, places) for grid, places in zip((xs, ys), places_mm.T, strict=True)
-    )
+    (i, u), (j, v) = (_grid_cell_and_share(grid, places) for grid, places in zip((xs, ys), places_mm.T, strict=True))
     below = heights[j, i] * (1 - u) + heights[j, i + 1] * u
     above = heights[j + 1, i] * (1 - u) + heights[j + 1, i + 1] * u
     return plane_mm + below * (1 - v) + above * v

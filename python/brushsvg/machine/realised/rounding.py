@@ -124,9 +124,7 @@ def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
     """
 
     def outrun(poses: np.ndarray) -> np.ndarray:
-        return np.flatnonzero(
-            is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read)
-        )
+        return np.flatnonzero(is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read))
 
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
     if not len(outrun(poses)):
@@ -193,9 +191,7 @@ def _split_full_circles(arc, poses: np.ndarray, least_mm: float) -> Iterator:
     angles = [atan2(b - y, a - x) for a, b in poses[arc.first : arc.last + 1, :2].tolist()]
     turns = ((after - before) * arc.direction for before, after in pairwise(angles))
     turned_rad = list(
-        accumulate(
-            ((turn + MAX_BACKWARD_TURN_RAD) % tau - MAX_BACKWARD_TURN_RAD for turn in turns), initial=0.0
-        )
+        accumulate(((turn + MAX_BACKWARD_TURN_RAD) % tau - MAX_BACKWARD_TURN_RAD for turn in turns), initial=0.0)
     )
     first, end_distance_mm = 0, dist(poses[arc.first, :2], poses[arc.last, :2])
     if turned_rad[-1] >= tau or end_distance_mm < least_mm:

@@ -9,9 +9,7 @@ import numpy as np
 from ...errors import Notice
 from ..cells.cell import Cell, Machine
 
-MAX_FIELD_OFFSET_MM = (
-    0.003  # largest distance of the path from its target between the ends of a commanded line
-)
+MAX_FIELD_OFFSET_MM = 0.003  # largest distance of the path from its target between the ends of a commanded line
 MIN_REPORTED_BEYOND_MM = 1.0  # smaller distances are not reported, because a field hardly changes within a mm
 
 
@@ -84,8 +82,7 @@ def beyond_field(passes, cell: Cell) -> list[Notice]:
     if not has_field(cell.machine):
         return []
     far_mm = {
-        a_pass.stroke: distance_beyond_field_mm(np.asarray(a_pass.poses_mm)[:, :2], cell.machine)
-        for a_pass in passes
+        a_pass.stroke: distance_beyond_field_mm(np.asarray(a_pass.poses_mm)[:, :2], cell.machine) for a_pass in passes
     }
     stroke = max(far_mm, key=far_mm.get, default="")
     if not far_mm or far_mm[stroke] <= MIN_REPORTED_BEYOND_MM:

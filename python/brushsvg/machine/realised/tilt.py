@@ -36,9 +36,7 @@ def split_turning_moves(a_pass):
     poses, leans = np.asarray(a_pass.poses_mm, dtype=float), axes[:, :2] / axes[:, 2:]
     turns_deg = between_deg(axes[1:], axes[:-1])
     bends_mm = np.abs(np.diff(poses[:, 2])) * np.linalg.norm(np.diff(leans, axis=0), axis=1) / 4
-    counts = np.maximum(
-        np.ceil(turns_deg / MAX_TURN_STEP_DEG), np.ceil(np.sqrt(bends_mm / MAX_TURN_OFFSET_MM))
-    )
+    counts = np.maximum(np.ceil(turns_deg / MAX_TURN_STEP_DEG), np.ceil(np.sqrt(bends_mm / MAX_TURN_OFFSET_MM)))
     if (counts <= 1).all():
         return a_pass
     new_poses, new_leans = [poses[:1]], [leans[:1]]
@@ -102,9 +100,7 @@ def check_tilt_limits(a_pass, cell: Cell) -> list[Notice]:
         )
         sentence = f"near x {x:.1f}, y {y:.1f} mm the tool would turn {speed_text}"
         notices.append(
-            Notice(
-                name, sentence, code="tool-turns-too-fast", advice="paint slower, or turn it on a longer way"
-            )
+            Notice(name, sentence, code="tool-turns-too-fast", advice="paint slower, or turn it on a longer way")
         )
     return notices
 

@@ -97,6 +97,4 @@ def from_angles(
         for at in np.ndindex(alpha0.shape[:-1])
     ]
     names = FromAngles.__dataclass_fields__
-    return FromAngles(
-        *(frozen(np.reshape([result[name] for result in results], alpha0.shape[:-1])) for name in names)
-    )
+    return FromAngles(*(frozen(np.reshape([result[name] for result in results], alpha0.shape[:-1])) for name in names))

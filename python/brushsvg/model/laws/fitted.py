@@ -42,9 +42,7 @@ def fit_law(
         (float(depth.min(initial=0.0)), float(depth.max(initial=1.0))),
         max(-1, min(degree, 99)),
         through_zero=bool(through_zero),
-        floor=-math.inf
-        if floor_mm is None
-        else float(numbers(floor_mm, "the floor [mm]", -FARTHEST_MM, FARTHEST_MM)),
+        floor=-math.inf if floor_mm is None else float(numbers(floor_mm, "the floor [mm]", -FARTHEST_MM, FARTHEST_MM)),
         norm=_core.Norm.absolute if absolute else _core.Norm.squares,
     )
     return _core.fit_law(depth, value, shape)
@@ -53,6 +51,4 @@ def fit_law(
 def need_fits() -> None:
     """Raise Error if the library was built without Ceres."""
     if not hasattr(_core, "fit_law"):
-        raise Error(
-            "this brushsvg was built without fits; build it with Ceres (libceres-dev)", code="package-missing"
-        )
+        raise Error("this brushsvg was built without fits; build it with Ceres (libceres-dev)", code="package-missing")

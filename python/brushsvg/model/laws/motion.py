@@ -96,9 +96,7 @@ def contact_offset(alpha_rad: ArrayLike, lag_mm: ArrayLike) -> np.ndarray:
 
     Raises Error for numbers outside of the ranges of alpha_after and shapes that do not broadcast.
     """
-    alpha, lag = together(
-        _check_angle(alpha_rad, "alpha [rad]"), numbers(lag_mm, "the lag [mm]", 0.0, FARTHEST_MM)
-    )
+    alpha, lag = together(_check_angle(alpha_rad, "alpha [rad]"), numbers(lag_mm, "the lag [mm]", 0.0, FARTHEST_MM))
     return np.stack([-lag * np.cos(alpha), -lag * np.sin(alpha)], axis=-1)
 
 

@@ -42,14 +42,11 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         notices.append(Notice("z", sentence, code="dxf-not-flat"))
     dashes = DashCutter()
     elements = [
-        dashes.cut(piece_to_element(piece), piece.pen, find_pattern_restarts(piece))
-        for piece in join_pieces(pieces)
+        dashes.cut(piece_to_element(piece), piece.pen, find_pattern_restarts(piece)) for piece in join_pieces(pieces)
     ]
     notices += dashes.notices
     if options.units is None:
         lower, upper = drawn_extents(elements)
         notices += report_large_unit(document, float((upper - lower).max()))
-    sheet_mm, placed = (
-        (options.sheet_mm, tuple(elements)) if options.sheet_mm else place_with_margin(elements)
-    )
+    sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else place_with_margin(elements)
     return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())

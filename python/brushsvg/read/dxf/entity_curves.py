@@ -110,11 +110,7 @@ def _polyline(entity, tolerance: float) -> list[Curve] | None:
         points = [vertex.dxf.location.xyz for vertex in vertices]
         if entity.is_closed and len(points) > 1:
             points.append(points[0])
-        return (
-            [Curve(lines_to_cubics(points if len(points) > 1 else points * 2), entity.is_closed)]
-            if points
-            else []
-        )
+        return [Curve(lines_to_cubics(points if len(points) > 1 else points * 2), entity.is_closed)] if points else []
     widths = entity.dxf.get("default_start_width", 0.0), entity.dxf.get("default_end_width", 0.0)
     rows = [
         (
@@ -256,9 +252,7 @@ def _edge_to_curves(edge, tolerance: float) -> list[Curve]:
 def _join_edges(pieces: list[np.ndarray]) -> np.ndarray:
     """Join edges to one closed line. Each edge may be drawn in either direction."""
     first = pieces[0]
-    if len(pieces) > 1 and _distance_to_ends(first[0, 0], pieces[1]) < _distance_to_ends(
-        first[-1, 3], pieces[1]
-    ):
+    if len(pieces) > 1 and _distance_to_ends(first[0, 0], pieces[1]) < _distance_to_ends(first[-1, 3], pieces[1]):
         first = reverse_cubics(first)
     line = [first]
     for piece in pieces[1:]:

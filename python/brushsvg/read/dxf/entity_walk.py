@@ -85,9 +85,7 @@ class _Placement:
         along = line.cubics[:, (1, 3)] - line.cubics[:, (0, 2)]  # at the start and end of each
         along /= np.linalg.norm(along, axis=2, keepdims=True)
         across = np.cross(np.asarray(normal, dtype=float), along)
-        (tx, ty), (nx, ny) = (
-            (vectors @ self.mm_from_block[:3, :2]).transpose(2, 0, 1) for vectors in (along, across)
-        )
+        (tx, ty), (nx, ny) = ((vectors @ self.mm_from_block[:3, :2]).transpose(2, 0, 1) for vectors in (along, across))
         squeezed = np.abs(tx * ny - ty * nx) / np.hypot(tx, ty) / mean
         # Rounding keeps equal widths equal. A piece without length has no direction, so its factor is 1.
         return line.widths * mean * np.where(np.isfinite(squeezed), squeezed.round(9), 1.0)
@@ -131,9 +129,7 @@ class EntityWalk:
         for layout in self.document.layouts:
             if not layout.is_modelspace:
                 count = sum(entity.dxftype() not in _SILENT_TYPES for entity in layout)
-                self._leave_out(
-                    printable(layout.name), "paper space is not painted", code="paper-space", count=count
-                )
+                self._leave_out(printable(layout.name), "paper space is not painted", code="paper-space", count=count)
         for (where, why, layer, code), count in self._counts.items():
             if count:
                 entities = "1 entity" if count == 1 else f"{count} entities"
@@ -238,9 +234,7 @@ class EntityWalk:
         block = insert.block()
         block_name = printable(insert.dxf.get("name", ""), 40)
         if block is None:
-            self._note(
-                name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True, code="dxf-block"
-            )
+            self._note(name, f"there is no block {block_name!r}: left out", pen.layer, damaged=True, code="dxf-block")
             return
         if block.block.is_xref:
             sentence = f"block {block_name!r} is kept in another file, which is not read: left out"
@@ -299,9 +293,7 @@ class EntityWalk:
                 code="drawing-too-large",
             )
 
-    def _add_piece(
-        self, entity, kind: str, name: str, pen: Pen, place: _Placement, lines: list[Curve]
-    ) -> None:
+    def _add_piece(self, entity, kind: str, name: str, pen: Pen, place: _Placement, lines: list[Curve]) -> None:
         fill_rule = "nonzero" if kind in _TEXT_TYPES else "evenodd" if kind in dxf_curves.FILLED_TYPES else ""
         curves = []
         for line in lines:
@@ -315,8 +307,7 @@ class EntityWalk:
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
             widths = None if line.widths is None else place.widths_mm(line, entity.dxf.extrusion.normalize())
             if not (
-                np.abs(cubics).max() <= _MAX_DISTANCE_MM
-                and np.ptp(cubics, axis=(0, 1)).max() <= MAX_COORDINATE_MM
+                np.abs(cubics).max() <= _MAX_DISTANCE_MM and np.ptp(cubics, axis=(0, 1)).max() <= MAX_COORDINATE_MM
             ):
                 sentence = "its geometry is not finite or beyond 1e6 mm: left out"
                 self._note(name, sentence, pen.layer, damaged=True, code="geometry-out-of-range")
@@ -337,13 +328,9 @@ class EntityWalk:
             filling = self.pens.filling(entity, pen, place.pen) if entity.dxf.solid_fill else pen
         if kind in ("HATCH", "MPOLYGON"):
             if not entity.dxf.solid_fill:
-                self._note(
-                    name, "its pattern is not read: it counts as filled", pen.layer, code="paint-unread"
-                )
+                self._note(name, "its pattern is not read: it counts as filled", pen.layer, code="paint-unread")
             elif entity.gradient is not None and entity.gradient.number_of_colors:
-                self._note(
-                    name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread"
-                )
+                self._note(name, "its gradient is not read: it counts as filled", pen.layer, code="paint-unread")
         self._report_unpainted(entity, kind, name, pen, bool(fill_rule) or curves[0].widths is not None)
         joinable = kind in _JOINABLE_TYPES and len(curves) == 1 and not curves[0].closed
         self.pieces.append(Piece(name, place.name, filling, tuple(curves), fill_rule, joinable))
@@ -368,12 +355,8 @@ class EntityWalk:
             self._reported.add((where, sentence))
             self._note(where, sentence, None, code="shown-otherwise")
 
-    def _leave_out(
-        self, where: str, why: str, layer: str | None = None, *, code: str, count: int = 1
-    ) -> None:
+    def _leave_out(self, where: str, why: str, layer: str | None = None, *, code: str, count: int = 1) -> None:
         self._counts[where, why, layer, code] += count
 
-    def _note(
-        self, where: str, sentence: str, layer: str | None, damaged: bool = False, *, code: str
-    ) -> None:
+    def _note(self, where: str, sentence: str, layer: str | None, damaged: bool = False, *, code: str) -> None:
         self.notices.append(Notice(where, sentence, damaged, layer, code=code))

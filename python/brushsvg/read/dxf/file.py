@@ -59,9 +59,7 @@ def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     Raises Error if the data is not a DXF or is damaged beyond repair.
     """
     if data[:4] == b"AC10" and data[4:6].isdigit():
-        raise Error(
-            "the file is a DWG, not a DXF: save it as DXF in the program that made it", code="dxf-damaged"
-        )
+        raise Error("the file is a DWG, not a DXF: save it as DXF in the program that made it", code="dxf-damaged")
     if b"ENTITIES" not in data:
         raise Error("the file is not a DXF, or cut short: it has no ENTITIES", code="dxf-damaged")
     read = _load_binary if data.startswith(_BINARY) else _load_text
@@ -70,9 +68,7 @@ def open_dxf(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
         auditor = _Auditor(document)
         auditor.run()
     except ezdxf.DXFError as problem:
-        raise Error(
-            f"the DXF is damaged beyond repair: {exception_text(problem)}", code="dxf-damaged"
-        ) from None
+        raise Error(f"the DXF is damaged beyond repair: {exception_text(problem)}", code="dxf-damaged") from None
     except Exception:  # ezdxf raises anything on arbitrary bytes
         raise Error("the DXF is damaged beyond repair, or cut short", code="dxf-damaged") from None
     problems = _summarize_problems([("file", error.message) for error in auditor.errors], damaged=False)
@@ -97,9 +93,7 @@ def _load_text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     if bad_numbers:
         entities = EntityFilter(is_strict=True)
         document, recovered = _load_recovered(data, entities)
-    damage += [
-        (printable(name), f"it is damaged ({printable(why)}): left out") for name, why in entities.broken
-    ]
+    damage += [(printable(name), f"it is damaged ({printable(why)}): left out") for name, why in entities.broken]
     damage += [("file", message) for _, message in (*recovered.errors, *recovered.fixes)]
     counts = [
         Notice(
@@ -112,9 +106,7 @@ def _load_text(data: bytes) -> tuple[ezdxf.document.Drawing, list[Notice]]:
     return document, _summarize_problems(damage, damaged=True) + counts
 
 
-def _load_recovered(
-    data: bytes, entities: EntityFilter
-) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
+def _load_recovered(data: bytes, entities: EntityFilter) -> tuple[ezdxf.document.Drawing, ezdxf.recover.Recover]:
     """Load a document as ezdxf.recover.read() does, but without the audit."""
     recovered = ezdxf.recover.Recover.run(io.BytesIO(data), loader=entities.tags)
     document = ezdxf.document.Drawing()

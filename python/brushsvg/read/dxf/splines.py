@@ -33,9 +33,7 @@ def fit_points_to_cubics(fit_points, tangents, tolerance: float) -> list[np.ndar
     if len(fit_points) > _MAX_FIT_POINTS:
         raise ValueError(f"{len(fit_points)} fit points without control points, {_MAX_FIT_POINTS} are read")
     locations = [tuple(point) for point in fit_points]
-    fit_points = [
-        point for before, point in zip([None, *locations], locations, strict=False) if point != before
-    ]
+    fit_points = [point for before, point in zip([None, *locations], locations, strict=False) if point != before]
     end_tangents = None if any(tangent is None for tangent in tangents) else tangents
     tool = ezdxf.math.fit_points_to_cad_cv(fit_points, end_tangents)
     points = [point.xyz for point in tool.control_points]
@@ -144,9 +142,7 @@ def _hermite_cubics(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     errors = np.zeros(len(pieces))
     for t in (0.25, 0.5, 0.75):
         true = _split_at(pieces, t)[1][:, 0]
-        errors = np.maximum(
-            errors, np.abs(true[:, :3] / true[:, 3:] - _split_at(cubics, t)[1][:, 0]).max(axis=1)
-        )
+        errors = np.maximum(errors, np.abs(true[:, :3] / true[:, 3:] - _split_at(cubics, t)[1][:, 0]).max(axis=1))
     return cubics, errors
 
 

@@ -47,9 +47,7 @@ class EntityFilter:
         starts = [k for k, (code, _) in enumerate(tags) if code == 0]
         kept = [part for whole in self._readable_entities(tags, starts) for part in whole]
         has_new = any(part[0].value.strip() in _NEWER_TYPES for part in kept)
-        yield from (
-            _with_newer_version(tags[: starts[0]] if starts else tags, kept) if has_new else _flatten(kept)
-        )
+        yield from (_with_newer_version(tags[: starts[0]] if starts else tags, kept) if has_new else _flatten(kept))
 
     def _readable_entities(self, tags: list[Tag], starts: list[int]) -> Iterator[list[list[Tag]]]:
         """Yield the tags between group codes 0, and each entity together with its parts."""
@@ -113,9 +111,7 @@ def _find_fault(whole: list[list[Tag]]) -> str:
                 return f"{value.decode(errors='replace')!r} at group code {code} is not a number"
         try:
             tags = ezdxf.recover.safe_tag_loader(None, lambda _, part=part: iter([*part, _END_TAG]))
-            ezdxf.entities.factory.load(
-                ezdxf.lldxf.extendedtags.ExtendedTags(ezdxf.lldxf.tags.Tags(list(tags)[:-1]))
-            )
+            ezdxf.entities.factory.load(ezdxf.lldxf.extendedtags.ExtendedTags(ezdxf.lldxf.tags.Tags(list(tags)[:-1])))
         except Exception as problem:  # ezdxf raises anything on arbitrary bytes
             return str(problem).rstrip(".")
     return ""

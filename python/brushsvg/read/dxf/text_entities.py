@@ -21,9 +21,7 @@ from .fonts import Font, Fonts
 _tools, _boxes = ezdxf.tools.text, ezdxf.tools.text_layout
 
 _MAX_LETTERS = 50_000  # a brush paints a few hundred letters a day
-_MAX_COLUMN_HEIGHTS = (
-    10_000.0  # width of MTEXT columns in letter heights; ezdxf makes a tab stop every 4 heights
-)
+_MAX_COLUMN_HEIGHTS = 10_000.0  # width of MTEXT columns in letter heights; ezdxf makes a tab stop every 4 heights
 _MAX_COLUMNS = 1000
 _TAB_HEIGHTS = 4.0  # distance in letter heights of the tab stops that ezdxf makes if a text has no tab stops
 _FRAME_BIT = 16  # bit of MTEXT's bg_fill for a frame; the other bits are paint behind the letters
@@ -66,9 +64,7 @@ class TextConverter:
                 )
             )
         for (font, layer), letters in self._missing_letters.items():
-            listed_letters = ", ".join(repr(c) for c in list(letters)[:5]) + (
-                " ..." if len(letters) > 5 else ""
-            )
+            listed_letters = ", ".join(repr(c) for c in list(letters)[:5]) + (" ..." if len(letters) > 5 else "")
             where = self._first_use[font, layer][0]
             notices.append(
                 Notice(
@@ -105,9 +101,7 @@ class TextConverter:
         if not len(path):
             return []
         if _LINE_CODE.search(written):
-            self._note_unread(
-                name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer
-            )
+            self._note_unread(name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer)
         if self._is_stacked(dxf.style):
             self._note_unread(name, _STACKED_SENTENCE, layer)
         length = drawn.text_width_ex(text, cap_height=dxf.height)  # includes blanks at the ends
@@ -139,16 +133,12 @@ class TextConverter:
         layout = ezdxf.layouts.VirtualLayout()
         exploder = _MTextExploder(layout, self._document, self._fonts, self._faces)
         width = mtext.dxf.get("width", 0.0)
-        mtext.dxf.width = min(
-            width if width > 1e-6 else exploder.unbroken_width(mtext), _MAX_COLUMN_HEIGHTS * height
-        )
+        mtext.dxf.width = min(width if width > 1e-6 else exploder.unbroken_width(mtext), _MAX_COLUMN_HEIGHTS * height)
         exploder.explode(mtext)
         if background & ~_FRAME_BIT:
             self._note_unread(name, "its background is not painted, and covers nothing", layer)
         if exploder.spread:
-            self._note_unread(
-                name, "the distances between its letters (\\T) are not read: they count as 1", layer
-            )
+            self._note_unread(name, "the distances between its letters (\\T) are not read: they count as 1", layer)
         if exploder.uneven and mtext.dxf.get("line_spacing_style", 1) == _EXACT_SPACING:
             self._note_unread(name, "its lines are set as far apart as their tallest letters ask for", layer)
         if mtext.dxf.get("flow_direction", 1) == _VERTICAL_FLOW or self._is_stacked(mtext.dxf.style):

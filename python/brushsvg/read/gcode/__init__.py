@@ -48,9 +48,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     notices = []
     if pen:
         is_unsure = pen.share < SURE_READ_SHARE
-        sentence = (
-            f"{100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}" if is_unsure else pen.how
-        )
+        sentence = f"{100 * pen.share:.0f} % of what it seems to draw is read: {pen.how}" if is_unsure else pen.how
         notices.append(Notice("pen", sentence, code="pen-reading"))
         notices += pen.notices
     chains, left_out = _leave_out_dips(chains, read_comments(text), options)
@@ -58,24 +56,18 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     elements = [_line_to_element(chain) for chain in chains]
     if not elements:
         raise empty_drawing_error(notices)
-    ends = np.concatenate(
-        [sub.cubics[:, ::3].reshape(-1, 2) for element in elements for sub in element.subpaths]
-    )
+    ends = np.concatenate([sub.cubics[:, ::3].reshape(-1, 2) for element in elements for sub in element.subpaths])
     sentence = f"G-code has no widths: its lines count as {LINE_WIDTH_MM:g} mm wide"
     notices.append(Notice("", sentence, code="gcode-no-width", advice="--width MM sets their width"))
     heights = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
     if np.isfinite(heights).all() and np.ptp(heights) > 1e-3:
-        sentence = (
-            f"its pen goes at heights from {heights.min():.6g} to {heights.max():.6g} mm: they are left out"
-        )
+        sentence = f"its pen goes at heights from {heights.min():.6g} to {heights.max():.6g} mm: they are left out"
         notices.append(Notice("z", sentence, code="gcode-not-flat"))
     if options.sheet_mm:
         return Design(options.sheet_mm, tuple(elements), tuple(notices))
     shift = MARGIN_MM - ends.min(axis=0)
     width, height = (ends.max(axis=0) + shift + MARGIN_MM).tolist()
-    return Design(
-        (width, height), tuple(_shift_element(element, shift) for element in elements), tuple(notices)
-    )
+    return Design((width, height), tuple(_shift_element(element, shift) for element in elements), tuple(notices))
 
 
 def _suggest_readings(all_ways: list[Way], kind: str) -> str:
@@ -110,9 +102,7 @@ def _continues_line(chain: list[Way], way: Way) -> bool:
     return is_line and bool(np.hypot(*gap) <= MAX_HOP_MM)
 
 
-def _leave_out_dips(
-    chains: list, comment_by_line: dict[int, str], options: ReadOptions
-) -> tuple[list, list[Notice]]:
+def _leave_out_dips(chains: list, comment_by_line: dict[int, str], options: ReadOptions) -> tuple[list, list[Notice]]:
     """Return the lines that draw, and notices about the lines that were left out.
 
     Left out are strokes that fetch paint and strokes that the options skip.
@@ -126,9 +116,7 @@ def _leave_out_dips(
         sentence = f"left out by region or comment: {sum(skipped)} of {len(skipped)} strokes"
         notices.append(Notice("skip", sentence, code="strokes-skipped"))
     remaining = [
-        (chain, stroke)
-        for chain, stroke, is_skipped in zip(chains, strokes, skipped, strict=True)
-        if not is_skipped
+        (chain, stroke) for chain, stroke, is_skipped in zip(chains, strokes, skipped, strict=True) if not is_skipped
     ]
     # If the user chooses the strokes to leave out, no others are left out.
     if options.skip_comments or options.skip_regions_mm:

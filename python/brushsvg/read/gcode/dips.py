@@ -31,9 +31,7 @@ def read_comments(text: str) -> dict[int, str]:
     return comment_by_line
 
 
-def find_dips(
-    strokes: list[tuple[int, np.ndarray]], comment_by_line: dict[int, str]
-) -> tuple[list[bool], str]:
+def find_dips(strokes: list[tuple[int, np.ndarray]], comment_by_line: dict[int, str]) -> tuple[list[bool], str]:
     """Find the strokes that are dips.
 
     Returns for each stroke whether it is a dip, and a phrase that says how the dips were recognised.
@@ -49,14 +47,10 @@ def find_dips(
     by_comment = _find_commented_dips(strokes, comment_by_line)
     if any(by_comment):
         return by_comment, "by their comments"
-    return _find_pot_dips(
-        [points for _, points in strokes]
-    ), "by their place, to which the program comes back"
+    return _find_pot_dips([points for _, points in strokes]), "by their place, to which the program comes back"
 
 
-def _find_commented_dips(
-    strokes: list[tuple[int, np.ndarray]], comment_by_line: dict[int, str]
-) -> list[bool]:
+def _find_commented_dips(strokes: list[tuple[int, np.ndarray]], comment_by_line: dict[int, str]) -> list[bool]:
     # kinds: the comment of each stroke without numbers, "" if the stroke is not a dip.
     lines, kinds = sorted(comment_by_line), []
     last, box = -1, None

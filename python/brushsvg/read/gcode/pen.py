@@ -67,12 +67,7 @@ def read_pen(all_ways: list[Way], kind: str | None = None, paper_z_mm: float | N
         down, how, is_inverted = _decide_by_height(all_ways, is_sideways, by_z, paper_z_mm)
     else:
         (down, how), is_inverted = _decide_by_servo(all_ways, is_sideways), False
-    if (
-        not any(down)
-        and paper_z_mm is None
-        and len(set(filter(None, by_z))) < 2
-        and _count_changes(by_servo) == 0
-    ):
+    if not any(down) and paper_z_mm is None and len(set(filter(None, by_z))) < 2 and _count_changes(by_servo) == 0:
         raise _pen_unknown_error(by_z)
     notices = tuple(_report_painting_rapids(all_ways, is_sideways, down))
     return Pen(tuple(down), kind, how, _read_share(all_ways, is_sideways, down), notices, is_inverted)
@@ -94,9 +89,7 @@ def pen_kind(all_ways: list[Way]) -> str:
 
 
 def _pen_unknown_error(levels: list[float | None]) -> Error:
-    sentence = (
-        "nothing shows when its pen is down: no height changes between strokes, and no M3, M5 or M280 stands"
-    )
+    sentence = "nothing shows when its pen is down: no height changes between strokes, and no M3, M5 or M280 stands"
     known = [level for level in levels if level is not None]
     advice = f"--paper-z {known[0]:g} reads all lines at this height" if known else ""
     return Error(sentence, code="pen-unknown", advice=advice)
@@ -150,14 +143,11 @@ def _decide_by_height(
     else:
         lowest_travel, inverted_least = (sign * paper_z_mm + 2 * SAME_HEIGHT_MM for sign in (1, -1))
     score = _travel_score(all_ways, is_sideways, lowest_travel - SAME_HEIGHT_MM)
-    is_inverted = (
-        _travel_score(inverted, is_sideways, inverted_least - SAME_HEIGHT_MM) > score + MIN_INVERSION_EVIDENCE
-    )
+    is_inverted = _travel_score(inverted, is_sideways, inverted_least - SAME_HEIGHT_MM) > score + MIN_INVERSION_EVIDENCE
     if is_inverted:
         all_ways, levels, lowest_travel = inverted, inverted_levels, inverted_least
     down = [
-        not _is_vertical(way) and float(way.points_mm[:, 2].max()) < lowest_travel - SAME_HEIGHT_MM
-        for way in all_ways
+        not _is_vertical(way) and float(way.points_mm[:, 2].max()) < lowest_travel - SAME_HEIGHT_MM for way in all_ways
     ]
     drawn = [level for level, is_down in zip(levels, down, strict=True) if is_down and level is not None]
     travel = [level for level, is_down in zip(levels, down, strict=True) if not is_down and level is not None]
@@ -181,9 +171,7 @@ def _travel_score(all_ways: list[Way], is_sideways: list[bool], middle: float) -
     ends above the height; and the pen makes fewer ways in a row above the height than below. A sign without evidence
     counts 0.5.
     """
-    ends = [
-        (way.rapid, float(way.points_mm[-1, 2])) for way in all_ways if math.isfinite(way.points_mm[-1, 2])
-    ]
+    ends = [(way.rapid, float(way.points_mm[-1, 2])) for way in all_ways if math.isfinite(way.points_mm[-1, 2])]
     rapid = [height >= middle for is_rapid, height in ends if is_rapid]
     by_rapid = float(np.mean(rapid)) if 0 < len(rapid) < len(ends) else 0.5
     sides = [
@@ -252,13 +240,10 @@ def _decide_by_servo(all_ways: list[Way], is_sideways: list[bool]) -> tuple[list
         if moves_sideways and way.power is not None
     }
     up: set[float | None] = {
-        way.power
-        for way, moves_sideways in zip(all_ways, is_sideways, strict=True)
-        if moves_sideways and way.rapid
+        way.power for way, moves_sideways in zip(all_ways, is_sideways, strict=True) if moves_sideways and way.rapid
     }
     is_off = any(
-        way.power is None and moves_sideways
-        for way, moves_sideways in zip(all_ways, is_sideways, strict=True)
+        way.power is None and moves_sideways for way, moves_sideways in zip(all_ways, is_sideways, strict=True)
     )
     if not up - {None} and len(values) > 1 and not (is_off and any(way.rapid for way in all_ways)):
         up.add(first)  # programs begin with the pen up

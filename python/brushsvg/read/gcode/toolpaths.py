@@ -224,9 +224,7 @@ class _Interpreter:
             raise _out_of_range_error(number, line)
         straight = np.array([start, end])
         rapid, by_angle = self.motion == 0, self.by_angle
-        way = Way(
-            number, straight, rapid, self.feed_mm_s, self.pen_value(), self.unit_known, by_angle=by_angle
-        )
+        way = Way(number, straight, rapid, self.feed_mm_s, self.pen_value(), self.unit_known, by_angle=by_angle)
         way = replace(way, by_laser=self.by_laser)
         if self.motion in (2, 3):
             way = self._bend_into_circle(number, line, way, values)

@@ -96,9 +96,7 @@ def _notices_outside_tree(document: Document, root: ET.Element, page: Page) -> l
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
     if page.in_px and (program_and_pixels := _find_other_pixel_size(document, root)):
         own_page = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet
-        notices.append(
-            _probable_size_notice(*program_and_pixels, own_page.sheet_mm, root.get("viewBox") is not None)
-        )
+        notices.append(_probable_size_notice(*program_and_pixels, own_page.sheet_mm, root.get("viewBox") is not None))
     return notices
 
 

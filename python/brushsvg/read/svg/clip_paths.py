@@ -138,8 +138,7 @@ class ClipPaths:
         if mask.get("maskUnits") == "userSpaceOnUse":
             matrix = context.matrix
             rectangle = [
-                context.length(text, context.viewport[name in ("y", "height")])
-                for name, text in sides.items()
+                context.length(text, context.viewport[name in ("y", "height")]) for name, text in sides.items()
             ]
         else:
             if (box := bounds()) is None and sides == DEFAULT_MASK_RECTANGLE:
@@ -183,14 +182,10 @@ class ClipPaths:
                 if depth > _MAX_DEPTH:
                     raise ClipPathError(_TOO_DEEP, code="clipping-unread")
                 inside = self._shapes(child, here, style, depth + 1, rule)
-                for shape_style, region in (
-                    inside if is_group else self._use_shapes(child, here, style, depth, rule)
-                ):
+                for shape_style, region in inside if is_group else self._use_shapes(child, here, style, depth, rule):
                     yield shape_style, self._clip_by_own_path(style, here, region, depth)
             elif tag == "text":
-                raise ClipPathError(
-                    "its clip path is text, which is not read: painted whole", code="clipping-unread"
-                )
+                raise ClipPathError("its clip path is text, which is not read: painted whole", code="clipping-unread")
             elif tag in shapes.TAGS:
                 attributes = {**child.attrib, **style.geometry}
                 try:
@@ -211,10 +206,7 @@ class ClipPaths:
             return
         if depth > _MAX_DEPTH:
             raise ClipPathError(_TOO_DEEP, code="clipping-unread")
-        x, y = (
-            context.length(use.get(name, "").strip() or "0", context.viewport[k])
-            for k, name in enumerate("xy")
-        )
+        x, y = (context.length(use.get(name, "").strip() or "0", context.viewport[k]) for k, name in enumerate("xy"))
         moved = context._replace(matrix=multiply(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)))
         wrapper = ET.Element("clipPath")
         wrapper.append(target)

@@ -88,9 +88,7 @@ class NoticeList:
         """Add a notice about an element, if the element is chosen or the root."""
         if context.chosen or node is self.root:
             in_one_line = printable_line(sentence)
-            self.notices.append(
-                Notice(self.label(node), in_one_line, damaged, context.layer, code, about, advice)
-            )
+            self.notices.append(Notice(self.label(node), in_one_line, damaged, context.layer, code, about, advice))
 
     def label(self, node: ET.Element) -> str:
         """Return the id of an element, or its type and number: "rect 3"."""

@@ -61,15 +61,11 @@ class PaintedElements:
         fill, fill_notices = self.paints.find_paint(properties, "fill") if tag != "line" else ("none", [])
         attributes = {**node.attrib, **context.style.geometry} if context.style.geometry else node.attrib
         power, unread = (
-            read_power_stroke(node, self.by_id, node in self.in_group_effects)
-            if tag == "path"
-            else (None, [])
+            read_power_stroke(node, self.by_id, node in self.in_group_effects) if tag == "path" else (None, [])
         )
         greatest, least = scales(context.matrix)
         if least <= 1e-12 * greatest:
-            self.notes.add(
-                node, context, "its transforms flatten it to nothing: left out", code="geometry-empty"
-            )
+            self.notes.add(node, context, "its transforms flatten it to nothing: left out", code="geometry-empty")
             return
         mm_per_user = math.sqrt(greatest * least)
         width_mm = context.length(properties["stroke-width"], context.diagonal) * mm_per_user
@@ -145,11 +141,7 @@ class PaintedElements:
 
     def _why_unpainted(self, properties: dict[str, str], tag: str, width_mm: float) -> str:
         """Return the reason why an element has neither stroke nor fill."""
-        kinds = [
-            name
-            for name in ("stroke", "fill")
-            if properties[name] != "none" and (name, tag) != ("fill", "line")
-        ]
+        kinds = [name for name in ("stroke", "fill") if properties[name] != "none" and (name, tag) != ("fill", "line")]
         causes = [
             "its stroke-width is 0"
             if name == "stroke" and width_mm == 0
@@ -203,9 +195,7 @@ class PaintedElements:
         mm_per_unit = MM_PER["px"] if context.counts_in_screen_px else math.sqrt(greatest * least)
         return self._cut_dashes(node, context, subpaths, mm_per_unit)
 
-    def _trace_geometry(
-        self, node, tag: str, attributes, context: Context, greatest: float
-    ) -> tuple[SubPath, ...]:
+    def _trace_geometry(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
         self.path_data_length += len(attributes.get("d", "")) + len(attributes.get("points", ""))
         if self.path_data_length > _MAX_PATH_DATA:
             raise Error(
@@ -246,9 +236,7 @@ class PaintedElements:
             pattern = [context.length(word, context.diagonal) * scale for word in words]
             offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
-            self.notes.add(
-                node, context, f"stroke-dasharray: {error}: the line counts as solid", code="dashes-unread"
-            )
+            self.notes.add(node, context, f"stroke-dasharray: {error}: the line counts as solid", code="dashes-unread")
             return subpaths
         if min(pattern, default=0.0) < 0:
             self.notes.add(
@@ -284,9 +272,7 @@ class PaintedElements:
         try:
             path_length = number(text)
         except Error as error:
-            self.notes.add(
-                node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread"
-            )
+            self.notes.add(node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread")
             return 1.0
         if path_length < 0:
             return 1.0

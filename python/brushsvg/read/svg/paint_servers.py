@@ -96,9 +96,7 @@ class PaintServers:
     def _stop(self, stop: ET.Element) -> str | None:
         """Return the colour of a stop of a gradient, None if it cannot be read."""
         declared = {name: stop.get(name) for name in ("stop-color", "stop-opacity") if name in stop.attrib}
-        declared |= {
-            name: value for name, value, _ in (*self._rules(stop), *declarations(stop.get("style", "")))
-        }
+        declared |= {name: value for name, value, _ in (*self._rules(stop), *declarations(stop.get("style", "")))}
         colour = parse_colour(declared.get("stop-color", "#000000").strip())
         try:
             opacity = min(1.0, max(0.0, length_px(declared.get("stop-opacity", "1"), 1.0)))
@@ -115,9 +113,7 @@ class PaintServers:
         A size that cannot be read counts as present.
         """
         for name in ("width", "height"):
-            declared = next(
-                (server.get(name) for server in self._chain(pattern) if name in server.attrib), "0"
-            )
+            declared = next((server.get(name) for server in self._chain(pattern) if name in server.attrib), "0")
             try:
                 if length_px(declared or "0", 100.0) <= 0:
                     return False

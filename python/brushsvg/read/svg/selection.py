@@ -22,11 +22,7 @@ def select_elements(root: ET.Element, text: str) -> set[ET.Element]:
             f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path",
             code="selector-invalid",
         )
-    found = {
-        node for node, wrapped in tree.nodes.items() if any(selector.test(wrapped) for selector in selectors)
-    }
+    found = {node for node, wrapped in tree.nodes.items() if any(selector.test(wrapped) for selector in selectors)}
     if not found:
-        raise Error(
-            f"selector {text[:60]!r} matches no element of the drawing", code="selector-matches-nothing"
-        )
+        raise Error(f"selector {text[:60]!r} matches no element of the drawing", code="selector-matches-nothing")
     return found

@@ -47,11 +47,7 @@ def _read_settings(attributes: dict[str, str], known: dict) -> tuple[dict, list[
         name = attribute.removeprefix(PREFIX)
         if name not in known:
             is_for_document = name in _DOCUMENT_SETTINGS
-            why = (
-                "holds for the whole drawing: write it on its svg element"
-                if is_for_document
-                else "is not known"
-            )
+            why = "holds for the whole drawing: write it on its svg element" if is_for_document else "is not known"
             problems.append(f"{attribute} {why}; known here: {', '.join(known)}")
             continue
         key, read = known[name]
@@ -113,9 +109,7 @@ def _tolerance_mm(text: str) -> float:
 def _in_range(value, least, greatest, unit: str = ""):
     if not (math.isfinite(value) and least <= value <= greatest):
         unit = unit and f" {unit}"
-        raise Error(
-            f"{value:g}{unit} is outside the range [{least:g}, {greatest:g}]{unit}", code="out-of-range"
-        )
+        raise Error(f"{value:g}{unit} is outside the range [{least:g}, {greatest:g}]{unit}", code="out-of-range")
     return value
 
 

@@ -108,11 +108,7 @@ class TreeWalk:
     def _visit(self, node: ET.Element, context: Context) -> None:
         tag = local_name(node)
         is_target = context.size is not None
-        if (
-            not node.tag.startswith(self.namespace)
-            or "}" in node.tag[len(self.namespace) :]
-            or not _is_shown(node)
-        ):
+        if not node.tag.startswith(self.namespace) or "}" in node.tag[len(self.namespace) :] or not _is_shown(node):
             return
         if tag in _SILENT and not (tag == "symbol" and is_target):
             return
@@ -165,19 +161,13 @@ class TreeWalk:
             if tag == "text":
                 self.notes.add(node, inner, "text is not read", code="text-unread", advice=_TEXT_ADVICE)
             else:
-                self.notes.add(
-                    node, inner, f"{tag[:40]} is not read: left out", code="element-unread", about=tag
-                )
+                self.notes.add(node, inner, f"{tag[:40]} is not read: left out", code="element-unread", about=tag)
         else:
             self.painted.add(node, tag, inner)
 
     def _leave_documentation_out(self, node: ET.Element, context: Context) -> None:
-        sentence = (
-            f"layer {context.layer!r} is left out: a name that starts with % marks notes that are not painted"
-        )
-        self.layers[context.layer] = (
-            "a name that starts with % marks notes, as in AxiDraw's software; rename it"
-        )
+        sentence = f"layer {context.layer!r} is left out: a name that starts with % marks notes that are not painted"
+        self.layers[context.layer] = "a name that starts with % marks notes, as in AxiDraw's software; rename it"
         self.notes.add(node, context, sentence, code="layer-of-notes", advice="rename it to paint it")
 
     def _leave_out(self, why: str) -> None:
@@ -194,9 +184,7 @@ class TreeWalk:
             self.notes.add(node, context, "it is fully transparent: left out", code="transparent")
             return None
         for problem in problems:
-            self.notes.add(
-                node, context, problem.sentence, problem.damaged, code=problem.code, about=problem.about
-            )
+            self.notes.add(node, context, problem.sentence, problem.damaged, code=problem.code, about=problem.about)
         for sentence in invalid:
             self.notes.add(node, context, sentence, damaged=True, code="setting-invalid")
         for name, sentence in list_unread_properties(style.own):
@@ -257,9 +245,7 @@ class TreeWalk:
         matrix: Matrix = IDENTITY
         for name in ("translate", "rotate", "scale"):
             if name in properties:
-                found = self._try_read(
-                    node, context, individual_transform, name, properties[name], box, em_px
-                )
+                found = self._try_read(node, context, individual_transform, name, properties[name], box, em_px)
                 matrix = multiply(matrix, found or IDENTITY)
         own_transform = None
         if "transform" in properties:
@@ -269,9 +255,7 @@ class TreeWalk:
         matrix = multiply(matrix, own_transform or IDENTITY)
         point = None
         if "transform-origin" in properties:
-            point = self._try_read(
-                node, context, transform_origin, properties["transform-origin"], True, box, em_px
-            )
+            point = self._try_read(node, context, transform_origin, properties["transform-origin"], True, box, em_px)
         if point is None and (attribute := (node.get("transform-origin") or "").strip()):
             point = self._try_read(node, context, transform_origin, attribute, False, box, em_px)
         return about_point(point or box()[:2], matrix)
@@ -281,9 +265,7 @@ class TreeWalk:
         try:
             return read(*words)
         except Error as error:
-            self.notes.add(
-                node, context, f"{error}; it counts as not given", damaged=True, code="transform-unread"
-            )
+            self.notes.add(node, context, f"{error}; it counts as not given", damaged=True, code="transform-unread")
             return None
 
     def _reference_box(self, node: ET.Element, context: Context) -> ReferenceBox:
@@ -315,9 +297,7 @@ class TreeWalk:
         if context.style.own["overflow"] not in ("visible", "auto"):
             clip = _clip_to_corners(clip, rectangle_corners(context.matrix, corners))
         matrix = multiply(context.matrix, inner)
-        self._enter(
-            node, iter(node), context._replace(matrix=matrix, viewport=viewport, clip=clip, size=None)
-        )
+        self._enter(node, iter(node), context._replace(matrix=matrix, viewport=viewport, clip=clip, size=None))
 
     def _enter_use(self, node: ET.Element, context: Context) -> None:
         reference = href(node)
@@ -326,9 +306,7 @@ class TreeWalk:
             if context.style.inherited["visibility"] != "visible":
                 return
             if not reference:
-                self.notes.add(
-                    node, context, "it has no href, so it uses nothing: left out", code="use-of-nothing"
-                )
+                self.notes.add(node, context, "it has no href, so it uses nothing: left out", code="use-of-nothing")
                 return
             reason = _explain_missing_target(reference, self.by_id)
             sentence = f"what it uses, {reference[:40]!r}, {reason}: left out"
@@ -384,6 +362,4 @@ def _is_shown(node: ET.Element) -> bool:
     if "requiredExtensions" in node.attrib:
         return False
     languages = node.get("systemLanguage")
-    return languages is None or any(
-        word.strip().lower().split("-")[0] == "en" for word in languages.split(",")
-    )
+    return languages is None or any(word.strip().lower().split("-")[0] == "en" for word in languages.split(","))

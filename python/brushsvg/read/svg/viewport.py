@@ -68,9 +68,7 @@ def nested_viewport(
     notices: list[Notice] = []
     box = _view_box(attributes.get("viewBox"))
     inner = (
-        IDENTITY
-        if box is None
-        else _fit_view_box(box, width, height, attributes.get("preserveAspectRatio"), notices)
+        IDENTITY if box is None else _fit_view_box(box, width, height, attributes.get("preserveAspectRatio"), notices)
     )
     matrix = multiply((1.0, 0.0, 0.0, 1.0, x, y), inner)
     return matrix, (width, height) if box is None else box[2:], (x, y, width, height), notices
@@ -91,9 +89,7 @@ def read_page(
     """
     notices: list[Notice] = []
     box = _view_box(attributes.get("viewBox"))
-    in_px = all(
-        attributes.get(name, "").strip("0123456789.+- ") in ("", "px", "%") for name in ("width", "height")
-    )
+    in_px = all(attributes.get(name, "").strip("0123456789.+- ") in ("", "px", "%") for name in ("width", "height"))
     width, height = (_side_mm(attributes.get(name), name, bool(box)) for name in ("width", "height"))
     styled = [
         _side_mm(style.get(name), name, bool(box)) if _is_length(style.get(name)) else None
@@ -106,9 +102,7 @@ def read_page(
                 f"it is read as {own:.6g} mm"
             )
             notices.append(Notice("svg", sentence, code="size-assumed"))
-    width, height = (
-        own if own is not None else css_mm for own, css_mm in zip((width, height), styled, strict=True)
-    )
+    width, height = (own if own is not None else css_mm for own, css_mm in zip((width, height), styled, strict=True))
     if box is None and sheet_mm is not None:
         width, height = width or sheet_mm[0], height or sheet_mm[1]
     if width is None or height is None:
@@ -128,9 +122,7 @@ def read_page(
                 width = height * box[2] / box[3]
             else:
                 height = width * box[3] / box[2]
-        notices.append(
-            Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm", code="size-assumed")
-        )
+        notices.append(Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm", code="size-assumed"))
     for name, value in (("width", width), ("height", height)):
         if not 0 < value <= MAX_COORDINATE_MM:
             raise Error(
@@ -156,9 +148,7 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
         return None
     values = parse_numbers(text.strip())
     if values is None or len(values) != 4 or not all(map(math.isfinite, values)):
-        raise Error(
-            f"viewBox {snippet(text, 0, 40)} is not four numbers", where="svg", code="viewbox-invalid"
-        )
+        raise Error(f"viewBox {snippet(text, 0, 40)} is not four numbers", where="svg", code="viewbox-invalid")
     if values[2] <= 0 or values[3] <= 0:
         raise Error(f"viewBox {snippet(text, 0, 40)} has no area", where="svg", code="viewbox-invalid")
     return tuple(values)
@@ -166,9 +156,7 @@ def _view_box(text: str | None) -> tuple[float, float, float, float] | None:
 
 def _is_length(text: str | None) -> bool:
     """Whether a CSS value is an absolute length, not auto or a percentage."""
-    return (
-        text is not None and re.fullmatch(r"\s*\d*\.?\d+(?:px|mm|cm|in|pt|pc|q)\s*", text, re.I) is not None
-    )
+    return text is not None and re.fullmatch(r"\s*\d*\.?\d+(?:px|mm|cm|in|pt|pc|q)\s*", text, re.I) is not None
 
 
 _FONT_RELATIVE = re.compile(r".*[0-9.]\s*(?:em|ex|rem|ch)\s*", re.I)
@@ -215,9 +203,7 @@ def _fit_view_box(box, width: float, height: float, text: str | None, notices: l
     return (s, 0.0, 0.0, s, left - x * s, top - y * s)
 
 
-def rectangle_corners(
-    matrix: Matrix, rectangle: tuple[float, float, float, float]
-) -> list[tuple[float, float]]:
+def rectangle_corners(matrix: Matrix, rectangle: tuple[float, float, float, float]) -> list[tuple[float, float]]:
     """Return the corners [mm] of a rectangle, in order.
 
     rectangle: (x, y, width, height) in user units; matrix: user units to paper.

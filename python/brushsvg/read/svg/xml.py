@@ -78,16 +78,12 @@ def parse_xml(data: bytes) -> Document:
         nonlocal elements
         elements += 1
         if elements > _MAX_ELEMENTS:
-            raise Error(
-                f"{position()}: the document has more than {_MAX_ELEMENTS} elements", code="drawing-too-large"
-            )
+            raise Error(f"{position()}: the document has more than {_MAX_ELEMENTS} elements", code="drawing-too-large")
         builder.start(qualified(tag), {qualified(name): value for name, value in attributes.items()})
 
     def entity(name, is_parameter, value, _base, system_id, _public_id, _notation) -> None:
         if system_id is not None:
-            raise Error(
-                f"{position()}: entity {name!r} is in another file, which is not read", code="xml-entity"
-            )
+            raise Error(f"{position()}: entity {name!r} is in another file, which is not read", code="xml-entity")
         if is_parameter or re.search("&[^#]", value):
             raise Error(
                 f"{position()}: entity {name!r} is built from other entities, which is refused",
@@ -168,9 +164,7 @@ def _unpack(data: bytes) -> bytes:
     try:
         plain = unpacking.decompress(data, _MAX_UNPACKED_BYTES + 1)
     except zlib.error:
-        raise Error(
-            "the file is compressed (SVGZ), but what it holds is damaged", code="svgz-damaged"
-        ) from None
+        raise Error("the file is compressed (SVGZ), but what it holds is damaged", code="svgz-damaged") from None
     if len(plain) > _MAX_UNPACKED_BYTES:
         raise Error(
             f"the file is compressed (SVGZ) and unpacks to more than {_MAX_UNPACKED_BYTES} bytes",

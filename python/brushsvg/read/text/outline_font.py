@@ -22,14 +22,10 @@ from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
 from .setting import PlacedGlyph, TypesetText, find_script, should_have_ink
 
-_MAX_UNPACKED_BYTES = (
-    200_000_000  # bytes; the largest fonts, with all Chinese characters, have a fifth of this size
-)
+_MAX_UNPACKED_BYTES = 200_000_000  # bytes; the largest fonts, with all Chinese characters, have a fifth of this size
 _UNITS_PER_EM_RANGE = (16, 16384)  # units per em that the format allows
 _COLOUR_TABLES = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
-_STRAIGHT_LETTERS = (
-    "AEFHIKLMNTVWXYZilt"  # straight letters: in a single-line font, contours of many have no area
-)
+_STRAIGHT_LETTERS = "AEFHIKLMNTVWXYZilt"  # straight letters: in a single-line font, contours of many have no area
 _SINGLE_LINE_SENTENCE = "it is a single-line font: its contours are read as lines"
 _JOINED_SCRIPTS = ("arabic", "devanagari")  # scripts in which a word is one shape
 # Cubics of a contour. With fewer cubics, the last one always counts as the edge that closes the contour, as in a V.
@@ -52,8 +48,7 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
     if not is_filled:
         notices = Notice("font", _SINGLE_LINE_SENTENCE, code="font-of-lines"), *notices
         placed = tuple(
-            tuple(replace(glyph, subpaths=contours_to_lines(glyph.subpaths)) for glyph in line)
-            for line in placed
+            tuple(replace(glyph, subpaths=contours_to_lines(glyph.subpaths)) for glyph in line) for line in placed
         )
     return TypesetText(placed, is_filled, tuple(setter.missing), notices, tuple(setter.blank))
 

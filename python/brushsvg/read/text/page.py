@@ -14,9 +14,7 @@ from .setting import PlacedGlyph, TypesetText
 
 _MARGIN_MM = 20  # the same margin as around a drawing without a sheet
 _MAX_CUBICS = 2_000_000  # a book page has a hundredth of this; with more, the document alone needs 100 MB
-_MAX_STRAIGHT_ERROR_MM = (
-    1e-6  # distance of handles from the thirds of a line due to rounding, far below the decimals
-)
+_MAX_STRAIGHT_ERROR_MM = 1e-6  # distance of handles from the thirds of a line due to rounding, far below the decimals
 
 
 def svg_document(
@@ -142,6 +140,4 @@ def _id_label(characters: str) -> str:
 
     ASCII letters and digits stay as they are. Other characters become their numbers.
     """
-    return "".join(
-        letter if letter.isascii() and letter.isalnum() else f"u{ord(letter):04X}" for letter in characters
-    )
+    return "".join(letter if letter.isascii() and letter.isalnum() else f"u{ord(letter):04X}" for letter in characters)

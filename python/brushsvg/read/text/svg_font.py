@@ -165,9 +165,7 @@ class _Typesetter:
         return line.subpaths
 
     def _skip(self, node: ET.Element, sentence: str, damaged: bool = True) -> None:
-        self.notices.append(
-            Notice(_glyph_label(node), f"{sentence}; it is left out", damaged, code="glyph-damaged")
-        )
+        self.notices.append(Notice(_glyph_label(node), f"{sentence}; it is left out", damaged, code="glyph-damaged"))
 
 
 class _Kerns:

@@ -88,9 +88,7 @@ def cause(
             if brush.width_follows_depth()
             else _one_width_cause(stroke_place)
         )
-        or _compensation_cause(
-            stroke_place, tracking_error.largest_mm, tolerance_mm, compensation, error_words
-        )
+        or _compensation_cause(stroke_place, tracking_error.largest_mm, tolerance_mm, compensation, error_words)
         or _length_cause(stroke_place)
         or _path_cause(stroke_place)
         or _remaining_cause(stroke_place, tracking_error.largest_mm > tolerance_mm, compensation, error_words)
@@ -146,9 +144,7 @@ def _compensation_cause(
     place: _StrokePlace, error_mm: float, tolerance_mm: float, compensation: str, error_words: str
 ) -> Cause | None:
     """Return the cause if the chosen compensation or tolerance displaces the paint."""
-    if compensation in ("none", "constant") and error_mm > max(
-        tolerance_mm, MIN_MIDDLE_OFFSET * place.half_mm
-    ):
+    if compensation in ("none", "constant") and error_mm > max(tolerance_mm, MIN_MIDDLE_OFFSET * place.half_mm):
         is_none = compensation == "none"
         how = "the lag is not compensated" if is_none else "one lag does not fit all of the stroke"
         return Cause(f"{how}: {error_words}", code="lag-not-compensated")

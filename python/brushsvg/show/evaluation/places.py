@@ -75,9 +75,7 @@ def find_places(
     painted = _core.coverage(marks, brush, window, px_per_mm)
     corner = (window[0], window[1] + window[3])
     areas = worst_areas(target, painted, corner, px_per_mm, [line[:, :2] for line in lines])
-    return tuple(
-        _describe_place(number, drawn[area.stroke], area, why) for number, area in enumerate(areas, 1)
-    )
+    return tuple(_describe_place(number, drawn[area.stroke], area, why) for number, area in enumerate(areas, 1))
 
 
 def _describe_place(number: int, stroke, area, why) -> Place:
@@ -86,9 +84,7 @@ def _describe_place(number: int, stroke, area, why) -> Place:
     if error_mm is not None:
         size += f", tracking error up to {error_mm:.2g} mm"
     at = (area.missing_mm2, area.outside_mm2, error_mm)
-    return Place(
-        number, stroke.id, area.at_mm, *at, cause.words, cause.code, remedy(cause.code, stroke), size
-    )
+    return Place(number, stroke.id, area.at_mm, *at, cause.words, cause.code, remedy(cause.code, stroke), size)
 
 
 def _window_around(lines: Iterable[np.ndarray]) -> tuple[tuple[float, float, float, float], float]:

@@ -253,8 +253,7 @@ def _is_near_rings(place_mm, rings, reach_mm: float) -> bool:
     The limit is _MIN_BARE_SHARE of the square.
     """
     return (
-        _core.area(_core.intersect([_square_ring(place_mm, reach_mm)], rings))
-        > _MIN_BARE_SHARE * (2 * reach_mm) ** 2
+        _core.area(_core.intersect([_square_ring(place_mm, reach_mm)], rings)) > _MIN_BARE_SHARE * (2 * reach_mm) ** 2
     )
 
 
@@ -277,16 +276,12 @@ def _square_ring(place_mm, reach_mm: float) -> np.ndarray:
     return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
 
 
-def groups(
-    marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None
-) -> tuple[Group, ...]:
+def groups(marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None) -> tuple[Group, ...]:
     """Return groups of strokes that touch, so that each letter is judged as a whole.
 
     strokes: one per pass, None for a pass that is a part of a stroke.
     """
-    known_pairs = [
-        pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None
-    ]
+    known_pairs = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
     traces, targets = [trace for trace, _ in known_pairs], [stroke for _, stroke in known_pairs]
     touching = _core.touching(targets)
     areas = _core.common_areas(traces, targets, touching, brush)
@@ -369,8 +364,7 @@ def to_json(report: Report) -> str:
                 "refused": [notice.as_json() for notice in report.refused],
                 "forbidden": [notice.as_json() for notice in report.forbidden],
                 "groups": [
-                    {"strokes": list(group.strokes), "overlap": round(group.overlap, 6)}
-                    for group in report.groups
+                    {"strokes": list(group.strokes), "overlap": round(group.overlap, 6)} for group in report.groups
                 ],
                 "advice": report.advice,
                 "verdict": report.verdict,
@@ -417,9 +411,7 @@ def to_csv(report: Report) -> str:
         at = row.worst.place_mm if row.worst else ("", "")
         cells = [getattr(row, name) for name in plain]
         cells += [*at, *(getattr(row.worst, name, "") for name in worst)]
-        rows.writerow(
-            [_round_floats(cell) for cell in (*cells, *(getattr(interval, name) for name in interval_names))]
-        )
+        rows.writerow([_round_floats(cell) for cell in (*cells, *(getattr(interval, name) for name in interval_names))])
     return out.getvalue()
 
 
@@ -516,9 +508,7 @@ def _details(report: Report) -> list[str]:
 
 def _ruled_table(columns: list[tuple[str, list[str]]], notes: Sequence[str] = ()) -> list[str]:
     """Return the lines of a table from its columns, with a rule below their names."""
-    head, *rows = table(
-        [name for name, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes
-    )
+    head, *rows = table([name for name, _ in columns], zip(*(cells for _, cells in columns), strict=True), notes)
     return [head, "-" * max(map(len, (head, *rows))), *rows]
 
 

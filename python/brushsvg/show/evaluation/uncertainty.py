@@ -90,9 +90,7 @@ def in_words(brush) -> str:
     source = known_from(brush)
     if source is None:
         return "no confidence band: the brush has neither covariance nor RMSE"
-    source_words = (
-        "from the brush's covariance" if source == COVARIANCE else "from RMSE, for lack of a covariance"
-    )
+    source_words = "from the brush's covariance" if source == COVARIANCE else "from RMSE, for lack of a covariance"
     missing = [law for law in LAWS if not _is_law_measured(brush, law)]
     return f"95 %, {source_words}" + (f"; without {' and '.join(missing)}, not measured" if missing else "")
 
@@ -220,9 +218,7 @@ def _effects(brush, trace, parts, d_contact, d_along) -> _Effects:
         widest,
         half,
         np.asarray(trace.taut, bool) & (depth > 0),
-        d_contact
-        + (widest - gap)[:, None, None] * d_along
-        + along[:, :, None] * (d_widest - d_gap)[:, None, :],
+        d_contact + (widest - gap)[:, None, None] * d_along + along[:, :, None] * (d_widest - d_gap)[:, None, :],
         d_contact - gap[:, None, None] * d_along - along[:, :, None] * d_gap[:, None, :],
         d_along,
         d_widest,
@@ -277,9 +273,7 @@ def _half_interval(effects: np.ndarray) -> np.ndarray:
 
 def _largest(strokes: tuple[Confidence, ...]) -> Confidence:
     def largest(name: str):
-        return max(
-            (value for stroke in strokes if (value := getattr(stroke, name)) is not None), default=None
-        )
+        return max((value for stroke in strokes if (value := getattr(stroke, name)) is not None), default=None)
 
     return Confidence(*(largest(name) for name in ("middle_mm", "ends_mm", "width_mm")))
 

@@ -41,9 +41,7 @@ def _left_out_reasons(report) -> list[str]:
 def _off_drawing_reasons(warnings: Iterable) -> list[str]:
     strokes_off = {notice.where for notice in warnings if notice.code in OFF_DRAWING}
     return (
-        [
-            f"{plural(len(strokes_off), 'stroke')} visibly {'miss' if len(strokes_off) > 1 else 'misses'} the drawing"
-        ]
+        [f"{plural(len(strokes_off), 'stroke')} visibly {'miss' if len(strokes_off) > 1 else 'misses'} the drawing"]
         if strokes_off
         else []
     )
@@ -56,6 +54,4 @@ def _brush_reasons(report) -> list[str]:
     middle_mm = report.confidence.total.middle_mm if report.confidence else None
     if middle_mm is None or middle_mm < UNCERTAIN_MM:
         return []
-    return [
-        f"brush {report.brush} is known so badly that paint may be {middle_mm:.1f} mm from the prediction"
-    ]
+    return [f"brush {report.brush} is known so badly that paint may be {middle_mm:.1f} mm from the prediction"]

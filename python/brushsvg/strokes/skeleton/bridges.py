@@ -168,10 +168,7 @@ def find_forks(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
         for arm in limbs:
             arm.mate = None
         find_ends([crossing], rings)
-        if (
-            bare_joined
-            < _measure_bare_share(crossing, _trace_inner_lines(crossing), around) + MIN_FORK_BARE_GAIN
-        ):
+        if bare_joined < _measure_bare_share(crossing, _trace_inner_lines(crossing), around) + MIN_FORK_BARE_GAIN:
             limbs[0].mate, limbs[1].mate = limbs[1], limbs[0]
         for arm in crossing.arms:
             arm.lead = None
@@ -190,10 +187,7 @@ def find_ends(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
         around = _find_places_in_shape(crossing, rings)
         bare_narrowed = _measure_bare_share(crossing, _trace_inner_lines(crossing), around)
         arm.lead = lead
-        if (
-            _measure_bare_share(crossing, _trace_inner_lines(crossing), around) + MIN_BARE_GAIN
-            > bare_narrowed
-        ):
+        if _measure_bare_share(crossing, _trace_inner_lines(crossing), around) + MIN_BARE_GAIN > bare_narrowed:
             arm.lead = None
 
 
@@ -222,11 +216,7 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     t and f. Sets `beyond_mm` of the arms, measured from the middle of the crossing.
     """
     ending = [
-        (a, c)
-        for c in crossings
-        if not c.is_corner
-        for a in c.arms
-        if a.mate is None and _meets_line_across(a, c)
+        (a, c) for c in crossings if not c.is_corner for a in c.arms if a.mate is None and _meets_line_across(a, c)
     ]
     if not ending:
         return
@@ -242,9 +232,7 @@ def find_bars(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     sticks_out &= (reached[:, 2] > stem + MIN_BEYOND * halves) & (reached[:, 2] < stem + MAX_BEYOND * halves)
     rooms = np.array(_core.clearance(rings, at[:, [0, -1]].reshape(-1, 2))).reshape(-1, 2)
     sticks_out &= (rooms > MIN_IN_STEM * halves[:, None]).all(axis=1)
-    sticks_out &= (
-        np.ptp(np.nan_to_num(reached[:, [0, -1]], posinf=np.finfo(float).max), axis=1) < MAX_SLANT * halves
-    )
+    sticks_out &= np.ptp(np.nan_to_num(reached[:, [0, -1]], posinf=np.finfo(float).max), axis=1) < MAX_SLANT * halves
     for k in np.flatnonzero(sticks_out).tolist():
         ending[k][0].beyond_mm = max(float(reached[k, 2] - halves[k]), 0.0)
 
@@ -286,15 +274,11 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
     corners = [crossing for crossing in crossings if crossing.is_corner]
     ways = [way for crossing in corners for way in _find_probe_ways(crossing)]
     places = np.array([tail + np.linspace(0, 1, _PROBE_COUNT)[:, None] * by for tail, by in ways])
-    around = np.array(
-        [disc[:2] + disc[2] * _COARSE_GRID for disc in (crossing.discs[0] for crossing in corners)]
-    )
+    around = np.array([disc[:2] + disc[2] * _COARSE_GRID for disc in (crossing.discs[0] for crossing in corners)])
     rooms = np.reshape(_core.clearance(rings, np.reshape(places, (-1, 2))), (-1, 3, _PROBE_COUNT))
     reach_mm = np.reshape([np.hypot(*by) for _, by in ways], (-1, 3))[:, 1:].ravel()
     find_bent_ends(corners, reach_mm, rings)
-    for k, (crossing, along) in enumerate(
-        zip(corners, np.reshape(places, (-1, 3, _PROBE_COUNT, 2)), strict=True)
-    ):
+    for k, (crossing, along) in enumerate(zip(corners, np.reshape(places, (-1, 3, _PROBE_COUNT, 2)), strict=True)):
         disc = crossing.discs[0, 2]
         widths = [arm.line[arm.out, 2] for arm in crossing.arms]
         meet = _find_farthest_clear(along[0], rooms[k, 0], max(widths), disc) or (crossing.discs[0, :2], disc)
@@ -304,9 +288,7 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
                 rooms[k, n],
                 widths[n - 1],
                 disc,
-                MIN_CLEARANCE_IN_HUMP
-                if crossing.has_hump and widths[n - 1] == max(widths)
-                else MIN_CLEARANCE,
+                MIN_CLEARANCE_IN_HUMP if crossing.has_hump and widths[n - 1] == max(widths) else MIN_CLEARANCE,
             )
             or meet
             for n in (1, 2)
@@ -314,10 +296,7 @@ def find_corners(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
         bare = [
             _measure_bare_share(
                 crossing,
-                [
-                    trace_straight(*end, arm.line[arm.out])
-                    for arm, end in zip(crossing.arms, ends, strict=True)
-                ],
+                [trace_straight(*end, arm.line[arm.out]) for arm, end in zip(crossing.arms, ends, strict=True)],
                 around[k],
             )
             for ends in (own_ends, [meet, meet])
@@ -370,9 +349,7 @@ def _choose_bent_ways(crossing: Crossing, around: np.ndarray, most_bare: float) 
     with_lead = [arm for arm in crossing.arms if arm.lead is not None]
     thin, wide = sorted(arm.line[arm.out, 2] for arm in crossing.arms)
     stubs = [trace_stub(arm, crossing) for arm in crossing.arms]
-    if with_lead and (
-        thin < UNLIKE_WIDTH_RATIO * wide or _measure_bare_share(crossing, stubs, around) >= most_bare
-    ):
+    if with_lead and (thin < UNLIKE_WIDTH_RATIO * wide or _measure_bare_share(crossing, stubs, around) >= most_bare):
         for arm in with_lead:
             arm.lead = None
     elif len(with_lead) == 1:

@@ -155,12 +155,8 @@ def find_leads(crossings: list[Crossing], rings: list[np.ndarray]) -> list[tuple
         return []
     starts = np.array([arm.line[arm.out] for arm, _ in ending])
     ahead = np.array([-arm.direction for arm, _ in ending])
-    to_mid = np.array(
-        [np.hypot(*extend_to_middle(arm, crossing) - arm.line[arm.out, :2]) for arm, crossing in ending]
-    )
-    reach_mm = to_mid + np.array(
-        [np.hypot(*np.ptp(c.discs[:, :2], axis=0)) + c.discs[:, 2].max() for _, c in ending]
-    )
+    to_mid = np.array([np.hypot(*extend_to_middle(arm, crossing) - arm.line[arm.out, :2]) for arm, crossing in ending])
+    reach_mm = to_mid + np.array([np.hypot(*np.ptp(c.discs[:, :2], axis=0)) + c.discs[:, 2].max() for _, c in ending])
     tangents = np.array([_find_tangent(arm) for arm, _ in ending])
     places, _ = continue_lines(starts, ahead, tangents, reach_mm, rings)
     rooms = np.array(_core.clearance(rings, places.reshape(-1, 2))).reshape(len(ending), -1)
@@ -198,9 +194,7 @@ def find_bent_ends(corners: list[Crossing], reach_mm: np.ndarray, rings: list[np
     reach_mm = np.maximum(reach_mm, np.repeat(longest_mm, 2))
     starts = np.array([arm.line[arm.out] for arm in arms])
     ahead = np.array([-arm.direction for arm in arms])
-    places, lasted = continue_lines(
-        starts, ahead, np.array([_find_tangent(arm) for arm in arms]), reach_mm, rings
-    )
+    places, lasted = continue_lines(starts, ahead, np.array([_find_tangent(arm) for arm in arms]), reach_mm, rings)
     at, finer = np.arange(STEP_COUNT + 1), np.linspace(0, STEP_COUNT, 8 * STEP_COUNT + 1)
     for k, corner in enumerate(corners):
         first_arm, second_arm = corner.arms
@@ -211,14 +205,10 @@ def find_bent_ends(corners: list[Crossing], reach_mm: np.ndarray, rings: list[np
             way = np.column_stack([np.interp(finer, at, column) for column in places[n].T])
             rooms, half = np.array(_core.clearance(rings, way)), starts[n, 2]
             to_axis = (way - other_arm.line[other_arm.out, :2]) @ _left_of(other_arm.direction)
-            is_on = (rooms >= MIN_CLEARANCE * half) & (
-                (to_axis * to_axis[0] > 0) | (corner.dropped > MIN_STEM_END)
-            )
+            is_on = (rooms >= MIN_CLEARANCE * half) & ((to_axis * to_axis[0] > 0) | (corner.dropped > MIN_STEM_END))
             is_on &= finer <= lasted[n] / reach_mm[n] * STEP_COUNT
             if corner.dropped > MIN_STEM_END:
-                is_on &= (rooms >= half) | (
-                    np.gradient(rooms, reach_mm[n] / (len(way) - 1)) > MIN_CLEARANCE_SLOPE
-                )
+                is_on &= (rooms >= half) | (np.gradient(rooms, reach_mm[n] / (len(way) - 1)) > MIN_CLEARANCE_SLOPE)
             way = way[: int(np.logical_and.accumulate(is_on).sum())]
             if len(way) < 6:
                 continue

@@ -60,9 +60,7 @@ def _estimate_crossings(tails: np.ndarray, heads: np.ndarray, pairs: int = 100_0
     return float(cross.mean()) * count * (count - 1) / 2
 
 
-def _count_compared_pairs(
-    low: np.ndarray, high: np.ndarray, floor: float = -np.inf, ceiling: float = np.inf
-) -> float:
+def _count_compared_pairs(low: np.ndarray, high: np.ndarray, floor: float = -np.inf, ceiling: float = np.inf) -> float:
     """Count the pairs of edges that _core.fill compares.
 
     low, high: (n, 2), corners of the edges' boxes, in the order of their left sides. Compared are all pairs that
@@ -74,9 +72,7 @@ def _count_compared_pairs(
     ys = np.unique([low[:, 1], high[:, 1]])
     ys = ys[(ys >= floor) & (ys < ceiling)]
     ys = ys[max(len(ys) // 3, 1) : len(ys) - len(ys) // 3 + 1]
-    across = np.searchsorted(np.sort(low[:, 1]), ys, "right") - np.searchsorted(
-        np.sort(high[:, 1]), ys, "right"
-    )
+    across = np.searchsorted(np.sort(low[:, 1]), ys, "right") - np.searchsorted(np.sort(high[:, 1]), ys, "right")
     if len(ys) and across.min() <= count / 9:
         cut = ys[np.argmin(across)]
         below, above = low[:, 1] < cut, high[:, 1] >= cut

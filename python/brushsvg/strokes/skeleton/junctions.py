@@ -264,9 +264,7 @@ def _mate_thick_arms(crossing: Crossing, a: Arm, b: Arm) -> None:
     through_start, through_end = (arm.line[arm.out] for arm in crossing.arms if arm.mate is not None)
     along = through_end[:2] - through_start[:2]
     first, second = (arm.line[arm.out] for arm in (a, b))
-    sides = [
-        along[0] * (y - through_start[1]) - along[1] * (x - through_start[0]) for x, y, _ in (first, second)
-    ]
+    sides = [along[0] * (y - through_start[1]) - along[1] * (x - through_start[0]) for x, y, _ in (first, second)]
     is_thick = min(first[2], second[2]) >= max(through_start[2], through_end[2])
     if is_thick and sides[0] * sides[1] < 0 and measure_turn(a, b) < MAX_THICK_JOIN_TURN_RAD:
         a.mate, b.mate = b, a

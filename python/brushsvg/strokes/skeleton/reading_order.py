@@ -18,9 +18,7 @@ MAX_CELL_WIDTH = 1.25  # greatest width of a character, in row heights
 MAX_HEADLINE_SLOPE, MIN_HEADLINE_HEIGHT = 0.2, 0.5
 
 
-def order_strokes(
-    boxes: np.ndarray, lines: list[list[np.ndarray]], script: str = "auto"
-) -> list[tuple[int, int]]:
+def order_strokes(boxes: np.ndarray, lines: list[list[np.ndarray]], script: str = "auto") -> list[tuple[int, int]]:
     """Return (area, stroke) in the order of writing.
 
     boxes: x0, y0, x1, y1 of each connected area, y up; lines: middle lines (k, 3) of its strokes, as they run.
@@ -108,9 +106,7 @@ def _group_letters(row: list[int], boxes: np.ndarray) -> list[list[int]]:
     for k in sorted(row, key=lambda k: boxes[k, 0] - boxes[k, 2]):
         for letter in letters:
             low, high = boxes[letter, 0].min(), boxes[letter, 2].max()
-            if min(high, boxes[k, 2]) - max(low, boxes[k, 0]) > MIN_STACKED_SHARE * (
-                boxes[k, 2] - boxes[k, 0]
-            ):
+            if min(high, boxes[k, 2]) - max(low, boxes[k, 0]) > MIN_STACKED_SHARE * (boxes[k, 2] - boxes[k, 0]):
                 letter.append(k)
                 break
         else:

@@ -62,9 +62,7 @@ def smooth_rough_outlines(rings: list[np.ndarray]) -> list[np.ndarray]:
     roughness_mm, half_width_mm = measure_roughness_mm(rings)
     if roughness_mm == 0.0:
         return rings
-    most_mm = min(
-        SMOOTHING_ROUGHNESSES * roughness_mm, MAX_SMOOTHING_HALF_WIDTHS * half_width_mm, MAX_SMOOTHING_MM
-    )
+    most_mm = min(SMOOTHING_ROUGHNESSES * roughness_mm, MAX_SMOOTHING_HALF_WIDTHS * half_width_mm, MAX_SMOOTHING_MM)
     speck_mm2 = (SPECK_ROUGHNESSES * roughness_mm) ** 2
     lines = [np.vstack([ring, ring[:1]]) for ring in rings if abs(signed_area(ring)) > speck_mm2]
     lengths_mm = np.array([length(line) for line in lines])

@@ -45,9 +45,7 @@ MIN_WIDTH_SHARE = 0.01
 # The last value is the share of directions that must be covered. At a stem below thin serifs less than half are,
 # outside of a corner a quarter.
 _CHECKED_ANGLES_RAD, _CHECKED_DISTANCE, _MIN_COVERED_SHARE = np.radians(np.linspace(-80, 80, 9)), 1.15, 0.35
-_UNIT_CIRCLE = np.array(
-    [[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)]
-)
+_UNIT_CIRCLE = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0, 2 * np.pi, 24, endpoint=False)])
 
 
 @dataclass(frozen=True)
@@ -72,18 +70,11 @@ def outline_strokes(rings: list[np.ndarray], script: str = "auto") -> list[Outli
     rings: as _core.fill returns them; script: as in DIRECTION_WEIGHTS. Raises Error if the shape has more branches
     than any lettering.
     """
-    areas = [
-        [without_slivers(ring, SLIVER_MM) for ring in area]
-        for area in with_holes(smooth_rough_outlines(rings))
-    ]
+    areas = [[without_slivers(ring, SLIVER_MM) for ring in area] for area in with_holes(smooth_rough_outlines(rings))]
     axes = [_core.medial_axis(area, MIN_BRANCH_AREA, MIN_LIMB_AREA) for area in areas]
     if (count := sum(len(branches) for _, branches in axes)) > MAX_BRANCHES:
-        raise Error(
-            f"its shape branches into {count} lines, more than {MAX_BRANCHES}", code="outline-too-complex"
-        )
-    strokes_by_area = [
-        _find_area_strokes(area, *axis, script) for area, axis in zip(areas, axes, strict=True)
-    ]
+        raise Error(f"its shape branches into {count} lines, more than {MAX_BRANCHES}", code="outline-too-complex")
+    strokes_by_area = [_find_area_strokes(area, *axis, script) for area, axis in zip(areas, axes, strict=True)]
     boxes = np.array([[*area[0].min(axis=0), *area[0].max(axis=0)] for area in areas]).reshape(-1, 4)
     order = order_strokes(boxes, [[line for line, _ in each] for each in strokes_by_area], script)
     ordered = [strokes_by_area[area][k][1] for area, k in order]
@@ -107,9 +98,7 @@ def _find_area_strokes(
     parts = [_find_chain_part(chain, area_skeleton, area if can_cut else None) for chain in chains]
     kept = [k for k, part in enumerate(parts) if part]
     strokes = [_make_stroke(chains[k], parts[k], area) for k in kept]
-    return list(
-        zip([lines[k] for k in kept], with_shared_corners(strokes, area) if can_cut else strokes, strict=True)
-    )
+    return list(zip([lines[k] for k in kept], with_shared_corners(strokes, area) if can_cut else strokes, strict=True))
 
 
 def _make_dab(disc: np.ndarray, wanted_mm: list[np.ndarray]) -> OutlineStroke:
@@ -142,9 +131,7 @@ def _make_stroke(chain, wanted_mm: list[np.ndarray], area: list[np.ndarray]) -> 
     middles, knots, at_mm = [], [], 0.0
     for piece in chain:
         line = piece.line
-        middle, widths = _core.fit_curve(
-            line, max(MAX_SMOOTHING * float(line[:, 2].mean()), 1e-3), piece.closed
-        )
+        middle, widths = _core.fit_curve(line, max(MAX_SMOOTHING * float(line[:, 2].mean()), 1e-3), piece.closed)
         length_mm = _length_mm(middle)
         knots += [(at_mm + at * length_mm, half) for at, half in widths]
         at_mm += length_mm

@@ -104,8 +104,7 @@ def join_pieces(pieces: list[Piece], skeleton: Skeleton, script: str = "auto") -
     Returns the pieces of each stroke in one list.
     """
     chains = {
-        k: [piece]
-        for k, piece in enumerate(_reverse_hairlines([direct_piece(piece, script) for piece in pieces]))
+        k: [piece] for k, piece in enumerate(_reverse_hairlines([direct_piece(piece, script) for piece in pieces]))
     }
     lengths = [_measure_length(piece, skeleton) for piece in pieces]
     at_crossing: dict[int | None, set[int]] = {}
@@ -158,9 +157,7 @@ def move_to_corner(piece: Piece, side: int, crossing: Crossing) -> Piece:
     """
     line = piece.line if side == 0 else piece.line[::-1]
     place, half = crossing.corner
-    leads = [
-        arm.lead for arm in crossing.arms if arm.lead is not None and np.array_equal(arm.lead[0], line[0])
-    ]
+    leads = [arm.lead for arm in crossing.arms if arm.lead is not None and np.array_equal(arm.lead[0], line[0])]
     steps = len(leads[0]) if leads else STRAIGHT_ROWS
     if leads and crossing.is_on_lead:
         nearest = int(np.hypot(*(line[:steps, :2] - place).T).argmin())
@@ -185,11 +182,7 @@ def _find_flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j:
     widest = chains[short][0].line[:, 2].max()
     if widest > MAX_FLICK_WIDTH_RATIO * max(piece.line[:, 2].max() for piece in chains[other]):
         return None
-    return (
-        short
-        if lengths[short] < min(MAX_FLICK_HALF_WIDTHS * widest, MAX_FLICK_SHARE * lengths[other])
-        else None
-    )
+    return short if lengths[short] < min(MAX_FLICK_HALF_WIDTHS * widest, MAX_FLICK_SHARE * lengths[other]) else None
 
 
 def _reverse_hairlines(pieces: list[Piece]) -> list[Piece]:
@@ -210,11 +203,7 @@ def _reverse_hairlines(pieces: list[Piece]) -> list[Piece]:
 
     def is_up(piece: Piece) -> bool:
         right, rise = piece.line[0, :2] - piece.line[-1, :2]
-        if (
-            None in piece.ends
-            or not right > MIN_RIGHT_PER_RISE * rise > 0
-            or not _is_straight(piece.line[:, :2])
-        ):
+        if None in piece.ends or not right > MIN_RIGHT_PER_RISE * rise > 0 or not _is_straight(piece.line[:, :2]):
             return False
         begins, ends = piece.ends
         tops = any(other is not piece for other in beginning[begins])

@@ -189,9 +189,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     if post.has_tabs:
         text = text.replace("\t", " ")
     if bad_letter := re.search(r"[^\n -~]", text):
-        raise Error(
-            _describe_letter(bad_letter[0], text.count("\n", 0, bad_letter.start()) + 1), code="line-unread"
-        )
+        raise Error(_describe_letter(bad_letter[0], text.count("\n", 0, bad_letter.start()) + 1), code="line-unread")
     for number, line in enumerate(text.splitlines(), 1):
         if (found := _HUGE_NUMBER.search(line)) and not line.lstrip(" ").startswith(
             ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(", 'CO "')

@@ -97,9 +97,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
     steps = [step for section in out.sections for step in section.steps]
     for before, step in itertools.pairwise(steps):
         if 2 * step.blend_mm > math.dist(before[2:5], step[2:5]):
-            sentence = (
-                f"line {step.line}: a blend of {step.blend_mm:g} mm begins before the middle of its way"
-            )
+            sentence = f"line {step.line}: a blend of {step.blend_mm:g} mm begins before the middle of its way"
             raise Error(sentence, code="line-unread")
     return out
 

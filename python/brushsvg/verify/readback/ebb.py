@@ -144,9 +144,7 @@ class _Reader:
     def _move(self, number: int, line: str, time_ms: int, steps_1: int, steps_2: int) -> None:
         self._check_ready(number, line)
         if not time_ms or (self.value is None and (steps_1 or steps_2)):
-            raise Error(
-                f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete"
-            )
+            raise Error(f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete")
         if not steps_1 and not steps_2:
             if self.pending_value is not None:
                 raise _unread_error(number, line)

@@ -16,9 +16,7 @@ from . import Readback
 from .script import N, NumberedLines, Script, place, read_script
 
 _C = rf"(?:{N}|\({N}\))"
-_ATTRIBUTES = re.compile(
-    r"COMMENT *= \"[ -!#-~]*\";|PROTECT *= READ(?:_WRITE)?;|DEFAULT_GROUP *= 1,\*,\*,\*,\*;|/MN"
-)
+_ATTRIBUTES = re.compile(r"COMMENT *= \"[ -!#-~]*\";|PROTECT *= READ(?:_WRITE)?;|DEFAULT_GROUP *= 1,\*,\*,\*,\*;|/MN")
 _GROUP = re.compile(r"DEFAULT_GROUP *= 1,\*,\*,\*,\*;")
 _POINT = re.compile(
     rf"P\[(\d{{1,5}})\]\{{ GP1: UF : {INDEX}, UT : {INDEX}, CONFIG : '([^']*)', "
@@ -63,9 +61,7 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
         again=re.compile(r"PR\[2\]|R\[1\]"),
         last=(f"!{FANUC_END}",),
         units_mm={},
-        turned_deg=tuple(
-            np.round(rotation_deg(upright_tool_rotation(cell.tool.spin_deg)), POINT_DECIMALS).tolist()
-        ),
+        turned_deg=tuple(np.round(rotation_deg(upright_tool_rotation(cell.tool.spin_deg)), POINT_DECIMALS).tolist()),
         rotation=rotation,
     )
     out = Readback(in_paper_frame=True, blends_by_radius=True)
@@ -119,14 +115,10 @@ def _split_programs(text: str) -> dict[str, tuple[NumberedLines, NumberedLines]]
             part = "instructions" if line == "/MN" else part
         elif part == "instructions" and line == "/POS":
             part = "points"
-        elif part == "instructions" and (
-            instruction_match := re.fullmatch(r" *\d*: ?(.*?) *;?", raw.rstrip(" "))
-        ):
+        elif part == "instructions" and (instruction_match := re.fullmatch(r" *\d*: ?(.*?) *;?", raw.rstrip(" "))):
             is_open = not raw.rstrip(" ").endswith(";")
             instruction = (
-                instruction_match[1]
-                if instruction_match[1].startswith("!")
-                else " ".join(instruction_match[1].split())
+                instruction_match[1] if instruction_match[1].startswith("!") else " ".join(instruction_match[1].split())
             )
             if is_open != bool(_CIRCLE.fullmatch(instruction)):
                 raise Error(f"line {number}: {line[:60]!r} ends too early or too late", code="line-unread")
@@ -136,17 +128,13 @@ def _split_programs(text: str) -> dict[str, tuple[NumberedLines, NumberedLines]]
         elif part == "points":
             programs[name][1].append((number, line))
         else:
-            raise Error(
-                f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread"
-            )
+            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
     if part != "out":
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     return programs
 
 
-def _resolve_points(
-    lines: NumberedLines, point_lines: NumberedLines, cell: Cell
-) -> Iterator[tuple[int, str]]:
+def _resolve_points(lines: NumberedLines, point_lines: NumberedLines, cell: Cell) -> Iterator[tuple[int, str]]:
     points = _parse_points(point_lines, cell)
 
     def point(number: int, name: str) -> tuple[str, str]:
@@ -196,13 +184,9 @@ def _parse_points(lines: NumberedLines, cell: Cell) -> dict[int, tuple[str, str]
             continue
         found = _POINT.fullmatch(pending)
         if not found or int(found[1]) in points:
-            raise Error(
-                f"line {first}: {pending[:60]!r} is not a point that brushsvg writes", code="line-unread"
-            )
+            raise Error(f"line {first}: {pending[:60]!r} is not a point that brushsvg writes", code="line-unread")
         if found[2] != cell.tool.configuration:
-            sentence = (
-                f"line {first}: the arm's configuration is {found[2]!r}, not {cell.tool.configuration!r}"
-            )
+            sentence = f"line {first}: the arm's configuration is {found[2]!r}, not {cell.tool.configuration!r}"
             raise Error(sentence, code="line-unread")
         points[int(found[1])] = (", ".join(found.groups()[2:5]), ", ".join(found.groups()[5:]))
         pending = ""
@@ -235,9 +219,7 @@ def _with_setup_as_frames(lines: NumberedLines) -> NumberedLines:
             choices.append((number, f"{frame[1]}[{INDEX}] {{{values}}}"))
         elif _CHOICE.fullmatch(line):
             if line.partition("_")[0] not in known:
-                raise Error(
-                    f"line {number}: {line!r} chooses a frame before anything sets it", code="line-incomplete"
-                )
+                raise Error(f"line {number}: {line!r} chooses a frame before anything sets it", code="line-incomplete")
             choices.append((number, line))
         elif line.startswith("!") or not line:
             out.append((number, line))

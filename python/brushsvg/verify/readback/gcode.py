@@ -94,9 +94,7 @@ class _Reader:
         self.dialect = DIALECTS[cell.language]
         self.remark = re.compile(self.dialect.remark)
         self.words = dict.fromkeys(MODES | set(REQUIRED_MODES) | {"M0", "M2"}, "") | MOTION_WORDS
-        self.words |= {"G4": "P", "G64": "P", "": "F"} | (
-            {"M3": "SF", "G1": "XYSF"} if cell.servo else {"M5": ""}
-        )
+        self.words |= {"G4": "P", "G64": "P", "": "F"} | ({"M3": "SF", "G1": "XYSF"} if cell.servo else {"M5": ""})
         if not self.dialect.has_blocks:
             self.words = dict(PRINTER_WORDS)
             if cell.pen:
@@ -128,9 +126,7 @@ class _Reader:
             if line and self.ended:
                 if _END.fullmatch(line) and not self.ends_by_words:
                     continue  # a second end has no effect
-                raise Error(
-                    f"line {number}: {line[:40]!r} stands behind the end of the program", code="line-unread"
-                )
+                raise Error(f"line {number}: {line[:40]!r} stands behind the end of the program", code="line-unread")
             if comment_match := self.remark.fullmatch(line):
                 self._comment(number, line, comment_match[1])
                 self.ended = self.ends_by_words and comment_match[1] == HELD_UP
@@ -140,14 +136,10 @@ class _Reader:
                 self._read_printer_line(number, line)
         for mode, meaning in REQUIRED_MODES.items():
             if mode not in self.seen:
-                raise Error(
-                    f"{mode} is missing: nothing says that its numbers are {meaning}", code="mode-missing"
-                )
+                raise Error(f"{mode} is missing: nothing says that its numbers are {meaning}", code="mode-missing")
         if not self.ended:
             end = self.dialect.comment(HELD_UP).strip() if self.ends_by_words else "M2"
-            raise Error(
-                f"{end} is missing: the program has no end, or half of it was lost", code="program-cut-short"
-            )
+            raise Error(f"{end} is missing: the program has no end, or half of it was lost", code="program-cut-short")
         return self.out
 
     def _check_length(self, number: int, line: str) -> None:
@@ -165,23 +157,15 @@ class _Reader:
 
         Such firmware obeys only the first G or M code of a line, and does not remember it.
         """
-        words = (
-            () if line[1:2] == "-" else _words(line)
-        )  # other controllers read G-0 as G0, this firmware does not
+        words = () if line[1:2] == "-" else _words(line)  # other controllers read G-0 as G0, this firmware does not
         first = f"{words[0][0]}{words[0][1]:g}" if words else ""
         stop = self.dialect.stops[-1]
         if line == stop or (first == stop and len(words) == 1):
             self.out.acts.append(Act(number, "text", stop))
             return
         values = dict(words[1:])
-        if (
-            first not in self.words
-            or len(values) + 1 != len(words)
-            or not set(values) <= set(self.words[first])
-        ):
-            raise Error(
-                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
-            )
+        if first not in self.words or len(values) + 1 != len(words) or not set(values) <= set(self.words[first]):
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread")
         if values and self.out.modes is None:
             self.out.modes = frozenset(self.seen)
         if first in ("G2", "G3") and not self.may_circle:
@@ -218,43 +202,31 @@ class _Reader:
             self.out.rises_mm.append(self.at["Z"])
         self._add_step(number, False, {}, None)
         step = self.out.section().steps[-1]
-        self.out.section().steps[-1] = step._replace(
-            speed_mm_s=min(self.press_mm_s, self.feed_mm_s or math.inf)
-        )
+        self.out.section().steps[-1] = step._replace(speed_mm_s=min(self.press_mm_s, self.feed_mm_s or math.inf))
         self.out.acts.append(Act(number, "text", f"M280 {'down' if is_down else 'up'}"))
 
     def _read_block(self, number: int, line: str) -> None:
         if not (words := _words(line)):
-            raise Error(
-                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
-            )
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread")
         codes = [f"{letter}{value:g}" for letter, value in words if letter in "GM"]
         values = {letter: value for letter, value in words if letter not in "GM"}
         if codes == ["M30"] and not self.servo:
             codes = ["M2"]  # M2 and M30 both end the program
-        idle = [
-            code for code in codes if code == "M9"
-        ]  # M9 switches off a coolant that no program switches on
+        idle = [code for code in codes if code == "M9"]  # M9 switches off a coolant that no program switches on
         if len(codes) > 1 and not values and (motion := self._find_unused_motion(codes)):
             self.motion = motion
             idle.append(motion)
         codes = [code for code in codes if code not in idle]
         if (len(codes) > 1 and set(codes) & EXCLUSIVE_CODES) or not set(codes) <= self.known:
-            raise Error(
-                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
-            )
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread")
         first = codes[0] if codes else self.motion if set(values) - {"F"} else ""
         if self.servo and not codes and set(values) == {"S"} and "M3" in self.seen:
             first = "M3"  # M3 stays in force
         if values and first in LASTING_MODES and self.motion in ("G0", "G1"):
             first = self.motion  # the motion code stays in force on a line with a mode
         if first not in self.words:
-            raise Error(
-                f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread"
-            )
-        if len(values) + len(set(codes)) + len(idle) != len(words) or not set(values) <= set(
-            self.words[first]
-        ):
+            raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread")
+        if len(values) + len(set(codes)) + len(idle) != len(words) or not set(values) <= set(self.words[first]):
             raise Error(
                 f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write",
                 code="line-unread",
@@ -308,9 +280,7 @@ class _Reader:
                 code="line-unread",
             )
         if self.dialect.acts and re.match(self.dialect.acts, text, re.IGNORECASE):
-            raise Error(
-                f"line {number}: {line[:40]} is a comment that {self.firmware} acts on", code="line-unread"
-            )
+            raise Error(f"line {number}: {line[:40]} is a comment that {self.firmware} acts on", code="line-unread")
         self.out.comment(number, text)
 
     def _wait(self, number: int, line: str, seconds: float) -> None:
@@ -328,17 +298,13 @@ class _Reader:
             self.feed_mm_s = values["F"] / 60
         if not code:
             if set(values) - {"F"}:
-                raise Error(
-                    f"line {number}: {line[:40]!r} does not say how to go there", code="line-incomplete"
-                )
+                raise Error(f"line {number}: {line[:40]!r} does not say how to go there", code="line-incomplete")
             return
         self.motion = code
         places = {axis: values[axis] for axis in "XYZ" if axis in values}
         if not places and "S" not in values:
             if code in ("G2", "G3"):
-                raise Error(
-                    f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete"
-                )
+                raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete")
             return
         if self.servo and "S" in values:
             self.value = values["S"]
@@ -354,9 +320,7 @@ class _Reader:
                     code="mode-missing",
                 )
             if not {"X", "Y", "I", "J"} <= set(values) or math.isnan(self.at["X"]):
-                raise Error(
-                    f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete"
-                )
+                raise Error(f"line {number}: {line[:40]!r} is a circle without end or centre", code="line-incomplete")
             if math.dist((self.at["X"], self.at["Y"]), (values["X"], values["Y"])) < self.unit_mm / 2:
                 raise Error(
                     f"line {number}: {line[:40]!r} is a circle that ends where it began: brushsvg writes two halves",
@@ -364,10 +328,7 @@ class _Reader:
                 )
             turn = 1 if code == "G3" else -1
             centre = (self.at["X"] + values["I"], self.at["Y"] + values["J"], turn)
-            radii = [
-                math.dist(centre[:2], end)
-                for end in ((self.at["X"], self.at["Y"]), (values["X"], values["Y"]))
-            ]
+            radii = [math.dist(centre[:2], end) for end in ((self.at["X"], self.at["Y"]), (values["X"], values["Y"]))]
             if abs(radii[0] - radii[1]) > max(self.dialect.radii_mm, 4 * self.unit_mm):
                 raise Error(
                     f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre",

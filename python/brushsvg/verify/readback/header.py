@@ -102,9 +102,7 @@ def read_header(text: str) -> ProgramHeader:
     )
 
 
-def _numbers_in(
-    header: dict[str, str], word: str, pattern: str, bounds: tuple[float, float]
-) -> list[float] | None:
+def _numbers_in(header: dict[str, str], word: str, pattern: str, bounds: tuple[float, float]) -> list[float] | None:
     """Return the numbers of a line of the header; None where the line is missing.
 
     Raises Error where the line is damaged or a number is out of bounds.

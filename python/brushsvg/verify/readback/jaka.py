@@ -37,7 +37,5 @@ def read_jaka(text: str, cell: Cell) -> Readback:
     Raises Error with the line for a statement that brushsvg does not write.
     """
     turned = tuple(upright_deg(cell).tolist())
-    script = Script(
-        "# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned, rotation=rotation
-    )
+    script = Script("# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned, rotation=rotation)
     return read_script(text, script, Readback())

@@ -63,9 +63,7 @@ def read_krl(text: str, cell: Cell) -> Readback:
         any_case=True,
         rotation=lambda abc: rotation(abc[::-1]),
     )
-    return read_script(
-        "", script, Readback(in_paper_frame=True, blends_by_radius=True), _lines_in_order(text)
-    )
+    return read_script("", script, Readback(in_paper_frame=True, blends_by_radius=True), _lines_in_order(text))
 
 
 def _lines_in_order(text: str) -> NumberedLines:
@@ -90,14 +88,8 @@ def _lines_in_order(text: str) -> NumberedLines:
                 code="line-unread",
             )
         part = uncalled.pop(call[1])
-        if (
-            len(uncalled) + 1 == len(others)
-            and part[1:2]
-            and part[1][1].strip(" ").lower() == _RISE_DECLARATION
-        ):
-            lines.insert(
-                next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1)
-            )
+        if len(uncalled) + 1 == len(others) and part[1:2] and part[1][1].strip(" ").lower() == _RISE_DECLARATION:
+            lines.insert(next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1))
         if part[-1][1].strip(" ").lower() != "end":
             raise Error(f"program {call[1]!r} has no END", code="program-cut-short")
         lines += part[1:-1]

@@ -74,8 +74,7 @@ class _BacklashAxes:
         )  # a step also counts as a move if the tool stood on the step before
         stay = [is_move and before == after for before, after in pairwise(places)]
         goes, stands = (
-            [each for each, stays in zip(steps, stay, strict=True) if stays == which]
-            for which in (False, True)
+            [each for each, stays in zip(steps, stay, strict=True) if stays == which] for which in (False, True)
         )
         self.stood = not goes
         self.run_steps[step.line].append(goes[-1] if goes else None)

@@ -99,9 +99,7 @@ def read_ros2(text: str, cell: Cell) -> Readback:
     return reader.out
 
 
-def _tips_and_rotations(
-    rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool
-) -> tuple[np.ndarray, list]:
+def _tips_and_rotations(rows: np.ndarray, numbers: list[int], cell: Cell, is_tilted: bool) -> tuple[np.ndarray, list]:
     """Return the places of the brush's tip (n, 3) [mm], and the tool's rotations.
 
     A rotation is (3, 3), or None where the tool is upright. Raises Error where the tool is tilted although no line says
@@ -116,9 +114,7 @@ def _tips_and_rotations(
     for k in np.flatnonzero(off | ((leans_deg > TILT_TOLERANCE_DEG) & (not is_tilted))):
         if off[k]:
             raise Error(f"line {numbers[k]}: its quaternion is not of length 1", code="line-unread")
-        sentence = (
-            f"line {numbers[k]}: the tool is turned {leans_deg[k]:.4g} degrees from upright on the paper"
-        )
+        sentence = f"line {numbers[k]}: the tool is turned {leans_deg[k]:.4g} degrees from upright on the paper"
         raise Error(sentence, code="tool-turned")
     tip_in_flange = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)[:3, 3]
     tips = 1e3 * rows[:, 1:4] + turned @ tip_in_flange
@@ -150,12 +146,7 @@ class _RowReader:
             raise Error(f"line {number}: time {now_s:g} s does not go on", code="line-unread")
         after_s, way_mm = now_s - self.now_s, math.dist(tip, self.last)
         if kind == "rest":
-            if (
-                self.ways
-                or way_mm > self.near_mm
-                or limit_mm_s
-                or not self._is_same_rotation(turned, self.turned)
-            ):
+            if self.ways or way_mm > self.near_mm or limit_mm_s or not self._is_same_rotation(turned, self.turned):
                 raise Error(f"line {number}: it moves while it rests", code="line-unread")
             step = self.out.section().steps[-1] if self.out.section().steps else None
             if step is None:
@@ -166,9 +157,7 @@ class _RowReader:
         if not limit_mm_s > 0:
             raise Error(f"line {number}: no speed is allowed", code="line-incomplete")
         rounded_mm_s = PATH_ROUNDING_MM / after_s
-        if way_mm > after_s * (
-            limit_mm_s * (1 + SPEED_TOLERANCE_SHARE) + SPEED_TOLERANCE_MM_S + rounded_mm_s
-        ):
+        if way_mm > after_s * (limit_mm_s * (1 + SPEED_TOLERANCE_SHARE) + SPEED_TOLERANCE_MM_S + rounded_mm_s):
             sentence = f"line {number}: speed {way_mm / after_s:.1f} mm/s, its limit {limit_mm_s:.1f} mm/s"
             raise Error(sentence, code="speed-out-of-range")
         self.now_s, self.last = now_s, tip
@@ -188,9 +177,7 @@ class _RowReader:
         now_s: float,
         turned: np.ndarray | None,
     ) -> None:
-        axis, turned_axes = (
-            ((), ()) if turned is None else (tuple(-turned[:, 2]), tuple(turned.ravel().tolist()))
-        )
+        axis, turned_axes = ((), ()) if turned is None else (tuple(-turned[:, 2]), tuple(turned.ravel().tolist()))
         self.out.section().steps.append(Step(number, False, *tip, at_most[0], axis=axis))
         self.out.acts.append(Act(number, "move", "movel", tip, at_most, (0.0,), turned_axes))
         self.here = self.last = tip
@@ -224,9 +211,7 @@ class _RowReader:
             a, b, c = (self.upright if each is None else each for each in (self.turned, its_turn, turned))
             share = min(max(along / length, 0.0), 1.0)
             if not self._is_same_rotation(b, turned_to(turned_on(-a[:, 2], -c[:, 2], share), self.upright)):
-                raise Error(
-                    f"line {number}: the tool is not turned on evenly to the next pose", code="line-unread"
-                )
+                raise Error(f"line {number}: the tool is not turned on evenly to the next pose", code="line-unread")
             if its_mm_s != limit_mm_s:
                 raise Error(f"line {number}: its limit is not that of the next pose", code="line-unread")
             done = along

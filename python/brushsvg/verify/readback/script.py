@@ -60,9 +60,7 @@ def place(names: str) -> str:
     return ", ".join(f"(?P<{name}>{N})" for name in names)
 
 
-def read_script(
-    text: str, script: Script, out: Readback, lines: list[tuple[int, str]] | None = None
-) -> Readback:
+def read_script(text: str, script: Script, out: Readback, lines: list[tuple[int, str]] | None = None) -> Readback:
     """Read a script as steps and acts, into `out`.
 
     lines: the lines with their numbers, where they run in another order than in the text. Raises Error with the line
@@ -176,9 +174,7 @@ class _Reader:
         if blend_mm < 0:
             raise Error(f"line {number}: {line[:60]!r} has a negative blend", code="line-unread")
         self.out.joint_mm = max(self.out.joint_mm, blend_mm)
-        axis = tuple(
-            -value for value in self.turned[2::3]
-        )  # the tool's z points from the brush into the paper
+        axis = tuple(-value for value in self.turned[2::3])  # the tool's z points from the brush into the paper
         self.out.section().steps.append(Step(number, False, *end, at_most[0], blend_mm, axis=axis))
         self.out.acts.append(Act(number, "move", "blends", end, at_most, (blend_mm,), self.turned))
 
@@ -215,9 +211,7 @@ class _Reader:
 
     def _most(self, number: int, line: str, values: dict) -> None:
         if not min(values.values()) >= max(self.script.least, 1e-9):
-            raise Error(
-                f"line {number}: {line[:60]!r} leaves too little to move with", code="line-incomplete"
-            )
+            raise Error(f"line {number}: {line[:60]!r} leaves too little to move with", code="line-incomplete")
         self._add_unless_repeated(Act(number, "text", "at most", (), tuple(values.values())))
 
     def _text(self, number: int, line: str, values: dict) -> None:
@@ -238,9 +232,7 @@ class _Reader:
     def _destination(self, number: int, line: str, values: dict, names: str) -> tuple[float, ...]:
         values = self.held | values
         if not values.keys() >= set(names):
-            raise Error(
-                f"line {number}: {line[:60]!r} goes where no line before it says", code="line-incomplete"
-            )
+            raise Error(f"line {number}: {line[:60]!r} goes where no line before it says", code="line-incomplete")
         return tuple(values[name] for name in names)
 
     def _at_most(self, number: int, line: str, values: dict) -> tuple[float, ...]:

@@ -67,9 +67,7 @@ def read_urscript(text: str) -> Readback:
             turned = of_rotation_vector([float(found[k]) for k in (5, 6, 7)])
             axis = tuple((-turned[:, 2]).tolist())
             out.section().steps.append(Step(number, False, x, y, z, v, r, axis=axis))
-            out.acts.append(
-                Act(number, "move", found[1], (x, y, z), (v, a), (r,), tuple(turned.ravel().tolist()))
-            )
+            out.acts.append(Act(number, "move", found[1], (x, y, z), (v, a), (r,), tuple(turned.ravel().tolist())))
         elif found := _CIRCLE.fullmatch(line):
             *points, a, v = (float(value) * 1e3 for value in found.groups())
             _check_speed(number, line, a, v)
@@ -90,9 +88,7 @@ def read_urscript(text: str) -> Readback:
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may precede it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
-            raise Error(
-                f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread"
-            )
+            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
     if not has_paper:
         raise Error("the line that sets the paper is missing", code="program-cut-short")
     code = [line for _, line in lines if not line.startswith("# ")]

@@ -76,9 +76,7 @@ def read_xarm(text: str, cell: Cell) -> Readback:
         is_indented=True,
         rotation=rotation,
     )
-    lines = (
-        _normalise_setting(line) if line.startswith("done(arm.set_") else line for line in text.splitlines()
-    )
+    lines = (_normalise_setting(line) if line.startswith("done(arm.set_") else line for line in text.splitlines())
     out = read_script("\n".join(lines), script, Readback(blends_by_radius=True))
     out.acts = _sort_runs(_without_idle_stops(out.acts))
     return out

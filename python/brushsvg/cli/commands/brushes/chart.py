@@ -52,9 +52,7 @@ def chart_file(args) -> None:
         tolerance_mm = preflight.DEFAULT_TOLERANCE_MM
         walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, Job(args.z_offset))
         if walk.problems:
-            raise RefusedError(
-                args.output, summarize_notices([_advise_smaller_sheet(each) for each in walk.problems])
-            )
+            raise RefusedError(args.output, summarize_notices([_advise_smaller_sheet(each) for each in walk.problems]))
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
         files = writer.in_files(args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title))
     if args.page:
@@ -64,11 +62,7 @@ def chart_file(args) -> None:
     if args.chart:
         files[args.chart] = write_chart(laid_out).encode()
     warn_about_cell(args, cell)
-    write_outputs(
-        args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell)
-    )
+    write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell))
     print_text(
-        dab_chart_report(laid_out, brush)
-        if args.dabs
-        else chart_report(laid_out, brush, args.noise or EDGE_NOISE_MM)
+        dab_chart_report(laid_out, brush) if args.dabs else chart_report(laid_out, brush, args.noise or EDGE_NOISE_MM)
     )

@@ -83,13 +83,9 @@ def _report_repeats(args, sheet) -> None:
     files, details, picture = {}, args.details, args.picture or ""
     if args.output:
         is_json = suffix_of(args.output) == ".json"
-        files[args.output] = (
-            as_json(title, repeatability) if is_json else report(title, repeatability).text(details)
-        )
+        files[args.output] = as_json(title, repeatability) if is_json else report(title, repeatability).text(details)
     if args.picture:
         files[args.picture] = repeats_png(title, repeatability, sheets, strokes)
     if files:
         write_outputs(args, files, sources=_list_source_files(args))
-    print_text(
-        as_json(title, repeatability) if args.json else report(title, repeatability).text(details, picture)
-    )
+    print_text(as_json(title, repeatability) if args.json else report(title, repeatability).text(details, picture))

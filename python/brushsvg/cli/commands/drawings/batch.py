@@ -23,9 +23,7 @@ def batch_files(args) -> None:
     from ....jobs.batch.run import batch
 
     with refuse_errors(args.font or ""):  # errors about the words name their file themselves
-        word_items = (
-            list_words(args.words, read_font(args.font), args.size or 20.0, args.sheet) if args.words else []
-        )
+        word_items = list_words(args.words, read_font(args.font), args.size or 20.0, args.sheet) if args.words else []
     chosen = make_choices(args, input=None)
     with refuse_errors(args.output):
         result = batch(
@@ -42,9 +40,7 @@ def batch_files(args) -> None:
             from_project=chosen.from_project,
         )
     clear_stage()
-    notices = [
-        replace(each, where=_format_place(row, each.where)) for row in result.rows for each in row.notices
-    ]
+    notices = [replace(each, where=_format_place(row, each.where)) for row in result.rows for each in row.notices]
     outdated = "removed: it was made from an earlier version of the drawing"
     notices += [Notice(path, outdated, code="outdated-removed") for path in result.removed]
     warn(args.output, notices)

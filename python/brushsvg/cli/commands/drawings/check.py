@@ -61,9 +61,7 @@ def _describe_setup_job(result: Check) -> str:
     """Describe what a program before the first stroke does."""
     if result.job == "border":
         left, bottom, right, top = result.border_mm
-        return (
-            f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
-        )
+        return f"goes round {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm of the sheet, in the air"
     if result.job == "first-run":
         template = "goes round the sheet in the air, touches it at four points, strokes at heights from {:g} to {:g} mm"
         return template.format(*result.heights_mm)
@@ -73,6 +71,4 @@ def _describe_setup_job(result: Check) -> str:
 
 def _make_json(result: Check) -> dict:
     common = {"job": result.job, "time_s": round(result.time_s, 3)}
-    return common | (
-        {"border_mm": result.border_mm} if result.border_mm else {"heights_mm": result.heights_mm}
-    )
+    return common | ({"border_mm": result.border_mm} if result.border_mm else {"heights_mm": result.heights_mm})

@@ -44,9 +44,7 @@ def convert_file(args) -> None:
             files = {path_next_to(path, name): text for name, text in simulated.encoded().items()} | files
         single = simulations[0] if len(simulations) == 1 else None
         if args.picture or args.report:
-            marks = (
-                single.marks if single else prediction.predict(work, suffix_of(args.picture) == ".svg", stage)
-            )
+            marks = single.marks if single else prediction.predict(work, suffix_of(args.picture) == ".svg", stage)
             whole_work = single.work if single else work
         if args.picture:
             files[args.picture] = outputs.make_picture(suffix_of(args.picture), whole_work, marks)
@@ -92,10 +90,7 @@ def _list_called_before(output: str) -> list[str]:
 
     A program in several files calls its other files.
     """
-    return [
-        Path(file).name
-        for file in called_programs(output, _read_earlier_program(output), _read_earlier_program)
-    ]
+    return [Path(file).name for file in called_programs(output, _read_earlier_program(output), _read_earlier_program)]
 
 
 def _read_earlier_program(path: str) -> str:
@@ -118,14 +113,10 @@ def _report_leftover_programs(output: str, files: Collection[str], called_before
     name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
     existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
     existing += [each for each in called_before if path.with_name(each).exists()]
-    leftover = sorted(
-        {each for each in existing if str(path.with_name(each)) not in files}, key=_make_sort_key
-    )
+    leftover = sorted({each for each in existing if str(path.with_name(each)) not in files}, key=_make_sort_key)
     if not leftover:
         return []
-    sentence = (
-        f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
-    )
+    sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
     return [Notice("", sentence, code="programs-of-before", advice="delete them")]
 
 

@@ -33,9 +33,7 @@ def demo_picture(args) -> None:
         for how, work in works.items()
     }
     picture = comparison_png(works, marks, totals)
-    write_outputs(
-        args, {args.output: picture}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap
-    )
+    write_outputs(args, {args.output: picture}, len(works["closed"].strokes or ()), overlap=totals["closed"].overlap)
     print_text(f"{os.path.abspath(args.output)}\n")
     if not args.no_open:
         open_picture(args.output)
@@ -54,8 +52,6 @@ def open_picture(path: str) -> None:
 def _start_viewer(program: str, path: str) -> None:
     nothing = subprocess.DEVNULL
     try:
-        subprocess.Popen(
-            [program, path], stdin=nothing, stdout=nothing, stderr=nothing, start_new_session=True
-        )
+        subprocess.Popen([program, path], stdin=nothing, stdout=nothing, stderr=nothing, start_new_session=True)
     except OSError:  # the path of the picture was printed already
         return

@@ -78,9 +78,7 @@ def _find_version_problem(package: str, minimum: str) -> str:
         installed = metadata.version(package)
     except metadata.PackageNotFoundError:
         return "is missing"
-    return (
-        f"{installed} is older than {minimum}" if _parse_version(installed) < _parse_version(minimum) else ""
-    )
+    return f"{installed} is older than {minimum}" if _parse_version(installed) < _parse_version(minimum) else ""
 
 
 def _parse_version(version: str) -> list[int]:
@@ -89,9 +87,7 @@ def _parse_version(version: str) -> list[int]:
 
 def _list_extras(extras: dict[str, dict[str, str]]) -> Iterator[tuple[str, str]]:
     for name, packages in extras.items():
-        missing = [
-            package for package, minimum in packages.items() if _find_version_problem(package, minimum)
-        ]
+        missing = [package for package, minimum in packages.items() if _find_version_problem(package, minimum)]
         if missing:
             yield name, f"missing, for {PURPOSE[name]}. Add it with  {command_to_add(*missing)}"
         else:

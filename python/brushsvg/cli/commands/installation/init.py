@@ -37,9 +37,7 @@ def init_project(args) -> None:
         if cell is None:
             for line in _list_machines():
                 say(line)
-            cell = _ask(
-                f"Machine, a name or a cell.toml [{DEFAULT_CELL}]: ", DEFAULT_CELL, folder, _read_cell
-            )
+            cell = _ask(f"Machine, a name or a cell.toml [{DEFAULT_CELL}]: ", DEFAULT_CELL, folder, _read_cell)
         if args.brush is None:
             say(f"Brushes: {', '.join(brush_names())}, or your own brush.json")
             brush = _ask(

@@ -87,9 +87,7 @@ def cell_place(args) -> None:
         if problems
         else None
     )
-    followed_there = (
-        followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)
-    )
+    followed_there = followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)
     if args.output:
         stage("looking at the table")
         table = place.table_of(cell, program.robot_from_frame, joints)

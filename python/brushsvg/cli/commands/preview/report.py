@@ -42,9 +42,7 @@ def preview_report(args) -> None:
         text = report.as_text(".json" if args.json else ".txt", figures, args.details, args.output or "")
         if args.output:
             picture = outputs.overlap_picture(suffix_of(args.output), work, marks, places=figures.places)
-            write_outputs(
-                args, {args.output: picture}, len(figures.strokes), figures.time_s, figures.total.overlap
-            )
+            write_outputs(args, {args.output: picture}, len(figures.strokes), figures.time_s, figures.total.overlap)
     if work.plan.passes or args.json:
         print_text(text)
     elif advice:

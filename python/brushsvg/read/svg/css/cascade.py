@@ -102,9 +102,7 @@ def cascade(
     """
     inline = declarations(attributes["style"]) if "style" in attributes else ()
     declared: dict[str, list[str]] = {
-        name: [attributes[name]]
-        for name in _PRESENTATION_ATTRIBUTES
-        if name in attributes and attributes[name].strip()
+        name: [attributes[name]] for name in _PRESENTATION_ATTRIBUTES if name in attributes and attributes[name].strip()
     }
     if not (declared or rules or inline):
         return Style(parent.inherited, OWN, {}), []

@@ -71,9 +71,7 @@ def _parse_amount(token, depth: int) -> Amount | None:
 def _parse_sum(tokens: list, depth: int) -> Amount | None:
     """Return a sum of products. CSS requires blanks around + and -."""
     ends = [k for k, token in enumerate(tokens) if token in ("+", "-")]
-    blanks = [
-        tokens[k + side].type == "whitespace" for k in ends for side in (-1, 1) if 0 <= k + side < len(tokens)
-    ]
+    blanks = [tokens[k + side].type == "whitespace" for k in ends for side in (-1, 1) if 0 <= k + side < len(tokens)]
     if len(blanks) < 2 * len(ends) or not all(blanks):
         return None
     products = [_parse_product(tokens[a + 1 : b], depth) for a, b in pairwise([-1, *ends, len(tokens)])]

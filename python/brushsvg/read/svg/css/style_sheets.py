@@ -77,10 +77,7 @@ class StyleSheets:
             elif rule.type == "at-rule" and rule.lower_at_keyword == "import":
                 self._note("@import names another file, which is not read", about="@import")
             elif rule.type == "at-rule" and rule.lower_at_keyword == "namespace":
-                if not any(
-                    token.type in ("url", "string") and token.value == _SVG_NAMESPACE
-                    for token in rule.prelude
-                ):
+                if not any(token.type in ("url", "string") and token.value == _SVG_NAMESPACE for token in rule.prelude):
                     self._note("@namespace is not read: its rules count for all elements", about="@namespace")
             elif rule.type == "at-rule" and rule.lower_at_keyword not in _IRRELEVANT_AT_RULES:
                 name = f"@{rule.at_keyword[:40]}"

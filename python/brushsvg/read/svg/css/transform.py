@@ -88,9 +88,7 @@ def individual_transform(name: str, text: str, box: Callable[[], ReferenceBox], 
     return _MATRIX_MAKERS[name](*_values(words, kinds, box, em_px))
 
 
-def transform_origin(
-    text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float
-) -> tuple[float, float]:
+def transform_origin(text: str, is_css: bool, box: Callable[[], ReferenceBox], em_px: float) -> tuple[float, float]:
     """Return the point (x, y) of `transform-origin`.
 
     is_css: whether lengths need units, as in CSS. Raises Error if the text is invalid.
@@ -120,9 +118,7 @@ def about_point(point: tuple[float, float], matrix: Matrix) -> Matrix:
     return multiply(multiply((1.0, 0.0, 0.0, 1.0, x, y), matrix), (1.0, 0.0, 0.0, 1.0, -x, -y))
 
 
-def _values(
-    words: list[str], kinds: tuple[str, ...], box: Callable[[], ReferenceBox], em_px: float
-) -> list[float]:
+def _values(words: list[str], kinds: tuple[str, ...], box: Callable[[], ReferenceBox], em_px: float) -> list[float]:
     values = [_value(word, kind, box, em_px) for word, kind in zip(words, kinds, strict=False)]
     for word, value in zip(words, values, strict=False):
         if not math.isfinite(value):

@@ -46,9 +46,7 @@ def find_problem(name: str, value: str, diagonal: float) -> Notice | None:
             if length_px(value, diagonal) < 0:
                 raise Error(f"{value[:24]!r} is negative", code="out-of-range")
         except Error as error:
-            return Notice(
-                "", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid"
-            )
+            return Notice("", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid")
     elif name in _OPACITY_PROPERTIES and not _SHARE.fullmatch(value):
         return Notice(
             "",
@@ -115,9 +113,7 @@ def substitute_variables(value: str, inherited: dict[str, str]) -> tuple[str, st
             elif len(replacement) + sum(map(len, parts)) > _MAX_VALUE_LENGTH:
                 problem = problem or f"grows beyond {_MAX_VALUE_LENGTH} characters"
             else:
-                parts.append(
-                    substitute(depth + 1, replacement) if "var(" in replacement.lower() else replacement
-                )
+                parts.append(substitute(depth + 1, replacement) if "var(" in replacement.lower() else replacement)
         return "".join(parts).strip()
 
     return substitute(0, value), problem

@@ -58,9 +58,7 @@ def trace(commands: list[Command], paper_from_user: tuple[float, ...], scale: fl
         cubics = np.array(points).reshape(-1, 4, 2)
         # The comparison is False for nan as well.
         if all(-MAX_COORDINATE_MM <= v <= MAX_COORDINATE_MM for p in points for v in p):
-            has_tiny = any(
-                abs(p[6] - p[0]) < _MIN_SEGMENT_MM and abs(p[7] - p[1]) < _MIN_SEGMENT_MM for p in points
-            )
+            has_tiny = any(abs(p[6] - p[0]) < _MIN_SEGMENT_MM and abs(p[7] - p[1]) < _MIN_SEGMENT_MM for p in points)
             subpaths.append(_remove_tiny_segments(cubics, closed) if has_tiny else SubPath(cubics, closed))
             continue
         broken = int(np.argmin((np.abs(cubics) <= MAX_COORDINATE_MM).all(axis=(1, 2))))
@@ -165,9 +163,7 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
     The appendix computes the centre from the end points.
     """
     rx, ry = abs(rx), abs(ry)
-    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= MAX_COORDINATE_MM or not math.isfinite(
-        turn_deg
-    ):
+    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= MAX_COORDINATE_MM or not math.isfinite(turn_deg):
         return [(x, y, x, y, math.nan, math.nan, ex, ey)]
     straight = (x, y, x + (ex - x) / 3, y + (ey - y) / 3, ex - (ex - x) / 3, ey - (ey - y) / 3, ex, ey)
     if rx * scale < _MIN_SEGMENT_MM or ry * scale < _MIN_SEGMENT_MM:

@@ -25,9 +25,7 @@ INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 _KNOWN_CAPS = ("round", "butt", "zerowidth")  # the brush makes the ends of the first two
 _KNOTS_PER_SEGMENT = 16  # knots of the width profile on each segment
 # Effects whose result is a line, which d contains.
-_LINE_EFFECTS = frozenset(
-    "spiro bspline fillet_chamfer simplify roughen interpolate_points lattice2 envelope".split()
-)
+_LINE_EFFECTS = frozenset("spiro bspline fillet_chamfer simplify roughen interpolate_points lattice2 envelope".split())
 
 
 @dataclass(frozen=True)
@@ -55,11 +53,7 @@ def find_elements_in_group_effects(root: ET.Element) -> set[ET.Element]:
     """
     found: set[ET.Element] = set()
     for node in root.iter():
-        if (
-            node.tag.rpartition("}")[2] == "g"
-            and INKSCAPE + "path-effect" in node.attrib
-            and node not in found
-        ):
+        if node.tag.rpartition("}")[2] == "g" and INKSCAPE + "path-effect" in node.attrib and node not in found:
             found.update(node.iter())
     return found
 
@@ -78,34 +72,24 @@ def read_power_stroke(
         return None, []
     references = node.get(INKSCAPE + "path-effect", "").split(";")
     found = (find_referenced(reference.strip(), by_id) for reference in references)
-    effects = [
-        effect for effect in found if effect is not None and effect.get("is_visible", "true") != "false"
-    ]
+    effects = [effect for effect in found if effect is not None and effect.get("is_visible", "true") != "false"]
     power_strokes = [effect for effect in effects if effect.get("effect") == "powerstroke"]
     kinds = [re.sub("[^A-Za-z0-9_]", "", str(effect.get("effect")))[:40] for effect in effects]
     if not power_strokes:
         others = [kind for kind in kinds if kind not in _LINE_EFFECTS]
-        return None, [
-            _unread_notice(f"path effect {kind} is not read: its outline counts") for kind in others
-        ]
+        return None, [_unread_notice(f"path effect {kind} is not read: its outline counts") for kind in others]
     if in_group or len(effects) > 1:
         others = [kind for kind in kinds if kind != "powerstroke"] + ["of a group"] * in_group
         also = ", ".join(others) or "a second one"
         return None, [
-            _unread_notice(
-                f"its PowerStroke is not read together with path effect {also}: its outline counts"
-            )
+            _unread_notice(f"its PowerStroke is not read together with path effect {also}: its outline counts")
         ]
     (effect_node,) = power_strokes
     pairs = [parse_numbers(pair.strip()) for pair in effect_node.get("offset_points", "").split("|")]
-    scales = (
-        parse_numbers(effect_node.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta")
-    )
+    scales = (parse_numbers(effect_node.get(name, "1").strip()) for name in ("scale_width", "interpolator_beta"))
     numbered = [*pairs, *(values and [*values, 0.0] for values in scales)]
     if not all(pair and len(pair) == 2 and all(map(math.isfinite, pair)) for pair in numbered):
-        return None, [
-            _unread_notice("its PowerStroke has no offset points that can be read: its outline counts")
-        ]
+        return None, [_unread_notice("its PowerStroke has no offset points that can be read: its outline counts")]
     scale = parse_numbers(effect_node.get("scale_width", "1").strip()) or [1.0]
     beta = parse_numbers(effect_node.get("interpolator_beta", "0.2").strip()) or [0.2]
     offsets = np.array(pairs) * [1.0, scale[0]]
@@ -121,9 +105,7 @@ def read_power_stroke(
         if cap not in _KNOWN_CAPS:
             how = re.sub("[^A-Za-z_]", "", cap)[:30]
             notices.append(
-                _unread_notice(
-                    f"the cap {how} of its PowerStroke is not read: its ends are as the brush makes them"
-                )
+                _unread_notice(f"the cap {how} of its PowerStroke is not read: its ends are as the brush makes them")
             )
     tapers = (caps[0] == "zerowidth", caps[1] == "zerowidth")
     return PowerStroke(original, offsets, interpolator, beta[0], tapers), notices
@@ -133,9 +115,7 @@ def _unread_notice(sentence: str) -> Notice:
     return Notice("", sentence, code="path-effect-unread")
 
 
-def add_widths(
-    power_stroke: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: float
-) -> tuple[SubPath, ...]:
+def add_widths(power_stroke: PowerStroke, subpaths: tuple[SubPath, ...], mm_per_user: float) -> tuple[SubPath, ...]:
     """Return the sub-paths with the widths of a PowerStroke.
 
     Places are counted through over all sub-paths.
@@ -149,9 +129,7 @@ def add_widths(
         corners = power_stroke.offsets[:, 0] - first
         place = np.unique(np.concatenate([place, corners[(corners > 0) & (corners < count)]]))
         widths = (
-            2
-            * mm_per_user
-            * np.abs(_half_widths(power_stroke, place + first, first, first + count, subpath.closed))
+            2 * mm_per_user * np.abs(_half_widths(power_stroke, place + first, first, first + count, subpath.closed))
         )
         first += count
         if total == 0:
@@ -162,29 +140,18 @@ def add_widths(
         table = np.linspace(0.0, 1.0, knot_table.shape[1])
         ends = np.concatenate([[0.0], np.cumsum(knot_table[:, -1])])
         k = np.minimum(place.astype(int), count - 1)
-        at = (
-            np.array(
-                [ends[i] + np.interp(t, table, knot_table[i]) for i, t in zip(k, place - k, strict=True)]
-            )
-            / total
-        )
+        at = np.array([ends[i] + np.interp(t, table, knot_table[i]) for i, t in zip(k, place - k, strict=True)]) / total
         result.append(SubPath(subpath.cubics, subpath.closed, np.column_stack([at, widths])))
     return tuple(result)
 
 
-def _half_widths(
-    power_stroke: PowerStroke, place: np.ndarray, first: int, last: int, closed: bool
-) -> np.ndarray:
-    points = power_stroke.offsets[
-        (power_stroke.offsets[:, 0] >= first) & (power_stroke.offsets[:, 0] <= last)
-    ]
+def _half_widths(power_stroke: PowerStroke, place: np.ndarray, first: int, last: int, closed: bool) -> np.ndarray:
+    points = power_stroke.offsets[(power_stroke.offsets[:, 0] >= first) & (power_stroke.offsets[:, 0] <= last)]
     if not len(points):
         points = power_stroke.offsets[:1]
     if closed:
         period = last - first
-        points = np.concatenate(
-            [np.subtract(points[-1:], (period, 0)), points, np.add(points[:1], (period, 0))]
-        )
+        points = np.concatenate([np.subtract(points[-1:], (period, 0)), points, np.add(points[:1], (period, 0))])
     else:
         begin, end = np.where(power_stroke.tapers, 0.0, points[[0, -1], 1])
         before = [[first, begin]] if points[0, 0] > first else []
@@ -193,9 +160,7 @@ def _half_widths(
     points = points[np.concatenate([[True], np.diff(points[:, 0]) > 0])]
     if len(points) == 1:
         return np.full(len(place), points[0, 1])
-    return _INTERPOLATORS.get(power_stroke.interpolator, _interpolate_linearly)(
-        points, place, power_stroke.beta
-    )
+    return _INTERPOLATORS.get(power_stroke.interpolator, _interpolate_linearly)(points, place, power_stroke.beta)
 
 
 def _interpolate_linearly(points: np.ndarray, place: np.ndarray, _beta: float) -> np.ndarray:
