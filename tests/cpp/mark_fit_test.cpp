@@ -167,9 +167,9 @@ TEST_CASE("derivatives of edge distances are those of small steps, events and la
         model.distances(0, x.data(), moved.data(), down, nullptr, nullptr);
         value += step;
         for (Eigen::Index k = 0; k < at.size(); ++k) {
-            const double told = i < x.size() ? by(k, i) : own(k, i - x.size());
+            const double analytic = i < x.size() ? by(k, i) : own(k, i - x.size());
             // the derivatives neglect how the tangent lines turn; midway between two places of the edge there is a kink
-            if (std::abs((up[k] - down[k]) / (2.0 * step) - told) > 0.1 * (1.0 + std::abs(told))) ++wrong;
+            if (std::abs((up[k] - down[k]) / (2.0 * step) - analytic) > 0.1 * (1.0 + std::abs(analytic))) ++wrong;
         }
     }
     CHECK(wrong <= 0.02 * double(at.size() * (x.size() + 2)));
@@ -337,11 +337,12 @@ TEST_CASE("an axis that turns stands still for its whole backlash, and not for l
         machine.by[MachineAt::backlash] = machine.by[MachineAt::backlash + 1] = backlash;
         const auto behind = behind_by(poses, machine, machine.by);
         const double sign = backlash < 0.0 ? -1.0 : 1.0, all = std::abs(backlash);
-        const std::array<double, 6> told{0.0, 10.0, 9.9, 9.7, 9.5, 5.0};
-        double place = told[0] + 0.5 * all;  // arrived from the right, pulled along by a slot as wide as the backlash
-        for (std::size_t i = 0; i < told.size(); ++i) {
-            place = std::clamp(place, told[i] - 0.5 * all, told[i] + 0.5 * all);
-            CHECK(behind[i].x() == doctest::Approx(sign * (told[i] - place)).epsilon(1e-12));
+        const std::array<double, 6> commanded{0.0, 10.0, 9.9, 9.7, 9.5, 5.0};
+        // The axis arrived from the right, pulled along by a slot as wide as the backlash.
+        double place = commanded[0] + 0.5 * all;
+        for (std::size_t i = 0; i < commanded.size(); ++i) {
+            place = std::clamp(place, commanded[i] - 0.5 * all, commanded[i] + 0.5 * all);
+            CHECK(behind[i].x() == doctest::Approx(sign * (commanded[i] - place)).epsilon(1e-12));
             CHECK(behind[i].y() == doctest::Approx(0.5 * backlash));
         }
     }

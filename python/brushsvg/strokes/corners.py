@@ -103,8 +103,6 @@ def lifted_at_corners(strokes: list[_core.Stroke], brush: _core.Brush) -> list[_
     the area of missing and surplus paint is less by 0.05 squares of the width. The parts of stroke `id` are called
     id, id~2, id~3 ... A closed line then begins at such a corner.
     """
-    from .. import _core
-
     require_type(brush, _core.Brush, "a brush")
     for stroke in strokes:
         require_type(stroke, _core.Stroke, "a stroke")
@@ -144,7 +142,6 @@ def _cut_at_corners(stroke, brush) -> list:
 
 
 def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -> bool:
-    from .. import _core
     from .trial_mark import misplaced_mm2, trial_marks
 
     whole = line_stroke(line.between(before, after))
@@ -162,8 +159,6 @@ def drawn_line(cubics: np.ndarray, half_width: list) -> Line:
 
 
 def line_stroke(line: Line, like=None, lane: int = 1):
-    from .. import _core
-
     stroke = _core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width)
     if like is not None:
         origin = like.origin

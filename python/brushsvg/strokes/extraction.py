@@ -17,7 +17,6 @@ from .corners import begin_amid_side
 if TYPE_CHECKING:
     from .._core import Stroke
 
-WAYS = ("stroke", "outline")
 # Least share of the area of a line's stroke that its fill must add. With less, the path is a line; with more, a
 # shape.
 _MIN_FILL_SHARE = 0.01

@@ -12,8 +12,8 @@ import numpy as np
 
 from ... import _core
 from ...geometry.polylines import length
-from ...geometry.rotation import rotation
-from .graph import Piece
+from ...geometry.rotation import angle_between, rotation
+from .graph import Piece, reverse_piece
 
 # How far back from the end a hook is searched for, in half widths there. The axis of a cut at 45 degrees hooks for
 # 3.7 of them.
@@ -40,8 +40,8 @@ def run_to_cuts(chain: list[Piece], rings: list[np.ndarray]) -> list[Piece]:
     chain: the pieces of the stroke. A last piece that is all hook becomes part of the piece before it.
     """
     chain = _run_last_to_cut(chain, rings)
-    back = _run_last_to_cut([_reversed(piece) for piece in reversed(chain)], rings)
-    return [_reversed(piece) for piece in reversed(back)]
+    back = _run_last_to_cut([reverse_piece(piece) for piece in reversed(chain)], rings)
+    return [reverse_piece(piece) for piece in reversed(back)]
 
 
 def _run_last_to_cut(chain: list[Piece], rings: list[np.ndarray]) -> list[Piece]:
@@ -71,10 +71,6 @@ def _run_last_to_cut(chain: list[Piece], rings: list[np.ndarray]) -> list[Piece]
     return [*chain[:-2], merged]
 
 
-def _reversed(piece: Piece) -> Piece:
-    return replace(piece, line=piece.line[::-1], ends=piece.ends[::-1])
-
-
 def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     """Replace the hook at the end of a line by a straight run up to the cut.
 
@@ -94,7 +90,7 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     (level_rows,) = is_level.nonzero()
     axes = ways_mm[level_rows] / np.hypot(*ways_mm[level_rows].T)[:, None]
     if is_level[0]:
-        if _measure_angle(back[0, :2] - back[1, :2], axes[0]) < MIN_HOOK_TURN_RAD:
+        if angle_between(back[0, :2] - back[1, :2], axes[0]) < MIN_HOOK_TURN_RAD:
             return line
         level_rows, axes = level_rows[1:], axes[1:]
     ways = np.stack([axes @ rotation(turn_rad) for turn_rad in TRIED_TURNS_RAD], axis=1)
@@ -150,10 +146,6 @@ def _has_straight_sides(
         if (np.abs(side_mm - 0.3 * half) > MAX_SIDE_DEVIATION * half).any():
             return False
     return True
-
-
-def _measure_angle(one: np.ndarray, other: np.ndarray) -> float:
-    return abs(float(np.arctan2(one[0] * other[1] - one[1] * other[0], one @ other)))
 
 
 def _left_of(way: np.ndarray) -> np.ndarray:

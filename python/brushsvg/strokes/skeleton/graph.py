@@ -6,7 +6,7 @@ x, y, half width [mm]. It ends where the outline ends, where it meets another li
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,6 +33,10 @@ class Piece:
     inside: list[np.ndarray] = field(default_factory=list)
     through: list[int] = field(default_factory=list)
     closed: bool = False
+
+
+def reverse_piece(piece: Piece) -> Piece:
+    return replace(piece, line=piece.line[::-1], ends=piece.ends[::-1])
 
 
 @dataclass

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from ...geometry.polylines import length
+from ...geometry.rotation import angle_between
 
 # Two nodes are one crossing if the branch between them is shorter than this share of the sum of their radii.
 CROSSING_REACH = 0.9
@@ -150,7 +151,7 @@ def _drop_tip(crossing: Crossing) -> None:
     x, y, radius = crossing.discs[0]
     for tip in crossing.arms:
         first_leg, second_leg = (arm for arm in crossing.arms if arm is not tip)
-        least, most = sorted(_measure_angle(-leg.direction, tip.direction) for leg in (first_leg, second_leg))
+        least, most = sorted(angle_between(-leg.direction, tip.direction) for leg in (first_leg, second_leg))
         is_amid = _are_legs(first_leg, second_leg) and MIN_LEG_TURN_RATIO * most < least < np.pi / 2
         if tip.other is None and is_amid and np.hypot(*tip.line[-1, :2] - (x, y)) < radius:
             crossing.arms = [first_leg, second_leg]
@@ -273,8 +274,4 @@ def _mate_thick_arms(crossing: Crossing, a: Arm, b: Arm) -> None:
 def measure_turn(a: Arm, b: Arm) -> float:
     """Return how far a line turns [rad] from one arm through the crossing to another."""
     across = b.line[b.out, :2] - a.line[a.out, :2]
-    return _measure_angle(-a.direction, across) + _measure_angle(across, b.direction)
-
-
-def _measure_angle(u, v) -> float:
-    return abs(float(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))
+    return angle_between(-a.direction, across) + angle_between(across, b.direction)

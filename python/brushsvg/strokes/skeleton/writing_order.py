@@ -10,7 +10,7 @@ import numpy as np
 from ...geometry.polylines import length
 from ...geometry.rings import signed_area
 from .bridges import STRAIGHT_ROWS, trace_straight
-from .graph import Piece, Skeleton
+from .graph import Piece, Skeleton, reverse_piece
 from .junctions import Crossing
 
 # Weights of the direction of writing. The first two multiply the unit vector from start to end, x to the right and
@@ -81,10 +81,6 @@ def direction_score(line: np.ndarray, script: str = "auto") -> float:
     head, tail = line[:n, 2].mean(), line[-n:, 2].mean()
     along = chord / max(np.hypot(*chord), 1e-9)
     return float(DIRECTION_WEIGHTS[script] @ [*along, (head - tail) / max(head, tail, 1e-9)])
-
-
-def reverse_piece(piece: Piece) -> Piece:
-    return replace(piece, line=piece.line[::-1], ends=piece.ends[::-1])
 
 
 def _direct_ring(piece: Piece) -> Piece:
