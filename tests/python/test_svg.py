@@ -209,6 +209,7 @@ def test_arcs_at_the_edge_of_their_definition():
         ("M0 0L1 1 2 2 3 -1e7 M5 5H6", 2, 14, "3 -1e7 M5 5H6"),
         ("M0 0L1 1A1e300 5 0 0 1 9 9", 1, 9, "A1e300 5 0 0 1 9..."),
         ("M0 0L1 1A5 5 1e999 0 1 9 9", 1, 9, "A5 5 1e999 0 1 9..."),
+        ("M0 0L1 1a5 5 0 0 1 9 1e999a5 5 0 0 1 9 -1e999a5 5 0 0 1 1 1", 1, 9, "a5 5 0 0 1 9 1e9..."),
     ],
 )
 def test_damaged_paths_are_read_up_to_the_error(d, cubics, character, found):
@@ -255,6 +256,8 @@ def test_the_range_counts_on_paper():
         ('<path id="bad" d="M0 0H5" transform="scale(2) rotate(1 2)"/>', "transform-unread 10 'rotate(1 2)'"),
         ('<path id="bad" d="M0 0H5" transform="scale(1e999)"/>', "transform-unread 1"),
         ('<g id="bad" transform="scale(1e200)"><g transform="scale(1e200)"/></g>', None),
+        ('<svg id="bad" viewBox="0 0 9 1e308"><svg><path d="M0 0H5"/></svg></svg>', None),
+        ('<svg id="bad" width="1e300"><path d="M0 0H5"/></svg>', "geometry-out-of-range bad 1e6"),
         ('<path id="bad" d="M0 0H5" stroke-width="-1"/>', "stroke-width-invalid -1"),
         ('<path id="bad" d="M0 0H5" stroke-width="1e9"/>', "geometry-out-of-range 1e+09 1e6"),
         (

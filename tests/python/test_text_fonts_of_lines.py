@@ -24,8 +24,8 @@ GLYPHS = {
 @pytest.fixture
 def font(tmp_path):
     builder = FontBuilder(1000, isTTF=True)
-    builder.setupGlyphOrder([".notdef", *GLYPHS])
-    builder.setupCharacterMap({ord(letter): letter for letter in GLYPHS})
+    builder.setupGlyphOrder([".notdef", *GLYPHS, "c"])
+    builder.setupCharacterMap({ord(letter): letter for letter in [*GLYPHS, "c"]})
     glyphs = {".notdef": TTGlyphPen(None).glyph()}
     for letter, contours in GLYPHS.items():
         pen = TTGlyphPen(None)
@@ -35,6 +35,7 @@ def font(tmp_path):
                 pen.lineTo(tuple(map(round, point)))
             pen.closePath()
         glyphs[letter] = pen.glyph()
+    glyphs["c"] = _loop()
     builder.setupGlyf(glyphs)
     builder.setupHorizontalMetrics({name: (650, 0) for name in glyphs})
     builder.setupHorizontalHeader(ascent=800, descent=-200)
@@ -43,6 +44,15 @@ def font(tmp_path):
     builder.setupPost()
     builder.save(tmp_path / "lines.ttf")
     return (tmp_path / "lines.ttf").read_bytes()
+
+
+def _loop():
+    """Return a glyph of one curve that ends where it begins."""
+    pen = TTGlyphPen(None)
+    pen.moveTo((100, 0))
+    pen.qCurveTo((300, 700), (100, 0))
+    pen.closePath()
+    return pen.glyph()
 
 
 def lines_of(font, letter):
@@ -68,3 +78,8 @@ def test_letters_are_the_lines_that_were_drawn(font):
 def test_a_ring_stays_closed(font):
     (ring,) = lines_of(font, "O")
     assert ring[0] == ring[-1] and len(ring) == 25
+
+
+def test_a_contour_of_one_curve_is_kept(font):
+    (loop,) = lines_of(font, "c")
+    assert loop[0] == loop[-1]

@@ -21,6 +21,7 @@ from .element import PaintedElements
 from .layers import is_notes_layer, layer_names
 from .paint_servers import INVISIBLE_OPACITY, PaintServers
 from .paths import shapes
+from .paths.path_to_cubics import MAX_COORDINATE_MM
 from .paths.power_stroke import find_elements_in_group_effects
 from .references import find_referenced, href
 from .settings import own_settings
@@ -295,7 +296,12 @@ class TreeWalk:
             self.notes.add(node, context, notice.sentence, code=notice.code)
         clip = context.clip
         if context.style.own["overflow"] not in ("visible", "auto"):
-            clip = _clip_to_corners(clip, rectangle_corners(context.matrix, corners))
+            corners_mm = rectangle_corners(context.matrix, corners)
+            if not all(abs(mm) <= MAX_COORDINATE_MM for corner in corners_mm for mm in corner):
+                sentence = "its viewport reaches beyond 1e6 mm: left out"
+                self.notes.add(node, context, sentence, damaged=True, code="geometry-out-of-range")
+                return
+            clip = _clip_to_corners(clip, corners_mm)
         matrix = multiply(context.matrix, inner)
         self._enter(node, iter(node), context._replace(matrix=matrix, viewport=viewport, clip=clip, size=None))
 

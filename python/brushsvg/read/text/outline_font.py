@@ -185,13 +185,13 @@ def contours_to_lines(contours: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
     """Return the lines of the contours of a single-line font.
 
     Parts that a contour draws twice are kept once. The edge that closes a contour is removed if the contour has few
-    edges, or if this edge is longer than the drawn edges.
+    edges, but more than one, or if this edge is longer than the drawn edges.
     """
     lines = []
     for contour in contours:
         cubics, known, kept = contour.cubics, set(), []
         lengths = np.hypot(*(cubics[:, 3] - cubics[:, 0]).T)
-        if len(cubics) < _MIN_CLOSED_CUBICS or lengths[-1] > 2 * np.median(lengths):
+        if 1 < len(cubics) < _MIN_CLOSED_CUBICS or lengths[-1] > 2 * np.median(lengths):
             cubics = cubics[:-1]
         for cubic in cubics:
             key = np.round(cubic, 6)

@@ -163,7 +163,8 @@ def _arc(x, y, rx, ry, turn_deg, large, sweep, ex, ey, scale: float) -> list[tup
     The appendix computes the centre from the end points.
     """
     rx, ry = abs(rx), abs(ry)
-    if not max(rx, ry, abs(x), abs(y), abs(ex), abs(ey)) * scale <= MAX_COORDINATE_MM or not math.isfinite(turn_deg):
+    is_in_range = all(abs(value) * scale <= MAX_COORDINATE_MM for value in (rx, ry, x, y, ex, ey))  # NaN is not
+    if not is_in_range or not math.isfinite(turn_deg):
         return [(x, y, x, y, math.nan, math.nan, ex, ey)]
     straight = (x, y, x + (ex - x) / 3, y + (ey - y) / 3, ex - (ex - x) / 3, ey - (ey - y) / 3, ex, ey)
     if rx * scale < _MIN_SEGMENT_MM or ry * scale < _MIN_SEGMENT_MM:
