@@ -385,10 +385,11 @@ def test_half_widths_and_widths_with_noise_go_together():
         )
 
 
-def test_a_column_that_stands_twice_is_refused(tmp_path, capsys):
-    (tmp_path / "m.csv").write_text("kind,depth_mm,depth_mm,value_mm\nlag,1,2,3\n")
+@pytest.mark.parametrize(("column", "shown"), [("depth_mm", "'depth_mm'"), ("\x1b[2J", "'\\x1b[2J'")])
+def test_a_column_that_stands_twice_is_refused(tmp_path, capsys, column, shown):
+    (tmp_path / "m.csv").write_text(f"kind,{column},{column},depth_mm,value_mm\nlag,1,2,3\n")
     status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
-    assert status == 1 and agrees(reported, "key-twice depth_mm", "line 1"), reported
+    assert status == 1 and agrees(reported, f"key-twice {shown}", "line 1"), reported
 
 
 @pytest.mark.parametrize(

@@ -228,6 +228,7 @@ def test_a_path_of_thousands_of_characters_does_not_fill_the_terminal():
     def read(path):
         raise Error("the file cannot be read: its name is too long", code="file-unreadable")
 
-    with pytest.raises(Error) as refusal:
-        read_painted(plan(), "a" * 5000, read)
-    assert refusal.value.code == "file-unreadable" and len(str(refusal.value)) < 400
+    for plan_, marks_ in ((plan(), "a" * 5000), ("a" * 5000, marks())):
+        with pytest.raises(Error) as refusal:
+            read_painted(plan_, marks_, read)
+        assert refusal.value.code == "file-unreadable" and len(str(refusal.value)) < 400

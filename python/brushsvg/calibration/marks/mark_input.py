@@ -128,7 +128,7 @@ def _read_passes(plan, read) -> dict[str, _core.Pass]:
         try:
             parsed = _core.read_plan(read(plan).decode("utf-8", "replace"))
         except Error as refusal:
-            raise Error(f"{plan}: {refusal}", "plan", refusal.value, code=refusal.code) from None
+            raise Error(f"{plan[:200]}: {refusal}", "plan", refusal.value, code=refusal.code) from None
     elif isinstance(plan, dict):
         whole = {"format": "brushsvg/plan", "version": 1, "brush": "", "brush_sha256": "", "sheet_mm": [1, 1]}
         try:
@@ -142,10 +142,10 @@ def _read_passes(plan, read) -> dict[str, _core.Pass]:
     for number, plan_pass in enumerate(parsed.passes, 1):
         name = plan_pass.stroke or f"stroke{number}"
         if name in passes:
-            raise Error(f"two passes paint stroke {name!r}: give each its own name", "plan", code="stroke-twice")
+            raise Error(f"two passes paint stroke {name[:60]!r}: give each its own name", "plan", code="stroke-twice")
         if plan_pass.settings.kind == DAB:
             raise Error(
-                f"{name!r} is a dab: dabs show the outline of the brush, but no lag",
+                f"{name[:60]!r} is a dab: dabs show the outline of the brush, but no lag",
                 "plan",
                 code="dabs-tell-no-lag",
                 advice="brushsvg calibrate PHOTO --chart CHART.json --brush BRUSH",

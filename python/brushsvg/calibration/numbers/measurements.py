@@ -201,7 +201,7 @@ def _open_table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
         raise Error(f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators")
     names = complete[0].fieldnames
     if twice := [name for name in names if name and names.count(name) > 1]:
-        raise Error(f"the column {twice[0]} stands twice", "line 1", code="key-twice")
+        raise Error(f"column {twice[0][:40]!r} stands twice", "line 1", code="key-twice")
     return complete[0]
 
 
