@@ -30,7 +30,7 @@ def document(data: str | bytes, format_: str, version: int = 1) -> dict:
     found = content.get("version")
     if found != version or isinstance(found, bool):
         raise Error(
-            f"version {found!s:.40} of {format_} is not known; known is {version}",
+            f"version {found!r:.40} of {format_} is not known; known is {version}",
             "version",
             code="version-unknown",
         )

@@ -89,6 +89,7 @@ def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
         ("[speeds]", "[speed]", "speeds", "key-missing"),
         ("[workspace]", "[[workspace]]", "workspace", "wrong-type"),
         ("version = 1", "version = 2", "version", "version-unknown 2"),
+        ("version = 1", 'version = "1\\n2"', "version", "version-unknown '1\\n2'"),
         ('format = "brushsvg/cell"', "", "format", "format-unknown"),
         ("decimals = 4", "decimals = ", "", "not-toml"),
         (

@@ -316,6 +316,7 @@ def test_the_file_is_read_back():
         ({"format": "x"}, "format", "format-unknown"),
         ({"version": 2}, "version", "version-unknown 2 1"),
         ({"version": True}, "version", "version-unknown True"),
+        ({"version": "1\n2"}, "version", "version-unknown '1\\n2'"),
         ({"markers": [{"id": True, "corners_mm": [[0, 0]] * 4}]}, "markers[0]", "wrong-type"),
         (
             {"markers": [{"id": 0, "corners_mm": [[0, 0]] * 3 + [[0, 0, 0]]}]},

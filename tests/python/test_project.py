@@ -243,6 +243,7 @@ def test_a_file_that_is_not_valid_costs_one_sentence(desk, capsys, text):
         (b'format = "brushsvg/project"', "version-unknown version"),
         (b'format = "brushsvg/project"\nversion = 2', "version-unknown 2"),
         (b'format = "brushsvg/project"\nversion = true', "version-unknown True"),
+        (b'format = "brushsvg/project"\nversion = "1\\n2"', "version-unknown '1\\n2'"),
         (b"\xff\xfe", "not-toml"),
         (b"# " + b"x" * MAX_BYTES, f"file-too-large {MAX_BYTES}"),
         (b"x" * MAX_BYTES, "not-toml"),  # refused at once; a search that restarts at each letter takes hours

@@ -145,7 +145,7 @@ def read_studio(data: bytes) -> Studio:
     if document.pop("format", None) != FORMAT:
         raise Error(f'the file is not a studio: format = "{FORMAT}" is missing', "format", code="format-unknown")
     if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
-        sentence = f"version {str(version)[:40]} of the studio file is not known; known: {VERSION}"
+        sentence = f"version {repr(version)[:40]} of the studio file is not known; known: {VERSION}"
         raise Error(sentence, "version", code="version-unknown")
     for name in document:
         if name not in TABLE_TYPES:

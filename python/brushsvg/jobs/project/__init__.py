@@ -173,7 +173,7 @@ def _read_settings(document: dict, folder: str) -> dict[str, object]:
         raise Error(sentence, where="format", code="format-unknown")
     version = document.pop("version", None)
     if version != VERSION or isinstance(version, bool):
-        sentence = f"version {str(version)[:40]} of the project file is not known; known: {VERSION}"
+        sentence = f"version {repr(version)[:40]} of the project file is not known; known: {VERSION}"
         raise Error(sentence, where="version", code="version-unknown")
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):

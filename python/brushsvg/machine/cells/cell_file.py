@@ -66,7 +66,7 @@ def parse_cell(text: str) -> Cell:
         raise Error(f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown")
     if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
         raise Error(
-            f"version {str(version)[:40]} of the cell file is not known; known: {VERSION}",
+            f"version {repr(version)[:40]} of the cell file is not known; known: {VERSION}",
             where="version",
             code="version-unknown",
         )
