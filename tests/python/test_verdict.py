@@ -11,6 +11,7 @@ from brushsvg.reporting.report_text import (
     GOOD_OVERLAP,
     USABLE_OVERLAP,
     Report,
+    format_overlap,
     overlap_reasons,
     percent,
     verdict,
@@ -76,6 +77,11 @@ def test_what_forbids_goes_before_what_warns_and_the_rest_is_counted():
 @pytest.mark.parametrize(("share", "words"), [(1.0, "100 %"), (0.999, "99 %"), (0.989, "98 %"), (0.0, "0 %")])
 def test_only_all_is_a_hundred_percent(share, words):
     assert percent(share) == words
+
+
+@pytest.mark.parametrize(("overlap", "words"), [(0.9496, "0.949"), (0.95, "0.950"), (0.29, "0.290"), (1.0, "1.000")])
+def test_overlap_is_rounded_down(overlap, words):
+    assert format_overlap(overlap) == words
 
 
 def test_a_report_has_ten_lines_and_all_of_them_in_the_details():

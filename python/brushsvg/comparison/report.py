@@ -11,7 +11,7 @@ from itertools import chain
 import numpy as np
 
 from ..machine.cells.cell import Machine
-from ..reporting.report_text import Report, overlap_reasons, percent, place_line, plural, table, verdict
+from ..reporting.report_text import Report, format_overlap, overlap_reasons, percent, place_line, plural, table, verdict
 from ..reporting.worst_areas import WorstArea, worst_areas
 from .attribution.faults import Faults
 from .attribution.report import fault_lines, faults_as_json, fix_first
@@ -87,10 +87,11 @@ def report(
     ]
     reservations += ["something covers part of the sheet"] if found.has_things else []
     rows = {row.stroke: row for row in found.strokes}
+    shown_painted, shown_placed, shown_each = map(format_overlap, (as_painted, placed, each))
     lines = [
-        f"{title}: {percent(as_painted)} of paint and {what.removeprefix('the ')} coincide (overlap {as_painted:.3f}; "
-        f"{placed:.3f} with the sheet's place corrected, {each:.3f} with each stroke's)"
-        f"{WORSE_PLACE_NOTE if round(placed, 3) < round(as_painted, 3) else ''}",
+        f"{title}: {percent(as_painted)} of paint and {what.removeprefix('the ')} coincide (overlap {shown_painted}; "
+        f"{shown_placed} with the sheet's place corrected, {shown_each} with each stroke's)"
+        f"{WORSE_PLACE_NOTE if shown_placed < shown_painted else ''}",
         _describe_sheet(found),
         *(
             place_line(
@@ -157,8 +158,8 @@ def _table_row(row: Compared, ends: Ends) -> tuple[str, ...]:
     formats = ("+.2f", "+.2f", ".2f", "+.1f", "+.2f")
     return (
         row.stroke,
-        "-" if row.overlap_target is None else f"{row.overlap_target:.3f}",
-        f"{row.overlap_predicted:.3f}",
+        "-" if row.overlap_target is None else format_overlap(row.overlap_target),
+        format_overlap(row.overlap_predicted),
         *(
             f"{round(value, int(how[-2])) + 0.0:{how}}" if row.placed.found else "-"
             for value, how in zip(placed, formats, strict=True)

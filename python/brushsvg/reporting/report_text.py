@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 MAX_LINES = 10
 MAX_REASONS = 2  # in a verdict; other reasons are in the lines below it
 GOOD = "good"
@@ -72,6 +74,11 @@ def percent(share: float) -> str:
     95 % is never less than 0.95, and 100 % is everything.
     """
     return f"{int(100 * share + 1e-9)} %"
+
+
+def format_overlap(overlap: float) -> str:
+    """Format an overlap, rounded down as `percent` rounds: 0.9496 is not shown as 0.950."""
+    return f"{np.floor(1000 * overlap + 1e-9) / 1000:.3f}"
 
 
 def plural(count: int, noun: str) -> str:

@@ -11,7 +11,7 @@ from ...errors import Notice
 from ...geometry.rotation import rotation
 from ...model.confidence import law_band, paint_interval_per_m
 from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure, shortened
-from ...reporting.report_text import Report, overlap_reasons, plural, verdict
+from ...reporting.report_text import Report, format_overlap, overlap_reasons, plural, verdict
 from ..law_text import NOT_CONVERGED, coefficients, in_short, laws_table, name_and_depths, paper_height
 from . import machine_found
 from .from_marks import (
@@ -68,7 +68,8 @@ def report(calibration, of_photo: bool = False) -> Report:
     cell = machine_found.cell_table(fit, calibration.expected, machine_numbers)
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(calibration.painted.marks)} painted marks",
-        f"painted and predicted marks overlap by {moved:.3f}, by {in_place:.3f} with the displacements of marks (mean "
+        f"painted and predicted marks overlap by {format_overlap(moved)}, by {format_overlap(in_place)} with "
+        f"the displacements of marks (mean "
         "of intersection over union)",
         *(_describe_paint(calibration) if brush.paint else []),
         _describe_displacements(calibration),

@@ -8,6 +8,7 @@ import numpy as np
 from ... import _core
 from ...photo.flatten import Flat
 from ...reporting.label_space import LabelSpace
+from ...reporting.report_text import format_overlap
 from .mark_report import predict_outlines, to_sheet_frame
 
 # Colours as blue, green, red.
@@ -107,9 +108,9 @@ def _draw_predictions(picture, flat, read, calibration) -> dict[str, list[str]]:
         overlap = _core.overlap([np.array(ring) for ring in mark.outline_mm], drawn)
         displaced = np.hypot(*residual.displacement_mm)
         words[mark.stroke] = [
-            f"{mark.stroke}: overlap {overlap:.3f}, displaced {displaced:.2f} mm",
-            f"{mark.stroke}: {overlap:.3f}, {displaced:.2f} mm",
-            f"{overlap:.3f}, {displaced:.2f} mm",
+            f"{mark.stroke}: overlap {format_overlap(overlap)}, displaced {displaced:.2f} mm",
+            f"{mark.stroke}: {format_overlap(overlap)}, {displaced:.2f} mm",
+            f"{format_overlap(overlap)}, {displaced:.2f} mm",
             f"{overlap:.2f}, {displaced:.1f}",
         ]
     return words

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.describe import LAWS
 from ...model.plot import brush_picture
-from ...reporting.report_text import Report, verdict
+from ...reporting.report_text import Report, format_overlap, verdict
 from ..law_text import coefficients, depths_shown, in_short, law_table, name_and_depths, paper_height
 from ..marks.mark_report import judge_overlap, overlaps
 from ..marks.mark_report import report as edge_report
@@ -31,8 +31,9 @@ def report(calibration, of_photo: bool = False) -> Report:
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(edges.painted.marks)} painted marks, to the largest "
         "overlap",
-        f"painted and predicted marks overlap by {now_in_place:.3f} as painted, by {now_moved:.3f} without the "
-        f"displacements of the edges' fit; by edges {in_place:.3f} and {moved:.3f}",
+        f"painted and predicted marks overlap by {format_overlap(now_in_place)} as painted, by "
+        f"{format_overlap(now_moved)} without the displacements of the edges' fit; by edges "
+        f"{format_overlap(in_place)} and {format_overlap(moved)}",
         chosen_in_words(found),
         f"{paper_height(found.height_mm)} ({edges.fit.height_mm:+.2f} mm by edges)",
         *_describe_machine(edges, found.offsets),

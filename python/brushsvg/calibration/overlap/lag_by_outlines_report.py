@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...reporting.report_text import Report, verdict
+from ...reporting.report_text import Report, format_overlap, verdict
 from ..law_text import HALF_95, coefficients, depths_shown, law_table, name_and_depths, paper_height, values
 from ..marks.mark_report import judge_overlap, overlaps
 
@@ -19,8 +19,8 @@ def report(found) -> Report:
     lines = [
         f"{name_and_depths(brush)}: the lag of {len(found.made.painted.marks)} painted marks by the outlines of brush "
         f"{own.name}; all else is that brush's",
-        f"painted and predicted marks overlap by {overlap_now:.3f}, by the brush of drops or eggs {overlap_before:.3f} "
-        "(mean of intersection over union, without displacements)",
+        f"painted and predicted marks overlap by {format_overlap(overlap_now)}, by the brush of drops or eggs "
+        f"{format_overlap(overlap_before)} (mean of intersection over union, without displacements)",
         paper_height(found.height_mm),
         f"residuals of the edges: standard deviation {found.noise_mm:.2f} mm",
     ]

@@ -7,6 +7,7 @@ from collections.abc import Collection
 
 from ...errors import Notice
 from ...files import write_files
+from ...reporting.report_text import format_overlap
 from ...units import clock
 from ..console import RefusedError, clear_stage, print_text, refuse_errors, say, stage
 from .replacing import record_written, refuse_replacing
@@ -59,7 +60,7 @@ def write_outputs(
         return
     facts = [] if strokes is None else [f"{strokes} stroke{'s' * (strokes != 1)}"]
     facts += [] if seconds is None else [f"takes about {clock(seconds)}"]
-    facts += [] if overlap is None else [f"overlap {overlap:.3f}"]
+    facts += [] if overlap is None else [f"overlap {format_overlap(overlap)}"]
     facts += [more] if more else []
     say(", ".join(map(str, files)), "; ".join(["written", *filter(None, [", ".join(facts)])]))
 

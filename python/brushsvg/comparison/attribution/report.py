@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...machine.cells.cell import Machine
-from ...reporting.report_text import table
+from ...reporting.report_text import format_overlap, table
 from ..job_marks import PAINT_A_CHART
 from .corrected_cell import as_table
 from .faults import MISSING_PAINT, OWN_PLACE, Faults, Found
@@ -49,7 +49,7 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
     lines = [
         "",
         f"Causes of the difference between paint and drawing, from {faults.edges} places on edges. Paint with these",
-        f"causes alone would overlap by {faults.overlap:.3f}:",
+        f"causes alone would overlap by {format_overlap(faults.overlap)}:",
         head,
         *rows,
         "",

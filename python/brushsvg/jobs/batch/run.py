@@ -24,6 +24,7 @@ from ...machine.cells.cell_file import write_cell
 from ...machine.posts import POSTS, sources_of_post
 from ...machine.writer import path_next_to
 from ...model import library
+from ...reporting.report_text import format_overlap
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
 from ..cancelling import Cancel
@@ -360,7 +361,7 @@ def _make_card(folder: Path, row: Row) -> Card:
     if row.figures is None:
         return Card(row.name, row.code, row.text, None)
     figures = row.figures
-    overlap = "" if figures.overlap is None else f"overlap {figures.overlap:.3f}"
+    overlap = "" if figures.overlap is None else f"overlap {format_overlap(figures.overlap)}"
     duration = "" if figures.time_s is None else clock(figures.time_s)
     caption = ", ".join(filter(None, (overlap, duration)))
     return Card(row.name, caption, "", lambda: read_bytes(folder / PICTURES / f"{row.name}.png"))

@@ -15,7 +15,7 @@ from ... import _core
 from ...errors import Notice
 from ...geometry.polylines import length
 from ...reporting import report_text
-from ...reporting.report_text import percent, plural, table
+from ...reporting.report_text import format_overlap, percent, plural, table
 from ...text_summary import summarize_notices
 from ...units import clock
 from .error_causes import Cause, cause
@@ -442,7 +442,7 @@ def _summary_line(report: Report) -> str:
     name, total = report.title or "untitled", report.total
     what = f"{plural(len(report.strokes), 'stroke')}"
     if total.overlap is not None:
-        what = f"{percent(total.overlap)} of paint and drawing coincide (overlap {total.overlap:.3f})"
+        what = f"{percent(total.overlap)} of paint and drawing coincide (overlap {format_overlap(total.overlap)})"
     return f"{name}: {what}; painting takes {clock(report.time_s)}."
 
 

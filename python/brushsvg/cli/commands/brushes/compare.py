@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ....errors import Error, Notice
 from ....machine.cells.cell_file import parse_cell, write_cell
+from ....reporting.report_text import format_overlap
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.options import make_choices
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
@@ -39,7 +40,7 @@ def compare_files(args) -> None:
         write_outputs(args, files, sources=sources)
     print_text(job.json if args.json else job.report.text(details, args.picture or ""))
     if args.at_least is not None and job.overlap < args.at_least:
-        sentence = f"the overlap {job.overlap:.3f} is below {args.at_least:g}"
+        sentence = f"the overlap {format_overlap(job.overlap)} is below {args.at_least:g}"
         error = Error(sentence, value=job.overlap, code="overlap-low")
         raise RefusedError(args.photos[0], [error.notice()])
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from ....errors import Notice
 from ....jobs.choices import CHOICES
+from ....reporting.report_text import format_overlap
 from ....text_summary import summarize_notices
 from ....units import clock
 from ...console import RefusedError, clear_stage, refuse_errors, say, stage, warn
@@ -65,5 +66,5 @@ def _summarize(result) -> str:
     overlaps = [each.overlap for each in figures if each.overlap is not None]
     if overlaps:
         mean = sum(overlaps) / len(overlaps)
-        facts += [f"overlap {mean:.3f} on average, {min(overlaps):.3f} at least"]
+        facts += [f"overlap {format_overlap(mean)} on average, {format_overlap(min(overlaps))} at least"]
     return f"written; {', '.join(facts)}"
