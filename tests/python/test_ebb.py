@@ -261,6 +261,7 @@ def test_who_begins_beyond_the_workspace_is_reported(desk, capsys):
         ({"motors": Motors(((80.0, 80.0), (80.0, 80.0)))}, "out-of-range 'motors.steps_per_mm'"),
         ({"language": "grbl-servo"}, "key-unused motors grbl-servo"),
         ({"servo": replace(CELL.servo, table=((-8.0, 0.0), (6.0, 70000.0)))}, "servo-table 65535"),
+        ({"servo": replace(CELL.servo, table=())}, "servo-table"),
         ({"paper": Paper((0.0, 0.0, 3.0))}, "paper-tilted"),
     ],
 )

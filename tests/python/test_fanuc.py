@@ -14,6 +14,7 @@ from test_urscript import text_for
 
 from brushsvg import _core
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.fanuc import REMARK_LETTERS, programs
 from brushsvg.verify.readback import read_program
 from brushsvg.verify.readback.header import read_header
@@ -59,6 +60,16 @@ def test_a_long_job_is_a_program_that_calls_others(job, capsys):
     ran = sound("".join([main, *texts]), find_cell("lrmate200id"))
     assert [words for words, _ in ran.titles][:2] == ["stroke 1 of 30: s0", "stroke 2 of 30: s1"]
     assert len({name for name, _ in ran.titles}) == 31 and len(ran.legs) == 30 * 94
+
+
+def test_jobs_of_one_title_and_length_have_parts_of_other_names():
+    """Moved by 5 mm, a job has the same text in its main program."""
+    here = {each.stroke: each.poses_mm for each in waves(30, 90).passes}
+    there = {name: np.add(poses, (5.0, 0.0, 0.0)) for name, poses in here.items()}
+    for cell in (find_cell("lrmate200id"), find_cell("kr6-r900")):
+        of_language = POSTS[cell.language].programs
+        names = [of_language(text_for(cell, strokes)).keys() for strokes in (here, here, there)]
+        assert names[0] == names[1] and len(names[0]) > 2 and names[0] & names[2] == {""}
 
 
 def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):

@@ -202,9 +202,28 @@ def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_h
         ]
     with refused("cell-reload", "reload.rinse"):
         parse_cell(write_cell(replace(cell, reload=Reload("stroke", rinse=True))))
-    near = replace(stirred[0], place_mm=(-3.0, 10.0))
-    broken = forbidden(plan_of((9, "#000000", "")), BRUSH, cell_with(Reload("stroke"), near))
-    assert is_reported(broken, "station-on-sheet", "black")
+    for place_mm, stir_mm in (((-3.0, 10.0), 4.0), ((-5.0, -5.0), 12.0)):  # the second circle holds only the corner
+        near = replace(stirred[0], place_mm=place_mm, stir_mm=stir_mm)
+        broken = forbidden(plan_of((9, "#000000", "")), BRUSH, cell_with(Reload("stroke"), near))
+        assert is_reported(broken, "station-on-sheet", "black")
+
+
+def test_a_stroke_that_sweeps_through_a_vessel_is_refused():
+    poses = np.array([(80, 30, 0), (60, 30, -3), (-2, 30, -3), (-2, 30, 0)])
+    plan = _core.Plan("round-6", "", (400.0, 100.0), [_core.Pass("wide", poses, 20.0)])
+    pot = Station("Pöt", (-6.0, 30.0), depth_mm=5.0, rim_mm=3.0)
+
+    def reported(**changes):
+        return forbidden(plan, BRUSH, cell_with(Reload("stroke"), replace(pot, **changes)))
+
+    (notice,) = reported()
+    assert agrees(notice, "vessel-entered Pöt 10 3", "wide")
+    assert is_reported(reported(radius_mm=0.0, stir_mm=5.0), "vessel-entered", "wide")
+    assert not reported(radius_mm=3.0)
+    assert not reported(place_mm=(-13.0, 30.0))
+    assert not reported(place_mm=(-13.0, 30.0), stir_mm=4.0)
+    assert not reported(by_hand=True, depth_mm=0.0)
+    assert not reported(rim_mm=-3.5, surface_mm=-3.5)
 
 
 def test_a_person_dips_at_safe_height():

@@ -31,7 +31,7 @@ from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import limit_turning_speed
 from .tool_axes import axes_of, tilts_deg
-from .workspace_limits import broken_limits, check_first_rise, find_astray_sections, touching_mm_s
+from .workspace_limits import broken_limits, check_first_rise, find_astray_sections, find_vessels_entered, touching_mm_s
 
 STRAIGHT_SEGMENT, VERTICAL_SEGMENT = -1, -2  # kinds of segments that are not part of an arc
 
@@ -181,11 +181,29 @@ def find_moves_out_of_limits(program: Program, sheet_mm) -> list[Notice]:
 
     frame, height_mm = program.robot_from_frame, program.rise_mm
     notices = find_astray_sections(sections(), frame, program.cell, sheet_mm)
+    notices += _find_vessels_entered(program)
     post = POSTS.get(program.cell.language)
     if post and post.in_robot_frame:  # other programs rise to the safe height over the paper
         ends = list(transform_points(frame, np.reshape(ends, (-1, 3))))
         frame, height_mm = np.eye(4), program.rise_in_robot_mm
     return notices + check_first_rise(height_mm, ends, frame, program.cell)
+
+
+def _find_vessels_entered(program: Program) -> list[Notice]:
+    """Report vessels that moves enter below the rim, except for the visits to them."""
+    cell, notices = program.cell, []
+    names = names_of_stations(cell)
+    vessel_by_title = {
+        f"paint: {names[visited]}": station
+        for station in cell.stations
+        for visited in (station, shorten_visit(station))
+        if not station.by_hand
+    }
+    for section in program.sections() if vessel_by_title else ():
+        visited = vessel_by_title.get(section.title)
+        vessels = [each for each in cell.stations if not each.by_hand and each is not visited]
+        notices += find_vessels_entered(section, vessels, cell)
+    return notices
 
 
 def _home_sections(program: Program) -> tuple[Section, ...]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cells.cell import LEAST_SPEED_MM_S, Cell
+from .cells.cell import LEAST_SPEED_MM_S, Cell, Station
 from .motion import Move, Section
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
 from .realised.tilt import check_tilt_limits as tilted_too_far
@@ -64,8 +64,8 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
         on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
         path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
         (x, y), r = station.place_mm, station.stir_mm
-        stir_points = [(x - r, y, 0.0), (x + r, y, 0.0), (x, y - r, 0.0), (x, y + r, 0.0)]
-        if any(find_place_inside(make_paths([[point]]), *on_sheet) is not None for point in (*path, *stir_points)):
+        stirred = [((x + r, y, 0.0), (x + r, y, 0.0), (x, y, 1))] if r else []
+        if find_place_inside(make_paths([[point] for point in path], stirred), *on_sheet) is not None:
             sentence = f"its place is on the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
         elif find_place_inside(make_paths([path]), *on_sheet) is not None:
@@ -91,6 +91,29 @@ def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: C
             problems += _find_in_each_section(group, here, frame, cell, sheet_mm)
         here = moves[-1].points_mm[-1]
     return list(dict.fromkeys(problems))
+
+
+def find_vessels_entered(section: Section, vessels: Sequence[Station], cell: Cell) -> list[Notice]:
+    """Report vessels that the moves of a section enter below the rim.
+
+    A vessel counts as the square about its circle.
+    """
+    if not vessels or not section.moves:
+        return []
+    moves, notices = _paths_of_moves(section.moves, None), []
+    for vessel in vessels:
+        reach_mm = np.full(2, max(vessel.radius_mm, vessel.stir_mm))
+        low, high = np.array(vessel.place_mm) - reach_mm, np.array(vessel.place_mm) + reach_mm
+        place = find_place_inside(moves, (*low, -np.inf), (*high, vessel.rim_mm - ROUNDING_MM))
+        if place is not None:
+            where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
+            sentence = (
+                f"the tool goes through {where} mm, in the vessel {vessel.name!r} of cell {cell.name}, which is "
+                f"{vessel.radius_mm:g} mm in radius and has its rim at {vessel.rim_mm:g} mm"
+            )
+            advice = "place it further from the sheet, or correct its radius_mm"
+            notices.append(Notice(section.name, sentence, code="vessel-entered", about=vessel.name, advice=advice))
+    return notices
 
 
 MAX_MOVES_AT_ONCE = 10_000  # more moves need more memory, fewer moves are slower

@@ -19,7 +19,7 @@ from .dobot import round_down_speed_mm_s
 from .script import (
     LanguageWords,
     blends_mm,
-    name_part,
+    name_parts,
     tool_rotations_at,
     upright_tool_rotation,
     write_section,
@@ -45,11 +45,12 @@ def fanuc(program: Program) -> Iterator[str]:
     cell = program.cell
     setup = "".join(map(comment, program.header)) + _setup_lines(program)
     end = comment(FANUC_END)
-    points, section_text, calls, risen = _ProgramPoints(cell), "", [], False
+    points, section_text, calls, names, risen = _ProgramPoints(cell), "", [], None, False
     with SpooledTemporaryFile(MAX_TEXT_IN_MEMORY_BYTES, "w+", encoding="ascii") as held_file:
         for section in program.sections():
             if points.count and points.count + _count_points(section) > MAX_PROGRAM_POINTS["fanuc"]:
-                calls.append(name_part(setup, len(calls) + 1))
+                names = names or name_parts(program, setup)
+                calls.append(next(names))
                 held_file.write(_write_program(calls[-1], section_text, points))
                 points, section_text = _ProgramPoints(cell), ""
             section_text += "".join(write_section(section, _language_words(program, points), risen))
@@ -57,7 +58,7 @@ def fanuc(program: Program) -> Iterator[str]:
         if not calls:
             yield _write_program(MAIN, setup + section_text + end, points)
             return
-        calls.append(name_part(setup, len(calls) + 1))
+        calls.append(next(names))
         held_file.write(_write_program(calls[-1], section_text, points))
         called = "".join(f" : CALL {call} ;\n" for call in calls)
         yield _write_program(MAIN, setup + called + end, _ProgramPoints(cell))

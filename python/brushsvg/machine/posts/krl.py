@@ -19,7 +19,7 @@ from .script import (
     blends_mm,
     format_rounded_down,
     join_numbers,
-    name_part,
+    name_parts,
     split_into_parts,
     tool_rotations_at,
     upright_tool_rotation,
@@ -70,10 +70,9 @@ def krl(program: Program) -> Iterator[str]:
         return
     calls, setup = "", header + setup
     with SpooledTemporaryFile(MAX_TEXT_IN_MEMORY_BYTES, "w+", encoding="ascii") as held_file:
-        for count, moves in enumerate(itertools.chain((first, second), part_texts), 1):
-            name = name_part(setup, count)
+        for name, moves in zip(name_parts(program, setup), itertools.chain((first, second), part_texts), strict=False):
+            held_file.write(f"DEF {name}()\n{'' if calls else RISES}{moves}END\n")
             calls += f"{name}()\n"
-            held_file.write(f"DEF {name}()\n{RISES if count == 1 else ''}{moves}END\n")
         yield f"DEF {MAIN}()\n{setup}{calls}{end}"
         held_file.seek(0)
         while piece := held_file.read(1_000_000):
@@ -95,7 +94,7 @@ def called(text: str) -> list[str]:
 
     They are in order and without repetition.
     """
-    calls = re.finditer(r"^ *(B[0-9A-F]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
+    calls = re.finditer(r"^ *(B[0-9A-Z]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
     return list(dict.fromkeys(call[1].upper() for call in calls))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -66,12 +67,20 @@ def split_into_parts(program: Program, words: LanguageWords, lines_around: int, 
     yield part_text
 
 
-def name_part(setup: str, number: int) -> str:
-    """Return the name of a program that the main program calls.
+def name_parts(program: Program, setup: str) -> Iterator[str]:
+    """Yield names of programs that the main program calls, without end.
 
-    The name depends on the text of the main program, so that the names of two jobs differ.
+    They depend on the main program's text and on all points, so that the names of two jobs differ. Controllers take
+    names of 8 letters.
+
+    setup: the main program's text before its calls.
     """
-    return f"B{hashlib.sha256(setup.encode()).hexdigest()[:4].upper()}{number:03d}"
+    digest = hashlib.sha256(setup.encode())
+    for section in program.sections():
+        for move in section.moves:
+            digest.update((np.round(move.points_mm, program.cell.decimals) + 0.0).tobytes())  # + 0.0: -0 becomes 0
+    of_job = np.base_repr(int.from_bytes(digest.digest()[:8], "big") % 36**4, 36).zfill(4)
+    return (f"B{of_job}{number:03d}" for number in itertools.count(1))
 
 
 def write_section(section: Section, words: LanguageWords, risen: bool) -> Iterator[str]:
