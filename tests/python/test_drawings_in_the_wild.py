@@ -103,6 +103,14 @@ def test_what_is_off_the_page_is_left_out():
     assert len(alone.elements) == 1 and not alone.notices, "all of it can still be moved with --fit"
 
 
+@pytest.mark.parametrize("sheet_mm", [(30.0, 20.0), (400.0, 300.0)])
+def test_requested_sheet_does_not_decide_which_elements_are_on_the_page(sheet_mm):
+    """With --fit, the drawing is moved onto a smaller sheet, and its notes next to the page onto no larger one."""
+    body = LINE + LINE.replace("M10", "M80").replace('"line"', '"edge"')
+    body += LINE.replace("M10", "M150").replace('"line"', '"off"')
+    assert ids(read(body, PAGE, sheet_mm=sheet_mm)) == ["line", "edge"]
+
+
 def test_layers_of_notes_are_left_out():
     layer = '<g inkscape:groupmode="layer" inkscape:label="{}">' + LINE.replace('id="line"', "") + "</g>"
     design = read("".join(map(layer.format, ("1 ink", "%notes", "!2 pause"))), f"{PAGE} {INKSCAPE}")

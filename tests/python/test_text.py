@@ -589,6 +589,12 @@ def test_composites_that_hold_each_other_end():
     assert agrees(refusal("A", hostile.getvalue()), "nothing-to-paint")
 
 
+@pytest.mark.parametrize("text", ["A\n\nV", "A\nV\n", "\nA\nV", "A\n\ud800\nV"])
+def test_empty_line_of_an_outline_font_is_left_blank(ttf, text):
+    document, _ = text_svg(text, ttf)
+    assert len(paths(document)) == 2
+
+
 def reported_of(font, text="AV"):
     """Return the notices about a text, and how many glyphs were drawn."""
     document, notices = text_svg(text, font)

@@ -11,13 +11,15 @@ _MAX_NAMED_ELEMENTS = 5  # elements that a sentence names
 
 
 def keep_on_page(
-    elements: Sequence[Element], sheet_mm: tuple[float, float]
+    elements: Sequence[Element], page_mm: tuple[float, float], top_mm: float
 ) -> tuple[tuple[Element, ...], list[Notice]]:
     """Return the elements that touch the page, and a notice about the others.
 
     If no element touches the page, all are kept: --fit or --origin can still move them onto it.
+
+    page_mm: (width, height) of the drawing's own page; top_mm: y of its upper left corner, which is the sheet's.
     """
-    is_on = [_touches_page(element, sheet_mm) for element in elements]
+    is_on = [_touches_page(element, page_mm, top_mm) for element in elements]
     if all(is_on) or not any(is_on):
         return tuple(elements), []
     kept = [element for element, inside in zip(elements, is_on, strict=True) if inside]
@@ -31,6 +33,6 @@ def keep_on_page(
     return tuple(kept), [Notice("svg", sentence, code="off-page", advice=advice)]
 
 
-def _touches_page(element: Element, sheet_mm: tuple[float, float]) -> bool:
-    x0, y0, x1, y1 = bounds_mm(Design(sheet_mm, (element,)))
-    return not (x1 < 0 or y1 < 0 or x0 > sheet_mm[0] or y0 > sheet_mm[1])
+def _touches_page(element: Element, page_mm: tuple[float, float], top_mm: float) -> bool:
+    x0, y0, x1, y1 = bounds_mm(Design(page_mm, (element,)))
+    return not (x1 < 0 or y1 < top_mm - page_mm[1] or x0 > page_mm[0] or y0 > top_mm)

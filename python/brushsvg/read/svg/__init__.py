@@ -75,17 +75,15 @@ def _read(document: Document, options: ReadOptions) -> Design:
     walk.run()
     if not walk.elements:
         raise empty_drawing_error(walk.notices, walk.left_out)
-    elements, off_page = keep_on_page(walk.elements, page.sheet_mm)
+    own_page_mm = page.sheet_mm
+    if options.sheet_mm is not None:
+        with suppress(Error):  # a drawing without its own size has the size of the sheet
+            own_page_mm = read_page(root.attrib, None, style).sheet_mm
+    elements, off_page = keep_on_page(walk.elements, own_page_mm, page.sheet_mm[1])
     title = root.find(SVG + "title" if root.tag.startswith("{") else "title")
     name = "" if title is None else printable_line("".join(title.itertext()))
     design = Design(page.sheet_mm, elements, (*walk.notices, *off_page), name, walk.layers)
-    if options.background == "keep":
-        return design
-    own_mm = page.sheet_mm
-    if options.sheet_mm is not None:
-        with suppress(Error):  # a drawing without its own size has the size of the sheet
-            own_mm = read_page(root.attrib, None, style).sheet_mm
-    return remove_background(design, own_mm)
+    return design if options.background == "keep" else remove_background(design, own_page_mm)
 
 
 def _notices_outside_tree(document: Document, root: ET.Element, page: Page) -> list[Notice]:

@@ -109,7 +109,7 @@ class _Typesetter:
         hb.shape(self.font, buffer)
         infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
         clusters = sorted({info.cluster for info in infos})
-        ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=True))
+        ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=bool(line)))  # an empty line has no cluster
         placed, inked, words = [], set(), []
         x = y = 0
         for info, position in zip(infos, positions, strict=True):
