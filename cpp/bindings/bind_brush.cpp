@@ -84,7 +84,7 @@ A Profile.)")
         .def("half_width_range_mm", &Brush::half_width_range_mm,
              "Return the (least, greatest) half width [mm] within depth_range_mm.")
         .def("depth_for_half_width", &Brush::depth_for_half_width, py::arg("half_width_mm"), py::arg("where") = "",
-             R"(Return the depth [mm] that paints a half width [mm].
+             R"(Return the depth [mm] that paints a half width [mm]. A brush of one width has one depth: paint_depth_mm.
 
 where: the element that the error names.
 

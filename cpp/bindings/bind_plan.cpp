@@ -1,6 +1,19 @@
 #include "bindings.hpp"
 #include "brushsvg/plan.hpp"
 
+namespace {
+
+/// Return the length [mm] on the paper of the move from a pose to the next one.
+double move_length_mm(const brushsvg::Pass& pass, Eigen::Index pose) {
+    const Eigen::Vector2d from = pass.poses_mm.row(pose).head<2>(), to = pass.poses_mm.row(pose + 1).head<2>();
+    for (const brushsvg::Arc& arc : pass.arcs)
+        if (arc.first <= pose && pose < arc.last)
+            return std::abs(turn_between(arc, from, to)) * (from - arc.centre_mm).norm();
+    return (to - from).norm();
+}
+
+}  // namespace
+
 void bind_plan(py::module_& m) {
     using namespace brushsvg;
     py::class_<Arc> arc(m, "Arc",
@@ -69,7 +82,7 @@ tool_axes: (n, 3): for each pose the unit vector from the tip up along the brush
             const Eigen::Index n = p.poses_mm.rows();
             double length = 0.0, deepest = 0.0;
             for (Eigen::Index i = 0; i < n; ++i) {
-                if (i > 0) length += (p.poses_mm.row(i) - p.poses_mm.row(i - 1)).head<2>().norm();
+                if (i > 0) length += move_length_mm(p, i - 1);
                 deepest = std::max(deepest, -p.poses_mm(i, 2));
             }
             return "<Pass " + quoted(p.stroke.name()) + ": " + counted(std::size_t(n), "pose") +

@@ -23,6 +23,8 @@ constexpr double kLargestLawMm = 1000.0;
 constexpr std::size_t kMostOutlines = 1000;
 constexpr Eigen::Index kMostVertices = 2000;             // of an outline: all pairs are compared
 constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
+/// Least half width that has a depth, as a share of the greatest one: lines may taper to nothing, no depth is 0.
+constexpr double kLeastWidthShare = 1e-6;
 constexpr double kUnseenMm = 0.05;  // largest invisible error of a mark's edge: the default tolerance
 constexpr double kPoorFit = 0.3;    // RMSE relative to the law; the article's worst, the tip gap from angles, has 0.6
 constexpr double kRounding = 1e-4;  // error of a correlation when a covariance is rounded to five digits
@@ -297,7 +299,7 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
     if (!width_follows_depth()) return paint_depth_mm;
     const auto [narrow, wide] = half_width_range_mm();
     const double rounding = 1e-9 * wide;  // of a width after conversion from text and units
-    if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding) || !(half_width_mm > 0.0))
+    if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding))
         throw Error("width-out-of-reach",
                     format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
                            2.0 * wide) +
@@ -308,6 +310,7 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
                              : std::string("draw it wider")) +
                         ", or take another brush",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
+    half_width_mm = std::max(half_width_mm, kLeastWidthShare * wide);
     double a = depth_range_mm[0], b = depth_range_mm[1];
     // At depth 0 a brush only touches the paper, and a program that goes no deeper paints nothing.
     if (a == 0.0 && narrow > 0.0) half_width_mm = std::max(half_width_mm, std::min(narrow + kUnseenMm, wide));

@@ -258,9 +258,10 @@ WideLine need_line(const StrokeId& id, const WideLine& points) {
     return line.topRows(n);
 }
 
-/// Appends cubics along rows first to last, split at the point with the largest distance from the curve.
-void smooth(const WideLine& line, Index first, Index last, double tolerance, bool closed, int& fits,
-            std::vector<Eigen::Matrix<double, 1, 8>>& out) {
+/// Appends cubics along rows first to last, split at the point with the largest distance from the curve. at: arc
+/// length of each row [mm].
+void smooth(const WideLine& line, const std::vector<double>& at, Index first, Index last, double tolerance, bool closed,
+            int& fits, std::vector<Eigen::Matrix<double, 1, 8>>& out) {
     const auto straight = [&](Index i) {
         const Eigen::RowVector2d a = line.row(i).head<2>(), b = line.row(i + 1).head<2>(), d = (b - a) / 3.0;
         out.emplace_back();
@@ -273,6 +274,13 @@ void smooth(const WideLine& line, Index first, Index last, double tolerance, boo
         checkpoint();
         if (to == from + 1 || fits >= kMostFits) {
             for (Index i = from; i < to; ++i) straight(i);
+            continue;
+        }
+        if (at[std::size_t(to)] - at[std::size_t(from)] > kMostPieces * kStep * 0.5 * tolerance) {
+            // too long for one fit: its points would be further apart than the tolerance needs
+            ahead.push_back({(from + to) / 2, to});
+            ahead.push_back({from, (from + to) / 2});
+            closed = false;
             continue;
         }
         ++fits;
@@ -311,13 +319,13 @@ Stroke stroke_along(const StrokeId& id, const WideLine& points, std::optional<do
     Stroke stroke;
     stroke.id = id;
     stroke.closed = last > 1 && line.row(0).head<2>() == line.row(last).head<2>();
-    std::vector<Eigen::Matrix<double, 1, 8>> cubics;
-    int fits = tolerance_mm ? 0 : kMostFits;
-    smooth(line, 0, last, tolerance_mm.value_or(1.0), stroke.closed, fits, cubics);
-    stroke.middle_mm.resize(Index(cubics.size()), 8);
-    for (Index i = 0; i < stroke.middle_mm.rows(); ++i) stroke.middle_mm.row(i) = cubics[std::size_t(i)];
     std::vector<double> at{0.0};
     for (Index i = 1; i <= last; ++i) at.push_back(at.back() + (line.row(i) - line.row(i - 1)).head<2>().norm());
+    std::vector<Eigen::Matrix<double, 1, 8>> cubics;
+    int fits = tolerance_mm ? 0 : kMostFits;
+    smooth(line, at, 0, last, tolerance_mm.value_or(1.0), stroke.closed, fits, cubics);
+    stroke.middle_mm.resize(Index(cubics.size()), 8);
+    for (Index i = 0; i < stroke.middle_mm.rows(); ++i) stroke.middle_mm.row(i) = cubics[std::size_t(i)];
     for (Index i = 0; i <= last; ++i) {
         const double half = line(i, 2);
         if (i > 0 && i < last && half == line(i - 1, 2) && half == line(i + 1, 2)) continue;

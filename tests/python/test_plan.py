@@ -53,6 +53,7 @@ def test_arcs():
     poses = [[0, 0, -1], [10, 0, -1], [20, 10, -1], [10, 20, -1], [0, 20, -1]]
     a_pass = _core.Pass("a", poses, arcs=[_core.Arc(first=1, last=3, centre_mm=(10, 10), direction=1)])
     plan = _core.read_plan(_core.write_plan(plan_of(a_pass)))
+    assert "51.42 mm long" in repr(a_pass), "along the circle, not its chords"
     (arc,) = plan.passes[0].arcs
     assert (arc.first, arc.last, arc.centre_mm, arc.direction) == (1, 3, (10.0, 10.0), 1)
     assert repr(arc) == "Arc(1, 3, (10.000000, 10.000000), 1)"

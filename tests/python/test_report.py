@@ -79,6 +79,15 @@ UNKNOWN = Figures("p", None, None, None, None, None, None, 12.0, 7)
 ROW = Figures("s/1", 0.9512345678, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42)
 
 
+def test_a_line_that_tapers_to_nothing_is_measured():
+    """Compensation gets the widths that a brush can paint, the report compares with the drawn ones."""
+    brush = find_brush("round-6")
+    drawn = straight("s", (20, 30), (80, 30), 2.0, [(0, 0.0), (0.5, 2.0), (1, 0.0)])
+    plan = compensate([drawn.replaced(half_width=[(0, 0.1), (0.5, 2.0), (1, 0.1)])], brush, (100, 60)).plan
+    _, total = measure(PaintedPlan(plan, simulate(plan, brush), brush, [drawn]))
+    assert total.overlap > 0.9 and total.centre_largest_mm < 0.2
+
+
 def test_json_is_complete_and_without_nan():
     made = Report(
         "T",

@@ -317,7 +317,7 @@ class Brush:
     def __setstate__(self, arg0: tuple) -> None: ...
     def depth_for_half_width(self, half_width_mm: float, where: str = "") -> float:
         """
-        Return the depth [mm] that paints a half width [mm].
+        Return the depth [mm] that paints a half width [mm]. A brush of one width has one depth: paint_depth_mm.
 
         where: the element that the error names.
 
