@@ -16,6 +16,7 @@ from sampling import sample
 from brushsvg.cli import commands, main
 from brushsvg.cli.console import say
 from brushsvg.model.library import SHIPPED
+from brushsvg.reporting.report_text import format_overlap
 
 LINE = '<path id="line" d="M20 40 C40 10 60 10 90 30" fill="none" stroke="#203060" stroke-width="3"/>'
 DAB = '<path id="dab" d="M97 20h0" stroke="#802010" stroke-width="3"/>'
@@ -74,7 +75,7 @@ def test_convert_writes_program_preview_and_report(desk, capsys):
     (line,) = err
     assert (status, out) == (0, f"{report['verdict']}\n")
     assert line.startswith("brushsvg: a.ngc, p.png, r.json: ")
-    assert gives(line.partition(";")[2], "2", time.removeprefix("about "), f"{overlap:.3f}")
+    assert gives(line.partition(";")[2], "2", time.removeprefix("about "), format_overlap(overlap))
 
 
 WRITERS = {  # Command with its output file: pattern of the text that it prints about the file.

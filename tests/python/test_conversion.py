@@ -29,6 +29,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.program import Job
+from brushsvg.reporting.report_text import format_overlap
 
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'
 LINE = '<path id="{}" d="M{} 40 C40 10 60 10 {} 30" fill="none" stroke="{}" stroke-width="{}"/>'
@@ -66,7 +67,7 @@ def test_it_does_what_the_command_does(desk, out, flags, choices):
     assert {name: Path(name).read_bytes() for name in names} == by_command
     assert sorted(done.files) == sorted(names) and done.files[0] == out
     assert list(done.texts) == [Path(out).suffix] and done.text.encode() == by_command[out]
-    assert f"{done.figures.total.overlap:.3f}" in by_command["o.txt"].decode()
+    assert format_overlap(done.figures.total.overlap) in by_command["o.txt"].decode()
 
 
 @pytest.mark.parametrize(("z_offset", "is_reported"), [(-20, True), (-2, True), (-1, False), (20, False)])

@@ -11,6 +11,7 @@ from diagnostics import gives
 
 from brushsvg import Stroke, compensate, find_brush, simulate
 from brushsvg.errors import Notice
+from brushsvg.reporting.report_text import format_overlap
 from brushsvg.show.evaluation import report
 from brushsvg.show.evaluation.places import Place
 from brushsvg.show.evaluation.report import (
@@ -145,7 +146,7 @@ def test_strokes_that_touch_are_judged_together():
     assert max(rows[0].overlap, rows[2].overlap) - 0.03 < letter.overlap
     assert groups(marks, brush, None) == ()
     text = to_text(Report("T", "round-6", "closed", 0.05, rows, total, 5, groups=(letter,)), details=True)
-    assert f"down + across    {letter.overlap:.3f}" in text
+    assert f"down + across    {format_overlap(letter.overlap)}" in text
 
 
 def test_a_stroke_painted_twice_is_no_worse_as_a_letter():

@@ -463,7 +463,7 @@ def _details(report: Report) -> list[str]:
     rows = [*report.strokes, report.total]
     columns = [
         ("stroke", [_shorten(row.stroke) for row in rows]),
-        ("overlap", [_format_figure(row.overlap, 3) for row in rows]),
+        ("overlap", [_format_overlap(row.overlap) for row in rows]),
         ("centre mean", [_format_figure(row.centre_mean_mm, 3) for row in rows]),
         ("largest", [_format_figure(row.centre_largest_mm, 3) for row in rows]),
         ("width error", [_format_figure(row.width_error_mm, 3) for row in rows]),
@@ -492,7 +492,7 @@ def _details(report: Report) -> list[str]:
     ]
     if report.groups:
         names = [_shorten(" + ".join(group.strokes), 64) for group in report.groups]
-        overlaps = [_format_figure(group.overlap, 3) for group in report.groups]
+        overlaps = [_format_overlap(group.overlap) for group in report.groups]
         lines += ["", "Strokes that touch, judged together:", ""]
         lines += table(("strokes", "overlap"), zip(names, overlaps, strict=True))
     if report.advice:
@@ -542,7 +542,7 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
     lines = _ruled_table(
         [
             ("compensation", [how for how, _ in rows]),
-            ("overlap", [_format_figure(total.overlap, 3) for _, total in rows]),
+            ("overlap", [_format_overlap(total.overlap) for _, total in rows]),
             ("centre mean", [_format_figure(total.centre_mean_mm, 3) for _, total in rows]),
             ("largest", [_format_figure(total.centre_largest_mm, 3) for _, total in rows]),
         ]
@@ -566,9 +566,9 @@ def brushes_text(title: str, suits) -> str:
     lines = _ruled_table(
         [
             ("brush", [suit.brush for suit in suits]),
-            ("overlap", [_format_figure(suit.overlap, 3) for suit in suits]),
+            ("overlap", [_format_overlap(suit.overlap) for suit in suits]),
             ("worst stroke", [_shorten(suit.worst or "-") for suit in suits]),
-            ("its overlap", [_format_figure(suit.worst_overlap, 3) for suit in suits]),
+            ("its overlap", [_format_overlap(suit.worst_overlap) for suit in suits]),
             ("refused", [f"{suit.refused} of {suit.strokes}" for suit in suits]),
         ],
         ["", *(_shorten(suit.why, 100) for suit in suits)],
@@ -583,6 +583,10 @@ def _describe_worst(row: Figures) -> str:
     x, y = row.worst.place_mm
     what = "not painted" if row.worst.is_missing else "too much paint"
     return f"x {x:.1f}, y {y:.1f}: {what}; {row.worst.reason}"
+
+
+def _format_overlap(overlap: float | None) -> str:
+    return _format_figure(None, 3) if overlap is None else format_overlap(overlap)
 
 
 def _format_figure(value, decimals: int) -> str:

@@ -42,7 +42,7 @@ _LINES = tuple(  # in lower case
     )
 )
 _DEF = re.compile(r"def (\w+)\(\)")
-_CALL = re.compile(r"(b[0-9a-f]{4}\d{3,})\(\)")
+_CALL = re.compile(r"(b[0-9a-z]{4}\d{3,})\(\)")
 _RISE_DECLARATION = RISES.strip().lower()
 _INITIALISATION = "bas(#initmov, 0)"  # sets all motion parameters
 
