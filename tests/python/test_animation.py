@@ -36,7 +36,7 @@ def data_of(page: bytes) -> dict:
     return json.loads(text)
 
 
-def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
+def test_page_rows_match_the_timeline_within_the_documented_rounding(tmp_path):
     work, marks = work_of(tmp_path)
     rows = timeline(whole_program(whole(work.plan), work.brush, find_cell()), marks)
     sent = {
@@ -54,7 +54,7 @@ def test_the_rows_come_back_as_exactly_as_was_promised(tmp_path):
     assert np.abs(sent["gap"] / 100 - [work.brush.tip_gap(d) for d in rows.depth_mm[touching]]).max() <= 0.0051
 
 
-def test_the_rings_are_those_of_the_prediction(tmp_path):
+def test_page_rings_equal_the_predicted_rings(tmp_path):
     work, marks = work_of(tmp_path)
     data = data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))
     (a_pass,) = data["passes"]
@@ -73,7 +73,7 @@ def test_a_plan_does_not_hold_its_target(tmp_path):
     assert data_of(outputs.make_animation(work, whole(work.plan), marks, find_cell()))["wanted"] == []
 
 
-def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
+def test_text_of_a_drawing_cannot_inject_html_or_script(tmp_path):
     work, marks = work_of(tmp_path, title=HOSTILE)
     plan = work.plan
     passes = plan.passes
@@ -88,7 +88,7 @@ def test_no_text_of_a_drawing_leaves_its_place(tmp_path):
     assert HOSTILE[:-1] in data["chapters"][0][0]
 
 
-def test_the_page_asks_for_nothing_from_outside(tmp_path):
+def test_page_loads_no_external_resources(tmp_path):
     page = outputs.make_animation(*played_of(tmp_path), find_cell()).decode()
     assert "default-src 'none'" in page
     assert not re.findall(r"(?:https?:|\bsrc=|\bhref=|@import|url\()", page)
@@ -96,14 +96,14 @@ def test_the_page_asks_for_nothing_from_outside(tmp_path):
     assert "/*" not in re.sub(r"(?s)<style>.*?</style>", "", page)
 
 
-def test_same_input_same_bytes(tmp_path):
+def test_same_input_gives_the_same_bytes(tmp_path):
     first, second = (outputs.make_animation(*played_of(tmp_path), find_cell(), 5.0) for _ in range(2))
     assert first == second
     assert data_of(first)["speed"] == 5.0
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.5])
-def test_numbers_are_whole(tmp_path, speed):
+def test_page_numbers_are_integers(tmp_path, speed):
     data = data_of(outputs.make_animation(*played_of(tmp_path), find_cell(), speed))
     for name, steps in data["rows"].items():
         assert all(isinstance(step, int) for step in steps), name

@@ -139,7 +139,7 @@ def described(name, joints_rad):
 
 
 @pytest.mark.parametrize("name", DESCRIBED)
-def test_an_arms_links_put_the_flange_where_its_own_description_puts_it(name):
+def test_flange_position_from_the_links_matches_the_arm_description(name):
     arm, rng = find_cell(name).arm, np.random.default_rng(1)
     for joints_rad in rng.uniform(-np.pi, np.pi, (20, 6)):
         assert joint_frames_of(arm, joints_rad)[-1] == pytest.approx(described(name, joints_rad), abs=2e-5)
@@ -159,7 +159,7 @@ def test_all_found_angles_put_the_flange_at_the_requested_place(name):
         assert np.abs(turns).max(axis=1).min() < 1e-6
 
 
-def test_near_a_singularity_angles_are_as_exact():
+def test_joint_angles_near_a_singularity_are_exact():
     """Angles near a singularity are as exact as elsewhere.
 
     Two Newton steps there left an error of 4e-6 mm, and joints 1e-6 rad off their target.
@@ -171,7 +171,7 @@ def test_near_a_singularity_angles_are_as_exact():
 
 
 @pytest.mark.parametrize("name", ARMS)
-def test_another_library_finds_the_same_angles(name):
+def test_joint_angles_agree_with_another_library(name):
     is_xarm = name.startswith("xarm")
     reported = compare(name, 15 if is_xarm else 60, seed=3)
     assert reported["differ"] == 0

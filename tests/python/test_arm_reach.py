@@ -68,7 +68,7 @@ def look(cell, plan):
 
 
 @sample("which", range(len(JOBS)), keep=4)
-def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which):
+def test_a_job_out_of_reach_is_refused_and_the_suggested_paper_position_works(which):
     *given, code = JOBS[which]
     cell, plan = job(*given)
     (problem,) = look(cell, plan).problems
@@ -97,7 +97,7 @@ def test_a_job_that_an_arm_cannot_do_is_refused_and_the_advised_place_does(which
         assert not (((wrapped >= low) & (wrapped <= high)).any(axis=0)).all(axis=1).any()
 
 
-def test_joint_rates_are_those_of_two_places_close_together():
+def test_joint_rates_match_finite_differences():
     cell, _ = job(*JOBS[0][:-1])
     found, frame = joints.joints_of(cell.arm), robot_from_paper(cell)
     at = np.array([-100.0, -500.0, 30.0])
@@ -111,7 +111,7 @@ def test_joint_rates_are_those_of_two_places_close_together():
         assert turned / 1e-3 == pytest.approx(expected[:, axis], abs=1e-5)
 
 
-def test_the_nearest_place_may_be_a_turn():
+def test_the_nearest_workable_position_may_need_a_rotation_of_the_paper():
     """The nearest workable place may be a turn of the paper.
 
     The paper is behind the robot, where joint 1 cannot pass. Turned lengthwise, the stroke stays clear of
@@ -128,7 +128,7 @@ def test_the_nearest_place_may_be_a_turn():
     assert gives(found.text, f"{found.turn_deg:g}")
 
 
-def test_convert_and_check_ask_the_arm(tmp_path, capsys):
+def test_convert_and_check_use_the_arm_check(tmp_path, capsys):
     cell, plan = job(*JOBS[0][:-1])
     drawing, near, far = (tmp_path / name for name in ("plan.json", "near.toml", "far.toml"))
     drawing.write_text(_core.write_plan(plan))
@@ -147,7 +147,7 @@ def test_convert_and_check_ask_the_arm(tmp_path, capsys):
     assert status == 1 and is_reported(reported, "arm-out-of-reach UR5e", "line")
 
 
-def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, monkeypatch):
+def test_a_missing_library_is_reported_with_the_package_to_install(tmp_path, capsys, monkeypatch):
     cell, plan = job(*JOBS[0][:-1])
     drawing, far = tmp_path / "plan.json", tmp_path / "far.toml"
     drawing.write_text(_core.write_plan(plan))
@@ -162,7 +162,7 @@ def test_without_the_library_a_sentence_says_what_to_install(tmp_path, capsys, m
     assert status == 1 and is_reported(reported, "package-missing ssik")
 
 
-def test_place_shows_where_the_paper_would_do_and_draws_the_table(tmp_path, capsys):
+def test_place_reports_workable_paper_positions_and_draws_the_table(tmp_path, capsys):
     cell, plan = job(*JOBS[0][:-1])
     drawing, far, near, picture = (tmp_path / n for n in ("plan.json", "far.toml", "near.toml", "table.svg"))
     drawing.write_text(_core.write_plan(plan))
@@ -209,7 +209,7 @@ def test_the_posture_with_the_highest_elbow_is_suggested(name):
             assert elbow_mm(name, other.start_rad)[2] < height + 0.01
 
 
-def test_joints_below_the_table_are_refused_unless_the_cell_names_the_posture():
+def test_joints_below_the_table_are_refused_unless_the_cell_sets_the_posture():
     cell = find_cell("ur10e")
     (x, y, z), first = cell.paper.origin_mm, robot_from_paper(cell)
     below = [

@@ -27,7 +27,7 @@ def cells(line: str) -> list[str]:
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_the_page_is_up_to_date(tmp_path):
+def test_the_article_page_is_up_to_date(tmp_path):
     pytest.importorskip("matplotlib")
     subprocess.run([sys.executable, ARTICLE, tmp_path / "new"], check=True)
     made = (tmp_path / "new" / "article.md").read_text().splitlines()

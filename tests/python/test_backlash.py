@@ -129,7 +129,7 @@ def apart_mm(some, others):
 
 
 @sample("side", [(1, -1), (-1, 1), (1, 1)], keep=3)
-def test_a_machine_with_backlash_goes_where_one_without_goes(desk, capsys, side):
+def test_compensated_backlash_gives_the_path_of_a_machine_without_backlash(desk, capsys, side):
     """With compensation, a machine with backlash moves like one without.
 
     The result does not depend on the side from which the axes came before.
@@ -140,7 +140,7 @@ def test_a_machine_with_backlash_goes_where_one_without_goes(desk, capsys, side)
     assert max(apart_mm(painted(knows, BACKLASH, lag=side), exact)) < 1.8e-3
 
 
-def test_play_is_taken_up_in_the_air_or_as_slowly_as_the_brush_is_painted_with(desk, capsys):
+def test_backlash_is_taken_up_in_the_air_or_at_painting_speed(desk, capsys):
     _, knows = convert(capsys, *desk)
     here, stood = None, []
     for _, line, place in slides(knows, BACKLASH):
@@ -150,7 +150,7 @@ def test_play_is_taken_up_in_the_air_or_as_slowly_as_the_brush_is_painted_with(d
     assert len(set(stood)) > 6 and all(line.startswith("G1 ") for line in stood)
 
 
-def test_check_goes_the_same_way(desk, capsys):
+def test_check_simulates_the_same_backlash_path(desk, capsys):
     folder, ending = desk
     convert(capsys, folder, ending)
     for program, cell in itertools.product(("plain", "knows"), repeat=2):
@@ -159,7 +159,7 @@ def test_check_goes_the_same_way(desk, capsys):
         assert in_json(capsys, "check", *words)[0] == status, (program, cell)
 
 
-def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
+def test_check_finds_damaged_backlash_moves(tmp_path, capsys):
     (tmp_path / "a.svg").write_text(DRAWING)
     cell = replace(find_cell("linuxcnc-3axis"), machine=Machine(backlash_mm=(0.45, 0.3)))
     (tmp_path / "knows.toml").write_text(write_cell(cell))
@@ -188,7 +188,7 @@ def test_damage_to_what_takes_up_play_is_found(tmp_path, capsys):
         path.write_text(text)
 
 
-def test_a_circle_is_cut_where_an_axis_turns_back():
+def test_a_circle_is_split_only_where_an_axis_reverses():
     """A circle is cut exactly once where an axis reverses, and nowhere else.
 
     This holds on turned paper, too.
@@ -210,7 +210,7 @@ def test_a_circle_is_cut_where_an_axis_turns_back():
     )
 
 
-def test_axes_are_commanded_half_of_it_ahead():
+def test_axes_are_commanded_half_the_backlash_ahead():
     way = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, -1.0], [3.0, 2.0, -1.0], [1.0, 3.0, -1.0]])
     half = np.array([0.2, 0.1])
     reported, side = commands_ahead(way[1:], way[0], np.array([1.0, -1.0]), half)
@@ -234,14 +234,14 @@ def test_axes_are_commanded_half_of_it_ahead():
         ("axidraw-ebb", "[0.1, 0.0]", "cell-machine 0.1 0"),
     ],
 )
-def test_backlash_that_cannot_be_undone_is_refused(name, value, reported):
+def test_backlash_that_cannot_be_compensated_is_refused(name, value, reported):
     text = write_cell(find_cell(name))
     with refused(reported, "machine.backlash_mm"):
         parse_cell(f"{text}\n[machine]\nbacklash_mm = {value}\n")
 
 
 @pytest.mark.parametrize("name, ending", [("grbl-servo", ".nc"), ("hpgl-plotter", ".hpgl"), ("marlin-servo", ".gcode")])
-def test_servos_and_pens_take_it_too(tmp_path, capsys, name, ending):
+def test_servo_and_pen_cells_compensate_backlash(tmp_path, capsys, name, ending):
     (tmp_path / "a.svg").write_text(DRAWING)
     cell = replace(find_cell(name), machine=Machine(backlash_mm=(0.4, 0.3)))
     (tmp_path / "c.toml").write_text(write_cell(cell))

@@ -47,7 +47,7 @@ def blank(corners, marks):
 
 @pytest.mark.parametrize("compensation", ["closed", "refined"])
 @pytest.mark.parametrize("corners", [FLAG, APEX])
-def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
+def test_limbs_of_a_thick_stem_are_painted(tmp_path, corners, compensation):
     work = prepared(tmp_path, corners, compensation=compensation)
     share, fits = blank(corners, predict(work))
     assert share < 0.03 or not fits
@@ -60,7 +60,7 @@ def test_no_limb_of_a_thick_stem_is_lost(tmp_path, corners, compensation):
 TAIL = [(20, 5), (28, 5), (28, 36), (29, 40), (32, 44.5), (25, 45), (21, 44), (20, 41)]
 
 
-def test_a_corner_that_one_sees_is_painted_unless_strokes_shall_end_and_turn_plainly(tmp_path):
+def test_a_visible_bare_corner_is_painted_except_with_plain_ends_or_corners(tmp_path):
     """A visible bare corner is painted, except with plain ends or plain corners.
 
     The corner is 1.3 % of the shape: the tail of a foot, like the R of Lobster. Bare pieces once counted only
@@ -77,7 +77,7 @@ def test_a_corner_that_one_sees_is_painted_unless_strokes_shall_end_and_turn_pla
     assert share > 0.01
 
 
-def test_without_its_stroke_it_would_be(tmp_path):
+def test_a_flag_without_its_extra_stroke_stays_bare(tmp_path):
     work = prepared(tmp_path, FLAG)
     work.plan.passes = [each for each in work.plan.passes if each.stroke == "p"]
     share, fits = blank(FLAG, predict(work))
@@ -92,7 +92,7 @@ def knobbed(out_mm, long_mm):
 
 
 @pytest.mark.parametrize(("out_mm", "most_turns"), [(2.5, 0.7), (3, 0.3), (4, 0.3)])
-def test_a_knob_along_its_stem_is_painted_along_its_edge_and_is_no_blob(tmp_path, out_mm, most_turns):
+def test_a_knob_on_a_stem_is_painted_along_its_edge(tmp_path, out_mm, most_turns):
     """A knob along its stem is painted along its edge and is no blob.
 
     A straight stroke into the knob once added a full turn to the outline, or left a tenth of the knob bare.
@@ -113,7 +113,7 @@ def swelling(broadest_mm):
     return [*left, *right[::-1]]
 
 
-def test_what_a_brush_is_too_narrow_for_is_painted_unless_its_width_is_to_be_the_nearest(tmp_path):
+def test_a_shape_wider_than_the_brush_gets_extra_strokes_except_with_clamp(tmp_path):
     broad = swelling(10.8)
     work = prepared(tmp_path, broad)
     assert [stroke.id for stroke in work.strokes] == ["p", "p~2", "p~3"]
@@ -138,14 +138,14 @@ def test_all_strokes_of_a_drawing_are_painted_wider_than_the_brush_or_none(tmp_p
     assert {"p~2", "s2~2", "s46~2"} <= set(names) or names == ["p", "s2", "s46"]
 
 
-def test_it_is_called_as_the_stroke_it_leaves_and_comes_behind_it(tmp_path):
+def test_an_extra_stroke_is_named_after_its_stem_and_painted_after_it(tmp_path):
     work = prepared(tmp_path, FLAG)
     assert [stroke.id for stroke in work.strokes] == ["p", "p~2"]
     assert [stroke.id for stroke in work.drawn] == ["p", "p~2"]
     assert [each.stroke for each in work.plan.passes] == ["p", "p~2"]
 
 
-def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
+def test_an_extra_stroke_begins_under_paint_and_stays_inside_the_shape(tmp_path):
     stem, limb = prepared(tmp_path, FLAG).strokes
     begun = shapely.Point(limb.middle_mm[0][:2])
     assert shapely.LineString(stem.middle_mm.reshape(-1, 2)).distance(begun) < 0.2
@@ -156,7 +156,7 @@ def test_it_begins_under_paint_and_stays_in_the_shape(tmp_path):
     assert shapely.union_all([shapely.Polygon(ring) for ring in limb.wanted_mm]).within(shape.buffer(1e-3))
 
 
-def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
+def test_each_stroke_is_compared_with_its_own_part_of_the_shape(tmp_path):
     """Each stroke is compared with the part of the shape that it must paint.
 
     The target of the stem once still contained its flag. The target of the flag contained its covered
@@ -173,11 +173,11 @@ def test_each_stroke_is_held_against_what_it_shall_paint(tmp_path):
     assert shapely.intersection(stem, tip).area < 0.1 * tip.area
 
 
-def test_it_is_painted_as_often_as_its_shape(tmp_path):
+def test_an_extra_stroke_is_repeated_as_often_as_its_shape(tmp_path):
     work = prepared(tmp_path, FLAG, 'data-brushsvg-passes="2"')
     assert [stroke.id for stroke in work.strokes] == ["p", "p#2", "p~2", "p#2~2"]
 
 
-def test_shapes_without_bare_areas_and_lines_that_are_only_followed_get_none(tmp_path):
+def test_shapes_without_bare_areas_and_uncompensated_lines_get_no_extra_strokes(tmp_path):
     assert [stroke.id for stroke in prepared(tmp_path, BLOCK).strokes] == ["p"]
     assert [stroke.id for stroke in prepared(tmp_path, FLAG, compensation="none").strokes] == ["p"]

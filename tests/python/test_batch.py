@@ -81,7 +81,7 @@ def threads():
     return ThreadPoolExecutor(2)
 
 
-def test_each_becomes_what_convert_makes_of_it(desk):
+def test_each_drawing_becomes_the_same_program_as_with_convert(desk):
     with threads() as executor:
         done = brushsvg.batch(["in"], "out", executor=executor, tolerance=0.1)
     assert [row.name for row in done.rows] == ["0", "1", "2", "below/wide"]
@@ -104,7 +104,7 @@ def test_each_becomes_what_convert_makes_of_it(desk):
 
 
 @pytest.mark.slow
-def test_it_is_the_same_in_any_process(desk):
+def test_output_is_the_same_in_threads_and_processes(desk):
     made = {}
     for name, place in {
         "threads": threads(),
@@ -119,7 +119,7 @@ def test_it_is_the_same_in_any_process(desk):
 
 
 @pytest.mark.slow
-def test_a_cluster_makes_the_same_and_outlives_a_worker(desk, monkeypatch):
+def test_a_cluster_gives_the_same_output_and_survives_a_lost_worker(desk, monkeypatch):
     distributed = pytest.importorskip("distributed")
     with threads() as executor:
         known = brushsvg.batch(["in"], "by threads", executor=executor).rows
@@ -146,7 +146,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_only_what_changed_is_done_again(desk, monkeypatch, change):
+def test_only_changed_drawings_are_converted_again(desk, monkeypatch, change):
     happens, choices, expected = CHANGES[change]
     with threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor)
@@ -160,7 +160,7 @@ def test_only_what_changed_is_done_again(desk, monkeypatch, change):
         assert contents() == before
 
 
-def test_another_version_does_all_again(desk, monkeypatch):
+def test_another_version_converts_all_drawings_again(desk, monkeypatch):
     with threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor)
         names = done_again(monkeypatch)
@@ -172,7 +172,7 @@ def test_another_version_does_all_again(desk, monkeypatch):
             brushsvg.batch(["in"], "out", executor=executor, tolerance=0.2)
 
 
-def test_a_line_that_was_left_half_is_that_drawing_again(desk, monkeypatch):
+def test_an_incomplete_manifest_line_repeats_that_drawing(desk, monkeypatch):
     with threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor)
         whole = Path("out/manifest.jsonl").read_bytes()
@@ -182,7 +182,7 @@ def test_a_line_that_was_left_half_is_that_drawing_again(desk, monkeypatch):
     assert names == ["below/wide"] and Path("out/manifest.jsonl").read_bytes() == whole
 
 
-def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
+def test_a_refused_row_leaves_no_outdated_files(desk, capsys):
     """A refused row leaves no outdated files behind.
 
     The files of an earlier run are removed, even if the refused drawing is not tried again. A file that the
@@ -210,7 +210,7 @@ def test_nothing_outdated_stays_under_a_refused_row(desk, capsys):
     assert status == 1 and is_reported(reported, "outdated-removed") and "programs/1.ngc" not in contents()
 
 
-def test_a_drawing_of_the_same_name_is_not_written_over_another(desk, monkeypatch):
+def test_drawings_with_the_same_name_do_not_overwrite_each_other(desk, monkeypatch):
     Path("more").mkdir()
     Path("more/1.svg").write_text(drawing(9))
     with threads() as executor:
@@ -226,7 +226,7 @@ def test_a_drawing_of_the_same_name_is_not_written_over_another(desk, monkeypatc
         assert not brushsvg.batch(["../more"], "../out", executor=executor).refused
 
 
-def test_two_of_one_name_say_the_way_out(desk):
+def test_drawings_with_the_same_name_are_refused_with_a_remedy(desk):
     Path("more/below").mkdir(parents=True)
     Path("more/1.svg").write_text(drawing(9))
     Path("more/below/1.svg").write_text(drawing(9))
@@ -246,7 +246,7 @@ def test_two_of_one_name_say_the_way_out(desk):
 
 
 @pytest.mark.parametrize("name", ["a\nb.svg", "a\x1bb.svg", "a\udce9b.svg"])
-def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
+def test_a_name_that_cannot_be_printed_is_reported_in_its_row(desk, capsys, name):
     Path("in", name).write_text(drawing(0))
     status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
     shown = name.encode("unicode_escape", "surrogatepass").decode()
@@ -259,7 +259,7 @@ def test_a_name_that_cannot_be_printed_is_a_row(desk, capsys, name):
     ]
 
 
-def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, monkeypatch):
+def test_a_second_batch_into_the_folder_keeps_the_rows_of_the_first(desk, monkeypatch):
     """A second batch into the same folder keeps the rows of the first batch.
 
     These rows were once lost. All drawings were then converted again, and a drawing with the same name
@@ -284,7 +284,7 @@ def test_another_batch_into_the_folder_leaves_what_is_known_of_the_first(desk, m
     assert [row["name"] for row in rows] == ["1", "0"], "no row is kept of files that are gone"
 
 
-def test_equal_drawings_are_each_done_once(desk, monkeypatch):
+def test_equal_drawings_are_each_converted_once(desk, monkeypatch):
     Path("in/also.svg").write_text(drawing(1))
     with threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor)
@@ -308,7 +308,7 @@ def test_two_runs_do_not_write_to_one_folder(desk):
         brushsvg.batch(["in"], "out", executor=executor)
 
 
-def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
+def test_words_are_set_as_by_the_text_command(desk, capsys):
     Path("font.svg").write_text(FONT)
     Path("words.txt").write_text("TT\n\n T T \nTX\nTT\nT\\nT\n", encoding="utf-8")
     status, _, reported = in_json(capsys, *"batch --words words.txt --font font.svg --size 30 -o out --jobs 1".split())
@@ -321,7 +321,7 @@ def test_words_are_set_as_the_command_text_sets_them(desk, capsys):
     assert Path("out/programs/T_T.ngc").read_bytes() == Path("t.ngc").read_bytes()
 
 
-def test_warnings_of_a_kind_are_reported_as_one(desk, capsys):
+def test_warnings_with_one_code_are_summarized(desk, capsys):
     for k in range(6):
         Path(f"in/{k}.svg").write_text(drawing(k).replace("</svg>", "<text>A</text></svg>"))
     status, _, reported = in_json(capsys, "batch", "in", "-o", "out", "--jobs", "1")
@@ -330,7 +330,7 @@ def test_warnings_of_a_kind_are_reported_as_one(desk, capsys):
     assert [len(row["notices"]) for row in rows if not row["code"]] == [1] * 6
 
 
-def test_lists_patterns_and_documents_in_memory(desk):
+def test_lists_patterns_and_open_documents_are_accepted(desk):
     Path("list.txt").write_text("in/1.svg\nin/2.svg\n")
     with threads() as executor:
         items = ["list.txt", "in/0*.svg", ("mine", drawing(7)), ("bytes", drawing(8).encode())]
@@ -343,7 +343,7 @@ def test_lists_patterns_and_documents_in_memory(desk):
 
 
 @pytest.mark.parametrize("data", [b"", b" \n\n", b"\xff\xfe\x00", None])
-def test_a_list_of_nothing_is_refused_by_its_name(desk, capsys, data):
+def test_an_empty_list_is_refused_with_its_file_name(desk, capsys, data):
     Path("font.svg").write_text(FONT)
     if data is not None:
         Path("w.txt").write_bytes(data)
@@ -354,7 +354,7 @@ def test_a_list_of_nothing_is_refused_by_its_name(desk, capsys, data):
 
 
 @pytest.mark.parametrize("data", [bytes(range(256)) * 40, bytes(3000), b"<svg>\xc3", b"[" * 100_000])
-def test_nonsense_is_a_row(desk, data):
+def test_an_invalid_drawing_is_a_refused_row(desk, data):
     Path("x.svg").write_bytes(data)
     Path("x.dxf").write_bytes(data)
     Path("words.txt").write_bytes(b"T\n" + data.replace(b"\xc3", b"").decode("latin-1").encode())
@@ -388,7 +388,7 @@ def test_nonsense_is_a_row(desk, data):
         (["in"], {"width": -1}, "out-of-range"),
     ],
 )
-def test_what_concerns_all_is_refused_in_one_sentence(desk, items, choices, said):
+def test_a_problem_of_the_whole_batch_is_one_refusal(desk, items, choices, said):
     choices = {"jobs": 1} | choices
     with refused(said):
         brushsvg.batch(items, "out", **choices)
@@ -421,7 +421,7 @@ def test_a_refused_drawing_is_tried_again_once_its_cause_is_gone(desk, monkeypat
 
 
 @pytest.mark.parametrize("edited", ["post.py", "helper.py"])
-def test_an_edited_post_makes_all_programs_anew(desk, edited):
+def test_an_edited_post_converts_all_drawings_again(desk, edited):
     Path("helper.py").write_text("WORD = 'first'\n")
     post = Path(__file__).with_name("robodk_post.py").read_text()
     Path("post.py").write_text(f"import helper\n{post}")
@@ -459,7 +459,7 @@ def test_a_program_in_several_files_does_not_replace_that_of_another_drawing(des
 
 
 @pytest.mark.parametrize("cell", ["ur5e", "kr6-r900"])
-def test_parts_of_a_long_job_go_on_and_go_when_it_gets_shorter(desk, monkeypatch, cell, capsys):
+def test_outdated_program_parts_are_removed_when_a_job_gets_shorter(desk, monkeypatch, cell, capsys):
     many = "".join(LINE.format(f"s{k}", 20 + 5 * k, 90, "#203060", 3) for k in range(6))
     Path("word.svg").write_text(PAGE.format("", many))
     monkeypatch.setitem(MAX_PROGRAM_LINES, find_cell(cell).language, 60)
@@ -474,7 +474,7 @@ def test_parts_of_a_long_job_go_on_and_go_when_it_gets_shorter(desk, monkeypatch
     assert len(second.removed) > 2
 
 
-def test_a_program_is_not_written_where_another_drawing_needs_a_folder(desk):
+def test_a_program_is_not_written_over_the_folder_of_another_drawing(desk):
     Path("in/1.ngc").mkdir()
     Path("in/1.ngc/x.svg").write_text(drawing(4))
     with threads() as executor:
@@ -482,13 +482,13 @@ def test_a_program_is_not_written_where_another_drawing_needs_a_folder(desk):
     assert [(row.name, row.code) for row in done.rows] == [("1", "name-taken"), ("1.ngc/x", "")]
 
 
-def test_names_that_macos_holds_for_one_are_refused(desk):
+def test_names_that_are_equal_on_macos_are_refused(desk):
     with refused("name-taken"):
         brushsvg.batch([("\u00e9", drawing(0)), ("e\u0301", drawing(1))], "out", jobs=1)
 
 
 @pytest.mark.parametrize("way", ["../victim.txt", "below/../../victim.txt", "{}/victim.txt", "link/victim.txt"])
-def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
+def test_a_foreign_manifest_cannot_name_a_file_outside_its_folder(desk, way):
     """A manifest from elsewhere cannot name a file outside its folder.
 
     The files of outdated rows are deleted, so a foreign manifest could have deleted any file.
@@ -504,7 +504,7 @@ def test_a_manifest_of_others_names_no_file_outside_of_its_folder(desk, way):
     assert Path("victim.txt").read_text() == "mine"
 
 
-def test_a_damaged_manifest_may_name_a_file_that_no_folder_can_hold(desk):
+def test_a_manifest_with_an_impossible_file_name_is_accepted(desk):
     Path("out").mkdir()
     row = run.Row("other", "in/other.svg", "", None, "", files={"a" * 300 + ".ngc": "0", "kept.ngc": "0"})
     Path("out/kept.ngc").write_text("")
@@ -515,14 +515,14 @@ def test_a_damaged_manifest_may_name_a_file_that_no_folder_can_hold(desk):
     assert format_row(row) in Path("out/manifest.jsonl").read_text(), "its other file exists"
 
 
-def test_what_is_a_mistake_of_ours_is_a_row_too(desk, monkeypatch):
+def test_an_internal_error_is_a_refused_row(desk, monkeypatch):
     monkeypatch.setattr(one.outputs, "overlap_picture", lambda *_: 1 / 0)
     with threads() as executor:
         done = brushsvg.batch(["in/1.svg"], "out", executor=executor)
     assert [row.code for row in done.rows] == ["unexpected"]
 
 
-def test_a_worker_that_dies_is_said_and_what_is_done_is_kept(desk, monkeypatch):
+def test_a_lost_worker_is_reported_and_finished_rows_are_kept(desk, monkeypatch):
     with threads() as executor:
         brushsvg.batch(["in/1.svg"], "out", executor=executor)
     monkeypatch.setattr(run, "convert_task", dies)
@@ -531,7 +531,7 @@ def test_a_worker_that_dies_is_said_and_what_is_done_is_kept(desk, monkeypatch):
     assert Path("out/programs/1.ngc").exists()
 
 
-def test_parquet_holds_the_same_table(desk, monkeypatch):
+def test_parquet_contains_the_same_table_as_csv(desk, monkeypatch):
     pyarrow = pytest.importorskip("pyarrow.parquet")
     with threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor, parquet=True)
@@ -546,7 +546,7 @@ def test_parquet_holds_the_same_table(desk, monkeypatch):
         brushsvg.batch(["in"], "out", jobs=1, parquet=True)
 
 
-def test_progress_shows_rate_and_time_left_and_cancel_is_heard(desk):
+def test_progress_shows_rate_and_remaining_time_and_cancel_works(desk):
     said, is_over = [], threading.Event()
 
     def progress(text):
@@ -588,7 +588,7 @@ def processes_of(group) -> list[int]:
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs /proc")
 @sample("by", [signal.SIGKILL, signal.SIGINT], keep=1)
 @pytest.mark.slow
-def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
+def test_an_interrupted_batch_continues(desk, monkeypatch, by):
     for k in range(24):
         Path(f"in/{k}.svg").write_text(drawing(k / 4))
     with threads() as executor:
@@ -620,7 +620,7 @@ def test_what_is_ended_half_way_goes_on_where_it_was(desk, monkeypatch, by):
     assert contents() == contents("whole")
 
 
-def test_a_contact_sheet_has_a_place_for_each(tmp_path):
+def test_a_contact_sheet_shows_every_drawing(tmp_path):
     picture = tmp_path / "a.png"
     cv2.imwrite(str(picture), np.full((60, 120, 3), (0, 0, 255), np.uint8))
     why = "a long sentence of 12.000 mm that goes on " * 12

@@ -71,7 +71,7 @@ def arc(radius_mm, half_mm, from_rad, sweep_rad):
 
 
 @pytest.mark.thorough
-def test_arcs_begin_and_end_as_the_best_of_all_that_can_be_requested():
+def test_automatic_ends_of_arcs_are_as_good_as_the_best_requested_ends():
     """The automatic ends of arcs are as good as the best ends that you can request.
 
     The arcs are wide. Every second one has a radius of at most 11 mm and nearly the brush's full width. Of
@@ -107,7 +107,7 @@ def ball(radius_mm, half_mm, before):
     return line.replaced(half_width=[(at, half * half_mm) for at, half in widths])
 
 
-def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going_back():
+def test_a_ball_at_the_start_is_turned_in_place_if_that_is_better():
     brush = find_brush("round-6")
     for half_mm in (2.2, 2.8):
         stroke = ball(5.0, half_mm, 1.0)
@@ -115,7 +115,7 @@ def test_a_ball_at_the_beginning_is_turned_round_where_that_is_better_than_going
             assert overlap(stroke, brush, start) > 0.972, "going back 0.959 and 0.962 were reached"
 
 
-def test_a_ball_is_filled_where_the_line_begins_next_to_its_middle():
+def test_a_ball_is_filled_if_the_line_begins_next_to_its_middle():
     """A ball is filled if the line begins next to the ball's middle.
 
     A disc about the line's first point, as wide as the line is there, leaves a crescent of the ball of a c
@@ -126,7 +126,7 @@ def test_a_ball_is_filled_where_the_line_begins_next_to_its_middle():
     assert overlap(stroke, brush, "auto") > 0.965
 
 
-def test_a_dot_with_sides_of_its_own_has_the_depths_of_its_turns(tmp_path):
+def test_a_dot_with_sides_keeps_the_depths_of_its_turns(tmp_path):
     """A dot that has sides keeps the depths of its turns.
 
     The moves of such a dot may be lines, which have no turn: a depth of 185 km was once read from them.

@@ -41,12 +41,12 @@ TURN_IN_PLACE = np.array(
 )
 
 
-def test_where_a_circle_goes_on_straight_there_is_no_corner_and_where_it_does_not_there_is():
+def test_a_circle_has_a_corner_only_at_a_change_of_direction():
     assert corner_angles_rad(TURN_IN_PLACE, [QUARTER]) == pytest.approx([0, 0, 0, np.pi / 2, 0])
 
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.02, 0.1])
-def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
+def test_corners_of_circles_are_cut_like_corners_of_lines(tolerance):
     radii = blend_radii(TURN_IN_PLACE, Blending(tolerance), [QUARTER])
     path, at, points = cut_corners(TURN_IN_PLACE, radii, [QUARTER])
     assert len(path) == 7
@@ -58,7 +58,7 @@ def test_corners_of_circles_are_cut_as_those_of_lines(tolerance):
     assert at == pytest.approx([0, 1, 2, 3 - radii[3] / (5 * np.pi / 4), 3, 3 + radii[3] / 16, 4])
 
 
-def test_a_circle_that_is_left_at_a_small_angle_is_not_left_far_before_its_end():
+def test_the_blend_at_a_small_angle_starts_close_to_the_end_of_the_circle():
     """The blend at a small angle starts close to the end of the circle.
 
     Otherwise the arc that the blend leaves out would be further from its chord than the tolerance.
@@ -74,7 +74,7 @@ def test_a_robot_stops_where_a_circle_begins_and_ends():
     assert (blend_radii(TURN_IN_PLACE, Blending(0.1, 5.0), [QUARTER]) == 0).all()
 
 
-def test_blends_never_meet_nor_go_beyond_the_robots_radius():
+def test_blends_do_not_overlap_or_exceed_the_robots_radius():
     zigzag = np.array([(k, k % 2, -1) for k in range(20)], dtype=float)
     lengths = np.linalg.norm(np.diff(zigzag, axis=0), axis=1)
     radii = blend_radii(zigzag, Blending(9.0))
@@ -88,7 +88,7 @@ def test_a_robot_does_not_blend_where_it_turns_back_or_presses():
     assert (blend_radii(path, Blending(0.1)) > 0).any()
 
 
-def test_corners_in_the_air_are_cut_by_little_however_coarse_the_plan():
+def test_corners_in_the_air_are_cut_little_with_a_coarse_tolerance():
     """Corners in the air are cut by little, even with a coarse tolerance.
 
     With 2 mm the tool moved sideways from 4.8 mm below the safe height on.
@@ -99,7 +99,7 @@ def test_corners_in_the_air_are_cut_by_little_however_coarse_the_plan():
     assert as_exact_as(coarse, 0.05).blending.tolerance_mm == pytest.approx(0.01)
 
 
-def test_without_tolerance_nothing_is_cut():
+def test_zero_tolerance_leaves_the_path_unchanged():
     assert cut_corners(CORNER, blend_radii(CORNER, Blending(0.0)))[0] is CORNER
 
 
@@ -119,7 +119,7 @@ def test_blends_that_move_the_mark_too_far_are_refused():
 
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05, 0.2, 0.5])
-def test_a_cut_moves_the_mark_by_no_more_than_itself(cut_mm):
+def test_a_cut_moves_the_mark_by_at_most_the_size_of_the_cut(cut_mm):
     """A cut moves the mark by no more than the cut itself.
 
     The reference is the position of the widest section on the plan's own mark.
@@ -144,7 +144,7 @@ def with_circle(brush):
 
 
 @pytest.mark.parametrize("cut_mm", [0.0005, 0.005, 0.05])
-def test_a_circle_is_no_row_of_corners(cut_mm):
+def test_a_circle_is_not_treated_as_a_row_of_corners(cut_mm):
     """A circle is not treated as a row of corners.
 
     Its poses may be far apart; only its end has a corner that can be cut.
@@ -158,7 +158,7 @@ def test_a_circle_is_no_row_of_corners(cut_mm):
 
 
 @pytest.mark.parametrize("tolerance", ["0.005", "0.002", "0.0005"])
-def test_a_very_fine_tolerance_is_no_reason_to_refuse(tolerance, tmp_path):
+def test_a_very_fine_tolerance_is_accepted(tolerance, tmp_path):
     """A very fine tolerance does not cause a refusal.
 
     The check once treated straight chords between rows of the mark as the mark itself.
@@ -183,7 +183,7 @@ def test_a_plan_may_begin_and_end_pressed_down(first_mm, last_mm, cell):
     assert problems(plan, brush, _core.simulate(plan, brush), tight, 0.05) == []
 
 
-def test_without_a_tolerance_nothing_is_cut_and_a_place_that_stands_twice_is_no_corner():
+def test_zero_tolerance_gives_no_blends_and_repeated_points_are_not_corners():
     line = np.array([[0, 0, -1], [5, 0, -1], [10, 0, -1.0]])
     assert not blend_radii(line, Blending(tolerance_mm=0.0)).any()
     twice = np.array([[0, 0, -1], [5, 0, -1], [5, 0, -1], [5, 5, -1.0]])

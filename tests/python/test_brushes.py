@@ -48,12 +48,12 @@ def make_brushes():
     return module
 
 
-def test_names():
+def test_shipped_brush_names():
     assert brush_names() == ["liner-1", "rigid", "round-6", "round-6-angles"]
 
 
 @pytest.mark.parametrize("path", sorted(SHIPPED.glob("*")), ids=lambda path: path.name)
-def test_every_shipped_file_is_a_sound_brush(path):
+def test_every_shipped_file_is_a_valid_brush(path):
     brush = find_brush(path.stem)
     assert path.suffix == ".json"
     assert brush.name == path.stem
@@ -65,7 +65,7 @@ def test_every_shipped_file_is_a_sound_brush(path):
         assert profile.source, f"{law} does not say where it comes from"
 
 
-def test_shipped_files_are_what_the_tool_makes(make_brushes, tmp_path, monkeypatch):
+def test_shipped_files_equal_the_output_of_the_tool(make_brushes, tmp_path, monkeypatch):
     made = make_brushes.brush_files()
     assert sorted(made) == sorted(path.name for path in SHIPPED.iterdir())
     monkeypatch.setattr("sys.argv", ["make_brushes.py", str(tmp_path)])
@@ -130,7 +130,7 @@ def test_outlines_of_round_6():
         assert np.hypot(*edges[1:-1].T).max() < 0.06 * half + 0.06 * front, "spread along the ellipse"
 
 
-def test_rigid_is_a_disc_that_does_not_trail():
+def test_rigid_brush_is_a_disc_without_lag():
     brush = find_brush("rigid")
     assert brush.is_rigid() and not brush.width_follows_depth()
     assert 0 < brush.paint_depth_mm < brush.depth_range_mm[1]
@@ -143,13 +143,13 @@ def test_rigid_is_a_disc_that_does_not_trail():
         assert 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) == pytest.approx(math.pi / 4, rel=2e-3)
 
 
-def test_unknown_name_lists_the_known_ones():
+def test_unknown_name_lists_the_known_names():
     with refused("brush-unknown round-7 rigid round-6"):
         find_brush("round-7")
 
 
 @pytest.mark.parametrize("name", ["none.json", "folder/none", Path("none")])
-def test_missing_file(name, tmp_path, monkeypatch):
+def test_missing_file_is_refused(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with refused("file-unreadable") as refusal:
         find_brush(name)
@@ -162,7 +162,7 @@ def test_a_file_does_not_hide_a_shipped_brush(tmp_path, monkeypatch):
     assert find_brush("rigid").name == "rigid"
 
 
-def test_the_article_as_printed_is_refused(changed):
+def test_the_printed_laws_of_the_article_are_refused(changed):
     def printed(content):
         content["lag"]["coefficients"][4] = 2.1e-4
 
@@ -231,7 +231,7 @@ def _drop(*keys):
         ),
     ],
 )
-def test_faults_are_named_with_their_key(changed, change, where, said):
+def test_errors_name_their_key(changed, change, where, said):
     with refused(said, where):
         find_brush(changed(change))
 
@@ -248,7 +248,7 @@ PAINT = {
 }
 
 
-def test_paint_is_kept_shown_and_checked_by_its_keys(changed, capsys, tmp_path):
+def test_paint_keys_are_kept_shown_and_checked(changed, capsys, tmp_path):
     path = changed(_set("paint", to=PAINT))
     brush = find_brush(path)
     assert brush.paint.width_share(500) == pytest.approx(math.exp(-0.2))
@@ -270,13 +270,13 @@ def test_paint_is_kept_shown_and_checked_by_its_keys(changed, capsys, tmp_path):
     assert like.paint.assumed and not like.paint.covariance and like.paint.narrows_per_m == 0.4
 
 
-def test_a_brush_without_paint_says_nothing_of_it():
+def test_a_brush_without_paint_has_no_paint_key():
     for name in brush_names():
         assert find_brush(name).paint is None
         assert "paint" not in shipped_json(name)
 
 
-def test_broken_files(tmp_path):
+def test_broken_files_are_refused(tmp_path):
     whole = (SHIPPED / "round-6.json").read_bytes()
     path = tmp_path / "broken.json"
     not_utf8 = whole.replace(b"round", b"\xff", 1)
@@ -287,7 +287,7 @@ def test_broken_files(tmp_path):
         assert refusal.value.file == str(path)
 
 
-def test_unknown_keys_come_back(changed, tmp_path):
+def test_unknown_keys_are_kept(changed, tmp_path):
     def add(content):
         content["maker"] = {"name": "Atelier", "year": 1889}
         content["lag"]["camera"] = "M200"
@@ -300,7 +300,7 @@ def test_unknown_keys_come_back(changed, tmp_path):
     assert again == json.loads((tmp_path / "changed.json").read_text())
 
 
-def test_save_is_whole_or_nothing(tmp_path, monkeypatch):
+def test_save_writes_the_whole_file_or_nothing(tmp_path, monkeypatch):
     brush = find_brush("round-6")
     path = tmp_path / "mine.json"
     save_brush(brush, path)
@@ -336,7 +336,7 @@ def mistyped(tmp_path):
     return path
 
 
-def test_a_key_that_is_not_known_is_named_with_the_one_that_may_be_intended(tmp_path, capsys):
+def test_an_unknown_key_is_reported_with_a_similar_known_key(tmp_path, capsys):
     status, _, reported = in_json(capsys, "brush", "check", mistyped(tmp_path))
     unknown = {one.where: one.sentence for _, one in reported if one.code == "key-unknown"}
     expected = {
@@ -355,7 +355,7 @@ def test_a_shipped_brush_has_no_unknown_key(name):
     assert not unknown_keys(find_brush(name))
 
 
-def test_mistyped_keys_are_reported_and_notes_are_not(tmp_path):
+def test_mistyped_keys_are_reported_but_not_notes(tmp_path):
     done = brushsvg.convert(ROOT / "examples" / "robot.svg", brush=mistyped(tmp_path))
     reported = [one for one in done.notices if one.code == "key-unknown"]
     assert {one.where for one in reported} == {"brush round-6"} and len(reported) == 3
@@ -364,13 +364,13 @@ def test_mistyped_keys_are_reported_and_notes_are_not(tmp_path):
 
 
 @pytest.mark.parametrize("extra", ["", "[", "[]", "[" * 100_000, '{"footprints": 3}'])
-def test_a_brush_made_by_hand_may_say_anything_next_to_its_laws(extra):
+def test_a_hand_written_brush_may_have_extra_keys(extra):
     brush = find_brush("round-6")
     brush.extra = extra
     assert unknown_keys(brush) == []
 
 
-def test_a_file_that_is_here_is_named_where_its_ending_was_left_out(tmp_path, monkeypatch):
+def test_a_name_without_extension_suggests_the_existing_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     save_brush(find_brush("round-6"), "own.json")
     with refused("brush-unknown own.json"):
@@ -381,7 +381,7 @@ def test_a_file_that_is_here_is_named_where_its_ending_was_left_out(tmp_path, mo
 
 
 @pytest.mark.parametrize("kind", ["round", "liner", "pen", "", "flat", "Round"])
-def test_a_brush_of_a_kind_that_is_not_modelled_is_not_simulated(kind):
+def test_a_brush_of_an_unknown_kind_is_not_simulated(kind):
     brush = find_brush("round-6")
     brush.kind = kind
     plan = _core.Plan(passes=[_core.Pass("a", np.array([[0, 0, 0], [20, 0, -4], [60, 0, -4.0]]))])
@@ -394,7 +394,7 @@ def test_a_brush_of_a_kind_that_is_not_modelled_is_not_simulated(kind):
 
 
 @pytest.mark.parametrize("law", [*LAWS, "lever_to_widest"])
-def test_a_law_of_a_brush_refuses_depths_that_the_brush_cannot_have(law):
+def test_a_law_refuses_depths_outside_the_brush_range(law):
     brush = find_brush("round-6")
     for depth in (50, -1, 10.001, math.nan):
         with refused("depth-out-of-range 10") as caught:

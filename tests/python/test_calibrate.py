@@ -31,7 +31,7 @@ TABLE = "kind,depth_mm,value_mm\n" + "".join(
 
 
 @pytest.mark.slow
-def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
+def test_a_table_gives_a_brush_and_a_report(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out, picture = tmp_path / "own.json", tmp_path / "own.svg"
     assert main(["calibrate", str(tmp_path / "m.csv"), "-o", str(out), "--picture", str(picture)]) == 0
@@ -56,7 +56,7 @@ def test_from_a_table_to_a_brush_with_a_report(tmp_path, capsys):
     assert tuple(brush.depth_range_mm) == (0, 7)
 
 
-def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, capsys):
+def test_an_outlier_is_named_and_does_not_affect_least_absolute_residuals(tmp_path, capsys):
     lines = [f"lag,{d},{4 + d + 0.01 * k}" for d in range(1, 9) for k in range(-2, 3)]
     lines += [f"width,{d},{d}" for d in range(1, 9)]
     (tmp_path / "m.csv").write_text("kind,depth_mm,value_mm\n" + "\n".join([*lines, "lag,4,14"]))
@@ -79,7 +79,7 @@ def test_an_outlier_is_named_and_least_absolute_residuals_survive_it(tmp_path, c
         ("kind,depth_mm,value_mm\nlag,3,4000\n", "out-of-range 2.value_mm 4000 1000"),
     ],
 )
-def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
+def test_an_unusable_measurement_writes_no_file(text, said, tmp_path, capsys):
     (tmp_path / "m.csv").write_text(text)
     words = ("calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
     status, _, ((file, reported),) = in_json(capsys, *words)
@@ -87,7 +87,7 @@ def test_no_file_unless_it_is_usable(text, said, tmp_path, capsys):
     assert not (tmp_path / "b.json").exists()
 
 
-def test_a_slip_of_the_pen_gives_no_negative_lag(tmp_path):
+def test_a_typing_error_does_not_give_a_negative_lag(tmp_path):
     """A slip of the pen does not give a negative lag.
 
     The lag stays above 0, or the table is refused.
@@ -188,7 +188,7 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
         ({"lag": values(LAG[:3], DEPTHS[:3]), **WIDTH}, "lag[0]", "depth-not-measured"),
     ],
 )
-def test_what_no_brush_can_have_is_refused_with_what_to_do(rows, where, said, tmp_path, capsys):
+def test_impossible_measurements_are_refused_with_a_remedy(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     status, _, ((file, reported),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
     assert (status, file, reported.where) == (1, str(tmp_path / "m.json"), where) and agrees(reported, said), reported
@@ -226,7 +226,7 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
         ({"lag": values(LAG), **WIDTH}, "", ""),
     ],
 )
-def test_what_is_odd_is_said(rows, where, said, tmp_path, capsys):
+def test_unusual_measurements_are_reported(rows, where, said, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     status, _, reported = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
     of_it = [one for file, one in reported if file == str(tmp_path / "m.json")]
@@ -262,12 +262,12 @@ def test_a_table_that_names_another_unit_is_refused(head, row, where):
         ("", "measurement-missing lag"),
     ],
 )
-def test_a_refused_row_is_shown_how_to_write_it(row, expected):
+def test_a_refused_row_is_reported_with_a_valid_example(row, expected):
     with refused(expected):
         read_measurements(f"kind,depth_mm,value_mm\n{row}\n".encode(), ".csv")
 
 
-def test_a_column_of_millimetres_is_no_other_unit():
+def test_a_column_in_millimetres_is_not_another_unit():
     found = read_measurements(b"kind,depth_mm,value_mm,unit,value_min,depth in mm\nlag,1,2,mm,1,1\n", ".csv")
     assert [row.numbers["value_mm"] for row in found.rows["lag"]] == [2.0]
 
@@ -289,14 +289,14 @@ def test_a_column_of_millimetres_is_no_other_unit():
         ({"format": "brushsvg/measurements", "version": 1, "depth_range_mm": [5, 1]}, "depth_range_mm"),
     ],
 )
-def test_json_that_is_none(content, where):
+def test_invalid_json_is_refused(content, where):
     text = content if isinstance(content, str) else json.dumps(content)
     with pytest.raises(Error) as refusal:
         read_measurements(text.encode(), ".json")
     assert refusal.value.where == where
 
 
-def test_the_example_of_the_documents_is_read():
+def test_the_example_of_the_documentation_can_be_read():
     """The example in the documentation can be read and fits its brush.
 
     Its angles belong to r = 7.4 and b = 1.5 mm, printed to a tenth of a degree.
@@ -323,7 +323,7 @@ def table(tmp_path, rows, *flags) -> tuple[int, object]:
 WIDTHS = [("width", d, d) for d in (2, 4, 6, 8, 10)]
 
 
-def test_side_views_in_a_table_are_side_views(tmp_path):
+def test_side_views_can_be_given_in_a_table(tmp_path):
     rows = [("lag", d, 3 + 0.8 * d) for d in (2, 4, 6, 8, 10)]
     rows += [
         ("side_view", d, 0.8 * d + 0.5 * d) for d in (2, 4, 6, 8, 10)
@@ -345,7 +345,7 @@ def test_decimal_commas_are_not_read_as_whole_numbers(tmp_path, capsys, columns)
     assert not (tmp_path / "b.json").exists()
 
 
-def test_finely_stepped_depths_are_many(tmp_path):
+def test_finely_stepped_depths_count_as_many_depths(tmp_path):
     fine = np.arange(10, 101) / 10
     code, out = table(tmp_path, [("lag", d, 3 + 0.8 * d) for d in fine] + [("width", d, d) for d in fine])
     assert code == 0 and find_brush(out).lag(5) == pytest.approx(7, abs=1e-6)
@@ -363,7 +363,7 @@ def test_few_half_widths_near_touch_do_not_contradict_widths(touch, tmp_path, ca
     assert "Warning" not in capsys.readouterr().err
 
 
-def test_half_widths_and_widths_with_noise_go_together():
+def test_noisy_half_widths_and_widths_are_accepted_together():
     """Noisy half-widths and widths together are not refused as a mix-up.
 
     This holds even if a curved law could pass through either kind after halving its values.
@@ -386,7 +386,7 @@ def test_half_widths_and_widths_with_noise_go_together():
 
 
 @pytest.mark.parametrize(("column", "shown"), [("depth_mm", "'depth_mm'"), ("\x1b[2J", "'\\x1b[2J'")])
-def test_a_column_that_stands_twice_is_refused(tmp_path, capsys, column, shown):
+def test_a_duplicate_column_is_refused(tmp_path, capsys, column, shown):
     (tmp_path / "m.csv").write_text(f"kind,{column},{column},depth_mm,value_mm\nlag,1,2,3\n")
     status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
     assert status == 1 and agrees(reported, f"key-twice {shown}", "line 1"), reported
@@ -400,20 +400,20 @@ def test_a_column_that_stands_twice_is_refused(tmp_path, capsys, column, shown):
         ("0,2", "depth_mm", "out-of-range 0"),
     ],
 )
-def test_a_width_that_none_can_have_is_refused_with_its_line(line, column, said, tmp_path, capsys):
+def test_an_impossible_width_is_refused_with_its_line(line, column, said, tmp_path, capsys):
     (tmp_path / "w.csv").write_text(f"depth_mm,width_mm\n{line}\n")
     words = ("brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "w.csv")
     status, _, ((file, reported),) = in_json(capsys, *words)
     assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, said, f"line 2, {column}"), reported
 
 
-def test_of_exact_values_no_rounding_is_reported(tmp_path):
+def test_exact_values_are_reported_without_rounding_error(tmp_path):
     rows = {"lag": values(2 + 0.5 * DEPTHS), "width": values(DEPTHS)}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     assert "+- 0, 0, 0 " in brushsvg.calibrate(tmp_path / "m.json").report.text(details=True)
 
 
-def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys):
+def test_a_law_from_few_values_does_not_follow_their_noise(tmp_path, capsys):
     off = (0.3, -0.3, 0.3, -0.3, 0.3)
     rows = [("lag", d, 3 + 0.8 * d + e) for d, e in zip((2, 4, 6, 8, 10), off, strict=True)]
     code, out = table(tmp_path, rows + WIDTHS)
@@ -425,7 +425,7 @@ def test_few_values_give_a_law_that_does_not_follow_their_noise(tmp_path, capsys
 
 
 @pytest.mark.parametrize("norm", ["squares", "absolute"])
-def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
+def test_a_typing_error_among_ten_readings_is_named(tmp_path, capsys, norm):
     rows = [("lag", d, round(3 + 0.8 * d + 0.1 * (-1) ** (d // 2), 2)) for d in range(1, 11)]
     rows[4] = ("lag", 5, 70.0)
     table(tmp_path, rows + WIDTHS, "--norm", norm)
@@ -434,7 +434,7 @@ def test_a_slip_of_the_pen_is_named_among_ten_readings(tmp_path, capsys, norm):
     assert not re.search(r"\b5 .*: [+-]", reported)
 
 
-def test_two_depths_side_by_side_leave_the_lag_open(tmp_path, capsys):
+def test_two_close_depths_do_not_determine_the_lag(tmp_path, capsys):
     rows = [("lag", 5.0, 6.11), ("lag", 5.0, 6.16), ("lag", 5.3, 7.0), ("lag", 5.3, 7.35)]
     code, out = table(tmp_path, rows + WIDTHS[:3] + [("width", 5.3, 5.3)])
     assert code == 1 and not out.exists()
@@ -459,7 +459,7 @@ def test_normal_noise_is_seldom_called_an_outlier():
     ],
     ids=["from-elsewhere", "radians"],
 )
-def test_angles_that_do_not_begin_with_the_first_are_refused(tmp_path, capsys, change, said):
+def test_angles_that_do_not_start_with_the_first_angle_are_refused(tmp_path, capsys, change, said):
     rows = []
     for d in (2, 4, 6, 8, 10):
         s = np.linspace(1, 1.8 * (3 + 0.8 * d), 6)
@@ -505,7 +505,7 @@ def test_normal_noise_above_a_floor_is_seldom_called_an_outlier(floored):
     assert named <= 1  # six in a hundred thousand values
 
 
-def test_a_slip_above_a_floor_is_named():
+def test_an_outlier_above_a_floor_is_named():
     rng, depths = np.random.default_rng(4), np.linspace(1, 10, 10)
     for k in range(10):
         values = np.maximum(0, WIDEST(depths)) + rng.normal(0, 0.05, 10)
@@ -513,7 +513,7 @@ def test_a_slip_above_a_floor_is_named():
         assert list(plausibility.find_outliers_above_floor(depths, values, (0.0, 10.0), 3)) == [k]
 
 
-def test_a_fit_stays_as_it_was_when_the_brush_is_made():
+def test_making_the_brush_does_not_change_the_fit():
     """Making the brush does not change the fit.
 
     The brush's outlines need a floor that rises with depth. After a correction of sums, the fit once got this
@@ -536,7 +536,7 @@ def test_a_fit_stays_as_it_was_when_the_brush_is_made():
 
 
 @pytest.mark.parametrize(("alpha0_deg", "is_taken"), [(90, True), (60, True), (95, True), (96, False), (120, False)])
-def test_angles_that_begin_beyond_what_reading_leaves_of_90_degrees_are_refused(alpha0_deg, is_taken):
+def test_start_angles_above_90_degrees_plus_reading_error_are_refused(alpha0_deg, is_taken):
     """Start angles above 90 degrees plus reading error are refused.
 
     The patch rests at first: from 120 degrees the lag came out 9 % short, with an RMSE of 0.
@@ -553,7 +553,7 @@ def test_angles_that_begin_beyond_what_reading_leaves_of_90_degrees_are_refused(
     assert list(refusal.value.range) == [0, 95] and refusal.value.value == pytest.approx(alpha0_deg)
 
 
-def test_five_readings_have_a_band_that_holds_the_truth():
+def test_the_band_of_five_readings_contains_the_true_law():
     """The band of five readings contains the true law in 95 % of cases.
 
     Bands of 1.96 standard deviations contained the true law in 83 % of cases. numpy fits the laws and gives
@@ -583,7 +583,7 @@ def test_five_readings_have_a_band_that_holds_the_truth():
     assert np.all(np.abs(np.mean(held, axis=0) - 0.95) < 0.015)
 
 
-def test_a_calibration_of_five_readings_says_one_interval_for_one_number(tmp_path, capsys):
+def test_five_readings_report_a_single_interval_for_one_number(tmp_path, capsys):
     """A calibration of five readings reports a single interval for one number.
 
     The constant coefficient is the law at depth 0, but its interval once differed from the band there.
@@ -601,7 +601,7 @@ def test_a_calibration_of_five_readings_says_one_interval_for_one_number(tmp_pat
 
 
 @pytest.mark.parametrize("freedom", [1, 2, 3.5, 10, 200])
-def test_quantiles_are_scipys(freedom):
+def test_quantiles_agree_with_scipy(freedom):
     assert _core.deviations_of_95(freedom) == pytest.approx(special.stdtrit(freedom, 0.975), rel=1e-9)
     assert _core.deviations_of_95() == pytest.approx(special.ndtri(0.975), rel=1e-12)
     t = np.array([-30.0, -2.0, 0.0, 0.5, 4.0])
@@ -620,12 +620,12 @@ def test_quantiles_are_scipys(freedom):
         (None, "wrong-type"),
     ],
 )
-def test_parts_of_a_machine_that_there_are_not_are_refused_with_those_that_there_are(machine, code):
+def test_unknown_machine_errors_are_refused_with_the_known_ones(machine, code):
     with refused(f"{code} lean axes tilt backlash field"):
         brushsvg.calibrate("marks.json", machine=machine)
 
 
-def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
+def test_measured_numbers_cannot_estimate_a_machine(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
     status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--machine", "lean")
@@ -634,7 +634,7 @@ def test_measured_numbers_say_nothing_of_a_machine(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("name", cell_names())
-def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
+def test_every_cell_accepts_the_table_of_its_estimated_errors(name):
     """Every cell accepts the table of the errors that `--machine` estimates with it.
 
     16 of 21 cells once refused the table that --machine printed for them.
@@ -662,7 +662,7 @@ def test_every_cell_takes_the_table_of_what_is_looked_for_with_it(name):
     assert all(agrees(each, f"machine-not-undone {name} {' '.join(rest)}") for each in reported)
 
 
-def test_what_a_machine_cannot_undo_is_reported_once_and_not_looked_for(tmp_path, capsys):
+def test_an_error_the_cell_cannot_undo_is_reported_once_and_not_estimated(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     words = ("calibrate", tmp_path / "m.csv", "-o", tmp_path / "own.json", "--cell", "grbl-servo")
     status, _, reported = in_json(capsys, *words, "--machine", "lean,tilt")
@@ -671,7 +671,7 @@ def test_what_a_machine_cannot_undo_is_reported_once_and_not_looked_for(tmp_path
     assert in_json(capsys, *words)[0] == 2, "--cell alone says nothing"
 
 
-def test_measured_numbers_say_nothing_of_paint(tmp_path, capsys):
+def test_measured_numbers_cannot_estimate_paint(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
     status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--paint")
@@ -679,7 +679,7 @@ def test_measured_numbers_say_nothing_of_paint(tmp_path, capsys):
     assert not out.exists()
 
 
-def test_an_overlap_needs_marks(tmp_path, capsys):
+def test_the_aim_overlap_needs_marks(tmp_path, capsys):
     (tmp_path / "m.csv").write_text(TABLE)
     out = tmp_path / "own.json"
     status, _, reported = in_json(capsys, "calibrate", tmp_path / "m.csv", "-o", out, "--aim", "overlap")
@@ -687,7 +687,7 @@ def test_an_overlap_needs_marks(tmp_path, capsys):
     assert not out.exists()
 
 
-def test_an_aim_that_there_is_not_is_refused(tmp_path):
+def test_an_unknown_aim_is_refused(tmp_path):
     (tmp_path / "m.csv").write_text(TABLE)
     with refused("choice-unknown edges overlap width"):
         brushsvg.calibrate(tmp_path / "m.csv", aim="width")
@@ -701,7 +701,7 @@ def test_an_aim_that_there_is_not_is_refused(tmp_path):
         ["--chart", "c.json", "--paint"],
     ],
 )
-def test_an_overlap_is_not_for_jobs_nor_for_outlines_that_are_known(more, tmp_path, capsys):
+def test_the_aim_overlap_is_refused_for_jobs_and_known_outlines(more, tmp_path, capsys):
     out = str(tmp_path / "own.json")
     assert main(["calibrate", "a.jpg", "-o", out, "--aim", "overlap", *more]) == 2
     assert "--aim" in capsys.readouterr().err

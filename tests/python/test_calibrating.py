@@ -21,7 +21,7 @@ def table(tmp_path):
     return path
 
 
-def test_python_gives_the_bytes_and_the_report_of_the_command(table, tmp_path, capsys):
+def test_python_and_the_command_give_equal_bytes_and_reports(table, tmp_path, capsys):
     out = tmp_path / "brush.json"
     assert main(["calibrate", str(table), "-o", str(out), "--quiet"]) == 0
     said = capsys.readouterr().out
@@ -62,7 +62,7 @@ def test_options_that_contradict_are_refused_before_any_file_is_read(source, opt
         brushsvg.calibrate(source, **options)
 
 
-def test_the_command_refuses_the_same_as_wrong_usage(table, capsys):
+def test_the_command_refuses_contradicting_options_as_wrong_usage(table, capsys):
     assert main(["calibrate", str(table), "-o", "b.json", "--chart", "chart.json"]) == 2
     assert find_contradiction(str(table), CalibrationOptions(chart="chart.json")) in capsys.readouterr().err
 
@@ -76,10 +76,10 @@ def test_type_checkers_know_every_option():
     assert [*GivenOptions.__annotations__] == [*CalibrationOptions.__dataclass_fields__]
 
 
-def test_a_list_of_one_file_is_that_file(table):
+def test_a_list_of_one_file_equals_the_file(table):
     assert brushsvg.calibrate([table]).brush == brushsvg.calibrate(table).brush
 
 
-def test_a_resolution_at_which_nothing_can_be_measured_is_refused():
+def test_a_resolution_too_low_to_measure_is_refused():
     with refused("out-of-range dpi"):
         brushsvg.calibrate("scan.png", chart="chart.json", dpi=50)

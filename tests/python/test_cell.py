@@ -34,7 +34,7 @@ TEXT = (SHIPPED / "linuxcnc-3axis.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", cell_names())
-def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
+def test_every_shipped_cell_loads_and_equals_the_output_of_the_tool(name):
     cell = find_cell(name)
     assert cell.name == name
     assert write_cell(cell) == (SHIPPED / f"{name}.toml").read_text(encoding="utf-8")
@@ -101,7 +101,7 @@ def test_every_shipped_cell_loads_and_is_as_written_by_the_tool(name):
         ("[paper]", "[paper]\ntaught_mm = [[0, 0, 0]]", "paper.taught_mm", "paper-taught 1"),
     ],
 )
-def test_a_faulty_cell_is_refused_by_key(old, new, where, said):
+def test_an_invalid_cell_is_refused_with_its_key(old, new, where, said):
     assert old in TEXT
     with refused(said, where):
         parse_cell(TEXT.replace(old, new))
@@ -152,14 +152,14 @@ def test_a_station_that_the_tool_cannot_visit_is_refused(station, said):
         parse_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
 
 
-def test_a_station_by_hand_is_refused_where_the_brush_would_fall():
+def test_a_manual_station_is_refused_if_the_brush_would_drop():
     by_hand = (Station("ink", (1.0, 2.0), by_hand=True),)
     with refused("cell-station servo"):
         parse_cell(write_cell(replace(find_cell("grbl-servo"), stations=by_hand, reload=Reload("stroke"))))
 
 
 @pytest.mark.parametrize("cell", [FULL, *map(find_cell, cell_names())])
-def test_what_is_written_is_read_back(cell):
+def test_a_written_cell_is_read_back_unchanged(cell):
     assert parse_cell(write_cell(cell)) == cell
 
 
@@ -186,7 +186,7 @@ def test_what_is_written_is_read_back(cell):
         ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "out-of-range 99000 -2000 2000"),
     ],
 )
-def test_what_no_single_key_shows_is_refused_too(change, where, said):
+def test_contradictions_between_keys_are_refused(change, where, said):
     with refused(said, where):
         parse_cell(write_cell(replace(FULL, **change)))
 
@@ -215,7 +215,7 @@ def test_a_cell_that_reaches_no_paper_is_reported(workspace, said):
 
 
 @pytest.mark.slow
-def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
+def test_a_sheet_is_out_of_reach_only_if_no_point_of_it_is_reachable():
     """A sheet is out of reach exactly if no point of it can be reached.
 
     The reference tries points one by one, on papers with random poses.
@@ -264,7 +264,7 @@ def test_what_is_out_of_reach_is_what_no_point_of_the_sheet_meets():
         ("workspace", {"reach_mm": (200.0, 600.0)}, "out-of-reach 668.3 200 600"),
     ],
 )
-def test_what_is_odd_is_remarked_on(table, change, said):
+def test_unusual_values_are_reported(table, change, said):
     cell = replace(find_cell("ur5e"), paper=replace(find_cell("ur5e").paper, example=False))
     assert remarks(cell) == []
     (reported,) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
@@ -272,13 +272,13 @@ def test_what_is_odd_is_remarked_on(table, change, said):
 
 
 @pytest.mark.parametrize("name", cell_names())
-def test_nothing_is_odd_about_shipped_cells(name):
+def test_shipped_cells_have_no_unusual_values(name):
     cell = find_cell(name)
     assert [key for key, _ in remarks(cell)] == (["paper"] if cell.paper.example else [])
     assert out_of_reach(cell) == []
 
 
-def test_the_frame_of_taught_points_is_where_they_were():
+def test_the_paper_frame_passes_through_the_taught_points():
     truth = frame_of_pose((120.0, -340.0, 25.0), (1.0, -0.5, 37.0))
     on_paper = np.array([(0, 0, 0), (210, 0, 0), (14, 150, 0), (180, 120, 0)], dtype=float)
     taught = tuple(map(tuple, transform_points(truth, on_paper).tolist()))
@@ -291,7 +291,7 @@ def test_the_frame_of_taught_points_is_where_they_were():
 @pytest.mark.parametrize(
     ("language", "where"), [("grbl-servo", "servo"), ("urscript", "tool"), ("linuxcnc", None), ("grbl", None)]
 )
-def test_a_language_that_needs_a_table_says_so(language, where):
+def test_a_missing_table_of_a_language_is_reported(language, where):
     text = TEXT.replace('language = "linuxcnc"', f'language = "{language}"')
     if where is None:
         assert parse_cell(text).language == language
@@ -336,7 +336,7 @@ def test_a_servo_without_a_value_for_each_height_is_refused(servo, said):
         parse_cell(write_cell(replace(find_cell("grbl-servo"), servo=servo)))
 
 
-def test_paper_that_was_taught_for_a_servo_is_level_with_it():
+def test_taught_paper_of_a_servo_must_be_level():
     text = (SHIPPED / "grbl-servo.toml").read_text(encoding="utf-8")
     level = "taught_mm = [[10, 5, 0], [110, 15, 0], [0, 105, 0]]"
     assert parse_cell(text.replace("[paper]", f"[paper]\n{level}")).paper.taught_mm
@@ -382,14 +382,14 @@ def test_badly_taught_points_are_refused(points, said):
         parse_cell(write_cell(cell))
 
 
-def test_right_angles_are_exact_and_tilt_is_the_normals():
+def test_right_angles_are_exact_and_tilt_follows_the_normal():
     assert (rotation((0, 0, 90)) == [[0, -1, 0], [1, 0, 0], [0, 0, 1]]).all()
     assert (rotation((90, 0, 90)) @ [0, 1, 0] == [0, 0, 1]).all()
     assert normal_tilt_deg(frame_of_pose((0, 0, 0), (0, 30, 77))) == pytest.approx(30)
     assert (rotation((0, 0, -1e-15)) == np.eye(3)).all(), "so little below 0 is 360 once it is rounded"
 
 
-def test_rotation_vectors_turn_as_the_matrix_does():
+def test_rotation_vectors_agree_with_the_matrix():
     import cv2
 
     random = np.random.default_rng(7)
@@ -399,7 +399,7 @@ def test_rotation_vectors_turn_as_the_matrix_does():
         assert cv2.Rodrigues(rotation_vector(turned))[0] == pytest.approx(turned, abs=1e-12)
 
 
-def test_too_many_boxes_to_keep_out_of_are_reported_by_their_number():
+def test_too_many_forbidden_boxes_are_refused_with_their_number():
     box = [[0, 0, 0], [1, 1, 1]]
     text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {[box] * 1001}")
     with refused("out-of-range workspace.keep_out_mm 1001 1000") as refusal:
@@ -421,14 +421,14 @@ def test_too_many_boxes_to_keep_out_of_are_reported_by_their_number():
         ("[[]]", "workspace.keep_out_mm[0]", "2 rows of 3 numbers"),
     ],
 )
-def test_boxes_of_another_shape_are_reported_by_their_place_and_with_the_shape(value, where, target):
+def test_malformed_forbidden_boxes_are_refused_with_index_and_shape(value, where, target):
     text = write_cell(find_cell()).replace("[workspace]", f"[workspace]\nkeep_out_mm = {value}")
     with refused(f"wrong-type {where} {target}") as refusal:
         parse_cell(text)
     assert refusal.value.where.startswith("workspace.keep_out_mm")
 
 
-def test_a_new_cell_is_not_called_as_one_that_comes_along(tmp_path, monkeypatch, capsys):
+def test_a_new_cell_does_not_get_the_name_of_a_shipped_cell(tmp_path, monkeypatch, capsys):
     """A new cell does not get the name of a shipped cell.
 
     Otherwise, check would compare its program with the shipped cell and refuse it with a confusing message.

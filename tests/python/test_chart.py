@@ -57,7 +57,7 @@ def marks_of(made, brush):
 )
 @sample("share", [0.75, 1.0, 1.25], keep=1)
 @pytest.mark.slow
-def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
+def test_marks_are_separate_and_on_the_sheet(sheet, brush, share):
     """Marks keep apart from each other and stay on the sheet.
 
     This also holds for a brush whose lag is a quarter larger or smaller than assumed.
@@ -80,7 +80,7 @@ def test_marks_keep_apart_and_on_the_sheet(sheet, brush, share):
         assert min(text.distance(mark) for mark in (*marks, *markers)) > 0, label.text
 
 
-def test_what_is_on_it():
+def test_the_chart_has_the_expected_strokes_and_depths():
     brush = find_brush("round-6")
     made = chart(brush, A4, "normal")
     kinds = [stroke.kind for stroke in made.strokes]
@@ -146,7 +146,7 @@ SMALL_ARMS = ("irb120", "ur3e")  # A4 is nearly too large for these arms, so the
     ],
     keep=4,
 )
-def test_a_program_for_every_cell(name, tmp_path, capsys):
+def test_the_chart_becomes_a_program_for_every_cell(name, tmp_path, capsys):
     suffix = POSTS[find_cell(name).language].extensions[0]
     out = tmp_path / f"chart{suffix}"
     assert main(["chart", "-o", str(out), "--cell", name]) == 0
@@ -193,7 +193,7 @@ def detected(svg, sheet_mm, dictionary):
 
 
 @pytest.mark.slow
-def test_a_pen_plots_the_markers_where_they_would_be_printed(tmp_path, monkeypatch):
+def test_a_pen_plots_the_markers_at_their_printed_positions(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = "--brush pen.json --wide passes --select [data-marker]"
     assert main("brush new -o pen.json --lag 0 --width-at 1=0.7".split()) == 0
@@ -231,7 +231,7 @@ def svg_shapes(svg, height_mm):
 
 
 @pytest.mark.parametrize("sheet", [A5, LETTER, (420.0, 594.0)])
-def test_the_bar_keeps_clear_and_is_as_long_as_it_says(sheet):
+def test_the_scale_bar_is_clear_of_marks_and_has_its_stated_length(sheet):
     made = chart(find_brush("round-6"), sheet, "few")
     (x, y), length = made.bar.at_mm, made.bar.length_mm
     drawn = re.search(r'<path data-bar="([^"]*)"[^>]* d="([^"]*)"', chart_page(made))
@@ -266,7 +266,7 @@ def test_the_pdf_has_the_size_and_the_shapes_of_the_page(sheet):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["chart -o plan.json --sheet a5", "convert a.svg -o plan.json"])
-def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monkeypatch, capsys, command):
+def test_the_pdf_page_needs_matplotlib_and_the_svg_page_does_not(tmp_path, monkeypatch, capsys, command):
     """Without matplotlib the PDF page is refused, but not the SVG page.
 
     The missing package was once reported as an internal error of brushsvg.
@@ -283,7 +283,7 @@ def test_without_matplotlib_the_pdf_is_refused_and_the_svg_is_not(tmp_path, monk
     assert main([*command.split(), "--page", "page.svg"]) == 0
 
 
-def test_a_file_of_before_is_read():
+def test_a_chart_file_of_an_earlier_version_can_be_read():
     """A chart file from an earlier version can be read.
 
     It has four markers of another dictionary, no id, no bar and no labels.
@@ -301,7 +301,7 @@ def test_another_chart_has_other_markers():
     assert one.id != other.id and not {m.id for m in one.markers} & {m.id for m in other.markers}
 
 
-def test_the_file_is_read_back():
+def test_a_chart_file_is_read_back_unchanged():
     made = chart(find_brush("round-6"), LETTER)
     text = write_chart(made)
     again = read_chart(text.encode())
@@ -363,7 +363,7 @@ def test_a_damaged_file_names_the_key(change, where, said):
 
 
 @pytest.mark.slow
-def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
+def test_chart_reports_the_expected_accuracy_of_the_brush(tmp_path, capsys):
     """`brushsvg chart` reports how exact the calibrated brush will be.
 
     A larger sheet makes the brush more exact; uneven edges make it less exact.
@@ -380,7 +380,7 @@ def test_it_says_how_sure_the_brush_will_be(tmp_path, capsys):
     assert rough.mean() > 1.5 * a5.mean()
 
 
-def test_wrong_usage(tmp_path, capsys):
+def test_wrong_usage_is_refused(tmp_path, capsys):
     out = str(tmp_path / "plan.json")
     for flags, said in (
         (["--sheet", "a9"], "a9"),
@@ -395,7 +395,7 @@ def test_wrong_usage(tmp_path, capsys):
 
 @pytest.mark.parametrize("deepest", [5.566, 9.6583])
 @pytest.mark.slow
-def test_no_depth_is_rounded_beyond_the_brush(deepest):
+def test_no_depth_is_rounded_beyond_the_brush_range(deepest):
     made = chart(new_brush("own", 6.0, [(2, 1.0), (4, 2.0)], deepest), A4)
     assert max(stroke.depth_mm for stroke in made.strokes) == pytest.approx(deepest, abs=0.01)
 
@@ -407,7 +407,7 @@ def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys
 
 
 @pytest.mark.parametrize("sheet", [A5, A4, (420.0, 594.0)], ids=["a5", "a4", "a2"])
-def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
+def test_the_order_of_one_load_separates_depth_from_painted_distance(sheet):
     """With one load, the order of strokes separates depth from distance painted.
 
     The strokes and their places do not change. The distance painted so far hardly predicts the depth.
@@ -440,7 +440,7 @@ def test_one_load_is_painted_in_an_order_that_shows_depth_from_way(sheet):
     assert {one.settings.reload for one in made.plan.passes} == {False}
 
 
-def test_one_load_is_fetched_once():
+def test_a_chart_for_one_load_fetches_paint_once():
     """A chart for one load fetches paint once.
 
     The cell otherwise fetches paint before every stroke.
@@ -453,7 +453,7 @@ def test_one_load_is_fetched_once():
 
 
 @pytest.mark.slow
-def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
+def test_chart_reports_the_expected_accuracy_of_the_paint(tmp_path, capsys):
     def reported(*flags):
         assert main(["chart", "-o", str(tmp_path / "p.json"), "--sheet", "a5", *flags]) == 0
         return capsys.readouterr().out
@@ -473,14 +473,14 @@ def test_it_says_how_sure_the_paint_will_be(tmp_path, capsys):
     assert halves[1] == pytest.approx(2 * halves[0], rel=0.1)
 
 
-def test_dabs_do_not_show_paint(tmp_path, capsys):
+def test_dabs_cannot_measure_paint(tmp_path, capsys):
     assert main(["chart", "-o", str(tmp_path / "p.json"), "--dabs", "--paint"]) == 2
     assert gives(capsys.readouterr().err, "--paint")
     with refused("options-contradict"):
         chart(find_brush("round-6"), A5, dabs=True, one_load=True)
 
 
-def test_same_chart_each_time():
+def test_the_chart_is_the_same_each_time():
     texts = [write_chart(made) for made in (small_chart(), chart(find_brush("round-6"), A5))]
     assert len(set(texts)) == 1
     assert all(a != b for a, b in itertools.pairwise(read_chart(texts[0].encode()).strokes))

@@ -25,7 +25,7 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_a_sound_program_with_its_drawing(desk):
+def test_a_valid_program_agrees_with_its_drawing(desk):
     made = brushsvg.convert("two.svg", figures=True)
     found = brushsvg.check("two.ngc", "two.svg")
     assert (found.job, found.problems, found.is_compared, found.is_foreign) == ("painting", (), True, False)
@@ -36,7 +36,7 @@ def test_a_sound_program_with_its_drawing(desk):
         assert np.abs(ours.poses_mm[-1] - theirs.poses_mm[-1]).max() < 2e-3
 
 
-def test_it_says_what_the_command_says(desk, capsys):
+def test_check_reports_the_same_codes_as_the_command(desk, capsys):
     lines = Path("two.ngc").read_text().splitlines(keepends=True)
     Path("short.ngc").write_text("".join(line for line in lines if not line.startswith("G2 ")))
     status, _, reported = in_json(capsys, "check", "short.ngc", "two.svg")
@@ -60,7 +60,7 @@ def test_notices_are_returned_and_not_printed(desk, capsys):
     assert is_reported(found.notices, "white-paint", "w")
 
 
-def test_a_program_of_others_paints_with_a_brush(desk):
+def test_a_foreign_program_is_checked_with_a_brush(desk):
     Path("pen.ngc").write_text("G21 G90\nG0 Z5\nG0 X20 Y20\nG1 Z-3 F600\nG1 X80 Y20\nG0 Z5\nM2\n")
     found = brushsvg.check("pen.ngc", sheet=(120, 60))
     assert found.is_foreign and found.time_s is None and len(found.plan.passes) == 1
@@ -69,7 +69,7 @@ def test_a_program_of_others_paints_with_a_brush(desk):
         brushsvg.check("pen.ngc", "two.svg")
 
 
-def test_a_program_before_the_first_stroke(desk, capsys):
+def test_a_setup_program_is_checked(desk, capsys):
     assert in_json(capsys, "setup", "border", "two.svg", "-o", "border.ngc")[0] == 0
     found = brushsvg.check("border.ngc", "two.svg")
     left, bottom, right, top = found.border_mm
@@ -83,7 +83,7 @@ def test_a_program_before_the_first_stroke(desk, capsys):
     assert is_reported(brushsvg.check("border.ngc", "moved.svg").problems, "border-elsewhere")
 
 
-def test_what_cannot_be_read_or_changes_nothing_is_refused(desk):
+def test_unreadable_files_and_options_without_effect_are_refused(desk):
     with refused("file-unreadable") as caught:
         brushsvg.check("none.ngc")
     assert caught.value.file == "none.ngc"
@@ -97,7 +97,7 @@ def test_what_cannot_be_read_or_changes_nothing_is_refused(desk):
     assert caught.value.file == "bad.svg"
 
 
-def test_an_open_drawing_and_a_plan(desk):
+def test_an_open_drawing_or_a_plan_is_accepted(desk):
     design = brushsvg.read_drawing("two.svg")
     assert brushsvg.check("two.ngc", design).problems == ()
     made = brushsvg.convert("two.svg", "two.json")
@@ -106,6 +106,6 @@ def test_an_open_drawing_and_a_plan(desk):
     assert brushsvg.check("two.ngc", other).problems
 
 
-def test_it_is_given_up(desk):
+def test_check_can_be_cancelled(desk):
     with pytest.raises(CancelledError):
         brushsvg.check("two.ngc", "two.svg", cancel=lambda: True)

@@ -53,7 +53,7 @@ def off_circles(found, points):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LANGUAGES)
-def test_what_was_planned_comes_back(desk, name):
+def test_a_program_is_read_back_as_the_plan(desk, name):
     work = preparation.prepare("two.svg")
     back = ran(*text_of(work, name), work)
     assert back.problems == []
@@ -97,7 +97,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("fault", BROKEN)
-def test_a_dangerous_program_is_reported_by_line(desk, fault):
+def test_a_dangerous_program_is_reported_with_its_line(desk, fault):
     work = preparation.prepare("two.svg")
     text, cell = text_of(work, "linuxcnc-3axis")
     edit, said = BROKEN[fault]
@@ -137,7 +137,7 @@ UNREADABLE = {
 
 
 @pytest.mark.parametrize("name", UNREADABLE)
-def test_what_is_not_ours_is_refused(desk, name):
+def test_programs_that_brushsvg_cannot_have_written_are_refused(desk, name):
     work = preparation.prepare("two.svg")
     text, cell = text_of(work, name)
     for edit, said in UNREADABLE[name]:
@@ -166,7 +166,7 @@ def test_the_command_compares_with_the_drawing(desk, capsys):
     }
 
 
-def test_a_resumed_program_is_no_lost_one(desk, capsys):
+def test_a_resumed_program_is_not_reported_as_incomplete(desk, capsys):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--from-stroke", "2")[0] == 0
     assert call(capsys, "check", "two.ngc", "two.svg")[0] == 0
 
@@ -182,7 +182,7 @@ def test_a_resumed_program_is_no_lost_one(desk, capsys):
         (edited(r"\(sheet: .*\)\n", ""), "sheet-unknown"),
     ],
 )
-def test_a_header_without_the_answer_is_refused(desk, capsys, edit, said):
+def test_a_header_without_the_required_field_is_refused(desk, capsys, edit, said):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_text(edit((desk / "two.ngc").read_text()))
     status, _, ((file, reported), *_) = in_json(capsys, "check", "two.ngc")
@@ -221,7 +221,7 @@ def test_a_header_without_the_answer_is_refused(desk, capsys, edit, said):
         ),
     ],
 )
-def test_damaged_numbers_of_a_header_are_reported_in_a_sentence(desk, capsys, line, said):
+def test_damaged_header_numbers_are_reported(desk, capsys, line, said):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     word = line.partition(":")[0]
@@ -232,13 +232,13 @@ def test_damaged_numbers_of_a_header_are_reported_in_a_sentence(desk, capsys, li
 
 
 @pytest.mark.parametrize(("offset", "said"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")])
-def test_check_says_that_a_program_is_for_another_height_of_the_paper(desk, capsys, offset, said):
+def test_check_reports_a_program_for_another_paper_height(desk, capsys, offset, said):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", f"--z-offset={offset}")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
     assert status == 0 and is_reported(reported, said), reported
 
 
-def test_what_a_command_is_refused_for_says_so_in_json(desk, capsys):
+def test_a_json_message_marks_the_cause_of_a_refusal(desk, capsys):
     """A message that causes a refusal says so in JSON.
 
     The message once contained `refused: false`, like a warning.
@@ -268,7 +268,7 @@ PAINT = '[reload]\nwhen = "length"\nevery_mm = 60\n[[stations]]\nname = "ink"\np
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "grbl-servo", "ur5e"])
 @pytest.mark.slow
-def test_any_name_may_stand_next_to_any_part(desk, capsys, name):
+def test_any_stroke_name_may_be_next_to_any_part_name(desk, capsys, name):
     """Any stroke name may appear next to any name of a part.
 
     The drawing has its own a+2 next to an a that is painted in parts. It also has names that a program writes
@@ -317,7 +317,7 @@ def test_strokes_in_another_order_are_reported(desk, capsys):
     assert (status, reported.where) == (1, "hook [1]") and agrees(reported, "stroke-order curve")
 
 
-def test_a_plan_is_a_drawing_too(desk, capsys):
+def test_a_program_is_compared_with_a_plan(desk, capsys):
     assert call(capsys, "convert", "two.svg", "-o", "plan.json", "--compensation", "none")[0] == 0
     for suffix, cell in ((".ngc", "linuxcnc-3axis"), (".nc", "grbl-servo")):
         assert call(capsys, "convert", "plan.json", "-o", f"two{suffix}", "--cell", cell)[0] == 0
@@ -335,7 +335,7 @@ def test_a_plan_is_a_drawing_too(desk, capsys):
     assert (status, reported.where) == (1, "hook [1]") and agrees(reported, "path-elsewhere line 0.50")
 
 
-def test_a_resumed_program_knows_what_it_should_have_painted(desk, capsys):
+def test_a_resumed_program_is_compared_with_its_remaining_strokes(desk, capsys):
     (desk / "two.svg").write_text(DRAWING.replace("</g>", '<path id="third" d="M20 20 h30"/></g>'))
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--from-stroke", "2")[0] == 0
     text = (desk / "two.ngc").read_text()
@@ -365,7 +365,7 @@ THREE = DRAWING.replace("</g>", '<path id="third" d="M20 20 h60"/></g>')
         ([2], "stroke-misnumbered '3 of 3' '2 of 3'"),
     ],
 )
-def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, said):
+def test_a_program_without_one_of_its_strokes_is_refused(desk, capsys, drawing, lost, said):
     """A program that lacks a stroke is refused.
 
     The header lists all strokes, with or without the drawing.
@@ -378,7 +378,7 @@ def test_a_program_has_all_its_strokes(desk, capsys, drawing, lost, said):
     assert status == 1 and any(agrees(each, said) for _, each in reported), reported
 
 
-def test_strokes_that_are_lost_at_the_end_are_counted(desk, capsys):
+def test_missing_strokes_at_the_end_are_counted(desk, capsys):
     (desk / "two.svg").write_text(THREE)
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
@@ -416,7 +416,7 @@ def painted_otherwise(text: str, how: str) -> str:
 
 
 @pytest.mark.parametrize("how", ["backwards", "to and fro", "thrice", "two lines swapped", "the first half"])
-def test_the_order_along_a_stroke_counts(desk, capsys, how):
+def test_the_order_of_moves_along_a_stroke_is_checked(desk, capsys, how):
     """The order of moves along a stroke counts.
 
     Paint in another order would look nearly the same, and no point is away from its line.
@@ -451,7 +451,7 @@ HEADER = [
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("old", "new", "said"), HEADER)
-def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
+def test_a_header_that_contradicts_its_program_is_reported(desk, capsys, old, new, said):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_text(edited(old, new)((desk / "two.ngc").read_text()))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
@@ -462,7 +462,7 @@ def test_a_header_says_what_the_program_does(desk, capsys, old, new, said):
     "title",
     ["a ~ b", "what?", "go!", "50 %", "a" * 80, "a\tb", "a\x18b", "a\xc3\xa4b", "a (b", "a) G0 Z-5 (b"],
 )
-def test_what_grbl_acts_on_is_refused_where_it_stands(desk, capsys, title):
+def test_text_that_grbl_acts_on_is_refused_in_comments(desk, capsys, title):
     """Text that grbl acts on is refused, even inside a comment.
 
     The text is in the header's title, which appears nowhere else, and in a stroke's name.
@@ -555,7 +555,7 @@ UNWRITTEN = {
 
 
 @pytest.mark.parametrize("name", UNWRITTEN)
-def test_what_is_never_written_is_refused(desk, capsys, name):
+def test_commands_that_brushsvg_never_writes_are_refused(desk, capsys, name):
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
@@ -627,7 +627,7 @@ HARMLESS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 @pytest.mark.parametrize("name", HARMLESS)
-def test_what_a_machine_does_in_the_same_way_is_no_change(desk, capsys, name, drawing):
+def test_equivalent_text_is_not_reported_as_a_change(desk, capsys, name, drawing):
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
@@ -638,7 +638,7 @@ def test_what_a_machine_does_in_the_same_way_is_no_change(desk, capsys, name, dr
 
 
 @pytest.mark.parametrize("name", LANGUAGES)
-def test_blanks_at_the_end_of_lines_are_no_change(desk, capsys, name):
+def test_trailing_blanks_are_not_reported_as_a_change(desk, capsys, name):
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     (desk / program).write_text(edited("(?m)$", "  ", 0)((desk / program).read_text()))
@@ -662,7 +662,7 @@ STATIONS = [
 @pytest.mark.parametrize("hand", [False, True])
 @sample("cell", LANGUAGES, keep=3)
 @pytest.mark.slow
-def test_stations_of_any_name_are_separated(desk, capsys, cell, hand):
+def test_stations_with_similar_names_stay_separate(desk, capsys, cell, hand):
     """Stations with similar names stay different in the program.
 
     Two stations at one place may have the same name in 7-bit text. A person must know which station to use.
@@ -693,7 +693,7 @@ def test_stations_of_any_name_are_separated(desk, capsys, cell, hand):
         assert len(set(reported)) == len(names)
 
 
-def test_another_station_is_reported_with_its_line(desk, capsys):
+def test_a_different_station_is_reported_with_its_line(desk, capsys):
     stations = "".join(
         f'[[stations]]\nname = "{name}"\nplace_mm = [{x}, 10]\ndepth_mm = 5\ncolours = ["{colour}"]\n'
         for name, x, colour in (("\u58a8", -10, "#000000"), ("\u6731", -20, "#ff0000"))
@@ -711,7 +711,7 @@ def test_another_station_is_reported_with_its_line(desk, capsys):
         assert status == 1 and any(agrees(each, said) for _, each in reported), reported
 
 
-def test_strokes_of_any_name_are_known_again(desk, capsys):
+def test_strokes_with_any_name_are_recognized(desk, capsys):
     paths = "".join(
         f'<path id="{name}" d="M20 {10 + 9 * k} h30"/>' for k, name in enumerate(["\u0301", "\u58a8", "a: b"])
     )
@@ -740,7 +740,7 @@ NAMES = [
 
 @pytest.mark.slow
 @sample("name", LANGUAGES, keep=4)
-def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
+def test_strokes_whose_names_end_in_blanks_are_recognized(desk, capsys, name):
     """Strokes whose names end in blanks are recognized when read back.
 
     Comments of URScript and JAKA script lost blanks at their ends, so check refused a program that convert
@@ -759,7 +759,7 @@ def test_strokes_whose_names_end_in_blanks_are_known_again(desk, capsys, name):
     assert status == 1 and is_reported(reported, "stroke-not-painted", "a"), reported
 
 
-def test_a_program_of_another_language_is_refused(desk, capsys):
+def test_a_program_in_another_language_is_refused(desk, capsys):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     status, _, ((_, reported),) = in_json(capsys, "check", "two.ngc", "--cell", "ur5e")
     assert status == 1 and agrees(reported, "program-format ur5e .script")
@@ -881,7 +881,7 @@ CHANGED = {
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("suffix", CHANGED)
 @pytest.mark.slow
-def test_any_change_is_reported(desk, capsys, suffix):
+def test_any_change_of_a_program_is_reported(desk, capsys, suffix):
     """Any change of a program is reported.
 
     check compares the program with the drawing's own plan, and with the text that brushsvg would write for
@@ -901,7 +901,7 @@ def test_any_change_is_reported(desk, capsys, suffix):
         assert (status, any(agrees(each, said) for _, each in reported)) == (1, True), (said, reported)
 
 
-def test_paint_fetched_otherwise_is_reported(desk, capsys):
+def test_a_changed_paint_visit_is_reported(desk, capsys):
     paint = '[reload]\nwhen = "stroke"\n[[stations]]\nname = "ink"\nplace_mm = [-10, 10]\ndepth_mm = 5\n'
     (desk / "painter.toml").write_text((SHIPPED / "linuxcnc-3axis.toml").read_text() + paint)
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "painter.toml")[0] == 0
@@ -928,7 +928,7 @@ def leaning(name: str, decimals: int) -> str:
 
 @pytest.mark.parametrize("decimals", [3, 5])
 @pytest.mark.parametrize("flags", [("--compensation", "none"), ("--compensation", "constant", "--tolerance", "0.2")])
-def test_on_paper_that_leans_rounding_is_no_change(desk, capsys, decimals, flags):
+def test_rounding_on_tilted_paper_is_not_reported_as_a_change(desk, capsys, decimals, flags):
     """On tilted paper, rounding is not reported as a change.
 
     There, straight down is not exactly vertical, and circles are lines from pose to pose.
@@ -945,7 +945,7 @@ def test_on_paper_that_leans_rounding_is_no_change(desk, capsys, decimals, flags
 
 
 @pytest.mark.parametrize("suffix", [".ngc", ".script"])
-def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
+def test_an_offset_of_many_digits_is_read_back(desk, capsys, suffix):
     name = {".ngc": "linuxcnc-3axis", ".script": "ur5e"}[suffix]
     text = re.sub(r"(?m)^decimals = \d", "decimals = 6", (SHIPPED / f"{name}.toml").read_text())
     (desk / "fine.toml").write_text(text)
@@ -956,7 +956,7 @@ def test_an_offset_of_many_digits_comes_back(desk, capsys, suffix):
         assert call(capsys, "check", program, "--cell", "fine.toml")[0] == 0
 
 
-def test_a_blend_may_differ_by_what_rounded_moves_turn():
+def test_a_blend_may_differ_by_the_rounding_of_its_moves():
     """A blend radius may differ by as much as rounding turns its moves.
 
     The radius depends on the angle between two moves. A change of 0.001 mm turns a move of 1 mm considerably.
@@ -973,7 +973,7 @@ def test_a_blend_may_differ_by_what_rounded_moves_turn():
 
 
 @pytest.mark.parametrize("load_kg", ["-0.5", "0.0", "1.4"])
-def test_what_a_brush_weighs_is_not_rounded(load_kg):
+def test_the_load_of_the_brush_is_compared_exactly(load_kg):
     """The brush's load is compared without a rounding tolerance.
 
     The load has one decimal. Ten units of this decimal would be another load, or a load with which no ABB
@@ -998,7 +998,7 @@ def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
-def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_reported(desk, capsys, drawing):
+def test_a_servo_landing_in_two_steps_or_without_feed_is_reported(desk, capsys, drawing):
     assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     text = (desk / "two.nc").read_text()
     for old, new, said in (
@@ -1014,7 +1014,7 @@ def test_a_servo_that_lands_by_two_steps_at_once_or_goes_without_a_feed_is_repor
 
 @pytest.mark.slow
 @sample("name", LANGUAGES, keep=4)
-def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name):
+def test_header_time_and_length_match_the_program(desk, capsys, name):
     """The time and length in a header match the program.
 
     check also verifies them without the drawing. The time may be shorter only if feeds were lowered since.
@@ -1057,7 +1057,7 @@ def test_time_and_length_of_a_header_are_those_of_its_program(desk, capsys, name
         (r"(?m)^M3 S800\n(G4)", r"\1", 0),
     ],
 )
-def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawing, old, new, count):
+def test_a_changed_line_in_a_servo_lift_is_named(desk, capsys, drawing, old, new, count):
     """A changed line in a servo's lift is named by its line number.
 
     check compares a lift as a whole. The quoted line always differs from the line that brushsvg would write
@@ -1078,7 +1078,7 @@ def test_of_a_servos_lift_the_line_that_was_changed_is_named(desk, capsys, drawi
 
 @pytest.mark.slow
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
-def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys, drawing):
+def test_a_line_that_drops_or_speeds_up_a_servo_brush_is_reported(desk, capsys, drawing):
     """A line that drops a servo's brush or makes it too fast is reported.
 
     In laser mode, grbl switches the output off while no G1 is active. check once treated lines that only set
@@ -1106,7 +1106,7 @@ def test_what_lets_a_servos_brush_fall_or_makes_it_fast_is_reported(desk, capsys
 
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
-def test_a_servos_jump_within_a_lift_is_reported(desk, capsys, drawing):
+def test_a_jump_of_the_servo_within_a_lift_is_reported(desk, capsys, drawing):
     """A jump of the servo within a lift is reported.
 
     A lift with waits is slow only if each step is small.
@@ -1131,7 +1131,7 @@ NUMBERS = {
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("name", NUMBERS)
-def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(desk, capsys, name):
+def test_huge_numbers_are_refused_before_use(desk, capsys, name):
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
@@ -1143,7 +1143,7 @@ def test_numbers_beyond_what_any_place_can_be_are_refused_before_they_are_used(d
 
 
 @pytest.mark.parametrize(("name", "most"), [("linuxcnc-3axis", 252), ("grbl-3axis", 79)])
-def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, most):
+def test_lines_up_to_the_controllers_length_are_accepted(desk, capsys, name, most):
     """Lines may be as long as the controller can read.
 
     LinuxCNC's interpreter stops at 253 characters. grbl keeps 79 and does not count blanks.
@@ -1161,7 +1161,7 @@ def test_lines_may_be_as_long_as_the_controller_reads_them(desk, capsys, name, m
         assert length == most or agrees(reported[0][1], f"line-unread {length} {most}")
 
 
-def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, capsys):
+def test_an_extra_paint_visit_contradicts_the_header_time(desk, capsys):
     """An extra visit to the paint is reported because the header's time is wrong.
 
     Without the drawing, check cannot know which colours were requested, but each visit takes time.
@@ -1177,7 +1177,7 @@ def test_a_visit_to_the_paint_more_is_reported_by_the_time_of_the_header(desk, c
     assert status == 1 and any(agrees(each, "program-changed '(time: about'") for _, each in reported), reported
 
 
-def test_a_title_that_stands_twice_is_reported(desk, capsys):
+def test_a_duplicate_stroke_title_is_reported(desk, capsys):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(edited(r"(?m)^(\(stroke 2.*\n)", r"\1\1")(text))
@@ -1197,7 +1197,7 @@ SERVO_TABLES = [
 @sample("table", SERVO_TABLES, keep=2)
 @pytest.mark.parametrize("step_mm", [0.01, 0.1, 1.0])
 @pytest.mark.slow
-def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys, table, step_mm):
+def test_check_accepts_programs_for_any_servo_table(desk, capsys, table, step_mm):
     text = (SHIPPED / "grbl-servo.toml").read_text()
     text = edited(r"(?m)^table = .*$", f"table = {table}")(text)
     text = edited(r"(?m)^lowest_mm = \S+", "lowest_mm = -8.5")(text)
@@ -1215,7 +1215,7 @@ def test_servos_of_any_table_are_allowed_what_was_written_for_them(desk, capsys,
             assert (status, err) == (0, []), err
 
 
-def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
+def test_depths_beyond_the_brush_by_rounding_are_accepted(desk, capsys):
     (desk / "leaning.toml").write_text(leaning("linuxcnc-3axis", 3))
     (desk / "two.svg").write_text(DRAWING.replace('stroke-width="3"', 'stroke-width="20"'))
     (desk / "two.svg").write_text((desk / "two.svg").read_text().replace("M20 60 h30 v-20 h-12", "M30 50 h50"))
@@ -1224,7 +1224,7 @@ def test_depths_that_rounding_puts_beyond_the_brush_are_allowed(desk, capsys):
 
 
 @pytest.mark.parametrize(("name", "digit"), [("linuxcnc-3axis", "0.0001"), ("grbl-3axis", "0.001")])
-def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, digit):
+def test_a_circle_with_a_differently_rounded_end_is_accepted(desk, capsys, name, digit):
     (desk / "two.svg").write_text(DRAWING.replace("h-12", "h-12 l12 2"))
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name, "--corners", "turn")[0] == 0
@@ -1237,7 +1237,7 @@ def test_a_circle_whose_end_is_rounded_otherwise_is_allowed(desk, capsys, name, 
     assert (status, {file for file, _ in reported}) == (0, {"two.svg"}), reported
 
 
-def test_the_reported_time_is_that_of_the_feeds_in_the_program(desk, capsys):
+def test_the_reported_time_follows_the_feeds_in_the_program(desk, capsys):
     def time_s():
         status, reported, _ = call(capsys, "check", "x.ngc", "two.svg", "--json")
         assert status == 0
@@ -1263,7 +1263,7 @@ def test_the_reported_time_is_that_of_the_feeds_in_the_program(desk, capsys):
         ),
     ],
 )
-def test_letters_that_an_editor_left_are_named(desk, capsys, spoil, said):
+def test_characters_inserted_by_an_editor_are_named(desk, capsys, spoil, said):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_bytes(spoil((desk / "two.ngc").read_text()))
     status, out, ((file, reported),) = in_json(capsys, "check", "two.ngc")
@@ -1275,7 +1275,7 @@ def test_letters_that_an_editor_left_are_named(desk, capsys, spoil, said):
     ("word", "drawing"),
     [("sheet", ("two.svg",)), ("warnings", ("two.svg",)), ("frame", ()), ("time", ()), ("length", ())],
 )
-def test_a_line_that_is_lost_from_a_header_is_named(desk, capsys, name, drawing, word):
+def test_a_missing_header_line_is_named(desk, capsys, name, drawing, word):
     program = f"two{LANGUAGES[name]}"
     assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name)[0] == 0
     text = (desk / program).read_text()
@@ -1287,7 +1287,7 @@ def test_a_line_that_is_lost_from_a_header_is_named(desk, capsys, name, drawing,
     assert line.strip()[:60] in changed.sentence
 
 
-def test_a_line_that_no_header_has_is_named(desk, capsys):
+def test_an_unknown_header_line_is_named(desk, capsys):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     (desk / "two.ngc").write_text(text.replace("(sheet", "(colour: red)\n(sheet"))
@@ -1306,7 +1306,7 @@ def test_a_line_that_no_header_has_is_named(desk, capsys):
         [(20, 20, -2)],
     ],
 )
-def test_a_plan_that_begins_or_ends_below_the_paper_is_set_down_and_lifted_there(desk, capsys, name, poses):
+def test_a_plan_that_starts_or_ends_below_the_paper_lands_and_lifts_there(desk, capsys, name, poses):
     """A plan may begin or end below the paper: the brush lands and lifts there.
 
     check once refused the program of such a plan. The program was read back with ends that the plan does not
@@ -1319,7 +1319,7 @@ def test_a_plan_that_begins_or_ends_below_the_paper_is_set_down_and_lifted_there
     assert call(capsys, "check", program, "plan.json", "--cell", name)[::2] == (0, [])
 
 
-def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
+def test_a_hairline_that_a_servo_cannot_press_is_refused(desk, capsys):
     """A hairline that a servo cannot press is refused.
 
     convert once wrote a line 0.01 mm wide, and rounding removed its depth. The program then moved above the
@@ -1335,7 +1335,7 @@ def test_a_hairline_that_a_servo_does_not_press_is_refused(desk, capsys):
     assert call(capsys, "check", "two.gcode", "two.svg")[0] == 0
 
 
-def test_a_part_of_a_drawing_that_is_left_out_is_reported_again(desk, capsys):
+def test_check_reports_omitted_parts_of_the_drawing(desk, capsys):
     text = '<text id="words" x="10" y="60">Hello</text></svg>'
     (desk / "two.svg").write_text(DRAWING.replace("</svg>", text))
     assert in_json(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0

@@ -130,7 +130,7 @@ def test_success_is_one_line_on_stderr_unless_quiet(desk, capsys, words):
     assert {name: data for name, data in listing(desk).items() if name not in before} == made
 
 
-def test_a_plan_becomes_the_same_program_as_its_drawing(desk, capsys):
+def test_a_plan_gives_the_same_program_as_its_drawing(desk, capsys):
     assert run(capsys, "convert", "a.svg", "-o", "direct.ngc")[0] == 0
     assert run(capsys, "convert", "plan.json", "-o", "by_plan.ngc", "--quiet") == (0, "", [])
     words, numbers = [], []
@@ -173,7 +173,7 @@ def test_predict_draws_and_report_prints(desk, capsys, source):
     assert (json.loads(out)["total"]["overlap"] is None) == (source == "plan.json")
 
 
-def test_same_input_same_bytes_in_any_folder(desk, capsys):
+def test_same_input_gives_the_same_bytes_in_any_folder(desk, capsys):
     (desk / "elsewhere").mkdir()
     (desk / "elsewhere" / "b.svg").write_bytes((desk / "a.svg").read_bytes())
     for name in ("x.ngc", "x.json"):
@@ -250,7 +250,7 @@ REFUSED = {  # name: (file, its content, flags, reported code, reported file, re
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_refused_with_one_sentence_and_nothing_written(desk, capsys, case):
+def test_a_refusal_is_one_sentence_and_writes_nothing(desk, capsys, case):
     name, content, flags, said, file, where = REFUSED[case]
     if content is not None:
         (desk / name).write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -294,7 +294,7 @@ def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):
     assert not (desk / "out.ngc").exists()
 
 
-def test_a_preview_alone_warns(desk, capsys):
+def test_a_preview_reports_damage_as_warnings(desk, capsys):
     edited_plan(desk, speed_mm_s=30, sheet_mm=[120, 20])
     status, _, reported = in_json(capsys, "preview", "x.json", "-o", "out.svg")
     assert status == 0
@@ -307,7 +307,7 @@ def test_a_preview_alone_warns(desk, capsys):
 BAD = '<path id="bad" d="M30 40 L60 45 L nan 4" fill="none" stroke="#000" stroke-width="2"/>'
 
 
-def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
+def test_a_refusal_of_a_damaged_drawing_says_how_to_draw_the_rest(desk, capsys):
     """A refusal of a damaged drawing says how to draw its undamaged parts.
 
     It is reported once, at the end. No message claims that anything was painted.
@@ -328,7 +328,7 @@ def test_a_refusal_for_damage_says_what_would_be_drawn_of_it(desk, capsys):
 
 
 @pytest.mark.slow
-def test_damaged_geometry_with_lenient_and_on_looking(desk, capsys):
+def test_damaged_geometry_is_accepted_with_lenient_and_in_previews(desk, capsys):
     (desk / "x.svg").write_text(drawing(LINE, BAD))
     assert run(capsys, "convert", "x.svg", "-o", "out.ngc")[0] == 1
     for words in (("convert", "x.svg", "-o", "out.ngc", "--lenient"), ("preview", "x.svg", "-o", "out.png")):
@@ -430,7 +430,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "calibrate m.csv -o out.json --height 0.05",
     ],
 )
-def test_wrong_usage(desk, capsys, words):
+def test_wrong_usage_is_refused(desk, capsys, words):
     before = listing(desk)
     status, out, err = run(capsys, *words.split())
     assert (status, out, len(err)) == (2, "", 1)
@@ -450,7 +450,7 @@ def test_scan_takes_one_picture(desk, capsys):
         ("--z-offset -3e3", "-3000 mm"),
     ],
 )
-def test_values_below_nothing_are_no_flags(desk, capsys, flag, said):
+def test_negative_values_are_not_read_as_flags(desk, capsys, flag, said):
     (desk / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
         '<path d="M20 20H60" stroke="#000" stroke-width="4"/></svg>'
@@ -459,7 +459,7 @@ def test_values_below_nothing_are_no_flags(desk, capsys, flag, said):
     assert status and said in " ".join(reported)
 
 
-def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
+def test_compare_with_swapped_arguments_reports_their_order(desk, capsys):
     status, _, (said,) = run(capsys, *"compare drawing.svg photo.jpg".split())
     assert status == 2 and gives(said, "photo.jpg")
 
@@ -477,7 +477,7 @@ def test_compare_with_the_drawing_first_says_where_it_stands(desk, capsys):
         ("X.SCRIPT", "--cell grbl-servo", "ur5e"),
     ],
 )
-def test_a_program_that_the_cell_does_not_speak_says_which_cells_do(desk, capsys, command, out, flags, cells):
+def test_an_unsupported_program_format_suggests_cells_that_support_it(desk, capsys, command, out, flags, cells):
     status, _, ((file, reported),) = in_json(capsys, *command.split(), "-o", out, *flags.split())
     assert (status, file, reported.advice) == (1, out, "give --cell"), "of this file, not of the drawing"
     assert agrees(reported, f"program-format {Path(out).suffix.lower()} {cells}"), reported
@@ -505,7 +505,7 @@ def test_messages_for_programs_are_lines_of_json_with_codes(desk, capsys):
     assert (warned["where"], warned["code"]) == ("i", "element-unread")
 
 
-def test_outputs_that_cannot_be_written_leave_nothing(desk, capsys):
+def test_unwritable_outputs_leave_no_files(desk, capsys):
     (desk / "folder.png").mkdir()
     for words, name in (
         (["convert", "a.svg", "-o", "no/where/out.ngc"], "no/where/out.ngc"),
@@ -553,7 +553,7 @@ def test_a_name_cannot_break_the_line_or_the_terminal(capsys):
     assert capsys.readouterr().err == "brushsvg: a.svg: id brushsvg: done [2K 31m \n"
 
 
-def test_a_turn_too_sharp_for_the_brush_is_a_warning(desk, capsys):
+def test_a_turn_too_sharp_for_the_brush_causes_a_warning(desk, capsys):
     hairpin = LINE.replace("M20 40 C40 10 60 10 90 30", "M20 30 L90 30 L20 33")
     (desk / "x.svg").write_text(drawing(hairpin))
     status, _, ((_, reported),) = in_json(capsys, "convert", "x.svg", "-o", "out.ngc", "--quiet", "--corners", "turn")
@@ -588,7 +588,7 @@ def test_brush_commands(desk, capsys):
         ("depth_range_mm", [5, 1], "not-ascending"),
     ],
 )
-def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value, code):
+def test_every_command_refuses_an_invalid_brush(desk, capsys, key, value, code):
     brush = json.loads((SHIPPED / "round-6.json").read_text())
     brush[key] = value
     (desk / "mine.json").write_text(json.dumps(brush))
@@ -601,7 +601,7 @@ def test_a_faulty_brush_is_refused_everywhere(desk, capsys, key, value, code):
     assert not (desk / "out.ngc").exists()
 
 
-def test_ctrl_c_and_mistakes_of_ours_leave_no_traceback(desk, capsys, monkeypatch):
+def test_ctrl_c_and_internal_errors_show_no_traceback(desk, capsys, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
@@ -640,12 +640,12 @@ def test_the_package_runs_as_a_module(desk):
 @pytest.mark.parametrize(
     "words", ["preview a.svg", "brush list", "brush show rigid", "--version", "--help", "convert --help"]
 )
-def test_a_closed_stdout_is_said(desk, words):
+def test_a_closed_stdout_is_reported(desk, words):
     done = spawn(*words.split(), preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (1, b"brushsvg: standard output: it is closed\n")
 
 
-def test_what_prints_nothing_needs_no_stdout(desk):
+def test_a_command_without_output_needs_no_stdout(desk):
     done = spawn("convert", "a.svg", "-o", "out.ngc", preexec_fn=lambda: os.close(1), stderr=subprocess.PIPE)
     assert done.returncode == 0
     assert re.fullmatch(
@@ -692,7 +692,7 @@ HIDDEN_STOP = f"""
     ],
 )
 @pytest.mark.slow
-def test_ctrl_c_during_start_up_leaves_no_traceback(desk, name, how):
+def test_ctrl_c_during_start_up_shows_no_traceback(desk, name, how):
     code = STOPPED_AT.format(name=name, how=how)
     words = ["convert", "a.svg", "-o", "out.ngc", "--picture", "out.png"]
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
@@ -700,7 +700,7 @@ def test_ctrl_c_during_start_up_leaves_no_traceback(desk, name, how):
     assert not (desk / "out.ngc").exists()
 
 
-def test_ctrl_c_does_again_what_it_did_before(capsys):
+def test_the_previous_ctrl_c_handler_is_restored(capsys):
     def mine(*_):
         pass
 
@@ -714,7 +714,7 @@ def test_ctrl_c_does_again_what_it_did_before(capsys):
         signal.signal(signal.SIGINT, before)
 
 
-def test_a_reader_who_leaves_early_is_no_error(desk):
+def test_a_closed_output_pipe_is_not_an_error(desk):
     read_end, write_end = os.pipe()
     os.close(read_end)
     with os.fdopen(write_end, "wb") as closed:
@@ -724,7 +724,7 @@ def test_a_reader_who_leaves_early_is_no_error(desk):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_a_full_disk_under_stdout_is_said(desk):
+def test_a_full_disk_under_stdout_is_reported(desk):
     with open("/dev/full", "wb") as full:
         done = spawn("preview", "a.svg", stdout=full, stderr=subprocess.PIPE)
         as_json = spawn("--messages", "json", "preview", "a.svg", stdout=full, stderr=subprocess.PIPE)
@@ -746,7 +746,7 @@ def test_a_full_disk_under_stderr_changes_nothing(desk, words, status):
     assert (desk / "out.ngc").exists() == (status == 0)
 
 
-def test_help_is_quick_and_promises_only_what_there_is(capsys):
+def test_help_is_fast_and_lists_only_existing_commands(capsys):
     status, out, _ = run(capsys, "convert", "--help-all")
     assert status == 0
     flags = set(re.findall(r"--[a-z-]+", out))
@@ -864,7 +864,7 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
         ("cell show grbl-3axs", "grbl-3axis"),
     ],
 )
-def test_a_mistyped_name_is_answered_with_the_nearest(capsys, words, expected):
+def test_a_mistyped_name_suggests_the_nearest_name(capsys, words, expected):
     try:
         status = main(words.split())
     except SystemExit as ended:
@@ -873,6 +873,6 @@ def test_a_mistyped_name_is_answered_with_the_nearest(capsys, words, expected):
     assert f" {expected}?" in capsys.readouterr().err
 
 
-def test_nothing_is_suggested_where_nothing_is_alike(capsys):
+def test_nothing_is_suggested_if_no_name_is_similar(capsys):
     assert main(["brush", "show", "xyz"]) == 1
     assert "?" not in capsys.readouterr().err

@@ -47,7 +47,7 @@ def refusal(capsys, *words):
     return reported
 
 
-def test_layers_and_selections(desk, capsys):
+def test_layers_and_elements_can_be_selected(desk, capsys):
     passes, reported = plan(desk, capsys, "--layer", "Ink")
     assert ([each["stroke"] for each in passes], reported) == (["a"], [])
     passes, (reported,) = plan(desk, capsys, "--select", "#b, text")
@@ -59,7 +59,7 @@ def test_layers_and_selections(desk, capsys):
     assert agrees(reported, "selector-matches-nothing #c")
 
 
-def test_what_was_reported_of_a_drawing_stands_before_its_refusal(desk, capsys):
+def test_warnings_about_a_drawing_precede_its_refusal(desk, capsys):
     """Warnings about a drawing are reported before its refusal.
 
     A thick line was in metres by mistake. Its width was refused, but no message mentioned the unit.
@@ -81,18 +81,18 @@ def test_what_was_reported_of_a_drawing_stands_before_its_refusal(desk, capsys):
     assert row.figures is None and agrees(row.notices[0], "unit-doubtful metres")
 
 
-def test_what_was_reported_stands_before_what_no_machine_runs(desk):
+def test_python_refusal_contains_the_earlier_warnings(desk):
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("d.svg", origin=(-20, 0))
     assert caught.value.code == "mark-off-sheet" and agrees(caught.value.notices[0], "text-unread", "t")
 
 
-def test_an_empty_choice_is_wrong_usage(desk, capsys):
+def test_an_empty_selection_is_wrong_usage(desk, capsys):
     for flag in ("--layer", "--select"):
         assert main(["convert", "d.svg", "-o", "x.json", flag, ""]) == 2
 
 
-def test_compressed_drawings(desk, capsys):
+def test_compressed_drawings_are_read(desk, capsys):
     packed = gzip.compress(DRAWING.encode())
     (desk / "d.svgz").write_bytes(packed)
     (desk / "z.svg").write_bytes(packed)
@@ -108,14 +108,14 @@ def test_compressed_drawings(desk, capsys):
         assert agrees(refusal(capsys, "convert", "z.svgz", "-o", "x.json"), said), said
 
 
-def test_the_exit_status_does_not_depend_on_who_reads(desk):
+def test_the_exit_status_does_not_depend_on_a_reader_of_stderr(desk):
     command = [sys.executable, "-m", "brushsvg", "convert", "d.svg", "-o", "x.json", "--sheet", "10x10"]
     reading, writing = os.pipe()
     os.close(reading)
     assert subprocess.run(command, stderr=writing).returncode == 1
 
 
-def test_size_and_place(desk, capsys):
+def test_size_and_position_can_be_set(desk, capsys):
     passes, _ = plan(desk, capsys, "--scale", "150%", "--layer", "Red")
     deepest = min(z for *_, z in passes[0]["poses_mm"])
     plain, _ = plan(desk, capsys, "--layer", "Red", "--width", "4.5")
@@ -148,7 +148,7 @@ def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys, command):
     assert not is_reported(in_json(capsys, command, "d.svg", *out)[2], "flag-without-effect")
 
 
-def test_settings_steer_the_plan(desk, capsys):
+def test_settings_change_the_plan(desk, capsys):
     text = DRAWING.replace('id="b"', 'id="b" data-brushsvg-order="-1" data-brushsvg-passes="2" data-brushsvg-speed="7"')
     text = text.replace('id="a"', 'id="a" data-brushsvg-brush="rigid"')
     (desk / "d.svg").write_text(text)
@@ -169,7 +169,7 @@ def test_dxf_needs_its_units(desk, capsys):
 
 
 @pytest.mark.slow
-def test_import_draws_what_was_understood(desk, capsys):
+def test_preview_of_strokes_shows_the_imported_lines(desk, capsys):
     for drawing, words in (("d.svg", []), ("d.dxf", ["--units", "mm"])):
         for suffix, start in ((".svg", b"<svg"), (".png", b"\x89PNG")):
             assert main(["preview", drawing, "-o", f"seen{suffix}", "--show", "strokes", *words]) == 0
@@ -179,7 +179,7 @@ def test_import_draws_what_was_understood(desk, capsys):
     assert "1  a: 3 mm, Ink" in words
 
 
-def test_import_shows_damage_that_convert_refuses(desk, capsys):
+def test_preview_of_strokes_shows_damage_that_convert_refuses(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L"))
     status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "x.json", "--layer", "Red")
     assert status == 1 and is_reported(reported, "geometry-damaged 13", "b"), reported
@@ -187,7 +187,7 @@ def test_import_shows_damage_that_convert_refuses(desk, capsys):
     assert main(["convert", "d.svg", "-o", "x.json", "--layer", "Ink"]) == 0, "damage elsewhere does not count"
 
 
-def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
+def test_filled_shapes_become_strokes_unless_they_are_empty(desk, capsys):
     (desk / "f.svg").write_text(DRAWING.replace('fill="none" stroke="#203060"', "").replace('stroke="red"', ""))
     reported = refusal(capsys, "convert", "f.svg", "-o", "x.json", "--as", "stroke")
     assert reported.code == "nothing-to-paint"
@@ -208,7 +208,7 @@ def test_filled_shapes_become_strokes_unless_they_hold_nothing(desk, capsys):
     assert agrees(reported, "width-out-of-reach 12", "wide") and "nearest" not in reported.text
 
 
-def test_fonts_of_inkscape_are_found_with_their_names(desk, capsys, monkeypatch):
+def test_inkscape_fonts_are_found_by_their_names(desk, capsys, monkeypatch):
     (desk / "fonts").mkdir()
     (desk / "fonts" / "Lines.svg").write_text(
         """<svg xmlns="http://www.w3.org/2000/svg"><font horiz-adv-x="600"><font-face units-per-em="1000"/>
@@ -238,7 +238,7 @@ def test_text(desk, capsys):
         assert main(["text", *words, "--font", "font.svg"]) == 2
 
 
-def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
+def test_unreachable_widths_are_one_line_with_a_remedy(desk, capsys):
     def drawing(width):
         lines = "".join(f'<path id="p{k}" d="M20 {20 + 5 * k}h40" stroke-width="{width}"/>' for k in range(6))
         size = 'width="80mm" height="60mm" viewBox="0 0 80 60" stroke="#000"'
@@ -260,7 +260,7 @@ def test_widths_out_of_reach_are_one_line_that_names_the_way_out(desk, capsys):
     assert agrees(reported, "mark-off-sheet p0 5 left --fit")
 
 
-def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsys):
+def test_a_predicted_picture_states_its_settings_and_tracking_error(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M30 60 H90 L32 63"))
     assert main(["preview", "d.svg", "-o", "x.svg", "--corners", "turn"]) == 0
     text = (desk / "x.svg").read_text()
@@ -271,7 +271,7 @@ def test_a_predicted_picture_says_how_it_was_made_and_what_is_missed(desk, capsy
 
 
 @pytest.mark.parametrize(("d", "is_marked"), [("M20 60C80 75 20 75 80 60", False), ("M30 60H60L40 62", True)])
-def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys, d, is_marked):
+def test_a_stroke_is_marked_only_beyond_the_uncertainty_of_the_brush(desk, capsys, d, is_marked):
     """A stroke is marked only if its error exceeds the brush's uncertainty.
 
     An error of 0.095 mm (tolerance 0.05 mm) was once red and reported, although the brush's lag is known only
@@ -286,7 +286,7 @@ def test_no_stroke_is_marked_for_less_than_the_brush_itself_is_off(desk, capsys,
     assert bool(marked) == is_marked
 
 
-def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
+def test_an_exactly_known_brush_gets_warnings_about_smaller_errors(desk, capsys):
     """A brush that is known exactly gets warnings about smaller errors.
 
     The error is 0.095 mm again, but this brush's lag is known to 0.01 mm.
@@ -299,7 +299,7 @@ def test_a_brush_that_is_known_exactly_is_warned_of_less(desk, capsys):
     assert 'data-off-line="yes"' in (desk / "x.svg").read_text()
 
 
-def test_a_width_is_advised_only_for_lines(desk, capsys):
+def test_a_width_is_suggested_only_for_lines(desk, capsys):
     """A width is suggested only for lines.
 
     An outline has no single width. --width was once suggested for outlines, and then reported as without
@@ -349,7 +349,7 @@ def test_a_report_names_outlines_that_are_too_wide_and_refused(desk, capsys):
     assert main(["convert", "d.svg", "-o", "x.ngc", "--wide", "refuse"]) == 1
 
 
-def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):
+def test_a_report_lists_the_warnings_that_prevent_a_program(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace("M30 60 H90", "M-3 60 H90"))
     assert main(["preview", "d.svg", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
@@ -358,7 +358,7 @@ def test_a_report_says_which_warnings_forbid_a_program(desk, capsys):
     assert main(["convert", "d.svg", "-o", "d.ngc"]) == 1
 
 
-def test_ends_at_less_depth_than_was_measured_are_no_warning(desk, capsys):
+def test_ends_below_the_measured_depths_cause_no_warning(desk, capsys):
     """Line ends at less depth than was measured cause no warning.
 
     In a word of 19 script strokes, 16 once had a warning about 0.09 mm at the point of their foot.
@@ -373,7 +373,7 @@ def test_ends_at_less_depth_than_was_measured_are_no_warning(desk, capsys):
     assert [each.where for each in reported if each.code == "depth-not-measured"] == ["hair"]
 
 
-def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
+def test_a_warning_about_a_dot_uses_the_depth_of_its_turn(desk, capsys):
     """The warning about a dot depends on the depth at which the dot is turned.
 
     A dot is pressed less than a line of the same width: 0.87 mm, where the line is at 1.0 mm.
@@ -393,7 +393,7 @@ def test_a_dot_is_warned_of_by_the_depth_that_it_is_turned_at(desk, capsys):
         assert len(thin) == count
 
 
-def test_a_line_too_wide_is_refused_before_shapes_take_their_time(desk, monkeypatch):
+def test_a_line_that_is_too_wide_is_refused_before_shapes_are_filled(desk, monkeypatch):
     """A line that is too wide is refused before shapes are filled.
 
     Twelve letters one metre high were once filled first.

@@ -86,7 +86,7 @@ def test_every_notice_and_refusal_has_a_code():
     assert in_library()[1] == []
 
 
-def test_the_table_lists_the_codes_that_there_are():
+def test_the_table_lists_exactly_the_existing_codes():
     listed, found = in_docs(), in_sources()[0] | in_library()[0]
     assert len(listed) == len(set(listed)), "one stands twice"
     assert all(CODE.fullmatch(code) for code in listed)
@@ -94,7 +94,7 @@ def test_the_table_lists_the_codes_that_there_are():
     assert sorted(each for each in listed if not any(fnmatch(each, code) for code in found)) == []
 
 
-def test_python_has_the_codes_of_the_library():
+def test_python_has_the_codes_of_the_cpp_library():
     with pytest.raises(Error) as refused:
         _core.read_plan('{"format": "brushsvg/plan", "version": 3}')
     assert (refused.value.code, refused.value.value) == ("version-unknown", 3)
@@ -142,7 +142,7 @@ def test_tests_expect_codes_and_numbers_and_quote_no_sentences():
     assert {file: len(quoted) for file, quoted in found.items()} == QUOTED, found
 
 
-def test_tests_of_the_library_ask_refusals_for_codes_and_numbers():
+def test_cpp_tests_check_refusals_by_codes_and_numbers():
     """The C++ tests check refusals by code and numbers.
 
     Only refusal.hpp searches sentences for numbers and names. fit_nonsense.cpp only checks that there is a

@@ -133,7 +133,7 @@ def refused(desk, capsys, words) -> list[str]:
 
 @pytest.mark.parametrize("command", [each for each in COMMANDS if any(word in SOUND for word in each.split())])
 @pytest.mark.slow
-def test_all_that_is_read_may_be_nonsense(desk, capsys, command):
+def test_every_command_refuses_invalid_inputs(desk, capsys, command):
     for word in {*command.split()} & {*SOUND}:
         path = desk / f"bad{Path(SOUND[word]).suffix}"
         for kind, data in NONSENSE.items():
@@ -156,7 +156,7 @@ def test_all_that_is_read_may_be_nonsense(desk, capsys, command):
     [each for each in COMMANDS if "OUT" in each and not {"MEASURED", "PHOTO", "photo.jpg"} & {*each.split()}],
 )
 @pytest.mark.slow
-def test_all_that_is_written_may_have_no_place(desk, capsys, command):
+def test_every_command_refuses_unwritable_outputs(desk, capsys, command):
     for kind, place in PLACES.items():
         suffix = next(Path(word).suffix for word in command.split() if word.startswith("OUT"))
         out = desk / f"{place}{suffix}"
@@ -169,7 +169,7 @@ def test_all_that_is_written_may_have_no_place(desk, capsys, command):
         assert line.startswith(f"brushsvg: {place}{suffix}: "), (kind, line)
 
 
-def test_no_command_is_forgotten():
+def test_every_command_is_tested():
     from brushsvg.cli.arguments.parser import command_parser
 
     def names(parser) -> set[str]:

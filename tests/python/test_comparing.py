@@ -67,13 +67,13 @@ def strayed(a_pass, expected):
     return _check_pass(a_pass, np.arange(1, 1 + len(a_pass.poses_mm)), expected, find_cell())
 
 
-def test_a_circle_is_the_same_with_fewer_poses_on_it():
+def test_a_circle_with_fewer_poses_is_the_same_path():
     whole, short = turned(ARC, (5, 5)), turned(np.delete(ARC, 2, axis=0), (5, 5))
     assert strayed(short, whole) == []
 
 
 @pytest.mark.parametrize("away_mm", [0.001, 0.5])
-def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(away_mm):
+def test_a_circle_with_another_centre_or_direction_is_another_path(away_mm):
     whole = turned(ARC, (5, 5))
     reported = strayed(turned(ARC, (5 + away_mm, 5)), whole)
     assert len(reported) == (away_mm > 0.02)
@@ -86,7 +86,7 @@ def test_a_circle_about_another_centre_or_the_other_way_round_is_another_path(aw
 @pytest.mark.parametrize("decimals", [3, 4])
 @pytest.mark.parametrize(("chord_mm", "rise_mm"), [(61.0, 0.58), (42.0, 0.05), (5.0, 0.02), (60.0, 20.0)])
 @pytest.mark.parametrize("inner", [[3], [2, 4], [1, 2, 3, 4, 5]])
-def test_a_flat_circle_read_from_rounded_places_is_the_same_path(chord_mm, rise_mm, inner, decimals):
+def test_a_flat_circle_read_from_rounded_points_is_the_same_path(chord_mm, rise_mm, inner, decimals):
     """A flat circle read from rounded places is the same path.
 
     A robot gets three places of a circle. Rounding the places of a flat circle moves its centre by a
@@ -117,7 +117,7 @@ def centre_of(places):
 
 
 @pytest.mark.parametrize("count", [2, 4, 8, 16])
-def test_a_flat_circle_run_along_its_chords_is_the_same_path_where_they_keep_to_it(count):
+def test_a_flat_circle_as_chords_is_the_same_path_within_tolerance(count):
     def on_circle(angles):
         return np.column_stack([600 * np.sin(angles), 600 * np.cos(angles) - 600, np.full(len(angles), -2.0)])
 
@@ -164,7 +164,7 @@ def leash_mm(one, other):
     some.sampled_from([0.06, 0.2, 0.5, 1.0]),
 )
 @pytest.mark.slow
-def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves, how, away_mm, limit_mm):
+def test_path_comparison_agrees_with_following_the_path_in_steps(seed, moves, how, away_mm, limit_mm):
     random = np.random.default_rng(seed)
     requested = np.cumsum(random.choice([-0.7, 0.0, 0.7], (moves + 1, 3)), axis=0)  # may overlap itself or stand still
     some_ = int(random.integers(0, moves + 1))
@@ -188,7 +188,7 @@ def test_whether_a_path_follows_another_is_decided_as_by_walking_it(seed, moves,
         assert leash > limit_mm - 1e-9 and 0 <= at < max(len(found), 2)
 
 
-def test_the_place_where_a_path_leaves_the_other_is_reported():
+def test_the_first_departure_from_a_path_is_reported():
     requested = np.array([(x, 0.0, -1.0) for x in range(10)])
     scrubbed = np.vstack([requested[:6], requested[3:5][::-1], requested[3:]])
     assert find_departure(scrubbed, requested, 0.02) in (6, 7)
@@ -201,7 +201,7 @@ def test_the_place_where_a_path_leaves_the_other_is_reported():
     assert find_departure(requested[::3], requested, 0.02) is None
 
 
-def test_long_paths_take_no_more_than_what_is_next_to_them(monkeypatch):
+def test_comparing_long_paths_looks_only_at_nearby_points(monkeypatch):
     """Comparing long paths looks only at places near each other.
 
     The comparison examines few cells of the two paths. The time for a page grows with its length, not with

@@ -53,7 +53,7 @@ def desk(tmp_path, monkeypatch):
         ("o.ngc", "--fit 60x30 --width 2 --speed 9", {"fit": (60, 30), "width": 2, "paint_speed": 9}),
     ],
 )
-def test_it_does_what_the_command_does(desk, out, flags, choices):
+def test_python_convert_gives_the_same_files_as_the_command(desk, out, flags, choices):
     near_by = {"picture": "o.svg", "report": "o.txt", "page": "p.svg"}
     typed = itertools.chain(*((f"--{name}", path) for name, path in near_by.items()))
     assert main(["convert", "two.svg", "-o", out, *typed, *flags.split()]) == 0
@@ -71,7 +71,7 @@ def test_it_does_what_the_command_does(desk, out, flags, choices):
 
 
 @pytest.mark.parametrize(("z_offset", "is_reported"), [(-20, True), (-2, True), (-1, False), (20, False)])
-def test_a_tool_commanded_far_below_the_paper_is_warned_of(desk, z_offset, is_reported):
+def test_a_tool_commanded_far_below_the_paper_causes_a_warning(desk, z_offset, is_reported):
     """A tool commanded far below the paper causes a warning.
 
     With --z-offset -3 instead of -0.3, the brush or the table is crushed. There was no warning once.
@@ -83,7 +83,7 @@ def test_a_tool_commanded_far_below_the_paper_is_warned_of(desk, z_offset, is_re
     assert not brushsvg.convert("two.svg", formats=[".json"]).notices
 
 
-def test_nothing_is_written_where_no_path_is_given(desk):
+def test_convert_without_a_path_writes_no_files(desk):
     done = brushsvg.convert("two.svg", cell="ur5e", formats=[".script", ".json"], figures=True)
     assert [path.name for path in desk.iterdir()] == ["two.svg"]
     assert brushsvg.write_plan(brushsvg.read_plan(done.texts[".json"])) == done.texts[".json"]
@@ -93,7 +93,7 @@ def test_nothing_is_written_where_no_path_is_given(desk):
     assert copy.copy(done) == done and "speedl" not in repr(done) and len(repr(done)) < 2000
 
 
-def test_a_program_in_several_files_has_all_of_them(desk):
+def test_a_program_in_several_files_returns_all_files(desk):
     tiny = "".join(LINE.format(f"s{k}", 20, 60 + k / 4, "#203060", 3) for k in range(120))
     Path("many.svg").write_text(PAGE.format("", tiny))
     done = brushsvg.convert("many.svg", "many.ls", cell="lrmate200id")
@@ -110,7 +110,7 @@ def _ezdxf():
 
 
 @pytest.mark.parametrize("kind", ["Path", "Design", "ElementTree", "svgpathtools", "Plan"])
-def test_any_form_of_a_drawing_becomes_the_same(desk, kind):
+def test_any_form_of_a_drawing_gives_the_same_program(desk, kind):
     source = {
         "Path": lambda: Path("two.svg"),
         "Design": lambda: brushsvg.read_drawing("two.svg"),
@@ -122,12 +122,12 @@ def test_any_form_of_a_drawing_becomes_the_same(desk, kind):
     assert texts[0] == texts[1]
 
 
-def test_an_open_dxf_is_read_as_its_file(desk):
+def test_an_open_dxf_document_gives_the_same_program_as_its_file(desk):
     _ezdxf().saveas("line.dxf")
     assert brushsvg.convert(_ezdxf()).text == brushsvg.convert("line.dxf").text
 
 
-def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
+def test_settings_of_a_drawing_apply_as_with_the_command(desk):
     Path("says.svg").write_text(
         PAGE.format(
             ' data-brushsvg-cell="ur5e" data-brushsvg-compensation="none"',
@@ -161,7 +161,7 @@ def test_what_a_drawing_says_is_heard_as_the_command_hears_it(desk):
         ({"join": "false"}, "wrong-type false True join"),
     ],
 )
-def test_what_it_cannot_do_is_one_sentence_and_nothing_is_written(desk, choices, said):
+def test_a_refusal_is_one_error_and_writes_nothing(desk, choices, said):
     with pytest.raises(brushsvg.Error) as reported:
         brushsvg.convert("two.svg", **{"out": "o.ngc", **choices})
     assert [path.name for path in desk.iterdir()] == ["two.svg"]
@@ -171,7 +171,7 @@ def test_what_it_cannot_do_is_one_sentence_and_nothing_is_written(desk, choices,
     )
 
 
-def test_numbers_of_an_array_are_as_those_of_a_list(desk):
+def test_arrays_are_accepted_like_lists(desk):
     given = {"sheet": (150, 120), "fit": (60, 40), "origin": (30, 35)}
     arrays = {name: np.array(pair) for name, pair in given.items()}
     assert brushsvg.convert("two.svg", **arrays).text == brushsvg.convert("two.svg", **given).text
@@ -183,14 +183,14 @@ def test_numbers_of_an_array_are_as_those_of_a_list(desk):
     assert brushsvg.chart(brush, np.array([210, 297])).plan == brushsvg.chart(brush, (210, 297)).plan
 
 
-def test_of_several_reasons_the_others_are_notes(desk):
+def test_further_reasons_of_a_refusal_are_exception_notes(desk):
     with refused("tool-off-sheet right") as reported:
         brushsvg.convert("two.svg", sheet=(60, 60))
     assert any("b" in note for note in reported.value.__notes__)
 
 
 @pytest.mark.parametrize("name", [name for name in CHOICES if name != "input"])
-def test_any_choice_may_be_nonsense(desk, name):
+def test_every_choice_refuses_invalid_values(desk, name):
     for value in (
         -1,
         1e300,
@@ -211,7 +211,7 @@ def test_any_choice_may_be_nonsense(desk, name):
             brushsvg.convert("two.svg", **{name: value})
 
 
-def test_brush_and_cell_may_be_at_hand(desk):
+def test_brush_and_cell_objects_are_accepted(desk):
     brush, cell = brushsvg.find_brush("round-6"), brushsvg.find_cell("ur5e")
     assert brushsvg.convert("two.svg", brush=brush, cell=cell).text == brushsvg.convert("two.svg", cell="ur5e").text
     with refused("out-of-range decimals"):
@@ -231,12 +231,12 @@ def test_type_checkers_know_every_choice():
     assert [*ChoiceKeywords.__annotations__] == [name for name in CHOICES if name != "input"]
 
 
-def test_a_choice_that_there_is_not_is_a_type_error(desk):
+def test_an_unknown_choice_is_a_type_error(desk):
     with pytest.raises(TypeError, match="varnish"):
         brushsvg.convert("two.svg", varnish=1)
 
 
-def test_ranges_are_those_of_the_flags():
+def test_choices_have_the_ranges_of_the_flags():
     """The Python choices have the same ranges and values as the flags.
 
     A change of one must be a change of the other.
@@ -254,7 +254,7 @@ def test_ranges_are_those_of_the_flags():
         assert tuple(flags[name].choices) == choices, name
 
 
-def test_what_is_known_of_a_plan_is_forgotten_when_it_changes(desk):
+def test_cached_results_are_dropped_when_the_plan_changes(desk):
     work = prepare("two.svg", Options(cell=find_cell()))
     cell = work.options.cell
     slow = work.plan.passes[0]
@@ -288,7 +288,7 @@ def still_working() -> list[str]:
 
 @sample("word", ["reading", "finding", "compensated", "simulated", "writing", "drawing"], keep=2)
 @pytest.mark.slow
-def test_it_is_given_up_at_any_step(desk, word):
+def test_convert_can_be_cancelled_at_any_step(desk, word):
     Path("long.svg").write_text(
         waves({"reading": 200, "finding": 40, "writing": 60, "drawing": 60}.get(word, 10))
         .replace("1200mm", "5000")
@@ -306,7 +306,7 @@ def test_it_is_given_up_at_any_step(desk, word):
 
 
 @pytest.mark.slow
-def test_a_loop_of_the_library_is_given_up_inside(desk):
+def test_a_loop_of_the_cpp_library_can_be_cancelled(desk):
     Path("long.svg").write_text(one_long_line())
     seen = []
 
@@ -322,7 +322,7 @@ def test_a_loop_of_the_library_is_given_up_inside(desk):
     assert still_working() == []
 
 
-def test_an_event_cancels_and_one_that_is_never_set_does_not(desk):
+def test_an_event_cancels_only_if_it_is_set(desk):
     event = threading.Event()
     assert brushsvg.convert("two.svg", cancel=event).text == brushsvg.convert("two.svg").text
     event.set()
@@ -330,7 +330,7 @@ def test_an_event_cancels_and_one_that_is_never_set_does_not(desk):
         brushsvg.convert("two.svg", cancel=event)
 
 
-def test_what_progress_raises_ends_the_work(desk):
+def test_an_exception_in_progress_ends_the_work(desk):
     def progress(text):
         raise io.UnsupportedOperation
 

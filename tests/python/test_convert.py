@@ -35,7 +35,7 @@ def total(work):
     return report.measure(report.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[1]
 
 
-def test_the_best_constant_lag_is_the_best_of_all(drawing):
+def test_the_best_constant_lag_has_the_smallest_error(drawing):
     best = constant_lag.best_constant(preparation.prepare(drawing))
     assert best.options.compensation == "constant"
     assert 3 < best.options.lag_mm < 12
@@ -49,7 +49,7 @@ def test_the_best_constant_lag_is_the_best_of_all(drawing):
     assert len(best.tracking_errors) == 2
 
 
-def test_the_best_constant_lag_of_a_pen_is_none(drawing):
+def test_the_best_constant_lag_of_a_pen_is_zero(drawing):
     work = preparation.prepare(drawing, Options(brush=find_brush("rigid")))
     assert constant_lag.best_constant(work).options.lag_mm == 0
 
@@ -67,7 +67,7 @@ def test_the_comparison_is_a_table(drawing):
         assert [float(number) for number in numbers] == pytest.approx(expected, abs=5.1e-4)
 
 
-def test_a_program_is_in_the_language_of_its_cell(drawing):
+def test_a_program_is_written_in_the_language_of_its_cell(drawing):
     work = preparation.prepare(drawing)
     parts = work.plan, work.brush, "two"
     assert "".join(writer.encode(".ngc", *parts)).startswith("(title: two)")
@@ -87,7 +87,7 @@ def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
         writer.encode(".ngc", work.plan, work.brush, "two")
 
 
-def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
+def test_nearest_first_order_does_not_change_the_prepared_work(tmp_path):
     line = '<path id="{}" fill="none" stroke="#000" stroke-width="3" d="M{} 20h20"/>'.format
     path = tmp_path / "three.svg"
     path.write_text(
@@ -104,7 +104,7 @@ def test_the_nearest_first_leaves_the_work_as_it_was(tmp_path):
     assert moved.plan.sheet_mm == work.plan.sheet_mm and moved.plan.brush_sha256 == work.plan.brush_sha256
 
 
-def test_the_loads_of_a_stroke_stay_together_even_if_others_begin_nearer():
+def test_loads_of_a_stroke_stay_together_in_nearest_first_order():
     """The loads of a stroke stay together even if other strokes begin nearer.
 
     The second load once counted as a load of another stroke and was painted after that stroke.
@@ -145,7 +145,7 @@ depth_mm = 2
 
 @pytest.mark.parametrize("when", ["length", "stroke", "layer"])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
-def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypatch, name, when):
+def test_a_program_from_a_saved_plan_equals_the_program_from_the_drawing(tmp_path, monkeypatch, name, when):
     """A program made from a saved plan equals the program made from the drawing.
 
     The headers may differ in lines that a plan does not contain: the drawing's title and the planning method.
@@ -170,7 +170,7 @@ def test_a_program_by_way_of_a_plan_is_the_one_of_the_drawing(tmp_path, monkeypa
     assert sum("paint: " in line for line in theirs) >= 3
 
 
-def test_a_stroke_of_a_program_and_its_time_are_computed_once(drawing, tmp_path, monkeypatch):
+def test_each_stroke_and_its_time_are_computed_once(drawing, tmp_path, monkeypatch):
     requested, timed = [], []
     as_written, duration_s = program.as_written, motion._duration_s
     monkeypatch.setattr(program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args))

@@ -38,7 +38,7 @@ def length_mm(stroke) -> float:
     return _core.flatten(stroke, 0.01)[-1, 2]
 
 
-def test_a_closed_line_begins_amid_its_longest_straight_side_and_paints_no_thorn(brush):
+def test_a_closed_line_starts_in_the_middle_of_its_longest_side_without_a_thorn(brush):
     (made,) = of(RECT)
     start = made.middle_mm[0, :2]
     assert start == pytest.approx([35, 35], abs=1e-9) or start == pytest.approx([35, 5], abs=1e-9)
@@ -54,12 +54,12 @@ def test_a_closed_line_begins_amid_its_longest_straight_side_and_paints_no_thorn
 @pytest.mark.parametrize(
     "d", ["M10 30a20 20 0 1 0 40 0a20 20 0 1 0 -40 0Z", "M10 10C40 10 40 50 10 50C30 40 30 20 10 10Z"]
 )
-def test_closed_lines_without_a_corner_there_or_without_a_straight_side_begin_as_drawn(d):
+def test_closed_lines_without_a_corner_at_the_start_or_a_straight_side_start_as_drawn(d):
     (made,) = of(d)
     assert made.middle_mm[0, 0] == pytest.approx(10, abs=1e-9)
 
 
-def test_widths_go_with_the_line_when_it_begins_elsewhere():
+def test_widths_stay_at_their_points_if_a_line_starts_elsewhere():
     from brushsvg.strokes.corners import begin_amid_side
 
     corners = np.array([[0, 0], [30, 0], [30, 10], [0, 10], [0, 0]], float)
@@ -74,7 +74,7 @@ def test_widths_go_with_the_line_when_it_begins_elsewhere():
 
 
 @pytest.mark.parametrize(("d", "count"), [(STAR, 5), (APEX, 2), ("M35 5H60L35 20H60", 3)])
-def test_it_is_lifted_at_sharp_corners_where_a_turn_would_leave_a_blot(brush, d, count):
+def test_the_brush_lifts_at_sharp_corners_where_a_turn_would_leave_a_blot(brush, d, count):
     made = of(d)
     parts = lifted_at_corners(made, brush)
     assert [part.id for part in parts] == ["p", *(f"p~{k}" for k in range(2, count + 1))]
@@ -86,19 +86,19 @@ def test_it_is_lifted_at_sharp_corners_where_a_turn_would_leave_a_blot(brush, d,
 
 
 @pytest.mark.parametrize("d", [RECT, "M10 10L40 10L60 30L90 30", "M10 30C30 0 60 0 90 30"])
-def test_it_turns_in_place_where_that_is_as_good(brush, d):
+def test_the_brush_turns_in_place_where_a_lift_is_no_better(brush, d):
     made = of(d)
     assert lifted_at_corners(made, brush) == made
 
 
-def test_a_pen_without_lag_and_strokes_of_letters_are_not_lifted(brush):
+def test_pens_without_lag_and_letter_strokes_are_not_lifted_at_corners(brush):
     made = of(APEX)
     assert lifted_at_corners(made, find_brush("rigid")) == made
     letter = of("M10 10H15L35 50H30Z", 'fill="black" stroke="none"')
     assert lifted_at_corners(letter, brush) == letter
 
 
-def test_widths_of_parts_are_those_of_the_line(brush):
+def test_parts_keep_the_widths_of_their_line(brush):
     stroke = of(APEX)[0]
     stroke.half_width = [(0.0, 1.0), (0.25, 2.0), (1.0, 3.0)]
     first, second = lifted_at_corners([stroke], brush)
@@ -108,7 +108,7 @@ def test_widths_of_parts_are_those_of_the_line(brush):
 
 
 @pytest.mark.parametrize(("flags", "count"), [([], 2), (["--corners", "turn"], 1), (["--compensation", "none"], 1)])
-def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
+def test_corners_can_be_chosen_and_check_accepts_them(tmp_path, capsys, flags, count):
     drawing = tmp_path / "apex.svg"
     drawing.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="0 0 80 60">'
@@ -120,7 +120,7 @@ def test_corners_can_be_chosen_and_check_knows(tmp_path, capsys, flags, count):
     assert main(["check", str(program), str(drawing), *(flags if flags[:1] == ["--corners"] else [])]) == 0
 
 
-def test_a_zigzag_finer_than_it_is_wide_is_not_lifted_nor_tried(brush, monkeypatch):
+def test_a_zigzag_finer_than_its_width_is_not_lifted_or_tried(brush, monkeypatch):
     """A zigzag finer than its width is not lifted, and no lift is tried.
 
     Five hundred corners once took half a minute.
@@ -131,7 +131,7 @@ def test_a_zigzag_finer_than_it_is_wide_is_not_lifted_nor_tried(brush, monkeypat
     assert lifted_at_corners([made], brush) == [made]
 
 
-def test_strokes_without_width_or_length_stay(brush):
+def test_strokes_without_width_or_length_stay_unchanged(brush):
     (made,) = of(APEX)
     made.half_width = []
     assert lifted_at_corners([made], brush) == [made]
@@ -139,7 +139,7 @@ def test_strokes_without_width_or_length_stay(brush):
     assert lifted_at_corners([still], brush) == [still]
 
 
-def test_parts_of_two_lines_have_names_of_their_own(brush):
+def test_parts_of_two_lines_have_different_names(brush):
     drawn = strokes(read(f'<path id="a~2" d="{APEX}" {LINE}/><path id="a" d="{APEX}" {LINE}/>'))[0]
     names = [stroke.id for stroke in lifted_at_corners(drawn, brush)]
     assert len(names) == 4 and len(set(names)) == 4, names

@@ -57,7 +57,7 @@ def places(count=40):
 
 
 @pytest.mark.parametrize("undone", [UNDONE, LEANING])
-def test_what_was_undone_before_stays_undone(undone):
+def test_existing_corrections_stay_in_effect(undone):
     """Corrections that the cell already had stay in effect.
 
     The true machine gives the places of the painted job. Least squares give the faults beyond the cell.
@@ -77,7 +77,7 @@ def test_what_was_undone_before_stays_undone(undone):
     assert np.abs(before).max() > 0.3
 
 
-def test_without_a_table_what_is_found_is_the_table():
+def test_a_cell_without_corrections_gets_the_found_values():
     now = corrected_machine(found(TRUE), MIDDLE, None)
     assert (now.scale, now.skew, now.lean_mm_per_mm) == (TRUE.scale, TRUE.skew, TRUE.lean_mm_per_mm)
     assert now.height_mm == pytest.approx(TRUE.height_mm) and now.tilt_mm_per_mm == TRUE.tilt_mm_per_mm
@@ -92,7 +92,7 @@ def test_the_map_of_the_paper_stays():
 
 
 @pytest.mark.parametrize("along, target", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
-def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, target):
+def test_found_backlash_is_added_to_the_backlash_of_the_cell(along, target):
     """Backlash that was found is added to the backlash that the cell undoes.
 
     The result depends on which machine axes run along the paper's x and y.
@@ -103,7 +103,7 @@ def test_backlash_goes_into_the_cell_on_top_of_what_it_undid(along, target):
 
 
 @pytest.mark.parametrize("name", cell_names())
-def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
+def test_every_cell_gets_the_faults_it_can_undo_and_the_others_are_reported(name):
     """Every cell takes the faults that it can undo; the others are reported.
 
     A servo cell once refused lean, and the whole comparison was lost.
@@ -125,7 +125,7 @@ def test_every_cell_takes_what_it_can_undo_and_the_rest_is_reported(name):
         assert ("lean" in notice.sentence, "backlash" in notice.sentence) == (not leans, not has_backlash)
 
 
-def test_a_number_that_no_cell_may_have_is_left_out():
+def test_a_value_outside_the_range_of_a_cell_is_left_out():
     far = replace(TRUE, scale=(1.2, 1.0))
     machine, left_out = _find_correctable_machine(found(far), MIDDLE, find_cell("linuxcnc-3axis"), (0, 1))
     assert machine.scale == (1.0, 1.0) and machine.lean_mm_per_mm == TRUE.lean_mm_per_mm
@@ -134,7 +134,7 @@ def test_a_number_that_no_cell_may_have_is_left_out():
     )
 
 
-def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
+def test_a_page_printed_at_97_percent_does_not_correct_the_machine():
     """A page printed at 97 % does not count as a machine that is 3 % off.
 
     The scale once went into the cell without a warning. Each program after that was 3 % too small.
@@ -149,17 +149,17 @@ def test_a_page_printed_at_97_percent_is_no_machine_that_is_3_percent_off():
 
 
 @pytest.mark.parametrize("turned_deg, along", [(2.0, (0, 1)), (90.0, (1, 0)), (183.0, (0, 1)), (30.0, None)])
-def test_the_axes_along_the_paper(turned_deg, along):
+def test_corrections_follow_the_axes_along_the_paper(turned_deg, along):
     turned = Paper(rotation_deg=(0.0, 0.0, turned_deg))
     assert axes_along_paper(replace(find_cell("linuxcnc-3axis"), paper=turned)) == along
     assert axes_along_paper(replace(find_cell("ur5e"), paper=turned)) is None
 
 
-def test_what_is_not_certain_changes_nothing():
+def test_uncertain_values_change_nothing():
     assert corrected_machine(found(TRUE, half=10.0), MIDDLE, UNDONE) is None
 
 
-def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
+def test_a_learned_brush_narrows_the_expected_lag_error():
     brush = find_brush("round-6")
     one = core.Pass(stroke="s", poses_mm=np.array([[0, 0, 0], [20, 0, -4.0], [40, 0, 0]]), speed_mm_s=20.0)
     plan = core.Plan("round-6", "", (100.0, 60.0), [one])
@@ -181,7 +181,7 @@ def test_a_brush_that_learnt_from_these_marks_holds_its_laws():
         (1.0, 1.0, 0.8, 0.8),
     ],
 )
-def test_of_what_may_be_chance_less_is_taken_back(displaced_mm, one_mm, share, of_one):
+def test_corrections_that_may_be_chance_are_reduced(displaced_mm, one_mm, share, of_one):
     """Corrections that may be due to chance are reduced.
 
     All strokes are reduced by their spread (8 numbers, of which 3 are the sheet's place). A single stroke is
@@ -210,12 +210,12 @@ def test_of_what_may_be_chance_less_is_taken_back(displaced_mm, one_mm, share, o
 
 
 @pytest.mark.parametrize(("value", "kept"), [(0.0015, 0.0015), (-0.0011, -0.0011), (0.0009, 0.0)])
-def test_a_number_is_certain_beyond_half_its_interval(value, kept):
+def test_a_value_is_certain_beyond_half_its_interval(value, kept):
     number = SimpleNamespace(name="skew", cause=MACHINE)
     found = SimpleNamespace(found=[SimpleNamespace(value=value, half=0.001, number=number)])
     assert certain_of(found) == {"skew": kept}
 
 
-def test_a_scale_alone_stands_in_the_table():
+def test_a_scale_alone_is_written_to_the_table():
     assert as_table(Machine(scale=(1.01, 1.0)))[1:] == ["scale = [1.01000, 1.00000]", "skew = 0.00000"]
     assert as_table(Machine()) == ["[machine]"]

@@ -22,7 +22,7 @@ def correction(away_mm, replanned):
     return Correction("a", (30 - away_mm, 30), (50, 30), (0.5, 0.0), 0.0, BRUSH.sha256, replanned)
 
 
-def test_a_stroke_may_begin_twice_as_far_away_as_the_brush_trails():
+def test_a_stroke_may_start_up_to_twice_the_lag_away():
     """A stroke may begin up to twice the brush's lag away.
 
     A limit of one lag was 6 mm short. The second sheet's corrections were then refused as corrections of
@@ -33,6 +33,6 @@ def test_a_stroke_may_begin_twice_as_far_away_as_the_brush_trails():
 
 
 @pytest.mark.parametrize(("away_mm", "replanned"), [(5.8, False), (21.0, True)])
-def test_farther_away_it_is_another_job(away_mm, replanned):
+def test_a_stroke_that_starts_further_away_is_refused_as_another_job(away_mm, replanned):
     with refused("corrections-of-another-job", "a"):
         apply_corrections(plan(), (correction(away_mm, replanned),), BRUSH)

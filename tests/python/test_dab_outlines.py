@@ -95,7 +95,7 @@ def test_a_bad_dab_is_left_out_and_named(what):
         assert found.area == pytest.approx(true.area, rel=0.02)
 
 
-def test_outlines_are_where_dabs_were_seen_on_a_sheet_that_was_laid_askew():
+def test_outlines_match_the_dabs_of_a_rotated_sheet():
     turn, about_mm, shift = 0.03, np.array([200.0, -50.0]), np.array([1.2, 0.7])
     turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     placed = [
@@ -148,7 +148,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("what", REFUSED)
-def test_dabs_that_say_no_outline_are_refused(what):
+def test_dabs_that_determine_no_outline_are_refused(what):
     make, expected = REFUSED[what]
     with refused(expected):
         calibrate_dabs(make(), BRUSH, "own")
@@ -173,7 +173,7 @@ def test_the_patch_rests_while_a_dab_is_painted():
             assert run == pytest.approx(0.95 * brush.lag(depth))
 
 
-def test_a_chart_of_dabs():
+def test_a_chart_of_dabs_is_made():
     made = chart(BRUSH, (148.0, 210.0), "few", dabs=True)
     assert [stroke.kind for stroke in made.strokes] == ["dab"] * 16
     for depth in {stroke.depth_mm for stroke in made.strokes}:
@@ -185,7 +185,7 @@ def test_a_chart_of_dabs():
         chart(new_brush("liner", 6.0, [(2, 0.4), (5, 0.8)]), (148.0, 210.0), dabs=True)
 
 
-def test_a_program_a_page_and_a_file_of_dabs(tmp_path, capsys):
+def test_a_chart_of_dabs_writes_a_program_a_page_and_a_file(tmp_path, capsys):
     files = [str(tmp_path / name) for name in ("dabs.ngc", "page.svg", "dabs.json")]
     words = [
         "chart",

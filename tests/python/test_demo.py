@@ -31,7 +31,7 @@ def opened(monkeypatch):
     return shown
 
 
-def test_demo_paints_the_word_and_prints_where_the_picture_is(tmp_path, monkeypatch, capsys, opened):
+def test_demo_paints_the_word_and_prints_the_path_of_the_picture(tmp_path, monkeypatch, capsys, opened):
     monkeypatch.chdir(tmp_path)
     assert main(["demo"]) == 0
     out, err = capsys.readouterr()
@@ -44,7 +44,7 @@ def test_demo_paints_the_word_and_prints_where_the_picture_is(tmp_path, monkeypa
 
 
 @pytest.mark.parametrize("flags, expected", [([], ["a.png"]), (["--no-open"], [])])
-def test_demo_opens_the_picture_where_there_is_a_display(tmp_path, monkeypatch, opened, flags, expected):
+def test_demo_opens_the_picture_if_there_is_a_display(tmp_path, monkeypatch, opened, flags, expected):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("DISPLAY", ":7")
     monkeypatch.setattr("brushsvg.jobs.comparison_picture.comparison_png", lambda *_: b"a picture")
@@ -58,7 +58,7 @@ def test_demo_refuses_other_pictures_and_folders(tmp_path, capsys, opened):
     assert (status, reported.code) == (1, "file-unwritable")
 
 
-def test_the_word_is_that_of_the_examples():
+def test_the_demo_drawing_equals_the_example():
     assert demo.DEMO_DRAWING.read_bytes() == (ROOT / "examples" / "vincent.svg").read_bytes()
 
 
@@ -86,7 +86,7 @@ def without(monkeypatch):
     return change
 
 
-def test_doctor_lists_what_is_there(capsys):
+def test_doctor_lists_installed_packages(capsys):
     assert main(["doctor"]) == 0
     found = rows(capsys.readouterr().out)
     assert found["numpy"] == metadata.version("numpy")
@@ -103,14 +103,14 @@ def test_doctor_names_the_command_for_a_missing_extra(capsys, without):
 
 
 @pytest.mark.parametrize("version", [None, "0.9"])
-def test_doctor_fails_without_what_is_always_needed(capsys, without, version):
+def test_doctor_fails_without_a_required_package(capsys, without, version):
     without(shapely=version)
     status, _, ((_, reported),) = in_json(capsys, "doctor")
     assert (status, reported.code) == (1, "package-missing")
     assert reported.sentence.endswith(command_to_add("shapely"))
 
 
-def test_the_extras_of_users_have_a_purpose():
+def test_extras_for_users_have_a_stated_purpose():
     text = (ROOT / "pyproject.toml").read_text()
     names = set(metadata.metadata("brushsvg").get_all("Provides-Extra"))
     assert names - {"analysis", "bench", "docs", "dev", "fuzz"} == set(
@@ -119,7 +119,7 @@ def test_the_extras_of_users_have_a_purpose():
     assert all(f"\n{name} = [" in text for name in doctor.PURPOSE)
 
 
-def test_doctor_knows_a_snap_and_a_flatpak(tmp_path):
+def test_doctor_recognizes_snap_and_flatpak(tmp_path):
     (tmp_path / "snap").write_text("")
     (tmp_path / "inkscape").symlink_to(tmp_path / "snap")
     assert doctor.find_sandbox(str(tmp_path / "inkscape")) == "a Snap's"
@@ -127,14 +127,14 @@ def test_doctor_knows_a_snap_and_a_flatpak(tmp_path):
     assert doctor.find_sandbox("/usr/bin/inkscape") == ""
 
 
-def test_doctor_asks_for_the_zip_where_there_is_no_source(tmp_path, monkeypatch, capsys):
+def test_doctor_names_the_zip_if_there_is_no_source_tree(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
     monkeypatch.setattr(doctor, "SOURCE", tmp_path / "none")
     assert main(["doctor"]) == 0
     assert rows(capsys.readouterr().out)["extension"].endswith(" inkscape brushsvg-inkscape.zip")
 
 
-def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypatch, capsys):
+def test_doctor_reports_whether_the_extension_finds_its_program(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("INKSCAPE_PROFILE_DIR", str(tmp_path))
     assert main(["doctor"]) == 0
     assert "brushsvg setup inkscape" in rows(capsys.readouterr().out)["extension"]
@@ -158,7 +158,7 @@ def test_doctor_says_whether_the_extension_finds_its_program(tmp_path, monkeypat
         ("pyvenv.cfg", (sys.executable, "-m", "pip", "install", "a", "b")),
     ],
 )
-def test_packages_are_added_by_what_installed_brushsvg(tmp_path, monkeypatch, file, command):
+def test_packages_are_added_with_the_tool_that_installed_brushsvg(tmp_path, monkeypatch, file, command):
     (tmp_path / file).write_text("")
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     assert command_to_add("a", "b").split() == list(command)
@@ -166,12 +166,12 @@ def test_packages_are_added_by_what_installed_brushsvg(tmp_path, monkeypatch, fi
         raise missing_packages_error("this needs", "a", "b")
 
 
-def test_without_pip_uv_adds_packages(monkeypatch):
+def test_packages_are_added_with_uv_if_pip_is_missing(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert command_to_add("a") == f"uv pip install --python {sys.executable} a"
 
 
-def test_a_viewer_that_is_missing_is_no_error(monkeypatch):
+def test_a_missing_viewer_is_not_an_error(monkeypatch):
     def fails(*_, **__):
         raise FileNotFoundError("xdg-open")
 

@@ -17,7 +17,7 @@ def at_pots_by_definition(begins: np.ndarray) -> list[bool]:
     return ((near.sum(axis=1) >= dips.MIN_POT_VISITS) & ~(near & follows[None]).any(axis=1)).tolist()
 
 
-def test_pots_are_found_among_many_strokes_as_by_their_definition(monkeypatch):
+def test_dips_found_among_many_strokes_match_their_definition(monkeypatch):
     monkeypatch.setattr(dips, "_find_outside_others", lambda strokes, chosen: chosen)
     random = np.random.default_rng(5)
     for count in (1, 2, 40, 700):

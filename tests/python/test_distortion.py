@@ -65,7 +65,7 @@ def commanded_places(text):
 
 
 @pytest.mark.parametrize("machine", [LEANS, TILTED])
-def test_the_machine_goes_where_the_plan_asks_it_to(desk, machine):
+def test_a_distorted_machine_follows_the_plan(desk, machine):
     work = preparation.prepare("two.svg")
     reported = commanded_places(text_of(work, cell_with(machine)))
     z = reported[:, 2] - machine.height_mm - reported[:, :2] @ np.array(machine.tilt_mm_per_mm)
@@ -93,7 +93,7 @@ def paper_mm(reported, machine):
     return machine.height_mm + reported[:, :2] @ np.array(machine.tilt_mm_per_mm) + map_mm(at[:, ::-1])
 
 
-def test_the_height_over_a_map_of_the_paper_holds_all_along(desk):
+def test_the_height_above_a_paper_map_is_kept_along_the_path(desk):
     work = preparation.prepare("two.svg")
     cell = cell_with(BUMPY)
     reported = commanded_places(text_of(work, cell))
@@ -129,7 +129,7 @@ def test_the_height_over_a_map_of_the_paper_holds_all_along(desk):
         ([(*row[:2], 9.0) for row in GRID], "cell-machine 9 0 0 -5 5"),
     ],
 )
-def test_a_map_that_is_no_grid_is_refused(rows, said):
+def test_a_map_that_is_not_a_grid_is_refused(rows, said):
     text = write_cell(find_cell("linuxcnc-3axis"))
     with refused(said, "machine.map_mm"):
         parse_cell(f"{text}\n[machine]\nmap_mm = {[list(map(float, row)) for row in rows]}\n")
@@ -137,7 +137,7 @@ def test_a_map_that_is_no_grid_is_refused(rows, said):
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
 @pytest.mark.parametrize("machine", [LEANS, TILTED, BUMPY])
-def test_what_was_planned_comes_back(desk, name, machine):
+def test_a_distorted_program_is_read_back_as_the_plan(desk, name, machine):
     work, cell = preparation.prepare("two.svg"), cell_with(machine, name)
     read = read_program(text_of(work, cell), LANGUAGES[name], cell)
     back = simulate_program.simulate_program(read, work.brush, cell, work.plan.sheet_mm)
@@ -154,7 +154,7 @@ def test_what_was_planned_comes_back(desk, name, machine):
 
 @pytest.mark.parametrize("machine", [LEANS, TILTED])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])
-def test_check_allows_it_and_refuses_the_same_program_on_another_machine(desk, capsys, name, machine):
+def test_check_accepts_a_program_only_on_its_own_machine(desk, capsys, name, machine):
     suffix = LANGUAGES[name]
     (desk / "mine.toml").write_text(write_cell(replace(find_cell(name), name="mine", machine=machine)))
     other = replace(machine, lean_mm_per_mm=(0.1, 0.0))
@@ -170,7 +170,7 @@ def test_check_allows_it_and_refuses_the_same_program_on_another_machine(desk, c
     ("machine", "are_reported"),
     [(Machine((0.3, 0.1), (1.01, 1.01)), True), (LEANS, False), (TILTED, False), (BUMPY, False)],
 )
-def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, are_reported):
+def test_circles_stay_circles_only_if_the_machine_keeps_them_round(machine, are_reported):
     angle = np.linspace(0.0, 2.0, 30)
     on = np.column_stack([60 + 20 * np.cos(angle), 40 + 20 * np.sin(angle), np.full(30, -3.0)])
     poses = np.vstack([[70, 40, 0], on, [50, 70, 0]])
@@ -188,7 +188,7 @@ def test_circles_stay_circles_only_where_the_machine_leaves_them_round(machine, 
     assert np.linalg.norm(found[None] - poses[[0, 1, 30, 31], None], axis=2).min(axis=1).max() < 2e-3
 
 
-def test_limits_are_checked_for_commanded_places(desk):
+def test_limits_are_checked_at_commanded_positions(desk):
     work = preparation.prepare("two.svg")
     cell = cell_with(Machine(scale=(0.92, 1.0)))
     tight = replace(cell, workspace=replace(cell.workspace, box_mm=((-30.0, -30.0, -30.0), (100.0, 100.0, 50.0))))
@@ -216,20 +216,20 @@ def _loads(work):
         ("leans = 1.0", "machine.leans", "key-unknown lean_mm_per_mm"),
     ],
 )
-def test_a_table_that_is_no_machine_is_refused(line, where, said):
+def test_an_invalid_machine_table_is_refused(line, where, said):
     text = write_cell(find_cell("linuxcnc-3axis"))
     with refused(said, where):
         parse_cell(f"{text}\n[machine]\n{line}\n")
 
 
-def test_a_servo_that_leans_is_refused():
+def test_a_leaning_servo_machine_is_refused():
     text = write_cell(find_cell("grbl-servo"))
     with refused("cell-machine 0.3", "machine.lean_mm_per_mm"):
         parse_cell(f"{text}\n[machine]\nlean_mm_per_mm = [0.3, 0.0]\n")
     assert parse_cell(f"{text}\n[machine]\nscale = [1.01, 1.0]\n").machine.scale == (1.01, 1.0)
 
 
-def test_the_table_is_written_as_it_is_read():
+def test_the_machine_table_is_read_back_unchanged():
     cell = replace(find_cell("linuxcnc-3axis"), machine=LEANS)
     assert parse_cell(write_cell(cell)) == cell
 
@@ -253,7 +253,7 @@ def over_the_paper(reported, machine):
 
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
-def test_between_strokes_and_paint_nothing_goes_below_the_safe_height(desk, machine):
+def test_the_tool_stays_at_the_safe_height_between_strokes_and_paint(desk, machine):
     """Between strokes and paint, the tool stays at the safe height.
 
     Over paper 4 mm higher than taught, the tool once came back from the paint only 1 mm above the paper.
@@ -274,7 +274,7 @@ def test_between_strokes_and_paint_nothing_goes_below_the_safe_height(desk, mach
 
 @pytest.mark.parametrize("machine", [Machine(height_mm=0.4), Machine(height_mm=-0.4)])
 @pytest.mark.parametrize("name", ["grbl-servo", "linuxcnc-3axis", "ur5e"])
-def test_check_allows_visits_on_a_machine_whose_paper_is_higher(desk, capsys, name, machine):
+def test_check_accepts_paint_visits_on_a_machine_with_higher_paper(desk, capsys, name, machine):
     suffix, safe_mm = LANGUAGES[name], 4.5
     cell = replace(with_paint(machine, name, safe_mm), blending=find_cell(name).blending)
     (desk / "mine.toml").write_text(write_cell(cell))
@@ -284,7 +284,7 @@ def test_check_allows_visits_on_a_machine_whose_paper_is_higher(desk, capsys, na
 
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, BUMPY])
-def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk, capsys, machine):
+def test_a_border_surrounds_the_painted_area_at_safe_height(desk, capsys, machine):
     (desk / "mine.toml").write_text(write_cell(with_paint(machine)))
     assert call(capsys, "setup", "border", "two.svg", "-o", "border.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "border.ngc").read_text()
@@ -297,7 +297,7 @@ def test_a_border_goes_round_what_is_painted_at_safe_height_over_the_paper(desk,
 
 
 @pytest.mark.parametrize("machine", [HIGH, LOW, LEANS, BUMPY])
-def test_heights_show_how_much_higher_the_paper_is_than_is_known(desk, capsys, machine):
+def test_the_height_program_shows_the_height_error_of_the_paper(desk, capsys, machine):
     """The height program shows how much higher the paper is than known.
 
     The first stroke that paints gives the value for `convert --z-offset`, which adds the value to height_mm.

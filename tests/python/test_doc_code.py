@@ -100,7 +100,7 @@ def of_kind(kind: str, page: str = "") -> list[str]:
     ]
 
 
-def test_every_block_is_of_a_kind_that_is_held():
+def test_every_code_block_has_a_tested_kind():
     assert [block for block in BLOCKS if block.kind not in HELD] == []
     found: dict[str, set[str]] = {}
     for block in BLOCKS:
@@ -134,7 +134,7 @@ def test_pages_with_python_are_found():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", OF_PYTHON)
-def test_python_of_a_page_runs(page, folder, capsys):
+def test_python_code_of_a_page_runs(page, folder, capsys):
     pytest.importorskip("uharfbuzz")
     names = {"np": np, "brushsvg": brushsvg, "font_bytes": Path("EMSAllure.svg").read_bytes()}
     names["svg_text"] = Path("word.svg").read_text()
@@ -144,13 +144,13 @@ def test_python_of_a_page_runs(page, folder, capsys):
             exec(compiled, names)
 
 
-def test_the_program_of_the_page_for_cpp_is_the_example():
+def test_the_program_on_the_cpp_page_equals_the_example():
     example = (REPOSITORY / "examples" / "01_first_word.cpp").read_text().split("\n", 1)[1].strip()
     assert [code.strip() for code in of_kind("cpp", "howto/cpp.md")] == [example]
 
 
 @pytest.mark.parametrize("code", of_kind("toml"))
-def test_a_table_of_a_cell_is_read_where_that_table_stood(code):
+def test_cell_tables_on_pages_can_be_read(code):
     tables = list(tomllib.loads(code))
     language = 'language = "robodk"' if "robodk" in tables else 'language = "urscript"'
     name = "linuxcnc-3axis" if "backlash_mm" in code else "ur5e"  # ur5e has joints, not axes
@@ -160,7 +160,7 @@ def test_a_table_of_a_cell_is_read_where_that_table_stood(code):
     assert parse_cell("\n".join([*kept, code]))
 
 
-def test_measurements_are_read():
+def test_measurements_on_pages_can_be_read():
     tables = of_kind("csv")
     files = [whole(code) for code in of_kind("json", "reference/measurements.md")]
     assert len(tables) == 1 and len(files) == 3
@@ -171,7 +171,7 @@ def test_measurements_are_read():
         assert found.rows or found.marks
 
 
-def test_files_of_brushes_plans_and_marks_have_what_the_page_shows(tmp_path):
+def test_files_have_the_keys_that_the_page_shows(tmp_path):
     brush = brushsvg.find_brush("round-6")
     stroke = brushsvg.stroke_from_path("M20 40C40 80 80 80 100 40V20", 4)
     plan = brushsvg.compensate([stroke], brush, sheet_mm=(140, 100)).plan
@@ -219,7 +219,7 @@ def unlike(shown, real, where: str = "") -> list[str]:
     return [] if kinds[0] == kinds[1] else [f"{where}: {shown!r} and {real!r}"]
 
 
-def test_warnings_for_programs_have_these_keys(folder, capsys):
+def test_messages_in_json_have_the_documented_keys(folder, capsys):
     (code,) = of_kind("json", "reference/diagnostics.md")
     main(["--messages", "json", "convert", "word.svg", "-o", "word.ngc", "--brush", "none"])
     assert set(json.loads(code)) == set(json.loads(capsys.readouterr().err.splitlines()[0]))
@@ -228,7 +228,7 @@ def test_warnings_for_programs_have_these_keys(folder, capsys):
 VALUES = {"NAME": "Ink", "CSS": "g", "MM": "3"}
 
 
-def test_flags_that_a_page_lists_are_understood():
+def test_flags_on_pages_exist():
     (code,) = of_kind("flags", "reference/drawings.md")
     listed = re.findall(r"^--(\S+)(?: (\S+))?  ", code, re.M)
     assert len(listed) >= 11
@@ -238,7 +238,7 @@ def test_flags_that_a_page_lists_are_understood():
             parse(["convert", drawing, "-o", "a.ngc", f"--{flag}", *filter(None, [each])])
 
 
-def test_targets_of_make_are_there():
+def test_make_targets_on_pages_exist():
     targets = re.search(r"^\.PHONY: (.*)$", (REPOSITORY / "Makefile").read_text(), re.M)[1].split()
     typed = [line.split()[1] for code in of_kind("make") for line in code.splitlines()]
     assert len(typed) >= 4 and set(typed) <= set(targets)
@@ -253,7 +253,7 @@ README = [
 
 
 @pytest.mark.slow
-def test_commands_of_the_readme_run_in_their_order(folder, capsys):
+def test_commands_of_the_readme_run_in_order(folder, capsys):
     assert len(README) >= 5
     for line in README:
         first, *others = line.split(" | ")

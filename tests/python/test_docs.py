@@ -31,18 +31,18 @@ LINKS = [
 GENERATED = ("reference/commands.md",)  # `make docs` writes it
 
 
-def test_pages_have_commands():
+def test_pages_with_commands_are_found():
     assert len(COMMANDS) > 40
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_commands_on_pages_are_understood(command):
+def test_commands_on_pages_can_be_parsed(command):
     first = re.split(r" [|>] ", command)[0]
     parse(shlex.split(first, comments=True))
 
 
 @pytest.mark.parametrize(("page", "link"), LINKS)
-def test_links_of_followed_pages_lead_somewhere(page, link):
+def test_links_of_followed_pages_have_targets(page, link):
     docs = DOCS
     target = (page.parent / link).resolve()
     folder = docs / target.relative_to(docs).parts[0]

@@ -34,7 +34,7 @@ def test_the_pages_have_no_findings():
         f"{FIRST}\n\n* Told once.",
     ],
 )
-def test_each_rule_is_held(tmp_path, text):
+def test_each_rule_finds_its_fault(tmp_path, text):
     assert len(found(tmp_path, text)) == 1
 
 
@@ -49,5 +49,5 @@ def test_each_rule_is_held(tmp_path, text):
         f"{FIRST} A bedside lamp is no finding.",
     ],
 )
-def test_code_quotations_and_long_cells_are_left_alone(tmp_path, text):
+def test_code_quotations_and_long_table_cells_are_ignored(tmp_path, text):
     assert found(tmp_path, text) == []

@@ -36,7 +36,7 @@ def on_root(*settings):
     return DRAWING.replace("<svg ", "<svg " + " ".join(f"data-brushsvg-{each}" for each in settings) + " ", 1)
 
 
-def test_the_document_chooses_for_the_whole_job(desk, capsys):
+def test_document_settings_apply_to_the_whole_job(desk, capsys):
     (desk / "said.svg").write_text(on_root('brush="rigid"', 'cell="ur5e"', 'compensation="none"', 'tolerance=".2mm"'))
     flags = ["--brush", "rigid", "--cell", "ur5e", "--compensation", "none", "--tolerance", "0.2"]
     assert main(["convert", "said.svg", "-o", "said.script"]) == 0
@@ -47,7 +47,7 @@ def test_the_document_chooses_for_the_whole_job(desk, capsys):
     assert (desk / "packed.script").read_bytes() == (desk / "typed.script").read_bytes()
 
 
-def test_what_is_typed_wins_over_the_document(desk, capsys):
+def test_flags_override_document_settings(desk, capsys):
     (desk / "said.svg").write_text(on_root('cell="ur5e"', 'compensation="none"', 'tolerance="0.2mm"'))
     flags = ["--cell", "linuxcnc-3axis", "--compensation", "closed", "--tolerance", "0.05"]
     assert main(["convert", "said.svg", "-o", "said.ngc", *flags]) == 0
@@ -55,7 +55,7 @@ def test_what_is_typed_wins_over_the_document(desk, capsys):
     assert (desk / "said.ngc").read_bytes() == (desk / "plain.ngc").read_bytes()
 
 
-def test_beginnings_are_said_of_the_job_and_of_strokes(desk, capsys):
+def test_start_styles_can_be_set_for_the_job_and_for_strokes(desk, capsys):
     def poses(text, *flags):
         (desk / "s.svg").write_text(text)
         assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
@@ -76,7 +76,7 @@ BAR = (
 )
 
 
-def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, capsys):
+def test_a_butt_start_is_used_by_default_and_on_request(desk, capsys):
     def poses(*flags):
         assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
         return {each.stroke[:1]: each.poses_mm.tolist() for each in read_plan("s.json").passes}
@@ -92,7 +92,7 @@ def test_a_cut_beginning_is_butt_where_it_is_chosen_and_where_it_is_said(desk, c
     assert main(["check", "s.ngc", "s.svg"]) == 0
 
 
-def test_ends_are_said_of_the_job_and_of_strokes(desk, capsys):
+def test_end_styles_can_be_set_for_the_job_and_for_strokes(desk, capsys):
     def poses(text, *flags):
         (desk / "s.svg").write_text(text)
         assert main(["convert", "s.svg", "-o", "s.json", *flags]) == 0
@@ -136,7 +136,7 @@ def test_terminals_set_both_ends_and_one_end_may_differ(desk, capsys):
         assert poses(inside) == {"a": both(one, other)["a"], "b": both(one, one)["b"]}
 
 
-def test_a_program_shows_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
+def test_a_program_header_states_its_end_style_and_check_uses_it(desk, capsys):
     (desk / "d.svg").write_text(BAR)
     assert main(["convert", "d.svg", "-o", "d.ngc", "--end", "round", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
@@ -146,7 +146,7 @@ def test_a_program_shows_how_its_strokes_end_and_is_checked_by_it(desk, capsys):
     assert main(["check", "d.ngc", "d.svg"]) == 1
 
 
-def test_a_program_shows_how_its_strokes_begin_and_is_checked_by_it(desk, capsys):
+def test_a_program_header_states_its_start_style_and_check_uses_it(desk, capsys):
     assert main(["convert", "d.svg", "-o", "d.ngc", "--start", "pointed"]) == 0
     text = (desk / "d.ngc").read_text()
     assert "(compensation: closed, tolerance 0.05 mm, start pointed)" in text
@@ -160,7 +160,7 @@ def test_a_program_shows_how_its_strokes_begin_and_is_checked_by_it(desk, capsys
 
 
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.toml", "../mine.toml", "no-such-cell"])
-def test_the_document_names_no_files(desk, capsys, file):
+def test_document_settings_cannot_name_files(desk, capsys, file):
     (desk / "mine.toml").write_text("")
     (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
     (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
@@ -169,7 +169,7 @@ def test_the_document_names_no_files(desk, capsys, file):
 
 
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.json", "no-such-brush"])
-def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(desk, capsys, file):
+def test_every_command_refuses_an_unknown_brush_of_the_document(desk, capsys, file):
     (desk / "mine.json").write_text("")
     (desk / "d.svg").write_text(on_root(f'brush="{file}"'))
     for words in (
@@ -189,7 +189,7 @@ def test_a_brush_of_the_document_that_is_not_known_is_refused_by_every_command(d
     assert main(["preview", "d.svg", "--all-brushes"]) == 0
 
 
-def test_what_was_typed_is_never_written_over(desk, capsys):
+def test_typed_arguments_are_never_changed(desk, capsys):
     (desk / "d.svg").write_text(on_root('brush="round-6"', 'cell="grbl-3axis"', 'tolerance="0.2mm"'))
     for words in ("convert d.svg -o d.ngc", "preview d.svg", "check d.ngc d.svg"):
         args = parse(words.split())
@@ -215,7 +215,7 @@ FAT = (
 )
 
 
-def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
+def test_the_document_can_set_how_wide_outlines_are_painted(desk, capsys):
     for name, setting in (("said.svg", 'data-brushsvg-wide="clamp"'), ("d.svg", "")):
         (desk / name).write_text(FAT.format(setting))
     assert main(["convert", "said.svg", "-o", "said.ngc"]) == 0
@@ -238,7 +238,7 @@ def test_the_document_says_how_wide_outlines_are_painted(desk, capsys):
         ('machine="x"', "data-brushsvg-machine width speed"),
     ],
 )
-def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, setting, said):
+def test_invalid_document_settings_stop_convert(desk, capsys, setting, said):
     (desk / "d.svg").write_text(on_root(setting))
     (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
     assert agrees(reported, f"setting-invalid {said}"), reported
@@ -255,7 +255,7 @@ def test_settings_of_the_document_that_make_no_sense_stop_convert(desk, capsys, 
         ("x.dxf", None, "file-unreadable"),
     ],
 )
-def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, said):
+def test_a_chart_for_a_file_that_is_not_a_drawing_is_refused(desk, capsys, name, data, said):
     if data is not None:
         (desk / name).write_bytes(data)
     status, _, ((file, reported),) = in_json(capsys, "chart", "-o", "x.json", "--drawing", name)
@@ -263,7 +263,7 @@ def test_a_chart_for_what_is_no_drawing_is_refused(desk, capsys, name, data, sai
     assert not (desk / "x.json").exists()
 
 
-def test_settings_of_the_document_are_none_of_an_element(desk, capsys):
+def test_document_settings_on_an_element_are_refused(desk, capsys):
     (desk / "d.svg").write_text(DRAWING.replace('id="a"', 'id="a" data-brushsvg-cell="ur5e"'))
     assert is_reported(
         refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc"),

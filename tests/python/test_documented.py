@@ -24,14 +24,14 @@ def words_of(name: str) -> str:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_name_says_what_it_is(name):
+def test_every_public_name_has_a_docstring(name):
     assert len(words_of(name).split()) >= 3, f"{name}: {words_of(name)!r}"
     if inspect.isclass(attrgetter(name)(brushsvg)):
         assert not words_of(name).startswith(f"{name.split('.')[-1]}("), "that is its signature"
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name in FUNCTIONS or name.startswith("laws.B")])
-def test_every_method_says_what_it_is(name):
+def test_every_public_method_has_a_docstring(name):
     thing = attrgetter(name)(brushsvg)
     for method, body in vars(thing).items() if inspect.isclass(thing) else ():
         if not method.startswith("_") and inspect.isfunction(body):

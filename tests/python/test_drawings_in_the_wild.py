@@ -42,7 +42,7 @@ def ids(design):
         '<rect width="100" height="60" fill="#fff"/><rect width="100" height="60" fill="#fefefe"/>',
     ],
 )
-def test_a_white_shape_below_all_is_background(shape):
+def test_a_white_shape_below_everything_is_background(shape):
     design = read(shape + LINE)
     assert ids(design) == ["line"]
     assert are_reported(design.notices, "background")
@@ -57,14 +57,14 @@ def test_a_white_shape_below_all_is_background(shape):
         '<path d="M0 0H100V60H0Z M20 20V40H80V20Z" fill="#fff" fill-rule="evenodd"/>',  # a frame
     ],
 )
-def test_other_shapes_are_no_background(shape):
+def test_other_shapes_are_not_background(shape):
     assert len(read(shape + LINE).elements) == 2
     white = '<rect width="100" height="60" fill="#fff"/>'
     assert len(read(LINE + white).elements) == 2, "it covers what was drawn before"
     assert len(read(white).elements) == 1, "nothing else is there"
 
 
-def test_a_background_is_known_by_the_page_for_any_requested_sheet():
+def test_a_background_is_recognized_by_the_page_for_any_requested_sheet():
     """A background is recognized by the page, for any requested sheet.
 
     The page is at the sheet's upper left.
@@ -84,13 +84,13 @@ def test_a_background_is_known_by_the_page_for_any_requested_sheet():
         ("", (100.0, 60.0)),
     ],
 )
-def test_a_background_is_known_however_the_page_gives_its_size(root, sheet_mm):
+def test_a_background_is_recognized_for_any_form_of_page_size(root, sheet_mm):
     covers = '<rect width="377.953" height="226.772" fill="#fff"/>'
     body = covers if "viewBox" not in root else '<rect width="100" height="60" fill="#fff"/>'
     assert ids(read(body + LINE, f'xmlns="http://www.w3.org/2000/svg" {root}', sheet_mm=sheet_mm)) == ["line"]
 
 
-def test_what_is_off_the_page_is_left_out():
+def test_elements_off_the_page_are_left_out():
     body = (
         LINE
         + LINE.replace("M10", "M-200").replace('"line"', '"off"')
@@ -119,7 +119,7 @@ def test_layers_of_notes_are_left_out():
     assert "%" in design.layers["%notes"], "--layer says why it is not painted"
 
 
-def test_what_is_on_another_is_painted_once(tmp_path):
+def test_identical_lines_are_painted_once(tmp_path):
     twice = (
         LINE
         + LINE.replace("line", "copy")
@@ -154,14 +154,14 @@ def test_programs_with_other_pixels_are_named(root, per_inch):
     assert lengths[0] / lengths[1] == pytest.approx(96 / per_inch, rel=1e-4)
 
 
-def test_later_inkscape_counts_as_everyone():
+def test_files_of_later_inkscape_use_css_pixels():
     assert not read(
         LINE,
         f'xmlns="http://www.w3.org/2000/svg" {INKSCAPE} width="100" height="60" inkscape:version="0.92.4"',
     ).notices
 
 
-def test_a_size_in_em_follows_from_the_view_box():
+def test_a_size_in_em_is_taken_from_the_view_box():
     icon = read(LINE, 'xmlns="http://www.w3.org/2000/svg" width="1em" height="1em" viewBox="0 0 96 96"')
     assert icon.sheet_mm == pytest.approx((25.4, 25.4)) and are_reported(icon.notices, "size-assumed 25.4")
     plain = read(LINE, 'xmlns="http://www.w3.org/2000/svg" width="6em" height="12ex"')
@@ -183,7 +183,7 @@ def test_xml_in_encodings_of_two_bytes_is_read(label, codec, name):
     assert ids(read_svg(text.encode(codec), ReadOptions())) == [name]
 
 
-def test_bytes_that_are_not_of_the_encoding_are_refused():
+def test_bytes_that_are_invalid_in_the_encoding_are_refused():
     with refused("not-xml GBK"):
         read_svg(f'<?xml version="1.0" encoding="GBK"?><svg {PAGE}>'.encode() + b"\xff\xff</svg>", ReadOptions())
 
@@ -268,7 +268,7 @@ def test_a_closed_line_of_varying_width_keeps_its_widths_where_it_begins_inside(
         ('<rect width="50" height="60"/>', 'clip-path="url(#Clip)"'),
     ],
 )
-def test_a_clip_path_that_is_not_read_is_reported(clips, more):
+def test_an_unsupported_clip_path_is_reported(clips, more):
     design = clip(clips, CUT, more)
     assert spans(design.elements[0]) == [(10, 70)]
     assert are_reported(design.notices, "clipping-unread")
@@ -357,7 +357,7 @@ def test_strokes_of_a_pressure_pen_are_one_line_each(tmp_path, program):
         assert found == pytest.approx(target, rel=0.05)
 
 
-def test_lines_that_only_meet_are_no_pressure_stroke(tmp_path):
+def test_lines_that_only_meet_are_not_joined_as_a_pressure_stroke(tmp_path):
     square = "".join(
         f'<path d="M{a}L{b}" stroke="#000" stroke-width="2"/>'
         for a, b in (("10 10", "50 10"), ("50 10", "50 40"), ("50 40", "10 40"))

@@ -153,7 +153,7 @@ def test_every_entity_is_within_a_micrometre_of_the_true_curve(name):
 
 @each_shape
 @pytest.mark.slow
-def test_every_entity_in_a_block_goes_where_the_block_goes(name):
+def test_every_entity_in_a_block_moves_with_the_block(name):
     """Every entity in a block moves with the block.
 
     The block is scaled unevenly, turned and mirrored. It is inside another block that is scaled and turned.
@@ -183,7 +183,7 @@ FITTED = [(0, 0), (30, 40), (80, -10), (100, 20)]
 
 
 @pytest.mark.parametrize("weights", [None, [1.0] * 4 + [2.0] * 4])
-def test_a_spline_that_jumps_is_two_lines(weights):
+def test_a_spline_with_a_gap_is_two_lines(weights):
     points = np.array([(0, 0), (10, 0), (20, 10), (30, 10), (30, 40), (40, 40), (50, 50), (60, 50)], float)
     knots = [0] * 4 + [1] * 4 + [2] * 4
     element = only(drawing(lambda m: add_spline(m, 3, knots, np.column_stack((points, 0 * points[:, 0])), weights)))
@@ -195,7 +195,7 @@ def test_a_spline_that_jumps_is_two_lines(weights):
     assert len(whole.subpaths) == 1
 
 
-def test_a_fit_point_that_stands_twice_is_one():
+def test_a_repeated_fit_point_counts_once():
     document = drawing()
     document.modelspace().add_spline([FITTED[0], FITTED[1], FITTED[1], FITTED[2]])
     other = drawing()
@@ -203,7 +203,7 @@ def test_a_fit_point_that_stands_twice_is_one():
     assert np.array_equal(only(document).subpaths[0].cubics, only(other).subpaths[0].cubics)
 
 
-def test_fit_points_are_met():
+def test_a_spline_passes_its_fit_points():
     (subpath,) = only(drawing(lambda m: m.add_spline(FITTED))).subpaths
     assert len(subpath.cubics) == 3
     assert np.abs(subpath.cubics[[0, 1, 2, 2], [0, 0, 0, 3]] - FITTED).max() < 1e-9
@@ -214,7 +214,7 @@ def test_fit_points_are_met():
 
 @pytest.mark.parametrize("count", [2, 3, 4])
 @pytest.mark.parametrize("tangents", [None, ((1, 2, 0), (0, 5, 0)), ((1, 2, 0), None)])
-def test_fit_points_are_joined_as_ezdxf_does(count, tangents):
+def test_fit_points_are_joined_as_in_ezdxf(count, tangents):
     document = drawing()
     spline = document.modelspace().add_spline(FITTED[:count])
     begin, end = tangents or (None, None)
@@ -267,14 +267,14 @@ def test_a_helix_is_seen_from_above(pitch, turns):
         (10, 914.4),
     ],
 )
-def test_units(units, mm):
+def test_units_are_converted_to_mm(units, mm):
     size = 100 / mm
     element = only(drawing(lambda m: m.add_circle((size, 0), size), units))
     assert apart(element.subpaths[0], circle((100, 0), 100)) < 2e-4
     assert element.stroke_width_mm == 0.25
 
 
-def test_a_drawing_without_units_asks_for_them():
+def test_a_drawing_without_units_is_refused_with_the_flag_to_add():
     for version in ("R12", "R2010"):
         document = drawing(lambda m: m.add_line((0, 0), (2, 0)), 0, version)
         with refused("unit-unknown '--units mm' '--units in'"):
@@ -284,7 +284,7 @@ def test_a_drawing_without_units_asks_for_them():
             assert element.subpaths[0].cubics[-1, 3].tolist() == pytest.approx([2 * mm, 0], rel=0, abs=1e-12)
 
 
-def test_a_drawing_too_large_for_its_unit_is_doubted():
+def test_a_drawing_too_large_for_its_unit_causes_a_warning():
     """A drawing that is too large for its unit causes a warning.
 
     ezdxf and other programs write metres if nobody chose a unit.
@@ -299,7 +299,7 @@ def test_a_drawing_too_large_for_its_unit_is_doubted():
     assert are_reported(line(6, 100, units="mm"), "unit-overruled")
 
 
-def test_requested_units_win_and_say_so():
+def test_requested_units_override_the_file_with_a_notice():
     design = read(drawing(lambda m: m.add_line((0, 0), (2, 0)), units=1), units="mm")
     assert design.elements[0].subpaths[0].cubics[-1, 3].tolist() == [2, 0]
     assert are_reported(design.notices, "unit-overruled inches millimetres")
@@ -308,7 +308,7 @@ def test_requested_units_win_and_say_so():
         assert element.subpaths[0].cubics[-1, 3].tolist() == [50.8, 0]
 
 
-def test_the_sheet_is_what_is_drawn_and_20_mm_around():
+def test_the_sheet_is_the_drawing_with_a_margin_of_20_mm():
     def draw(msp):
         msp.add_circle((100, 50), 10, {"lineweight": 200})
         msp.add_lwpolyline([(100, 50, 4, 4), (130, 50, 4, 4)], format="xyse")
@@ -325,7 +325,7 @@ def test_the_sheet_is_what_is_drawn_and_20_mm_around():
 # Widths ---------------------------------------------------------------------------------------------
 
 
-def test_widths_along_a_polyline():
+def test_a_polyline_keeps_its_varying_widths():
     rows = [(0, 0, 1, 3, 0), (30, 0, 2, 2, 1), (30, 20, 0, 0, 0), (0, 20, 0, 4, 0), (0, 60, 9, 9, 0)]
     for add in ("add_lwpolyline", "add_polyline2d"):
         document = drawing(lambda m, add=add: getattr(m, add)(rows, format="xyseb", dxfattribs={"lineweight": 50}))
@@ -347,14 +347,14 @@ def test_widths_scale_with_units_and_blocks():
     assert only(document).subpaths[0].widths == pytest.approx(np.array([(0, 7.62), (1, 15.24)]))
 
 
-def test_one_width_is_the_strokes_width():
+def test_a_constant_width_is_the_stroke_width():
     element = only(drawing(lambda m: m.add_lwpolyline([(0, 0), (9, 0)], dxfattribs={"const_width": 2.5})))
     assert element.stroke_width_mm == 2.5
     assert element.subpaths[0].widths is None
 
 
 @pytest.mark.parametrize(("weight", "mm"), [(100, 1.0), (-1, 0.7), (-2, 0.25), (-3, 0.25), (0, 0.25), (211, 2.11)])
-def test_line_weights(weight, mm):
+def test_line_weights_become_widths(weight, mm):
     document = drawing()
     document.layers.add("thick", lineweight=70)
     document.modelspace().add_line((0, 0), (9, 0), {"layer": "thick", "lineweight": weight})
@@ -364,7 +364,7 @@ def test_line_weights(weight, mm):
 # Lines that meet ------------------------------------------------------------------------------------
 
 
-def test_lines_drawn_one_after_the_other_are_one():
+def test_consecutive_lines_are_joined():
     def draw(msp):
         msp.add_line((0, 0), (10, 0))
         msp.add_line((10, 10), (10, 0))
@@ -384,7 +384,7 @@ def test_lines_drawn_one_after_the_other_are_one():
     assert design.elements[2].subpaths[0].cubics[[0, -1], [0, 3]].tolist() == [[50, 50], [70, 40]]
 
 
-def test_a_chain_that_comes_back_is_closed_and_its_first_line_turned_where_it_must():
+def test_a_chain_that_returns_to_its_start_is_closed():
     corners = [(10, 0), (0, 0), (10, 0), (10, 10), (10, 10), (0, 0), (0, 0), (-9, -9)]
 
     def draw(msp):
@@ -397,7 +397,7 @@ def test_a_chain_that_comes_back_is_closed_and_its_first_line_turned_where_it_mu
     assert rest.subpaths[0].cubics[0, 0].tolist() == [0, 0]
 
 
-def test_lines_of_two_insertions_stay_apart():
+def test_lines_of_two_insertions_stay_separate():
     document = drawing()
     document.blocks.new("b").add_line((0, 0), (10, 0))
     for x in (0, 10):
@@ -408,7 +408,7 @@ def test_lines_of_two_insertions_stay_apart():
 # Blocks, layers, colours ----------------------------------------------------------------------------
 
 
-def test_rows_and_columns():
+def test_rows_and_columns_of_an_insertion_are_repeated():
     document = drawing()
     document.blocks.new("b").add_circle((1, 0), 3)
     grid = {
@@ -426,7 +426,7 @@ def test_rows_and_columns():
     assert len({element.id for element in design.elements}) == 6
 
 
-def test_ids_are_the_types_and_handles():
+def test_ids_are_made_from_types_and_handles():
     document = drawing()
     line = document.blocks.new("b").add_line((0, 0), (9, 0))
     circle_ = document.modelspace().add_circle((0, 0), 5)
@@ -466,7 +466,7 @@ def test_colours_layers_and_weights_come_from_layers_and_blocks():
     ]
 
 
-def test_what_is_hidden_is_left_out_and_counted():
+def test_hidden_entities_are_left_out_and_counted():
     document = drawing()
     document.layers.add("Off").off()
     document.layers.add("Frozen").freeze()
@@ -505,7 +505,7 @@ def test_paper_space_alone_is_refused():
     assert ":" not in caught.value.sentence, "no reason, where nothing was drawn"
 
 
-def test_what_is_not_read_is_named():
+def test_unsupported_entities_are_named():
     document = drawing()
     msp = document.modelspace()
     msp.add_ray((0, 0), (1, 0))
@@ -533,7 +533,7 @@ def test_a_hatch_keeps_its_holes():
     assert len(only(document).subpaths) == 1
 
 
-def test_points_are_dabs_and_dimensions_are_unfolded():
+def test_points_become_dabs_and_dimensions_become_lines():
     def draw(msp):
         msp.add_point((3, 4), {"lineweight": 100})
         msp.add_linear_dim((0, 30), (0, 0), (50, 0)).render()
@@ -553,14 +553,14 @@ def test_widths_in_a_squeezed_block_are_measured_across_the_line():
     assert subpath.widths[[0, -1], 1] == pytest.approx([4, 1])
 
 
-def test_widths_of_vertices_go_before_the_width_of_the_polyline():
+def test_vertex_widths_override_the_width_of_the_polyline():
     def draw(msp):
         msp.add_lwpolyline([(0, 0, 2, 2), (9, 0, 2, 2)], format="xyse", dxfattribs={"const_width": 5})
 
     assert only(drawing(draw)).stroke_width_mm == 2
 
 
-def test_an_mpolygon_has_a_filling_and_a_border_of_their_colours():
+def test_an_mpolygon_has_a_fill_and_a_border_in_their_colours():
     document = drawing()
     document.modelspace().add_mpolygon(color=1, fill_color=5).paths.add_polyline_path(SQUARE, is_closed=True)
     border, filling = read(document).elements
@@ -579,7 +579,7 @@ def test_an_mpolygon_has_a_filling_and_a_border_of_their_colours():
         (lambda m: m.add_hatch().set_gradient() or SQUARE, {}, "paint-unread"),
     ],
 )  # fmt: skip
-def test_what_is_shown_otherwise_is_named_once(draw, header, said):
+def test_properties_that_are_not_reproduced_are_named_once(draw, header, said):
     document = drawing()
     drawn = draw(document.modelspace())
     if drawn is SQUARE:
@@ -590,7 +590,7 @@ def test_what_is_shown_otherwise_is_named_once(draw, header, said):
     assert agrees(notice, said)
 
 
-def test_heights_are_left_out_once():
+def test_heights_are_ignored_with_one_notice():
     design = read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 25))))
     assert are_reported(design.notices, "dxf-not-flat 5 25")
     assert read(drawing(lambda m: m.add_line((0, 0, 5), (9, 0, 5)))).notices == ()
@@ -601,7 +601,7 @@ def test_heights_are_left_out_once():
 
 @pytest.mark.parametrize("version", ["R12", "R2000", "R2004", "R2007", "R2010", "R2013", "R2018"])
 @pytest.mark.parametrize("binary", [False, True])
-def test_every_version_in_text_and_binary(version, binary):
+def test_every_version_is_read_as_text_and_binary(version, binary):
     document = drawing(None, 4, version)
     document.layers.add("Größe", color=1)
     document.modelspace().add_circle((10, 20), 30, {"layer": "Größe"})
@@ -610,7 +610,7 @@ def test_every_version_in_text_and_binary(version, binary):
     assert (element.layer, element.colour) == ("Größe", "#ff0000")
 
 
-def test_from_a_file_to_strokes(tmp_path):
+def test_a_dxf_file_becomes_strokes(tmp_path):
     def draw(msp):
         msp.add_lwpolyline([(0, 0, 1, 3), (30, 0, 3, 1), (30, 40, 0, 0)], format="xyse")
         msp.add_circle((50, 50), 20, {"lineweight": 200})
@@ -626,7 +626,7 @@ def test_from_a_file_to_strokes(tmp_path):
 
 
 @pytest.mark.slow
-def test_ezdxf_is_loaded_for_dxf_alone_and_leaves_nothing_at_home(tmp_path):
+def test_ezdxf_is_loaded_only_for_dxf_and_writes_no_files_to_the_home_folder(tmp_path):
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: m.add_line((0, 0), (9, 9)))))
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><path stroke="red" d="M1 1h5"/></svg>'

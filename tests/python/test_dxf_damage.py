@@ -102,7 +102,7 @@ def test_newer_entities_are_read_without_header_and_markers(header, kind, marker
         read_dxf(data, ReadOptions())
 
 
-def test_blocks_layers_and_handles_of_r12_stay_when_newer_entities_are_among_them():
+def test_r12_blocks_layers_and_handles_are_kept_with_newer_entities():
     document = drawing(version="R12")
     document.layers.add("Off").off()
     block = document.blocks.new("b")
@@ -135,11 +135,11 @@ def test_blocks_layers_and_handles_of_r12_stay_when_newer_entities_are_among_the
         ),
     ],
 )
-def test_what_is_no_dxf_is_refused(data, said):
+def test_a_file_that_is_not_dxf_is_refused(data, said):
     assert agrees(refusal(data), said)
 
 
-def test_a_file_cut_short_is_read_up_to_there():
+def test_a_truncated_file_is_read_up_to_its_end():
     whole = encoded(drawing(lambda m: [m.add_circle((0, 0), 9), m.add_line((0, 0), (9, 9))]))
     start = whole.rindex(b"AcDbLine")
     for cut in range(start - 20, start + 40):
@@ -151,7 +151,7 @@ def test_a_file_cut_short_is_read_up_to_there():
 
 @pytest.mark.parametrize("binary", [False, True])
 @pytest.mark.slow
-def test_any_damage_ends_in_a_design_or_a_sentence(binary):
+def test_any_damage_gives_a_drawing_or_a_refusal(binary):
     """Any damage ends in a drawing or in one sentence.
 
     The file is cut anywhere, bytes are changed, or lines are removed or doubled.
@@ -228,7 +228,7 @@ def test_broken_splines_are_left_out(degree, knots, weights, count, said):
     assert agrees(notice, said)
 
 
-def test_splines_of_great_cost_are_left_out(monkeypatch):
+def test_splines_that_are_too_complex_are_left_out(monkeypatch):
     monkeypatch.setattr(splines, "_MAX_PIECES", 5000)
 
     def draw(msp):
@@ -243,7 +243,7 @@ def test_splines_of_great_cost_are_left_out(monkeypatch):
     assert agrees(design.notices[0], "geometry-damaged 4000") and agrees(design.notices[1], "geometry-damaged 5000")
 
 
-def test_things_of_no_size():
+def test_entities_without_size_are_left_out():
     placed = "0 CIRCLE 8 0 10 0 20 0 40 0"
     assert agrees(refusal(text_dxf(placed)), "nothing-to-paint CIRCLE-1")
     for draw in (lambda m: m.add_line((3, 4), (3, 4)), lambda m: m.add_lwpolyline([(3, 4)], close=True)):
@@ -274,13 +274,13 @@ def chain(count, *others):
 
 
 @pytest.mark.parametrize("others", [(), ("B",)])
-def test_chains_that_double_are_refused(others, monkeypatch):
+def test_chains_of_blocks_that_double_are_refused(others, monkeypatch):
     monkeypatch.setattr(entity_walk, "_MAX_ENTITIES", 2000)
     with refused("drawing-too-large 2000 entities"):
         read(chain(41, *others))
 
 
-def test_blocks_in_themselves_are_refused():
+def test_blocks_that_contain_themselves_are_refused():
     document = drawing()
     for name, other in (("A", "B"), ("B", "a")):
         document.blocks.new(name).add_line((0, 0), (1, 1))
@@ -319,7 +319,7 @@ def test_heavy_blocks_are_refused():
 
 
 @pytest.mark.parametrize("value", ["x", "1.#QNAN", "1,5", "--3"])
-def test_an_entity_with_a_bad_number_is_left_out_alone(value):
+def test_only_an_entity_with_a_bad_number_is_left_out(value):
     bad = LINE.replace("11 5", f"11 {value}")
     design = read_dxf(text_dxf(LINE, bad, "0 CIRCLE 8 0 10 0 20 0 40 5"), OPTIONS)
     assert [element.id[:6] for element in design.elements] == ["LINE-1", "CIRCLE"]
@@ -328,14 +328,14 @@ def test_an_entity_with_a_bad_number_is_left_out_alone(value):
     assert agrees(notice, f"dxf-repaired '{value}' 11")
 
 
-def test_a_polyline_with_a_bad_number_in_one_vertex_is_left_out_whole():
+def test_a_polyline_with_one_bad_vertex_is_left_out():
     vertices = "0 VERTEX 8 0 10 0 20 0 0 VERTEX 8 0 10 9 20 y 0 VERTEX 8 0 10 9 20 9 0 SEQEND"
     design = read_dxf(text_dxf(f"0 POLYLINE 8 0 5 2F 66 1 {vertices}", LINE), OPTIONS)
     assert [element.id[:4] for element in design.elements] == ["LINE"]
     assert [notice.where for notice in design.notices] == ["POLYLINE-2F"]
 
 
-def test_an_entity_that_lacks_what_it_needs_is_left_out_alone():
+def test_only_an_entity_with_missing_data_is_left_out():
     design = read_dxf(text_dxf(LINE, "0 HATCH 8 0 10 0 20 0"), OPTIONS)
     assert len(design.elements) == 1
     assert [(notice.where, notice.damaged) for notice in design.notices] == [("HATCH-2", True)]
@@ -344,7 +344,7 @@ def test_an_entity_that_lacks_what_it_needs_is_left_out_alone():
 @pytest.mark.parametrize("header", HEADERS)
 @pytest.mark.parametrize("markers", ["", "100 AcDbEntity"])
 @pytest.mark.parametrize("kind", ["IMAGE", "3DSOLID", "MESH", "WIPEOUT", "ACAD_TABLE", "LAYER", "WHATEVER"])
-def test_what_is_not_read_is_counted_for_any_author(header, markers, kind):
+def test_unsupported_entities_are_counted_for_any_author(header, markers, kind):
     entity = f"0 {kind} {markers} 8 0 10 0 20 0 30 0 40 3"
     design = read_dxf(text_dxf(LINE, entity, entity, header=HEADERS[header]), OPTIONS)
     assert len(design.elements) == 1
@@ -353,7 +353,7 @@ def test_what_is_not_read_is_counted_for_any_author(header, markers, kind):
     assert agrees(notice, f"dxf-entity-unread {kind} 2") and ("covers" in notice.sentence) == (kind == "WIPEOUT")
 
 
-def test_a_helix_without_markers_is_not_read_and_one_with_them_is():
+def test_a_helix_is_read_only_with_markers():
     knots = "40 0 40 0 40 0 40 0 40 1 40 1 40 1 40 1 10 0 20 0 30 0 10 10 20 0 30 0 10 10 20 10 30 0 10 20 20 10 30 0"
     spline, axis = (
         f"70 8 71 3 72 8 73 4 {knots}",
@@ -367,7 +367,7 @@ def test_a_helix_without_markers_is_not_read_and_one_with_them_is():
     assert agrees(notice, "dxf-entity-unread HELIX 1")
 
 
-def test_drawings_in_map_coordinates_are_moved_to_the_sheet_and_what_is_astray_is_left_out():
+def test_map_coordinates_are_moved_to_the_sheet_and_distant_lines_left_out():
     def line(x, y):
         return f"0 LINE 8 0 10 {x} 20 {y} 11 {x + 5} 21 {y + 50}"
 
@@ -399,7 +399,7 @@ LOOK = "0 LINE 8 0 10 0 20 {y} 11 50 21 {y} "
         ("210 0 220 0 230 0", "extrusion vector"),
     ],
 )
-def test_what_was_repaired_is_reported_where_it_is_painted(more, words):
+def test_a_repair_is_reported_at_the_painted_element(more, words):
     """A repair is reported at the element that is painted.
 
     The audit removes entries that it cannot understand. The line then has another width, or is solid instead
@@ -412,6 +412,6 @@ def test_what_was_repaired_is_reported_where_it_is_painted(more, words):
     assert reported[0].where.startswith("LINE(#") and gives(reported[0].where, "4")
 
 
-def test_repairs_that_nobody_sees_are_not_reported():
+def test_invisible_repairs_are_not_reported():
     lines = [LOOK.format(y=y) + "330 FFFF" for y in range(3)]
     assert read_dxf(text_dxf(*lines), OPTIONS).notices == ()

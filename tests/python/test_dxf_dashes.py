@@ -84,7 +84,7 @@ def test_line_types_come_from_layers_and_blocks():
     assert counts == [3, 7, 1, 3, 1, 7, 1, 3]
 
 
-def test_a_line_drawn_in_parts_is_dashed_as_one():
+def test_a_line_in_parts_is_dashed_as_one_line():
     def draw(msp):
         msp.add_line((0, 0), (8, 0), {"linetype": "DASHED"})
         msp.add_line((8, 0), (32, 0), {"linetype": "DASHED"})
@@ -95,7 +95,7 @@ def test_a_line_drawn_in_parts_is_dashed_as_one():
     assert spans(last) == [(32, 40)]  # shorter than its pattern, so it is not dashed
 
 
-def test_dashes_along_a_curve():
+def test_dashes_follow_a_curve():
     (element,) = read(typed(lambda m: m.add_circle((0, 0), 20, {"linetype": "DASHED"}))).elements
     true = circle((0, 0), 20)
     assert len(element.subpaths) == 8  # the ninth, 5.7 mm long, is joined to the first
@@ -108,7 +108,7 @@ def test_dashes_along_a_curve():
 
 
 @pytest.mark.parametrize("name", ["GAS", "ENDLESS", "ONLY GAPS"])
-def test_what_is_no_plain_pattern_counts_as_unbroken(name):
+def test_unsupported_line_types_are_drawn_unbroken(name):
     def draw(msp):
         for y in (0, 9):
             msp.add_line((0, y), (32, y), {"linetype": name})
@@ -120,7 +120,7 @@ def test_what_is_no_plain_pattern_counts_as_unbroken(name):
 
 
 @pytest.mark.parametrize(("drawing_scale", "scale"), [(-1.0, 1.0), (0.0, 1.0), (1.0, float("nan")), (1e308, 1e308)])
-def test_scales_that_are_none(drawing_scale, scale):
+def test_invalid_line_type_scales_are_ignored(drawing_scale, scale):
     document = typed(lambda m: m.add_line((0, 0), (32, 0), {"linetype": "DASHED", "ltscale": 0.5}))
     document.header["$LTSCALE"] = drawing_scale
     data = encoded(document).replace(b"\n 48\n0.5\n", f"\n 48\n{scale}\n".encode())
@@ -130,7 +130,7 @@ def test_scales_that_are_none(drawing_scale, scale):
     assert agrees(notice, "dashes-unread", "DASHED") and notice.layer is None
 
 
-def test_unbroken_and_filled_shapes_are_as_they_were():
+def test_unbroken_and_filled_shapes_have_no_dashes():
     assert len(only(typed(lambda m: m.add_line((0, 0), (99, 0), {"linetype": "PLAIN"}))).subpaths) == 1
     for name in ("DASHED", "GAS"):
         assert len(only(typed(lambda m, name=name: m.add_point((0, 0), {"linetype": name}))).subpaths) == 1
@@ -138,7 +138,7 @@ def test_unbroken_and_filled_shapes_are_as_they_were():
     assert len(only(typed(lambda m: m.add_solid(solid, {"linetype": "DASHED"}))).subpaths) == 1
 
 
-def test_lines_of_changing_width_stay_whole():
+def test_lines_of_changing_width_are_not_dashed():
     rows = [(0, 0, 1, 3), (99, 0, 0, 0)]
     design = read(typed(lambda m: m.add_lwpolyline(rows, format="xyse", dxfattribs={"linetype": "DASHED"})))
     assert len(design.elements[0].subpaths) == 1
@@ -157,7 +157,7 @@ def test_too_many_dashes_are_refused(monkeypatch):
     assert caught.value.where.startswith("LINE-")
 
 
-def test_clipped_blocks_are_named():
+def test_clipped_blocks_are_reported():
     document = drawing()
     document.blocks.new("b").add_line((0, 0), (99, 0))
     for clipped in (True, False):
@@ -191,7 +191,7 @@ TURNING = [
 
 
 @pytest.mark.parametrize("kind", ["add_lwpolyline", "add_polyline2d"])
-def test_dashes_begin_anew_at_corners_unless_the_polyline_says_otherwise(kind):
+def test_dashes_restart_at_corners_unless_the_polyline_is_continuous(kind):
     def draw(flags, close=False):
         look = {"linetype": "DASHED", "flags": flags}
         return lambda m: getattr(m, kind)(SIDES, close=close, dxfattribs=look)
@@ -206,7 +206,7 @@ def test_dashes_begin_anew_at_corners_unless_the_polyline_says_otherwise(kind):
     assert corners(ring)[0][-2:] == [(0, 0), (10, 0)] and len(corners(ring)) == 7
 
 
-def test_sides_that_are_shorter_than_the_pattern_are_unbroken():
+def test_sides_shorter_than_the_pattern_are_unbroken():
     def draw(points, closed=False):
         return lambda m: m.add_lwpolyline(points, close=closed, dxfattribs={"linetype": "DASHED"})
 

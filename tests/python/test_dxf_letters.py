@@ -77,7 +77,7 @@ def test_text_is_a_filled_shape_in_its_font(fonts):
     ],
 )
 @pytest.mark.parametrize("turned", [0, 90])
-def test_text_is_aligned_turned_and_stretched(fonts, align, box, turned):
+def test_text_is_aligned_rotated_and_stretched(fonts, align, box, turned):
     document = in_boxes()
     text = document.modelspace().add_text("AA", height=7, rotation=turned, dxfattribs={"style": "Boxes", "width": 2})
     text.set_placement((50, 60), align=ALIGN[align])
@@ -97,7 +97,7 @@ def test_text_fits_between_two_points(fonts):
     assert boxes(element) == [(0, 0, 12, 7), (14, 0, 26, 7)]  # the distance to a next letter is 2
 
 
-def test_text_in_blocks_and_from_below(fonts):
+def test_text_is_read_in_blocks_and_mirrored(fonts):
     document = in_boxes()
     document.blocks.new("b").add_text("A", height=7, dxfattribs={"style": "Boxes", "insert": (1, 0)})
     document.modelspace().add_blockref("b", (100, 0), {"xscale": -2, "yscale": 3})
@@ -109,7 +109,7 @@ def test_text_in_blocks_and_from_below(fonts):
     assert are_reported(design.notices, "text-outlined A 1 Boxes")
 
 
-def test_attributes_are_text_at_their_own_place(fonts):
+def test_attributes_are_text_at_their_own_position(fonts):
     document = in_boxes()
     document.blocks.new("b").add_circle((0, 0), 1)
     insert = document.modelspace().add_blockref("b", (50, 50), {"color": 3, "xscale": 5})
@@ -135,7 +135,7 @@ def test_constant_attributes_are_text_and_definitions_elsewhere_are_named(fonts)
     assert is_reported(design.notices, "attribute-definition 1")
 
 
-def test_codes_of_text(fonts):
+def test_text_control_codes_are_replaced(fonts):
     document = in_boxes()
     for words in ("%%065", "%%uA"):
         document.modelspace().add_text(words, height=7, dxfattribs={"style": "Boxes"})
@@ -145,13 +145,13 @@ def test_codes_of_text(fonts):
 
 
 @pytest.mark.parametrize("kind", ["TEXT", "MTEXT"])
-def test_text_that_does_not_say_its_height_is_damaged(fonts, kind):
+def test_text_without_a_height_is_damaged(fonts, kind):
     line = "0 LINE 8 0 10 0 20 0 11 5 21 5"
     design = read_dxf(text_dxf(line, f"0 {kind} 8 0 10 0 20 0 1 A"), ReadOptions(sheet_mm=(99, 99), units="mm"))
     assert are_reported(design.notices, "geometry-damaged height") and design.notices[0].damaged
 
 
-def test_letters_of_several_heights_in_one_word_stand_on_one_line(fonts):
+def test_letters_of_several_heights_share_one_baseline(fonts):
     document = in_boxes()
     document.modelspace().add_mtext(r"A{\H2x;A}", {"style": "Boxes", "char_height": 7, "insert": (0, 50)})
     small, large = read(document).elements
@@ -168,14 +168,14 @@ def test_letters_of_several_heights_in_one_word_stand_on_one_line(fonts):
         (r"A {\H0;A}", {}, "geometry-damaged height 0.0"),
     ],
 )
-def test_a_part_of_mtext_that_is_not_read_is_named(fonts, words, attributes, said):
+def test_an_unsupported_part_of_mtext_is_named(fonts, words, attributes, said):
     document = in_boxes()
     document.modelspace().add_line((0, 0), (5, 5))
     document.modelspace().add_mtext(words, {"style": "Boxes", "char_height": 7} | attributes)
     assert is_reported(read(document).notices, said)
 
 
-def test_an_attribute_may_have_lines(fonts):
+def test_an_attribute_may_have_several_lines(fonts):
     document = in_boxes(version="R2018")
     document.blocks.new("b").add_circle((0, 0), 1)
     attribute = document.modelspace().add_blockref("b", (0, 0)).add_attrib("TAG", "", (0, 0))
@@ -199,7 +199,7 @@ def test_dimensions_show_their_text(fonts):
     assert len(shape.subpaths) == 1
 
 
-def test_mtext_is_words_and_lines(fonts):
+def test_mtext_is_split_into_words_and_lines(fonts):
     document = in_boxes()
     text = document.modelspace().add_mtext(
         r"A \H14;A\H7; {\C1;x}\P{\fBoxes|b1|i0;A}\L x\l",
@@ -219,7 +219,7 @@ def test_mtext_is_words_and_lines(fonts):
     assert line.id.startswith(f"MTEXT-{text.dxf.handle}/LINE-")
 
 
-def test_mtext_breaks_its_lines_only_where_it_has_a_width(fonts):
+def test_mtext_breaks_lines_only_if_it_has_a_width(fonts):
     for width, lines in ((0, 1), (200, 1), (64, 2), (62, 3)):
         document = in_boxes()
         document.modelspace().add_mtext(
@@ -229,7 +229,7 @@ def test_mtext_breaks_its_lines_only_where_it_has_a_width(fonts):
         assert len(tops) == lines
 
 
-def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
+def test_mtext_without_width_is_read_if_its_style_names_a_font_family(fonts):
     """MTEXT without a width is read if its style names a font family.
 
     Programs have written such styles since 2007. The text once counted as damaged, because ezdxf has no fonts
@@ -248,7 +248,7 @@ def test_mtext_without_a_width_in_a_style_that_names_a_family(fonts):
     "long",
     ["AAAA AAAA", r"\H14;AA AA", r"\fBoxes|b1|i0;AA A A", r"A\S1/2; A A", r"{\W2;A A}A"],
 )
-def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
+def test_a_short_line_is_centred_below_the_longest(long, fonts):
     """A short line stands below the middle of the longest line.
 
     In a text without a width, the longest line is as wide as the text. With a margin, shorter lines are
@@ -278,7 +278,7 @@ def test_a_short_line_stands_below_the_middle_of_the_longest(long, fonts):
         ("gone.ttf", "Gone", "Plain Sans", "Gone"),
     ],
 )
-def test_fonts_are_found_with_their_names_or_replaced(fonts, font, family, name, why):
+def test_fonts_are_found_by_name_or_replaced(fonts, font, family, name, why):
     document = drawing()
     style = document.styles.add("Some", font=font)
     if family:
@@ -288,7 +288,7 @@ def test_fonts_are_found_with_their_names_or_replaced(fonts, font, family, name,
     assert agrees(notice, f"text-outlined A '{name}' {why}") and (": " in notice.sentence) == bool(why)
 
 
-def test_a_style_that_is_not_in_the_drawing(fonts):
+def test_a_missing_style_is_reported_and_replaced(fonts):
     document = drawing(lambda m: m.add_text("A", dxfattribs={"style": "Nowhere"}))
     reported = read(document).notices
     assert are_reported(reported, "dxf-repaired Nowhere", f"text-outlined A 'Plain Sans' {LIKE_SHX}")
@@ -302,7 +302,7 @@ def test_letters_without_a_glyph_are_left_out_and_named(fonts):
     assert agrees(design.notices[1], "glyph-missing Boxes Ä 漢")
 
 
-def test_without_any_font_text_is_left_out(folder):
+def test_text_is_left_out_if_there_is_no_font(folder):
     def draw(msp):
         msp.add_text("A")
         msp.add_mtext("A")
@@ -313,7 +313,7 @@ def test_without_any_font_text_is_left_out(folder):
     assert are_reported(design.notices, "text-unread TEXT explode 1", "text-unread MTEXT explode 1")
 
 
-def test_empty_text_is_named(fonts):
+def test_empty_text_is_reported(fonts):
     design = read(drawing(lambda m: [m.add_text("  "), m.add_circle((0, 0), 5)]))
     assert are_reported(design.notices, "geometry-empty")
     assert only(drawing(lambda m: [m.add_mtext(""), m.add_circle((0, 0), 5)])).id.startswith("CIRCLE")
@@ -323,7 +323,7 @@ def test_empty_text_is_named(fonts):
 
 
 @pytest.mark.parametrize("kind", ["add_text", "add_mtext"])
-def test_long_text_is_refused_however_it_is_repeated(fonts, kind, monkeypatch):
+def test_long_text_is_refused_even_if_repeated_by_insertions(fonts, kind, monkeypatch):
     monkeypatch.setattr(text_entities, "_MAX_LETTERS", 2000)
     document = in_boxes()
     getattr(document.blocks.new("b"), kind)("A" * 100, dxfattribs={"style": "Boxes"})
@@ -344,7 +344,7 @@ def test_long_text_is_refused_however_it_is_repeated(fonts, kind, monkeypatch):
         {"text_direction": (0, 0, 0)},
     ],
 )
-def test_mtext_with_strange_numbers_ends(fonts, attributes):
+def test_mtext_with_extreme_numbers_is_read_in_bounded_time(fonts, attributes):
     def draw(msp):
         msp.add_mtext(r"A\pxt1e9,5;A" + "{" * 500 + r"\H1e99x;A\S1/2;", attributes)
         msp.add_circle((0, 0), 5)
@@ -355,7 +355,7 @@ def test_mtext_with_strange_numbers_ends(fonts, attributes):
 
 
 @pytest.mark.parametrize("height", ["0", "-1", "nan", "1e300"])
-def test_text_of_no_height_is_damaged(fonts, height):
+def test_text_of_zero_height_is_damaged(fonts, height):
     data = text_dxf(f"0 TEXT 8 0 10 0 20 0 40 {height} 1 A", "0 CIRCLE 8 0 10 0 20 0 40 5")
     design = read_dxf(data, ReadOptions(units="mm"))
     assert [element.id[:6] for element in design.elements] == ["CIRCLE"]
@@ -363,7 +363,7 @@ def test_text_of_no_height_is_damaged(fonts, height):
 
 
 @pytest.mark.slow
-def test_text_leaves_nothing_at_home(tmp_path):
+def test_reading_text_writes_no_files_to_the_home_folder(tmp_path):
     """Reading text leaves no files in the home folder, with any installed fonts."""
     (tmp_path / "a.dxf").write_bytes(encoded(drawing(lambda m: [m.add_text("Aé"), m.add_circle((0, 0), 5)])))
     script = "import brushsvg.read as i; print(i.read_drawing('a.dxf'))"
@@ -377,7 +377,7 @@ def test_text_leaves_nothing_at_home(tmp_path):
 
 
 @pytest.mark.parametrize("stack", ["A^x", "AA^A"])
-def test_a_stack_with_a_caret_is_one_with_or_without_a_blank(fonts, stack):
+def test_a_stack_with_a_caret_may_have_a_blank(fonts, stack):
     def letters(text):
         document = in_boxes()
         attributes = {"char_height": 7, "style": "Boxes", "insert": (10, 90)}

@@ -55,7 +55,7 @@ def wave(count=200):
     return np.column_stack([10 + 70 * t, 30 + 15 * np.sin(9 * t), depth])
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     assert text_for(CELL) == GOLDEN.read_text(encoding="ascii")
 
 
@@ -63,7 +63,7 @@ def test_golden():
     "motors", [CELL.motors, Motors(((80.0, 0.0), (0.0, -100.0)), 5), Motors(((80.0, 30.0), (-20.0, 60.0)))]
 )
 @pytest.mark.parametrize("turned_deg", [0.0, 25.0])
-def test_every_pose_is_passed_within_half_a_step_of_both_motors(motors, turned_deg):
+def test_every_pose_is_reached_within_half_a_motor_step(motors, turned_deg):
     cell = replace(CELL, motors=motors, paper=Paper((-8.0, 5.0, 0.0), (0.0, 0.0, turned_deg)))
     paths = [wave(), STROKES["n/1"], STROKES["dot"]]
     found = run(made(*paths, cell=cell), cell)
@@ -82,7 +82,7 @@ def test_every_pose_is_passed_within_half_a_step_of_both_motors(motors, turned_d
     assert away_steps > 0.4
 
 
-def test_the_time_is_that_of_the_commands():
+def test_the_program_time_is_the_sum_of_its_commands():
     dashes = [[(10 + 2 * k, 10, 0), (10 + 2 * k, 12, -2), (10 + 2 * k, 30, -2)] for k in range(40)]
     passes = [_core.Pass(f"s{k}", np.array(poses, float), 20.0) for k, poses in enumerate(dashes, 1)]
     ran = program(_core.Plan("b", "", SHEET, passes), BRUSH, CELL)
@@ -91,7 +91,7 @@ def test_the_time_is_that_of_the_commands():
     assert duration_s(ran) == pytest.approx(sum(waits_ms) / 1e3, rel=0.06)
 
 
-def test_a_page_does_not_drift():
+def test_rounding_does_not_accumulate_over_a_page():
     """A page does not drift.
 
     Steps are differences of rounded places. The errors of rounded differences would add up.
@@ -120,7 +120,7 @@ def test_speeds_change_by_the_cells_acceleration_in_slices():
         assert (changes <= 1.1 * most * between + slack + 1.5).all()
 
 
-def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(monkeypatch):
+def test_no_slice_is_too_short_and_path_and_heights_are_unchanged(monkeypatch):
     """No slice is too short for the board; path and heights stay unchanged.
 
     Without this rule, 7 of 10 slices of a wave are shorter than 16 ms.
@@ -151,7 +151,7 @@ def test_no_slice_is_too_short_for_the_board_and_way_and_heights_are_unchanged(m
     assert k == len(places)
 
 
-def test_no_speed_stops_a_motor_or_is_too_fast_for_one():
+def test_no_speed_is_too_low_or_too_high_for_a_motor():
     """No speed is too low or too high for a motor.
 
     The stub refuses less than 1.31 and more than 25,000 steps per second.
@@ -167,7 +167,7 @@ def test_no_speed_stops_a_motor_or_is_too_fast_for_one():
         parse_cell(write_cell(replace(CELL, speeds=replace(CELL.speeds, travel_mm_s=222.0))))
 
 
-def test_a_servo_stays_switched_on_and_is_set_before_the_motors_go():
+def test_the_servo_stays_on_and_is_set_before_the_motors_move():
     lines = [line for line in text_for(CELL).splitlines() if not line.startswith("#")]
     assert lines[:3] == ["SR,0,1", "EM,1,1", "S2,21200,4,0,0"]
     assert all(re.fullmatch(r"S2,\d+,4,0,\d+|SM,\d+,-?\d+,-?\d+", line) for line in lines[2:])
@@ -180,7 +180,7 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_what_is_written_is_allowed(desk, capsys):
+def test_check_accepts_written_programs(desk, capsys):
     assert call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")[0] == 0
     assert RUNNABLE in call(capsys, "check", "a.ebb", "a.svg")[1]
     for name, words in (
@@ -209,12 +209,12 @@ def test_what_is_written_is_allowed(desk, capsys):
         (r"\n# stroke 2", "\nSP,0\n# stroke 2", "line-unread"),
     ],
 )
-def test_check_refuses_what_was_damaged(desk, capsys, old, new, reported):
+def test_check_refuses_damaged_programs(desk, capsys, old, new, reported):
     call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")
     assert is_refused_when_damaged(capsys, Path("a.ebb"), old, new, reported)
 
 
-def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk, capsys, monkeypatch):
+def test_the_documented_sender_sends_only_commands_and_stops_at_an_error(desk, capsys, monkeypatch):
     call(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "axidraw-ebb")
     (sender,) = (block.code for block in blocks(DOCS / "machines" / "ebb.md") if block.kind == "python")
     sent = []
@@ -246,7 +246,7 @@ def test_the_sender_of_the_docs_sends_commands_alone_and_stops_at_an_error(desk,
     assert sent == target[:5]
 
 
-def test_who_begins_beyond_the_workspace_is_reported(desk, capsys):
+def test_a_start_outside_the_workspace_is_reported(desk, capsys):
     far = replace(CELL, name="far", paper=Paper((100.0, 0.0, 0.0)))
     Path("far.toml").write_text(write_cell(far))
     status, _, said = in_json(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "far.toml")
@@ -265,6 +265,6 @@ def test_who_begins_beyond_the_workspace_is_reported(desk, capsys):
         ({"paper": Paper((0.0, 0.0, 3.0))}, "paper-tilted"),
     ],
 )
-def test_a_cell_that_a_board_cannot_be_is_refused(change, reported):
+def test_a_cell_that_the_board_cannot_run_is_refused(change, reported):
     with refused(reported):
         parse_cell(write_cell(replace(CELL, **change)))

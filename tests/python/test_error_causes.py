@@ -62,7 +62,7 @@ def found(target, how="closed", name="round-6", tolerance_mm=0.05):
         (stroke([(20, 40), (50, 40)], (0.6, 4.0)), "stroke-end", "", None),
     ],
 )
-def test_the_reason_is_reported(target, code, says, near):
+def test_the_cause_of_an_error_is_reported(target, code, says, near):
     worst = found(target)
     assert worst.code == code and says in worst.reason
     if near:
@@ -70,7 +70,7 @@ def test_the_reason_is_reported(target, code, says, near):
 
 
 @pytest.mark.parametrize(("half", "is_missing"), [(2.0, True), (0.2, False)], ids=["wider", "thinner"])
-def test_a_brush_of_one_width_is_reported(half, is_missing):
+def test_a_brush_of_one_width_is_reported_as_the_cause(half, is_missing):
     """A brush of one width is reported as the cause.
 
     The middle of a line 4 mm wide was once reported as 0.04 mm off, where the pen paints 1 mm.
@@ -82,13 +82,13 @@ def test_a_brush_of_one_width_is_reported(half, is_missing):
     assert f"{2 * half:g} mm" in worst.reason and "1 mm" in worst.reason
 
 
-def test_a_round_nib_is_not_pointed_behind():
+def test_a_round_nib_is_not_reported_as_pointed():
     square = stroke([(30, 40), (60, 40)], 0.5, target=box(28.8, 39.5, 60.4, 40.5))
     worst = found(square, name="rigid")
     assert worst.code == "stroke-start"
 
 
-def test_a_coarse_tolerance_is_the_reason():
+def test_a_coarse_tolerance_is_reported_as_the_cause():
     """A coarse tolerance is reported as the cause.
 
     With 5 mm, the footprint on bends was once reported, although the middle was off by more.
@@ -99,12 +99,12 @@ def test_a_coarse_tolerance_is_the_reason():
     assert fine.code != "coarse-tolerance"
 
 
-def test_without_compensation_the_lag_is_the_reason():
+def test_an_uncompensated_lag_is_reported_as_the_cause():
     target = stroke([(20, 40), (60, 40), (60, 80)], 1.5)
     assert found(target, "none").code == "lag-not-compensated"
 
 
-def test_a_closed_line_has_a_corner_at_its_seam_too():
+def test_a_closed_line_has_a_corner_at_its_seam():
     """A closed line also has a corner at its seam.
 
     The worst place of a square was its beginning, and bends were once blamed.

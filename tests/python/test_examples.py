@@ -63,7 +63,7 @@ def test_there_are_twelve_topics():
 
 
 @pytest.mark.parametrize("path", [*PYTHON, *CPP], ids=lambda path: path.name)
-def test_an_example_is_short_and_says_what_it_does(path):
+def test_an_example_is_short_and_has_a_description(path):
     assert code_lines(path) <= MAX_LINES
     assert re.match(r'"""|// ', path.read_text(encoding="utf-8"))
 

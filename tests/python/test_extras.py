@@ -44,7 +44,7 @@ def lacks(packages) -> bool:
 
 
 @pytest.mark.parametrize("packages", TYPED)
-def test_a_missing_extra_costs_one_sentence_with_the_command(desk, capsys, packages):
+def test_a_missing_extra_is_refused_with_the_install_command(desk, capsys, packages):
     if not lacks(packages):
         pytest.skip("it is installed")
     status, _, reported = in_json(capsys, *TYPED[packages][0].split())

@@ -47,7 +47,7 @@ def check(job, capsys) -> str:
     return out if status == 0 else " ".join(reported)
 
 
-def test_a_long_job_is_a_program_that_calls_others(job, capsys):
+def test_a_long_job_is_a_main_program_that_calls_its_parts(job, capsys):
     parts = sorted(path for path in job.glob("*.ls") if path.name != "waves.ls")
     assert len(parts) == 3
     names = [path.stem for path in parts]
@@ -72,7 +72,7 @@ def test_jobs_of_one_title_and_length_have_parts_of_other_names():
         assert names[0] == names[1] and len(names[0]) > 2 and names[0] & names[2] == {""}
 
 
-def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
+def test_a_missing_or_foreign_part_is_refused(job, capsys):
     names = sorted(path.stem for path in job.glob("B*.ls") if path.name != "waves.ls")
     whole = (job / "waves.ls").read_bytes()
     first, second = (f" : CALL {name} ;\r\n".encode() for name in names[:2])
@@ -124,7 +124,7 @@ def test_a_file_that_begins_with_another_program_is_refused(small):
     assert status == 1 and is_reported(said, "line-unread"), said
 
 
-def test_a_speed_in_another_unit_is_read_as_that(small):
+def test_a_speed_in_another_unit_is_read_in_that_unit(small):
     """A speed in another unit is read in this unit.
 
     20 cm/min are 3.3 mm/s, which is slower than requested and allowed. 200 cm/min are 33 mm/s.
@@ -145,7 +145,7 @@ def test_a_stroke_of_too_many_poses_is_refused(tmp_path, capsys):
     assert not (tmp_path / "a.ls").exists()
 
 
-def test_remarks_are_as_long_as_the_pendant_shows_them_and_read_as_they_were():
+def test_remarks_fit_the_pendant_and_are_read_back():
     title = "one; two  " + "a long name of a drawing" * 3
     header = (f"title: {title}", "brush: b, 3 strokes", "cell: lrmate200id, x")
     text = text_for(on("lrmate200id", SQUARE), header=header).replace("\r\n", "\n")
@@ -158,12 +158,12 @@ def test_remarks_are_as_long_as_the_pendant_shows_them_and_read_as_they_were():
     assert f"({said})" in [act.text for act in acts]
 
 
-def test_programs_are_distinguished_with_their_names():
+def test_a_single_program_has_an_empty_part_name():
     text = text_for(find_cell("lrmate200id"))
     assert list(programs(text)) == [""] and programs(text)[""] == text
 
 
-def test_corners_are_cut_by_the_time_to_speed():
+def test_the_cut_of_a_corner_depends_on_the_time_to_full_speed():
     """The cut of a corner depends on the time to full speed.
 
     A ramp that is twice as long halves the percentages.
@@ -175,7 +175,7 @@ def test_corners_are_cut_by_the_time_to_speed():
     assert percents[0] and all(abs(a - 2 * b) <= 1 for a, b in zip(*percents, strict=True))
 
 
-def test_what_no_pendant_shows_is_refused():
+def test_values_that_no_pendant_shows_are_refused():
     cell = find_cell("lrmate200id")
     with refused("out-of-range 'N U'"):
         parse_cell(write_cell(replace(cell, tool=replace(cell.tool, configuration="N U"))))

@@ -65,7 +65,7 @@ def test_the_examples_that_are_built_with_faults_exist():
         assert (EXAMPLES / f"{name}.cpp").is_file()
 
 
-def test_planted_code_does_the_same_until_a_fault_is_on():
+def test_planted_code_is_equivalent_until_a_fault_is_switched_on():
     for each in candidates():
         source = fault.planted(SOURCE, [each])
         assert result(source, 0) == result(SOURCE, 0), each.change
@@ -73,7 +73,7 @@ def test_planted_code_does_the_same_until_a_fault_is_on():
 
 
 @pytest.mark.parametrize("each", candidates(), ids=lambda each: each.change)
-def test_a_fault_that_is_on_is_the_change_it_names(each):
+def test_an_active_fault_makes_its_stated_change(each):
     before, code = SOURCE.splitlines(), each.code.encode()
     assert code in before[each.line - 1]
     assert each.code[each.column - 1 :].startswith(each.original) or "+=" in each.original
@@ -84,7 +84,7 @@ def test_a_fault_that_is_on_is_the_change_it_names(each):
     assert result(fault.planted(SOURCE, [each]), each.number) == result(changed, 0)
 
 
-def test_faults_are_of_all_kinds_and_not_in_what_runs_on_import():
+def test_faults_are_of_all_kinds_and_not_in_import_time_code():
     found = candidates()
     assert {each.kind for each in found} == {
         "arithmetic", "boolean", "call removed", "comparison", "condition", "constant", "number", "return value",
@@ -93,7 +93,7 @@ def test_faults_are_of_all_kinds_and_not_in_what_runs_on_import():
     assert [each.change for each in found if each.kind == "constant"] == ["LIMIT = 3 -> LIMIT = 4"]
 
 
-def test_the_choice_is_seeded_spread_and_without_overlaps():
+def test_the_selection_is_seeded_spread_and_without_overlaps():
     many = []
     for folder, size in (("a", 1), ("b", 3)):
         for number in range(size * 20):

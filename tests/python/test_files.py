@@ -14,7 +14,7 @@ from brushsvg.errors import Error
 from brushsvg.files import read_bytes, write_files
 
 
-def test_text_and_bytes(tmp_path):
+def test_text_and_bytes_are_written(tmp_path):
     write_files({tmp_path / "a.txt": "\u00e9\n"})
     assert (tmp_path / "a.txt").read_bytes() == b"\xc3\xa9\n"
     write_files({str(tmp_path / "a.txt"): b"\x00\r\n"})
@@ -22,7 +22,7 @@ def test_text_and_bytes(tmp_path):
     assert os.listdir(tmp_path) == ["a.txt"]
 
 
-def test_permissions_are_the_usual_ones_or_kept(tmp_path):
+def test_permissions_are_default_or_kept(tmp_path):
     (tmp_path / "usual").write_text("")
     write_files({tmp_path / "new": ""})
     assert (tmp_path / "new").stat().st_mode == (tmp_path / "usual").stat().st_mode
@@ -78,7 +78,7 @@ PLACES = {
 
 @pytest.mark.parametrize("case", PLACES)
 @pytest.mark.parametrize("order", [1, -1])
-def test_one_place_that_cannot_be_written_leaves_all_as_they_were(tmp_path, case, order):
+def test_one_unwritable_path_leaves_all_files_unchanged(tmp_path, case, order):
     if case == "a full device" and not os.path.exists("/dev/full"):
         pytest.skip("needs /dev/full")
     (tmp_path / "kept").write_text("old")
@@ -94,7 +94,7 @@ def test_one_place_that_cannot_be_written_leaves_all_as_they_were(tmp_path, case
     assert set(os.listdir(tmp_path)) == {"kept", "folder", "full"}
 
 
-def test_a_file_that_may_not_be_written_is_left_alone(tmp_path, monkeypatch):
+def test_a_read_only_file_is_left_unchanged(tmp_path, monkeypatch):
     path = tmp_path / "locked"
     path.write_text("old")
     path.chmod(0o444)
@@ -146,7 +146,7 @@ def writer(folder):
     return started
 
 
-def test_what_a_killed_run_left_is_cleared_by_the_next_that_writes_the_file(tmp_path):
+def test_the_next_run_removes_temporary_files_of_a_killed_run(tmp_path):
     killed = writer(tmp_path)
     killed.send_signal(signal.SIGKILL)
     killed.communicate()
@@ -165,7 +165,7 @@ def test_what_a_killed_run_left_is_cleared_by_the_next_that_writes_the_file(tmp_
     assert sorted(os.listdir(tmp_path)) == sorted(["word", "word.ngc", *foreign])
 
 
-def test_the_file_of_a_living_process_is_left_alone(tmp_path):
+def test_the_temporary_file_of_a_running_process_is_kept(tmp_path):
     alive = writer(tmp_path)
     write_files({tmp_path / "word.ngc": "mine"})
     assert len(os.listdir(tmp_path)) == 2
@@ -182,7 +182,7 @@ def test_a_name_as_long_as_the_system_allows_can_be_written(tmp_path, letter):
     assert os.listdir(tmp_path) == [path.name]
 
 
-def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):
+def test_an_unreadable_file_is_refused_in_a_sentence(tmp_path, monkeypatch):
     (tmp_path / "sound").write_bytes(b"1")
     assert read_bytes(str(tmp_path / "sound")) == b"1"
     for path, why in [
@@ -198,7 +198,7 @@ def test_reading_is_refused_in_a_sentence(tmp_path, monkeypatch):
         assert f"in {path}" in "".join(traceback.format_exception(refusal.value)), "shown in a traceback"
 
 
-def test_a_number_is_no_path_and_closes_nothing(tmp_path):
+def test_a_number_is_not_accepted_as_a_path(tmp_path):
     with open(tmp_path / "open", "w") as file:
         for wrong in (file.fileno(), True, None, 3.5):
             with pytest.raises(TypeError):

@@ -68,7 +68,7 @@ def share_left(shape, made) -> float:
 
 @pytest.mark.slow
 @sample("d", SHAPES.values(), ids=SHAPES, keep=5)
-def test_passes_fill_a_shape_and_stay_in_it(brush, d):
+def test_passes_fill_a_shape_and_stay_inside_it(brush, d):
     made = of(d)
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
     passes, target, _ = within_reach(made, brush, "passes")
@@ -102,7 +102,7 @@ def test_holes_belong_to_no_stroke_of_a_shape_too_large_to_be_cut(monkeypatch):
 
 
 @pytest.mark.parametrize("times", [1.1, 1.5, 2.0, 2.3])
-def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_what_is_left_round_it(brush, times):
+def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_a_ring(brush, times):
     """A disc hardly wider than the brush becomes a dot and a ring around it.
 
     A ring of the full width would turn too sharply in the disc: only 0.72 to 0.95 of it was painted.
@@ -117,7 +117,7 @@ def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_what_is_left_round_it(b
     assert shapely.hausdorff_distance(paint.boundary, disc.boundary) < 0.2
 
 
-def test_the_target_of_the_first_pass_is_its_own_mark_and_not_the_whole_shape(brush):
+def test_the_target_of_the_first_pass_is_its_own_mark(brush):
     passes, target, _ = within_reach(of(SQUARE), brush, "passes")
     own = intended_by(passes[:1]).area
     assert _core.area(target[0].wanted_mm) == pytest.approx(own, rel=0.03)
@@ -128,7 +128,7 @@ def ways_of(shape, narrow=()):
     return find_contour_passes(shape, 0.0, HALF_MM)
 
 
-def test_rings_come_from_the_outline_inwards_cut_at_sharp_corners_alone():
+def test_rings_go_from_the_outline_inwards_and_are_cut_only_at_sharp_corners():
     rings = find_contour_passes(shapely.box(5, 5, 50, 50), 0.0, HALF_MM)[0]
     assert all(each.closed for each in rings)
     sizes = [np.ptp(way_of(each)[:, 0]) for each in rings]
@@ -146,7 +146,7 @@ def way_of(line):
     return _core.flatten(_core.Stroke("p", line.middle_mm, half_width=line.half_width), 0.02)
 
 
-def test_a_ring_begins_amid_an_edge_as_its_tip_would_stick_out_of_a_corner(brush):
+def test_a_ring_starts_in_the_middle_of_an_edge(brush):
     turns = np.radians(40 * np.arange(9))  # The corners are too blunt for square ends.
     corners = np.column_stack([30 + 25 * np.cos(turns), 25 + 25 * np.sin(turns)])
     passes, _, _ = within_reach(of("M" + "L".join(f"{x:.4f} {y:.4f}" for x, y in corners) + "Z"), brush, "passes")
@@ -171,7 +171,7 @@ def paint_of(passes, brush):
 
 
 @pytest.mark.parametrize(("wide", "high"), [(14, 20), (16, 22), (20, 28)])
-def test_a_ring_without_corners_begins_where_it_bends_least(brush, wide, high):
+def test_a_ring_without_corners_starts_where_it_bends_least(brush, wide, high):
     """A ring without corners begins where it bends least.
 
     At the top of an oval, where it bends most, the mark once stuck out by 0.23 to 0.48 mm.
@@ -235,7 +235,7 @@ def like(stroke, line):
 
 @pytest.mark.slow
 @sample("d", [SHAPES["bar"], SQUARE, SHAPES["ell"], SHAPES["triangle"], PENTAGON, DIAMOND], keep=2)
-def test_marks_of_passes_have_the_shape_s_straight_edges_up_to_its_corners(brush, d):
+def test_marks_of_passes_follow_straight_edges_up_to_the_corners(brush, d):
     """Marks of passes follow the shape's straight edges up to its corners.
 
     shapely measures the simulated marks. They are within 0.2 mm of each edge from 2 mm on from a corner. Next
@@ -258,7 +258,7 @@ def test_a_short_fat_stroke_is_a_ring_without_a_tip(brush):
     assert [each.closed for each in passes][:1] == [True]
 
 
-def test_a_stroke_with_its_sides_keeps_its_direction(brush):
+def test_a_stroke_with_sides_keeps_its_direction(brush):
     (stroke,) = of("M10 40Q25 10 50 18T90 15Q70 36 48 28T10 40Z")
     passes, target, _ = within_reach([stroke], brush, "passes")
     assert [each.id for each in passes] == ["p"]
@@ -269,7 +269,7 @@ def test_a_stroke_with_its_sides_keeps_its_direction(brush):
     assert every[0].middle_mm.tolist() == stroke.middle_mm.tolist()
 
 
-def test_narrow_strokes_of_a_shape_stay_as_they_are(brush):
+def test_narrow_strokes_of_a_shape_stay_unchanged(brush):
     made = of("M10 5H30V20H80V25H30V40H10Z")
     narrow = [s for s in made if max(h for _, h in s.half_width) < HALF_MM]
     passes, _, _ = within_reach(made, brush, "passes")
@@ -277,7 +277,7 @@ def test_narrow_strokes_of_a_shape_stay_as_they_are(brush):
     assert narrow[0] in passes
 
 
-def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
+def test_strokes_are_filled_together_only_within_one_shape(brush):
     made = of("M5 5H75V30H53V80H27V30H5Z")  # a wide T
     assert len(made) > 1
     _, _, notices = within_reach(made, brush, "passes")
@@ -288,7 +288,7 @@ def test_strokes_of_one_shape_are_filled_together_others_apart(brush):
     assert {each.id.split("~")[0] for each in passes} == {"p/1", "p/2"}
 
 
-def test_a_line_of_changing_width_is_as_wide_as_its_knots_say():
+def test_a_line_of_changing_width_has_the_widths_of_its_knots():
     """A line of changing width is as wide as its knots say.
 
     This also holds between the ends of a straight line. Flattening once reduced such a line to two rows, and
@@ -301,7 +301,7 @@ def test_a_line_of_changing_width_is_as_wide_as_its_knots_say():
     assert target == pytest.approx(105.8, abs=0.3)
 
 
-def test_what_is_no_lettering_is_left_to_the_middle_lines():
+def test_rough_or_huge_shapes_are_painted_along_their_middle_lines():
     turns = np.linspace(0, 2 * np.pi, 9000, endpoint=False)
     far = 30 + np.arange(9000) * 7919 % 1000 / 1000
     rough = shapely.Polygon(np.column_stack([far * np.cos(turns), far * np.sin(turns)]))
@@ -356,7 +356,7 @@ def straight(name, start, end, half):
     return _core.Stroke(name, np.linspace(start, end, 4).reshape(1, 8), half_width=[(0, half), (1, half)])
 
 
-def test_slits_between_the_parts_of_a_shape_s_strokes_are_no_edges(brush):
+def test_slits_between_parts_of_a_shape_are_not_edges(brush):
     """Slits between the parts of a shape's strokes are not edges.
 
     Rings once followed them, which were 2 mm long, from an inner corner of this star.

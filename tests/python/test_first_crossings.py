@@ -14,7 +14,7 @@ def _blob(random, middle, radius_mm):
     )
 
 
-def test_the_first_crossing_ahead_is_that_of_shapely():
+def test_the_first_crossing_ahead_agrees_with_shapely():
     random, crossed = np.random.default_rng(3), 0
     for _ in range(60):
         rings = [_blob(random, (0, 0), 20), _blob(random, (0, 0), 5)[::-1], _blob(random, (25, 9), 6)]
@@ -29,7 +29,7 @@ def test_the_first_crossing_ahead_is_that_of_shapely():
     assert crossed > 150
 
 
-def test_nothing_is_crossed_where_there_is_nothing_ahead():
+def test_no_outline_ahead_gives_an_infinite_distance():
     square = np.array([[0, 0], [4, 0], [4, 4], [0, 4.0]])
     assert _core.first_crossings([square], [[2, 2]], [[1, 0]]) == [2]
     assert _core.first_crossings([square], [[5, 2], [5, 2]], [[1, 0], [-1, 0]]) == [np.inf, 1]
@@ -37,6 +37,6 @@ def test_nothing_is_crossed_where_there_is_nothing_ahead():
     assert _core.first_crossings([np.empty((0, 2))], [[5, 2]], [[1, 0]]) == [np.inf]
 
 
-def test_each_place_has_its_way():
+def test_places_and_directions_must_be_equally_many():
     with refused("sizes-differ 1 2"):
         _core.first_crossings([], [[5, 2], [6, 2]], [[1, 0]])

@@ -38,7 +38,7 @@ def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
 
 
 @sample("name", WAITING, keep=5)
-def test_it_does_what_a_careful_person_does_in_this_order(name):
+def test_the_first_run_does_its_steps_in_a_safe_order(name):
     cell = find_cell(name)
     sections = [*first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1).sections()]
     lows = [min(move.points_mm[:, 2].min() for move in section.moves) for section in sections]
@@ -57,7 +57,7 @@ def test_it_does_what_a_careful_person_does_in_this_order(name):
 
 
 @pytest.mark.parametrize("name", WAITING)
-def test_it_rises_to_its_own_height_and_is_never_lowered_fast(name):
+def test_the_first_run_rises_to_its_own_height_and_never_lowers_fast(name):
     """The first run rises to its own height, and never lowers the tool fast.
 
     It once rose to the safe height, and then moved on a slant from any place to the height of its air run.
@@ -100,7 +100,7 @@ def test_a_machine_that_cannot_wait_has_no_first_run(name, program, tmp_path, ca
     assert status == 1 and is_reported(reported, "cannot-wait") and not (tmp_path / program).exists()
 
 
-def test_a_pen_that_has_one_height_tries_none(tmp_path, capsys):
+def test_a_pen_with_one_height_has_no_first_run(tmp_path, capsys):
     status, _, reported = in_json(capsys, "setup", "first-run", "marlin-servo", "-o", tmp_path / "first.gcode")
     assert status == 1 and is_reported(reported, "pen-depth") and not (tmp_path / "first.gcode").exists()
 
@@ -109,7 +109,7 @@ def all_moves(sections):
     return [move for section in sections for move in section.moves]
 
 
-def test_a_first_run_that_was_changed_is_refused(tmp_path, capsys):
+def test_a_changed_first_run_is_refused(tmp_path, capsys):
     program = tmp_path / "first.ngc"
     assert in_json(capsys, "setup", "first-run", "linuxcnc-3axis", "-o", program)[0] == 0
     text = program.read_text()

@@ -22,7 +22,7 @@ def measured(seed=1, noise=0.5, repeats=3):
     return depth, TRUTH(depth) + rng.normal(0, noise, depth.size)
 
 
-def test_least_squares_is_numpys():
+def test_least_squares_agrees_with_numpy():
     depth, value = measured()
     fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 4, positive=True))
     coefficients, covariance = np.polyfit(depth, value, 4, cov=True)
@@ -37,7 +37,7 @@ def test_least_squares_is_numpys():
     assert not fit.held and tuple(fit.law.calibrated_mm) == (1, 10)
 
 
-def test_a_line_through_zero_is_scipys():
+def test_a_line_through_zero_agrees_with_scipy():
     depth, value = measured()
     fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 1, through_zero=True))
     slope, covariance = curve_fit(lambda d, k: k * d, depth, value)
@@ -46,7 +46,7 @@ def test_a_line_through_zero_is_scipys():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_least_absolute_residuals_is_the_linear_programme(seed):
+def test_least_absolute_residuals_agree_with_linear_programming(seed):
     depth, value = measured(seed)
     value[::7] += 5.0
     fit = _core.fit_law(depth, value, _core.LawShape(RANGE, 4, norm=_core.Norm.absolute))
@@ -61,7 +61,7 @@ def test_least_absolute_residuals_is_the_linear_programme(seed):
     np.testing.assert_allclose(np.polyval(fit.law.coefficients[::-1], depth), powers @ best.x[:5], atol=1e-3)
 
 
-def test_a_shape_is_held_and_said():
+def test_a_required_shape_is_enforced_and_reported():
     depth = np.array([1.0, 2, 3, 4, 5, 6, 8, 10])
     # It gets narrower at the end because the ruler was tilted.
     value = np.array([0.5, 1.2, 1.8, 2.6, 2.8, 2.9, 2.7, 2.5])
@@ -78,7 +78,7 @@ def test_a_shape_is_held_and_said():
     np.testing.assert_allclose([fit.law(d) for d in depth], steps[:, 1:] @ best.x, atol=1e-6)
 
 
-def test_a_law_through_zero_goes_through_zero_where_the_range_begins_later():
+def test_a_law_through_zero_passes_zero_if_its_range_starts_later():
     """A law through zero passes through zero even if its range begins later.
 
     Control points once began at the range's first depth. The law was then off by millimetres.
@@ -145,12 +145,12 @@ def test_intervals_cover_the_truth(norm):
         ([1, 2, 3], [1, 2], "sizes-differ 3 2"),
     ],
 )
-def test_what_cannot_be_fitted_is_said(depth, value, said):
+def test_data_that_cannot_be_fitted_are_refused(depth, value, said):
     with refused(said):
         _core.fit_law(depth, value, _core.LawShape(RANGE, 2))
 
 
-def test_as_many_values_as_coefficients_leave_nothing_to_judge_by():
+def test_as_many_values_as_coefficients_give_no_uncertainty():
     fit = _core.fit_law([1, 2, 3], [1, 4, 9], _core.LawShape(RANGE, 2))
     assert fit.law.coefficients == pytest.approx([0, 0, 1], abs=1e-12)
     assert fit.degrees_of_freedom == 0 and fit.law.rmse_mm is None
@@ -180,7 +180,7 @@ def best_over_all_subsets(depth, value, degree):
 
 
 @pytest.mark.parametrize("seed", range(25))
-def test_the_floor_is_the_best_of_all(seed):
+def test_the_fit_with_a_floor_has_the_smallest_error(seed):
     """The fit with a floor is the best of all.
 
     One of ten such fits once ended in a local minimum, up to 0.6 mm off.
@@ -195,7 +195,7 @@ def test_the_floor_is_the_best_of_all(seed):
 
 
 @pytest.mark.parametrize("norm", [_core.Norm.squares, _core.Norm.absolute])
-def test_many_depths_above_a_floor_are_fitted_too(norm):
+def test_many_depths_above_a_floor_are_fitted(norm):
     """Many depths above a floor are fitted, too.
 
     There are too many ways for values to be below the floor, so the fit tries only the likely ones.
@@ -209,7 +209,7 @@ def test_many_depths_above_a_floor_are_fitted_too(norm):
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_a_mark_that_covers_itself_everywhere_is_refused_by_counted_work():
+def test_a_mark_that_covers_itself_is_refused_after_a_bounded_amount_of_work():
     rng = np.random.default_rng(1)
     poses = np.column_stack([rng.uniform(0, 60, (300, 2)), -rng.uniform(0.5, 5, 300)])
     plan = brushsvg.Plan("round-6", "", (60, 60), [brushsvg.Pass("jumps", poses)])
@@ -241,7 +241,7 @@ for path in {line.split()[-1] for line in lines if "/libglog" in line}:
 """
 
 
-def test_a_search_that_leads_nowhere_is_reported_by_its_error_alone():
+def test_a_failed_search_is_reported_only_by_its_error():
     """A failed search is reported by its error alone.
 
     The marks are marks that no brush paints. Whether Ceres logs a warning depends on rounding, but its log

@@ -55,7 +55,7 @@ def union():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("made", [law, fit_of_marks, union])
-def test_ctrl_c_is_heard(made):
+def test_ctrl_c_interrupts_a_fit(made):
     call = made()
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores SIGINT
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))

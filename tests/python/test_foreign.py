@@ -63,7 +63,7 @@ def drawn(text):
     return {way.line: way.points_mm[-1, :2].round(6).tolist() for way, is_down in down if is_down}
 
 
-def test_inches_circles_and_relative_places():
+def test_inches_circles_and_relative_positions_are_read():
     target = {6: [50.8, 25.4], 8: [63.5, 38.1], 13: [63.5, 50.8]}
     assert drawn(INCHES) == target
     (circle,) = [way for way in read_moves(INCHES) if way.turn]
@@ -75,7 +75,7 @@ def test_inches_circles_and_relative_places():
     assert again.points_mm == pytest.approx(circle.points_mm)
 
 
-def test_a_laser_is_dark_on_rapid_ways():
+def test_a_laser_is_off_on_rapid_moves():
     """A laser does not draw on rapid moves.
 
     The laser uses M4, so grbl switches it off on rapid moves. The power is as the picture requires, high or
@@ -85,7 +85,7 @@ def test_a_laser_is_dark_on_rapid_ways():
     assert drawn(laser) == {4: [80.0, 20.0], 5: [80.0, 60.0], 7: [140.0, 60.0]}
 
 
-def test_a_servo_may_go_by_m300():
+def test_a_servo_may_be_controlled_by_m300():
     unicorn = (
         "G28 X Y\nM300 S50\nG4 P150\nG1 X20 Y20 F3500\nM300 S30.00\nG1 X80 Y20\nM300 S440 P200\nG1 X80 Y60\n"
         "M300 S50.00\nG1 X100 Y30\nM300 S30\nG1 X140 Y60\nM300 S50\nM18\n"
@@ -93,13 +93,13 @@ def test_a_servo_may_go_by_m300():
     assert drawn(unicorn) == {6: [80.0, 20.0], 8: [80.0, 60.0], 12: [140.0, 60.0]}
 
 
-def test_check_does_not_take_a_tone_for_a_servo(desk, capsys):
+def test_check_does_not_read_a_tone_as_a_servo_command(desk, capsys):
     (desk / "tone.gcode").write_text("G21\nG90\nM300 S30\nG1 X20 Y20 F900\nG1 X40 Y20\nM300 S50\nG1 X60 Y20\n")
     status, _, notices = in_json(capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo")
     assert status == 1 and is_reported(notices, "servo-unknown M300")
 
 
-def test_a_servo_stays_down_on_rapid_ways_after_m4():
+def test_a_servo_stays_down_on_rapid_moves_after_m4():
     """After M4, a servo stays down on rapid moves, unlike a laser.
 
     convert reads the program as a laser's program. check reads it as a servo's program, where M4 sets the
@@ -109,7 +109,7 @@ def test_a_servo_stays_down_on_rapid_ways_after_m4():
     assert down.power == 30.0
 
 
-def test_a_paint_pot_is_a_dip():
+def test_a_visit_to_a_paint_pot_is_a_dip():
     pot = "; paint pot 1\nG0 X-30 Y0\nG1 Z-8 F600\nG1 X-25 Y0\nG1 X-30 Y5\nG0 Z10\n; line\n"
     line = "G0 X20 Y{y}\nG1 Z-1 F600\nG1 X100 Y{y}\nG0 Z10\n"
     text = "G21\nG90\nG0 Z10\n" + "".join(pot + line.format(y=20 + 10 * k) for k in range(2))
@@ -144,7 +144,7 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("I0 J0.5", "R99999999999999999999", "line-unread 8"),
     ],
 )
-def test_what_is_not_known_is_refused(old, new, reported):
+def test_unknown_commands_are_refused(old, new, reported):
     with refused(reported):
         read_moves(INCHES.replace(old, new, 1))
 
@@ -162,7 +162,7 @@ def test_what_is_not_known_is_refused(old, new, reported):
         ),
     ],
 )
-def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
+def test_a_line_starts_at_its_first_known_position(text, lines):
     """A line begins at its first known place.
 
     A pen that was down before the first place once caused an IndexError.
@@ -172,7 +172,7 @@ def test_a_line_begins_at_the_first_place_that_is_known(text, lines):
     assert {name: [cubics[0, 0].tolist(), cubics[-1, 3].tolist()] for name, cubics in found.items()} == lines
 
 
-def test_where_nothing_shows_when_the_pen_is_down_it_is_refused():
+def test_a_program_without_pen_commands_is_refused():
     with refused("pen-unknown"):
         read_pen(read_moves("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
 
@@ -221,7 +221,7 @@ M5
         (SPINDLE.replace("Z-1", "Z0"), "", "nothing-painted 0"),
     ],
 )
-def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed, reported):
+def test_the_advice_of_check_works(desk, capsys, program, typed, reported):
     """The advice of check works when you type it.
 
     check once advised M3 and grbl-servo for an M280 program, and --paper-z for a servo.
@@ -235,7 +235,7 @@ def test_what_check_advises_works_when_it_is_typed(desk, capsys, program, typed,
     assert status == 0 and gives(out.splitlines()[1], strokes)
 
 
-def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
+def test_servo_values_outside_shipped_tables_advise_to_write_a_table(desk, capsys):
     """Servo values outside every shipped table lead to advice to write a table.
 
     With a servo from 0 to 90, every value was once deeper than the deepest row of the table.
@@ -254,7 +254,7 @@ def test_values_that_no_table_has_ask_for_a_table(desk, capsys):
     assert status == 1 and is_reported(said, "flag-without-effect --paper-z")
 
 
-def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
+def test_without_heights_no_paper_height_is_suggested(desk, capsys):
     (desk / "f.gcode").write_text("G21\nG0 X1 Y1\nG1 X40 Y5 F100\n")
     for command in (("check", "f.gcode"), ("convert", "f.gcode", "-o", "f.ngc")):
         status, _, ((_, said),) = in_json(capsys, *command)
@@ -272,13 +272,13 @@ def test_without_a_height_nothing_is_advised_for_one(desk, capsys):
         ("G0 Z0.2\nM2", "M2", "ends-on-paper 13 -2.54"),
     ],
 )
-def test_check_refuses_what_is_dangerous(desk, capsys, old, new, reported):
+def test_check_refuses_dangerous_programs(desk, capsys, old, new, reported):
     (desk / "bad.gcode").write_text(INCHES.replace(old, new))
     status, _, said = in_json(capsys, "check", "bad.gcode", "--sheet", "90x80")
     assert status == 1 and is_reported(said, reported)
 
 
-def test_a_unit_that_is_not_named_is_reported(desk, capsys):
+def test_a_missing_unit_is_reported(desk, capsys):
     (desk / "f.gcode").write_text("G0 Z5\nG0 X30 Y30\nG1 Z-1 F300\nG1 X60 F600\nG0 Z5\n")
     status, _, said = in_json(capsys, "check", "f.gcode")
     assert status == 0 and is_reported(said, "unit-assumed 1")
@@ -287,7 +287,7 @@ def test_a_unit_that_is_not_named_is_reported(desk, capsys):
 
 
 @pytest.mark.parametrize("name", ["inches.gcode", "servo.nc"])
-def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
+def test_convert_accepts_foreign_programs_and_check_agrees(desk, capsys, name):
     assert call(capsys, "convert", name, "-o", "out.ngc", "--width", "3")[0] == 0
     status, out, _ = call(capsys, "check", "out.ngc", name, "--width", "3")
     assert status == 0 and RUNNABLE in out
@@ -299,13 +299,13 @@ def test_convert_takes_its_lines_and_check_agrees(desk, capsys, name):
     "flags",
     ["--width 3", "--scale 2", "--z-offset 1", "--speed 5", "--as stroke", "--lenient", "--wide clamp"],
 )
-def test_check_refuses_flags_that_would_change_nothing(desk, capsys, flags):
+def test_check_refuses_flags_without_effect(desk, capsys, flags):
     (desk / "f.ngc").write_text(INCHES)
     status, _, reported = in_json(capsys, "check", "f.ngc", *flags.split())
     assert status == 1 and is_reported(reported, f"flag-without-effect {flags.split()[0]}")
 
 
-def test_a_way_that_leaves_the_workspace_is_reported_with_its_line(desk, capsys):
+def test_a_move_outside_the_workspace_is_reported_with_its_line(desk, capsys):
     cell = write_cell(
         replace(
             find_cell("linuxcnc-3axis"),
@@ -355,7 +355,7 @@ def test_nothing_is_read_after_the_end_of_a_program(end):
         ("S0\n", False),
     ],
 )
-def test_a_servo_that_is_down_behind_the_last_line_is_reported(desk, capsys, end, is_down):
+def test_a_servo_left_down_after_the_last_line_is_reported(desk, capsys, end, is_down):
     """A servo that is still down after the last line is reported.
 
     The last word is not a move. The end of a program releases the servo that M3 holds, like M5.
@@ -372,7 +372,7 @@ DOTS = {
 }
 
 
-def test_m3_s0_is_up_and_an_angle_of_0_is_one():
+def test_m3_s0_lifts_the_pen_but_0_degrees_is_a_servo_angle():
     """M3 S0 lifts the pen, but an M280 angle of 0 is a servo angle.
 
     grbl stops at S0 as at M5. With the cell's table, S0 was once the deepest position. A Marlin servo may be
@@ -409,14 +409,14 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
         ("M3 S500\nG1 X50 Y10 F600\nM5\n", "line-incomplete 2"),
     ],
 )
-def test_check_says_what_is_missing(desk, capsys, program, reported):
+def test_check_reports_missing_information(desk, capsys, program, reported):
     (desk / "bad.gcode").write_text(program)
     cell = ("--cell", "grbl-servo") if "M3" in program else ()
     status, _, said = in_json(capsys, "check", "bad.gcode", *cell)
     assert status == 1 and is_reported(said, reported), said
 
 
-def test_a_program_of_ours_without_its_header_is_known_by_its_strokes(desk, capsys):
+def test_a_brushsvg_program_without_its_header_is_recognized_by_its_strokes(desk, capsys):
     assert call(capsys, "convert", "inches.gcode", "-o", "out.ngc", "--width", "3")[0] == 0
     lines = (desk / "out.ngc").read_text().splitlines()
     first = next(k for k, line in enumerate(lines) if line.startswith("(stroke 1 of "))

@@ -50,7 +50,7 @@ def read_with_a_fault(data):
         raise KeyError("seven")
 
 
-def test_without_atheris_a_fault_ends_in_a_finding_whose_input_is_kept(tmp_path, monkeypatch):
+def test_a_fault_is_found_and_its_input_kept_without_atheris(tmp_path, monkeypatch):
     target = targets.Target(read_with_a_fault, lambda: iter([b"1 2 3"]), words=("7",))
     monkeypatch.setitem(targets.TARGETS, "faulty", target)
     monkeypatch.setattr(fuzz_target, "atheris", None)
@@ -65,7 +65,7 @@ def test_without_atheris_a_fault_ends_in_a_finding_whose_input_is_kept(tmp_path,
 
 
 @pytest.mark.parametrize("text, code", [("two\nlines", "a"), ("a" * 9000, "a"), ("no code", ""), ("\x1b[2J", "a")])
-def test_a_refusal_that_fills_the_terminal_or_has_no_code_is_a_finding(text, code):
+def test_a_very_long_refusal_or_one_without_code_is_a_finding(text, code):
     def read(data):
         raise Error(text, code=code)
 

@@ -49,12 +49,12 @@ TWO = (
 )
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     text = text_of(*TWO, header=("title: two strokes", "brush: round-6, 2 strokes"))
     assert text == GOLDEN.read_text(encoding="ascii")
 
 
-def test_modes_stand_before_any_motion_and_the_end_is_marked():
+def test_modes_precede_motion_and_the_end_is_marked():
     code = code_lines(text_of(*TWO))
     assert set(code[0].split()) >= {"G21", "G90", "G94", "G17"}
     assert code[2] == "G0 Z10.0000", "up before going anywhere"
@@ -85,11 +85,11 @@ def test_every_feed_is_under_the_brushs_limit(limit):
     assert min(abs(feed - 60 * speed) for feed in feeds) < 0.1
 
 
-def test_the_slowest_stroke_still_moves():
+def test_the_slowest_stroke_has_a_positive_feed():
     assert feeds_in(text_of(("s", TWO[0][1], 1e-5)))[1:] == [0.1]
 
 
-def test_every_language_has_a_program_to_look_at():
+def test_every_language_has_a_golden_program():
     for post in (
         each for name, each in POSTS.items() if name != "robodk"
     ):  # robodk uses a post that the user writes, which may produce any format
@@ -97,7 +97,7 @@ def test_every_language_has_a_program_to_look_at():
 
 
 @pytest.mark.parametrize("tiny", [-2.77e-17, -4.9e-5, 1e-300, -0.0])
-def test_numbers_are_plain(tiny):
+def test_numbers_are_plain_decimals(tiny):
     text = text_of(("s", [(tiny, 1e-7, min(tiny, 0)), (123456.5, 20, -3), (tiny, 0, 0)], 20.0), sheet=(2e5, 60))
     words = re.findall(r"[XYZFP]\S+", "\n".join(code_lines(text)))
     assert words
@@ -106,21 +106,21 @@ def test_numbers_are_plain(tiny):
         assert not re.fullmatch(r".-0\.0*", word), word
 
 
-def test_golden_grbl():
+def test_grbl_program_equals_the_golden_file():
     header = ("title: two strokes", "brush: round-6, 2 strokes")
     text = text_of(*TWO, header=header, cell="grbl-3axis")
     assert text == (GOLDEN.parent / "two_strokes_grbl.ngc").read_text(encoding="ascii")
 
 
 @pytest.mark.parametrize("name", ["fluidnc", "marlin", "klipper"])
-def test_golden_of_other_firmware(name):
+def test_programs_for_other_firmware_equal_the_golden_files(name):
     header = ("title: two strokes", "brush: round-6, 2 strokes")
     text = text_of(*TWO, header=header, cell=f"{name}-3axis")
     assert text == (GOLDEN.parent / f"two_strokes_{name}.gcode").read_text(encoding="ascii")
 
 
 @pytest.mark.parametrize("name", ["marlin-3axis", "klipper-3axis"])
-def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name):
+def test_printers_get_one_command_per_line_and_a_feed_for_every_move(name):
     """Printers get one command word per line and a feed for every move.
 
     They ignore a second word on a line, and G0 moves at the feed of the last F word.
@@ -138,7 +138,7 @@ def test_printers_have_one_word_of_command_a_line_and_a_feed_for_every_move(name
 
 
 @pytest.mark.parametrize(("name", "is_read"), [("marlin-3axis", False), ("klipper-3axis", False), ("grbl-3axis", True)])
-def test_a_command_with_a_sign_is_none_to_printers(name, is_read):
+def test_printers_ignore_a_command_with_a_sign(name, is_read):
     """Printers do not read a command with a sign.
 
     Other controllers read G-0 as G0. A printer skips the line, and the next move starts from where the tool
@@ -168,7 +168,7 @@ HALF_TURNS = [(40 + 4 * np.cos(a), 30 + 4 * np.sin(a), -2.0) for a in np.linspac
         ("klipper-3axis", 0.6, 0.0, False),
     ],
 )
-def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm, off_mm, is_circle):
+def test_circles_are_written_as_arcs_only_if_the_firmware_stays_close(name, segment_mm, off_mm, is_circle):
     """Circles are written as arcs only if the firmware stays close to them.
 
     FluidNC refuses radii that differ by 0.005 mm. Lines of 0.6 mm are up to 0.011 mm from a circle with a
@@ -185,7 +185,7 @@ def test_circles_are_written_where_the_firmware_keeps_near_them(name, segment_mm
     assert np.ptp(spokes) < 0.011 and (is_circle or len(spokes) > 12)
 
 
-def test_grbl_is_spared_what_it_does_not_know():
+def test_grbl_gets_only_commands_it_knows():
     text = text_of(("a" * 200, TWO[0][1], 20.0), cell="grbl-3axis")
     words = {word for line in code_lines(text) for word in re.findall(r"[GM]\d+", line)}
     assert words == {
@@ -203,13 +203,13 @@ def test_grbl_is_spared_what_it_does_not_know():
     assert "%" not in text
 
 
-def test_nothing_rapid_below_safe_height():
+def test_no_rapid_move_is_below_the_safe_height():
     for line in code_lines(text_of(*TWO)):
         if line.startswith("G0 "):
             assert "Z10.0000" in line
 
 
-def test_comments_are_ascii_closed_and_never_commands():
+def test_comments_are_closed_ascii_without_commands():
     title = "Caf\u00e9 \u6c38 (draft) 50% #5220\nG0 Z-50 " + "x" * 300
     text = text_of(("MSG, (probe)\r\nM3", *TWO[0][1:]), header=(f"title: {title}",))
     comments = [line for line in text.splitlines() if line.startswith("(")]
@@ -220,11 +220,11 @@ def test_comments_are_ascii_closed_and_never_commands():
     assert all(len(line) <= LINE_LIMIT and line.isascii() for line in text.splitlines())
 
 
-def test_same_moves_same_bytes():
+def test_same_moves_give_the_same_bytes():
     assert text_of(*TWO) == text_of(*TWO)
 
 
-def test_the_first_rise_is_over_every_place_of_paper_that_leans():
+def test_the_first_rise_clears_all_points_of_tilted_paper():
     cell = find_cell("linuxcnc-3axis")
     cell = replace(cell, paper=replace(cell.paper, rotation_deg=(0.0, -2.0, 0.0)))
     a_pass = SimpleNamespace(
@@ -288,7 +288,7 @@ def test_cpp_writes_the_same_program_for_another_machine(tmp_path):
     assert (tmp_path / "it.ngc").read_text(encoding="ascii") == cpp_golden("flat_bench.ngc")
 
 
-def test_check_allows_what_cpp_writes_and_finds_what_was_changed(tmp_path, capsys):
+def test_check_accepts_cpp_programs_and_finds_changes(tmp_path, capsys):
     (tmp_path / "it.ngc").write_text(cpp_golden("flat_machine.ngc"))
     for call in ([], [FLAT_PLAN]):
         assert in_json(capsys, "check", tmp_path / "it.ngc", *call)[::2] == (0, [])
@@ -303,7 +303,7 @@ def test_check_allows_what_cpp_writes_and_finds_what_was_changed(tmp_path, capsy
     assert status == 1 and is_reported(reported, "program-changed 15.0 5.0")
 
 
-def test_a_stroke_is_read_as_fast_as_its_fastest_move():
+def test_a_stroke_is_read_with_the_speed_of_its_fastest_move():
     text = GOLDEN.read_text(encoding="ascii").replace(
         "F1200.0\nG1 X12.5000 Y10.0000 Z-3.0000", "F1500.0\nG1 X12.5000 Y10.0000 Z-3.0000\nF1200.0"
     )

@@ -65,12 +65,12 @@ def run(text, cell=CELL):
     return found
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     assert text_for(TWO, header=("title: two strokes",)) == GOLDEN.read_text(encoding="ascii")
 
 
 @pytest.mark.parametrize("turned_deg", [0.0, 37.0, 90.0])
-def test_what_is_drawn_is_within_half_a_unit_of_the_plan(turned_deg):
+def test_the_drawn_path_is_within_half_a_unit_of_the_plan(turned_deg):
     rng = np.random.default_rng(5)
     cell = replace(CELL, paper=Paper((120.0, 20.0, 0.0), (0.0, 0.0, turned_deg)))
     lines = [MIDDLE + np.cumsum(rng.uniform(-1, 1, (30, 2)), axis=0) for _ in range(4)]
@@ -88,7 +88,7 @@ def test_what_is_drawn_is_within_half_a_unit_of_the_plan(turned_deg):
     assert UNIT_MM / 4 < away <= UNIT_MM / 2 + 1e-9
 
 
-def test_the_speed_is_the_whole_centimetres_below():
+def test_the_speed_is_rounded_down_to_whole_centimetres():
     found = run(text_for(TWO))
     assert {leg.speed_mm_s for leg in found.legs if leg.kind == "feed"} == {20.0}
     with refused("speed-out-of-range 9 10.000000"):
@@ -105,13 +105,13 @@ def test_the_speed_is_the_whole_centimetres_below():
         [(10, 10, 0), (10, 10, -0.1), (10, 10, 0)],
     ],
 )
-def test_a_depth_that_the_pen_has_not_is_refused(poses):
+def test_a_depth_other_than_the_pens_is_refused(poses):
     plan = _core.Plan("pen", "", SHEET, [_core.Pass("s", np.array(poses, float), 20.0)])
     with refused("pen-depth -0.2"):
         text_for(plan)
 
 
-def test_the_pen_is_reported_for_a_brush_that_presses_and_it_helps(tmp_path, capsys):
+def test_a_pressing_brush_on_a_plotter_suggests_the_pen(tmp_path, capsys):
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
         '<path id="a" fill="none" stroke="#000" stroke-width="3" d="M20 30Q50 0 80 30"/></svg>'
@@ -123,7 +123,7 @@ def test_the_pen_is_reported_for_a_brush_that_presses_and_it_helps(tmp_path, cap
     assert status == 0
 
 
-def test_a_height_of_the_paper_cannot_be_set(tmp_path, capsys):
+def test_the_paper_height_cannot_be_set(tmp_path, capsys):
     with refused("pen-depth"):
         text_for(TWO, job=Job(0.1))
     status, _, reported = in_json(
@@ -133,7 +133,7 @@ def test_a_height_of_the_paper_cannot_be_set(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_random_lines_come_back(seed):
+def test_random_lines_are_read_back(seed):
     """Random lines are read back unchanged.
 
     The program exceeds no limit, and check recognizes the plan.
@@ -166,7 +166,7 @@ def test_random_lines_come_back(seed):
     assert against_plan.with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []
 
 
-def test_a_plotter_takes_its_pens_by_the_colours_of_the_cell(tmp_path, capsys, monkeypatch):
+def test_a_plotter_selects_pens_by_the_colours_of_the_cell(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("pens.svg").write_text(PENS, encoding="utf-8")
     colours = sorted(set(re.findall("#[0-9a-f]{6}", PENS)))
@@ -208,7 +208,7 @@ def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("cell", ["hpgl-plotter", "marlin-servo"])
-def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_path, capsys, cell):
+def test_a_stroke_at_the_end_of_the_previous_one_lands_there(tmp_path, capsys, cell):
     """A stroke that begins at the end of the one before is set down there.
 
     The pen is lifted and set down again without a move.
@@ -245,7 +245,7 @@ def test_a_stroke_that_begins_where_the_one_before_ended_is_set_down_there(tmp_p
         (r"SP1;", "SP;", "line-incomplete"),
     ],
 )
-def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, reported):
+def test_check_refuses_damaged_programs(tmp_path, capsys, old, new, reported):
     text = "".join(writer.encode(".hpgl", TWO, pen(25.0), "two", (), CELL))
     (tmp_path / "pen.json").write_text(_core.write_brush(pen(25.0)))
     (tmp_path / "two.hpgl").write_text(text)
@@ -253,7 +253,7 @@ def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, reported):
     assert is_refused_when_damaged(capsys, tmp_path / "two.hpgl", old, new, reported, *words)
 
 
-def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
+def test_sp_without_a_number_stores_the_pen(tmp_path, capsys):
     text = "".join(writer.encode(".hpgl", TWO, pen(25.0), "two", (), CELL))
     (tmp_path / "pen.json").write_text(_core.write_brush(pen(25.0)))
     (tmp_path / "two.hpgl").write_text(text.replace("SP0;", "SP;"))
@@ -274,7 +274,7 @@ def test_a_pen_is_put_away_by_an_sp_alone(tmp_path, capsys):
         ({"machine": Machine(lean_mm_per_mm=(0.1, 0.0))}, "cell-machine lean_mm_per_mm"),
     ],
 )
-def test_a_cell_that_a_pen_cannot_be_is_refused(change, reported):
+def test_a_cell_impossible_for_a_pen_plotter_is_refused(change, reported):
     with refused(reported):
         parse_cell(write_cell(replace(CELL, **change)))
 

@@ -15,7 +15,7 @@ BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 3
   <circle r="5" cx="80" cy="20" fill="red" stroke="none"/>"""
 
 
-def test_svg_numbers_names_and_warnings():
+def test_svg_shows_numbers_names_and_warnings():
     design = read(BODY)
     made, notices = strokes(design)
     tree = ET.fromstring(overview(".svg", design, made, [*design.notices, *notices]))
@@ -26,7 +26,7 @@ def test_svg_numbers_names_and_warnings():
     assert any(word.startswith("3  stroke1: 9.97 mm") for word in words)
 
 
-def test_png_shows_the_band_as_wide_as_the_stroke_where_it_was_drawn():
+def test_png_shows_the_stroke_at_its_place_and_width():
     design = read(BODY)
     image = cv2.imdecode(np.frombuffer(overview(".png", design, strokes(design)[0], []), np.uint8), cv2.IMREAD_COLOR)
     column = image[:, 40 + (30 * 15)].astype(int)  # x = 30 mm at 15 px/mm, clear of arrows and numbers
@@ -37,7 +37,7 @@ def test_png_shows_the_band_as_wide_as_the_stroke_where_it_was_drawn():
     assert abs(band.mean() - (top + 10 * 15)) <= 2
 
 
-def test_without_strokes_there_is_still_something_to_look_at():
+def test_a_drawing_without_strokes_still_gives_a_picture():
     design = read('<circle r="5" cx="80" cy="20" fill="red" stroke="none"/>')
     assert overview(".png", design, [], []).startswith(b"\x89PNG")
 
@@ -52,7 +52,7 @@ def words_of(body, notices=()):
     ]
 
 
-def test_many_dashes_are_one_entry_in_one_ink_with_some_numbers():
+def test_many_dashes_are_one_entry_in_one_colour():
     words = words_of('<path id="path7" d="M2 10H98" stroke-dasharray="1 1"/><path id="z" d="M2 30H98"/>')
     texts = [word for word, *_ in words]
     assert "1-48  path7/1 ... path7/48: 1 mm (48 strokes)" in texts
@@ -63,7 +63,7 @@ def test_many_dashes_are_one_entry_in_one_ink_with_some_numbers():
     assert len({ink for *_, ink in numbers}) == 1
 
 
-def test_strokes_alike_are_one_entry_and_unlike_ones_are_not():
+def test_only_equal_strokes_share_one_entry():
     line = '<path id="{}" d="M{} 5v9" stroke-width="{}"/>'.format
     alike = "".join(line(f"p{k}", 5 + 3 * k, 1) for k in range(6))
     texts = [word for word, *_ in words_of(alike + line("p6", 50, 2) + line("p8", 60, 1) + line("q", 70, 1))]
@@ -80,27 +80,27 @@ def test_numbers_do_not_overlap():
         assert all(x + w <= a or a + b <= x or abs(y - c) >= 16 for a, c, b in boxes[:k])
 
 
-def test_warnings_of_a_kind_are_one_line():
+def test_warnings_with_one_code_are_one_line():
     notices = [Notice(f"p{k}", f"depth 0.{k} mm is outside the range [1, 10] mm", code="depth") for k in range(9)]
     texts = [word for word, *_ in words_of('<path d="M1 1H9"/>', [*notices, Notice("x", "another")])]
     assert gives(texts[-2], "p0", "8", "0.0 mm") and texts[-1] == "x: another"
 
 
-def test_elements_whose_names_look_like_parts_keep_an_ink_each():
+def test_elements_named_like_parts_keep_their_own_colours():
     line = '<path id="icon/{}" d="M{} 5v9"/>'.format
     words = words_of("".join(line(k, 5 + 3 * k) for k in range(1, 7)))
     assert "1-6  icon/1 ... icon/6: 1 mm (6 strokes)" in [word for word, *_ in words]
     assert len({ink for word, *_, ink in words if word.isdigit()}) == 6
 
 
-def test_strokes_that_a_brush_adds_to_a_filled_shape_are_said_to_come():
+def test_extra_strokes_of_a_filled_shape_are_announced():
     (filled,) = [word for word, *_ in words_of(BODY) if word.startswith("sheet ")]
     assert ";" in filled and "predict" in filled
     (lines,) = [word for word, *_ in words_of('<path d="M10 10H60"/>') if word.startswith("sheet ")]
     assert ";" not in lines
 
 
-def test_lists_stay_on_the_picture_and_entries_are_on_no_other():
+def test_lists_stay_on_the_picture_and_entries_do_not_overlap():
     """Lists stay on the picture, and entries do not overlap.
 
     The picture is narrow and has long names, in the PNG's own font. Names of blocks in a DXF are as long.

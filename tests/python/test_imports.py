@@ -128,14 +128,14 @@ def complaints(path: Path, text: str) -> list[str]:
 
 
 @pytest.mark.slow
-def test_every_file_keeps_to_the_rules():
+def test_every_file_follows_the_import_rules():
     assert len(files()) > 60
     found = [sentence for path, text in files().items() for sentence in complaints(path, text)]
     assert not found, "\n" + "\n".join(found)
 
 
 @pytest.mark.parametrize("kind", ["cpp", "python"])
-def test_the_rules_allow_what_is_needed_and_point_upward(kind):
+def test_the_rules_are_minimal_and_point_upward(kind):
     rules = RULES[kind]
     used: dict[str, set[str]] = {name: set() for name in rules}
     for path, text in files().items():
@@ -289,7 +289,7 @@ def test_equations_name_code_and_tests_that_exist():
     assert rows > 20
 
 
-def test_the_walks_name_functions_that_exist():
+def test_the_code_walks_name_functions_that_exist():
     text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
     steps = re.findall(
         r"`((?:cpp/)?[\w/]+\.(?:py|cpp))(?:: (\w+))?`",

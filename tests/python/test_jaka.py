@@ -95,7 +95,7 @@ def touched(robot, cell):
 
 
 @pytest.mark.parametrize(("cell", "circles"), [(CELL, 2), (LEVEL, 2), (LEANING, 0)])
-def test_the_robot_goes_through_the_plans_poses(cell, circles):
+def test_the_robot_passes_all_poses_of_the_plan(cell, circles):
     rows = touched(run(text_for(cell)), cell)
     arc = [ARC[0], ARC[4], ARC[8]] if circles else ARC
     target = [*STROKES["n/1"], *STROKES["dot"], STROKES["turn"][0], *arc, *STROKES["turn"][10:]]
@@ -104,7 +104,7 @@ def test_the_robot_goes_through_the_plans_poses(cell, circles):
     assert max(row[2] for row in rows) <= 20.0 + 1e-9
 
 
-def test_the_brush_stands_on_the_papers_normal():
+def test_the_brush_is_held_along_the_paper_normal():
     cell = replace(LEANING, tool=replace(CELL.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=30.0))
     robot = run(text_for(cell))
     for _, poses, *_ in moves(robot):
@@ -112,7 +112,7 @@ def test_the_brush_stands_on_the_papers_normal():
     assert robot.tool == [0, 0, 150, 0, 10, 0]
 
 
-def test_no_corner_is_cut_by_more_than_the_tolerance_and_none_where_it_turns_back():
+def test_corners_are_cut_within_the_tolerance_and_not_at_reversals():
     for tolerance_mm in (0.0, 0.01, 0.05):
         cell = replace(CELL, blending=Blending(tolerance_mm, 2.0))
         rows = touched(run(text_for(cell)), cell)
@@ -122,14 +122,14 @@ def test_no_corner_is_cut_by_more_than_the_tolerance_and_none_where_it_turns_bac
                 assert here[3] == 0
 
 
-def test_the_brush_is_raised_before_it_goes_anywhere():
+def test_the_brush_is_raised_before_any_other_move():
     low, high = run(text_for(CELL), height_mm=21.0), run(text_for(CELL))
     first, second = moves(low)[:2]
     assert first[1][0] == pytest.approx([-100, -400, 40, 180, 0, 0]) and second[1][0, 2] == 40
     assert len(low.events) == len(high.events) + 1
 
 
-def test_paint_is_waited_for():
+def test_the_program_waits_for_paint():
     stations = (
         Station("red", (120.0, 10.0), ("#ff0000",), depth_mm=5.0, hold_s=0.5),
         Station("hand", (120.0, 50.0), by_hand=True),
@@ -139,12 +139,12 @@ def test_paint_is_waited_for():
     assert [event for event in robot.events if event[0] in ("sleep", "pause")] == [("sleep", 0.5), ("pause",)]
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     assert text_for(CELL) == GOLDEN.read_text(encoding="ascii")
 
 
 @pytest.mark.parametrize("cell", [CELL, LEVEL, LEANING], ids=["square", "turned", "leaning"])
-def test_what_is_written_is_read(cell):
+def test_a_written_program_is_read_back(cell):
     text = text_for(cell)
     read = read_program(text, ".jks", cell)
     steps = [step for section in read.sections for step in section.steps]
@@ -167,7 +167,7 @@ def test_what_is_written_is_read(cell):
         ("to = ", "via = ", "line-incomplete"),
     ],
 )  # fmt: skip
-def test_what_the_reader_refuses(old, new, said):
+def test_the_reader_refuses_invalid_programs(old, new, said):
     text = text_for(CELL)
     assert old in text
     changed = text.replace(old, new) if old == "to = " else text.replace(old, new, 1)
@@ -175,7 +175,7 @@ def test_what_the_reader_refuses(old, new, said):
         read_program(changed, ".jks", CELL)
 
 
-def test_angles_are_those_of_the_rotation():
+def test_angles_agree_with_the_rotation():
     rng = np.random.default_rng(3)
     for _ in range(50):
         turned = cv2.Rodrigues(rng.normal(size=3))[0]
@@ -193,7 +193,7 @@ def test_the_stub_refuses_broken_programs(old, new):
         run(text.replace(old, new))
 
 
-def test_own_programs_with_turns_in_place_are_allowed(tmp_path, capsys):
+def test_check_accepts_programs_with_turns_in_place(tmp_path, capsys):
     path = '<path id="p" d="M20 38 L34 14 L48 38" fill="none" stroke="#000" stroke-width="2"/>'
     drawing, made = tmp_path / "a.svg", tmp_path / "a.jks"
     drawing.write_text(

@@ -46,7 +46,7 @@ def test_an_air_run_is_checked_alone_and_with_its_drawing(desk, capsys, name):
 
 
 @pytest.mark.parametrize("name", LANGUAGES)
-def test_strokes_that_find_the_paper_are_checked(desk, capsys, name):
+def test_height_strokes_are_checked(desk, capsys, name):
     program = f"height{LANGUAGES[name]}"
     assert call(capsys, "setup", "height", "-o", program, "--cell", name, "--from", "0.7", "--step", "0.13")[0] == 0
     status, out, err = call(capsys, "check", program)
@@ -104,7 +104,7 @@ CHANGED = {
 
 
 @pytest.mark.parametrize("kind", CHANGED)
-def test_any_change_is_reported(desk, capsys, kind):
+def test_any_change_of_a_setup_program_is_reported(desk, capsys, kind):
     job, suffix = kind
     cell = ("--cell", "grbl-servo") if suffix == ".nc" else ()
     drawing = ("two.svg",) if job == "border" else ()
@@ -117,7 +117,7 @@ def test_any_change_is_reported(desk, capsys, kind):
         assert (status, any(agrees(each, said) for _, each in reported)) == (1, True), (said, reported)
 
 
-def test_what_has_no_picture_and_no_drawing_says_so(desk, capsys):
+def test_a_job_without_picture_or_drawing_is_reported(desk, capsys):
     assert call(capsys, "setup", "height", "-o", "height.ngc")[0] == 0
     status, _, ((_, reported),) = in_json(capsys, "check", "height.ngc", "two.svg")
     assert (status, reported.code) == (1, "nothing-to-compare")
@@ -138,7 +138,7 @@ def test_an_air_run_beyond_the_workspace_is_refused(desk, capsys):
     assert not (desk / "border.ngc").exists()
 
 
-def test_corners_of_strokes_that_find_the_paper_are_not_cut_by_half_a_millimetre(desk, capsys):
+def test_corners_of_height_strokes_are_not_cut_by_half_a_millimetre(desk, capsys):
     text = (SHIPPED / "linuxcnc-3axis.toml").read_text()
     (desk / "mine.toml").write_text(edited(r"(?m)^tolerance_mm = \S+", "tolerance_mm = 0.5")(text))
     for words in (("setup", "height", "-o", "job.ngc"), ("setup", "border", "two.svg", "-o", "job.ngc")):

@@ -19,7 +19,7 @@ def points(program):
     return np.vstack([move.points_mm for section in program.sections() for move in section.moves])
 
 
-def test_the_border_is_driven_round_in_the_air():
+def test_the_border_is_followed_above_the_paper():
     path = points(border((10, 20, 60, 45), BRUSH, CELL, (80, 60)))
     assert (path[:, 2] == CELL.heights.safe_mm).all()
     assert path[:, :2].tolist() == [[10, 20], [60, 20], [60, 45], [10, 45], [10, 20]]
@@ -27,7 +27,7 @@ def test_the_border_is_driven_round_in_the_air():
     assert max(move.speed_mm_s for move in section.moves[1:]) <= BRUSH.max_speed_mm_s
 
 
-def test_each_stroke_is_deeper_by_one_step_and_says_what_it_means():
+def test_each_height_stroke_is_one_step_deeper_and_states_its_height():
     sections = list(paper_height(BRUSH, CELL, (200, 100), 1.0, -1.0, 0.1).sections())
     assert len(sections) == 21
     painted = [next(move for move in section.moves if move.meaning == "paint") for section in sections]
@@ -40,7 +40,7 @@ def test_each_stroke_is_deeper_by_one_step_and_says_what_it_means():
     assert heights[10] == pytest.approx(0, abs=1e-12)
 
 
-def test_the_strokes_do_not_meet_and_stay_on_the_sheet():
+def test_height_strokes_are_separate_and_on_the_sheet():
     sheet = (120, 60)
     made = paper_height(BRUSH, CELL, sheet, 1.0, -1.0, 0.1)
     rows = [[move.points_mm for move in s.moves if move.meaning in ("land", "paint")] for s in made.sections()]
@@ -61,12 +61,12 @@ def test_the_strokes_do_not_meet_and_stay_on_the_sheet():
         ((200, 100), (-1, 1, 0.1), "strokes-out-of-range 2 100"),
     ],
 )
-def test_what_does_not_fit_is_refused(sheet, heights, said):
+def test_height_strokes_that_do_not_fit_are_refused(sheet, heights, said):
     with refused(said):
         paper_height(BRUSH, CELL, sheet, *heights)
 
 
-def test_both_stay_in_the_workspace():
+def test_border_and_height_jobs_stay_in_the_workspace():
     small = replace(CELL, workspace=replace(CELL.workspace, box_mm=((0.0, 0.0, -20.0), (50.0, 50.0, 60.0))))
     with refused("out-of-box 'x 60.0 mm'"):
         border((10, 20, 60, 45), BRUSH, small, (80, 60))

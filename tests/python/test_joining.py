@@ -26,7 +26,7 @@ def length_mm(stroke) -> float:
     return _core.flatten(stroke, 0.01)[-1, 2]
 
 
-def test_a_rectangle_in_four_lines_is_a_closed_one():
+def test_four_lines_of_a_rectangle_become_a_closed_line():
     made, notices = join_lines(of("M10 10H40", "M40 10V40", "M10 40H40", "M10 40V10"))
     assert [(stroke.id, stroke.closed) for stroke in made] == [("a", True)]
     assert length_mm(made[0]) == pytest.approx(120, abs=1e-6)
@@ -36,7 +36,7 @@ def test_a_rectangle_in_four_lines_is_a_closed_one():
     assert all(name in notice.sentence for name in "bcd")
 
 
-def test_a_line_keeps_its_direction_and_gets_what_comes_before_it():
+def test_a_line_keeps_its_direction_and_is_extended_at_its_start():
     made, _ = join_lines(of("M40 30H60", "M20 30H40", "M80 40L60 30"))
     assert [stroke.id for stroke in made] == ["a"]
     (sheet,) = {ends(stroke)[1] for stroke in of("M0 30H9")}
@@ -45,7 +45,7 @@ def test_a_line_keeps_its_direction_and_gets_what_comes_before_it():
     assert (steps > 0).all()
 
 
-def test_the_straightest_goes_on_and_no_line_turns_back():
+def test_the_straightest_continuation_is_joined_and_no_line_reverses():
     made, _ = join_lines(of("M10 30H40", "M40 30L70 50", "M40 30H70", "M10 31H40.5", "M40.5 31L12 33"))
     assert [stroke.id for stroke in made] == ["a", "b", "d", "e"]
     assert ends(made[0])[2] == 70
@@ -62,12 +62,12 @@ def test_the_straightest_goes_on_and_no_line_turns_back():
         '<path id="b" d="M40 30H70V34H40Z" fill="black"/>',
     ],
 )
-def test_lines_of_another_kind_stay_alone(other):
+def test_lines_of_different_kinds_are_not_joined(other):
     made = strokes(read(f'<path id="a" d="M10 30H40" {LINE}/>{other}'))[0]
     assert join_lines(made) == (made, [])
 
 
-def test_widths_run_on_through_the_joint():
+def test_widths_are_continuous_at_the_joint():
     first, second = of("M10 30H40", "M50 30H40")
     first.half_width = [(0.0, 1.0), (1.0, 2.0)]
     second.half_width = [(0.0, 3.0), (0.5, 2.0), (1.0, 2.0)]
@@ -76,7 +76,7 @@ def test_widths_run_on_through_the_joint():
     assert np.interp([0, 30, 35, 40], at * 40, half) == pytest.approx([1, 2, 2, 3])
 
 
-def test_lines_are_joined_only_when_requested_and_check_knows(tmp_path, capsys):
+def test_lines_are_joined_only_on_request_and_check_accepts_it(tmp_path, capsys):
     paths = f'<path id="a" d="M10 30H40" {LINE}/><path id="b" d="M40 30L70 40" {LINE}/>'
     drawing, program = tmp_path / "two.svg", tmp_path / "two.ngc"
     drawing.write_text(

@@ -77,7 +77,7 @@ def found(name: str):
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_thick_limbs_leave_no_wedge_bare_and_stick_out_nowhere(name):
+def test_thick_limbs_leave_no_bare_wedge_and_no_overspill(name):
     shape, strokes = found(name)
     painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
     bare = shapely.difference(shape.buffer(-SEEN_MM), painted).area
@@ -101,7 +101,7 @@ def test_a_ring_and_the_tail_that_touches_it_are_two_lines():
     assert sorted(stroke.closed for stroke in strokes) == [False, True]
 
 
-def test_the_arm_of_a_k_runs_on_into_its_stem_as_wide_as_it_is():
+def test_the_arm_of_a_k_continues_into_its_stem_at_full_width():
     _, strokes = found("k")
     lines = [_core.flatten(stroke, 0.02) for stroke in strokes]
     arm = min(lines, key=lambda line: -line[:, :2].sum(axis=1).max() if np.ptp(line[:, 0]) > 5 else 0)
@@ -110,7 +110,7 @@ def test_the_arm_of_a_k_runs_on_into_its_stem_as_wide_as_it_is():
 
 
 @pytest.mark.parametrize("name", LIMBS)
-def test_limbs_that_meet_next_to_a_stem_leave_no_wedges_there(name):
+def test_limbs_that_meet_next_to_a_stem_leave_no_bare_wedges(name):
     shape, strokes = found(name)
     painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
     bare = shapely.difference(shape.buffer(-SEEN_MM), painted)

@@ -31,7 +31,7 @@ def common(one, other):
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(places, min_size=1, max_size=8), marks_of)
-def test_labels_stay_inside_and_cover_nothing_while_a_candidate_is_free(anchors, blocks):
+def test_labels_cover_nothing_if_a_free_candidate_exists(anchors, blocks):
     marks = marks_from(blocks)
     space, before = LabelSpace(marks, CELL, anchors=anchors, radius=2.0), []
     for anchor in anchors:
@@ -67,12 +67,12 @@ def within(at, box) -> bool:
     return box[0] < at[0] < box[2] and box[1] < at[1] < box[3]
 
 
-def test_the_first_candidate_is_at_its_anchor_and_needs_no_leader():
+def test_the_first_candidate_is_at_the_anchor_without_a_leader():
     label = LabelSpace(np.zeros((80, 120), bool), CELL).place((100, 100), [SIZE], towards=(-1, 0))
     assert label.box == pytest.approx((67, 95, 97, 105)) and label.is_free and label.leader is None
 
 
-def test_a_label_that_has_to_go_far_has_a_leader_from_the_edge_of_its_ring():
+def test_a_distant_label_has_a_leader_from_its_ring():
     marks = marks_from([(0, 0, 80)])
     label = LabelSpace(marks, CELL, anchors=[(80, 80)], radius=5.0).place((80, 80), [SIZE])
     (x, y), end = label.leader
@@ -80,20 +80,20 @@ def test_a_label_that_has_to_go_far_has_a_leader_from_the_edge_of_its_ring():
     assert np.hypot(x - 80, y - 80) == pytest.approx(5.0)
 
 
-def test_a_shorter_text_near_its_place_is_better_than_a_longer_one_far_away():
+def test_a_shorter_text_nearby_is_preferred_to_a_longer_one_far_away():
     marks = ~marks_from([(10, 10, 20)])
     space = LabelSpace(marks, CELL)
     assert space.place((40, 40), [(60.0, 10.0), (15.0, 10.0)]).choice == 1
     assert LabelSpace(np.zeros_like(marks), CELL).place((40, 40), [(60.0, 10.0), (15.0, 10.0)]).choice == 0
 
 
-def test_without_room_it_covers_marks_rather_than_labels():
+def test_a_label_without_space_covers_marks_rather_than_labels():
     space = LabelSpace(np.ones((80, 120), bool), CELL)
     labels = [space.place((120, 80), [SIZE]) for _ in range(8)]
     assert not any(label.is_free or label.covers_labels for label in labels)
 
 
-def test_out_of_reach_there_is_no_place():
+def test_no_place_is_found_beyond_the_maximum_distance():
     space = LabelSpace(np.zeros((80, 120), bool), CELL)
     labels = [space.place((120, 80), [SIZE], reach=4.0) for _ in range(30)]
     assert labels[0].is_free and labels[-1].covers_labels

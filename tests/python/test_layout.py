@@ -14,12 +14,12 @@ def box(layout, body=BODY):
     return bounds_mm(arrange(read(body), layout)).round(9).tolist()
 
 
-def test_as_drawn_nothing_moves():
+def test_the_default_layout_leaves_the_drawing_unchanged():
     design = read(BODY)
     assert arrange(design, AS_DRAWN) is design
 
 
-def test_bounds_are_those_of_the_curve_and_its_width():
+def test_bounds_include_the_curve_and_its_width():
     assert bounds_mm(read('<path d="M20 10Q25 0 30 10"/>')).round(9).tolist() == [19.5, 39.5, 30.5, 45.5]
     assert bounds_mm(read('<path d="M0 0C0 20 20 20 20 0"/>'), with_widths=False).round(9).tolist() == [
         0,
@@ -29,7 +29,7 @@ def test_bounds_are_those_of_the_curve_and_its_width():
     ]
 
 
-def test_layers():
+def test_layers_can_be_selected():
     def ids(*names):
         return [element.id for element in arrange(read(BODY), Layout(layers=names)).elements]
 
@@ -41,12 +41,12 @@ def test_layers():
         ids("Inks")
 
 
-def test_width_of_all():
+def test_one_width_can_be_set_for_all_lines():
     design = arrange(read(BODY), Layout(width_mm=2.5))
     assert {element.stroke_width_mm for element in design.elements} == {2.5}
 
 
-def test_fit_fills_the_size_in_the_middle_of_the_sheet():
+def test_fit_scales_to_the_size_and_centres_on_the_sheet():
     x0, y0, x1, y1 = box(Layout(fit_mm=(40, 40)))
     assert max(x1 - x0, y1 - y0) == pytest.approx(40)
     assert ((x0 + x1) / 2, (y0 + y1) / 2) == pytest.approx((50, 25))
@@ -54,7 +54,7 @@ def test_fit_fills_the_size_in_the_middle_of_the_sheet():
     assert y1 - y0 == pytest.approx(30)
 
 
-def test_fit_scales_widths_but_not_requested_ones():
+def test_fit_scales_drawn_widths_but_not_requested_ones():
     drawn = arrange(read('<path d="M0 0H10"/>'), Layout(fit_mm=(22, 90)))
     assert drawn.elements[0].stroke_width_mm == pytest.approx(2)
     kept = arrange(read('<path d="M0 0H10"/>'), Layout(fit_mm=(22, 90), width_mm=2.0))
@@ -62,7 +62,7 @@ def test_fit_scales_widths_but_not_requested_ones():
     assert np.ptp(kept.elements[0].subpaths[0].cubics[..., 0]) == pytest.approx(20)
 
 
-def test_scale_is_about_the_middle_and_origin_names_the_corner():
+def test_scale_keeps_the_middle_and_origin_sets_the_corner():
     before, after = np.array(box(AS_DRAWN)), np.array(box(Layout(scale=0.5)))
     assert (before[:2] + before[2:]).tolist() == pytest.approx((after[:2] + after[2:]).tolist())
     assert (after[2:] - after[:2]).tolist() == pytest.approx(((before[2:] - before[:2]) / 2).tolist())
@@ -70,14 +70,14 @@ def test_scale_is_about_the_middle_and_origin_names_the_corner():
     assert box(Layout(origin_mm=(5, 7), scale=2, width_mm=3))[:2] == [5, 7]
 
 
-def test_what_cannot_be_fitted():
+def test_a_drawing_that_cannot_fit_is_refused():
     with refused("drawing-does-not-fit 12 '10 x 10 mm'"):
         box(Layout(fit_mm=(10, 10), width_mm=12.0))
     with refused("drawing-does-not-fit"):
         box(Layout(fit_mm=(10, 10), width_mm=2.0), '<path d="M5 5z"/>')
 
 
-def test_with_a_width_nothing_is_reported_about_those_of_the_drawing():
+def test_a_requested_width_drops_notices_about_drawn_widths():
     design = read('<path id="a" transform="scale(1 2)" d="M10 10H50"/><text id="t">A</text>')
     assert [each.code for each in design.notices] == ["stretched-unevenly", "text-unread"]
     arranged = arrange(design, Layout(width_mm=3.0))

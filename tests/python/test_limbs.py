@@ -73,7 +73,7 @@ def test_a_flag_on_one_side_is_painted():
         "M20 5H28V20L28.4 20.3V20.9L28 21.2V45H20V33L19.6 32.7V32L20 31.7Z",  # with teeth
     ],
 )
-def test_ends_and_rough_edges_of_a_stem_grow_no_hairs(d):
+def test_ends_and_rough_edges_of_a_stem_get_no_hairlines(d):
     assert len(found(d)) == 1
 
 
@@ -84,7 +84,7 @@ def test_ends_and_rough_edges_of_a_stem_grow_no_hairs(d):
         ("M22 12H30L29.6 14Q33 11 38 12V17Q33 16.5 28.5 22L26 45H18Z", (22.5, 12.5, 29, 16)),
     ],
 )
-def test_the_end_of_a_stem_is_painted_where_its_ear_leaves_it_near_the_top(d, end):
+def test_the_end_of_a_stem_is_painted_if_its_ear_leaves_near_the_top(d, end):
     """The end of a stem is painted if its ear leaves it near the top.
 
     A single line once cut the corner from the stem into the ear, and left the stem's end bare.
@@ -94,7 +94,7 @@ def test_the_end_of_a_stem_is_painted_where_its_ear_leaves_it_near_the_top(d, en
     assert reached(made, *end) > 0.9
 
 
-def test_a_stem_inside_of_a_crossing_is_painted():
+def test_a_stem_inside_a_crossing_is_painted():
     """A stem inside a crossing is painted.
 
     A thick stem between a bar and its foot once counted as part of both crossings, where no line ran.
@@ -122,7 +122,7 @@ def test_the_stem_of_an_a_runs_from_its_top_to_its_foot_next_to_the_bowl(top, sl
     assert any(first < top + 4.6 and last > 36 for first, last in down), down
 
 
-def test_a_line_that_comes_back_to_where_it_ends_has_no_way_there():
+def test_a_line_that_returns_to_its_end_has_no_direction_there():
     """A line that returns to its own end has no direction there.
 
     The line goes out and back by half a width each. numpy must not warn.

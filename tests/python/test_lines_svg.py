@@ -38,7 +38,7 @@ def width_mm(stroke, at):
 
 
 @pytest.mark.parametrize("body", [WEDGE, BAR, RING, DOT, LINE, WEDGE + BAR + RING + DOT + LINE])
-def test_read_again_they_are_the_same_strokes(body):
+def test_written_strokes_are_read_back_unchanged(body):
     before, after, _ = again(body)
     assert len(before) == len(after) > 0
     at = np.linspace(0, 1, 201)
@@ -48,7 +48,7 @@ def test_read_again_they_are_the_same_strokes(body):
         assert np.abs(width_mm(a, at) - width_mm(b, at)).max() < WIDTH_TOLERANCE * width_mm(a, at).max()
 
 
-def test_one_width_is_a_stroke_width_and_a_varying_one_a_power_stroke():
+def test_a_constant_width_is_a_stroke_width_and_a_varying_one_a_power_stroke():
     _, _, root = again(WEDGE + LINE)
     wedge, line = root.iter(f"{SVG}path")
     assert "stroke-width:2.5;" in line.get("style") and line.get(f"{INKSCAPE}original-d") is None
@@ -70,7 +70,7 @@ def test_layers_settings_and_odd_ids_are_kept():
     assert [path.get("data-stroke") for path in root.iter(f"{SVG}path")] == ["a/b", "a#b", "line"]
 
 
-def test_a_name_that_ends_as_a_repeat_does_is_no_repeat():
+def test_a_name_that_looks_like_a_repeat_is_not_a_repeat():
     """A name that looks like a repeat is not treated as a repeat.
 
     An element with the name a#2 that is painted twice was once left out with its repeats.
@@ -79,7 +79,7 @@ def test_a_name_that_ends_as_a_repeat_does_is_no_repeat():
     assert [path.get("data-stroke") for path in root.iter(f"{SVG}path")] == ["a#2", "line"]
 
 
-def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
+def test_preview_writes_editable_strokes(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.svg").write_text(f"{HEAD}{WEDGE}</svg>")
     (tmp_path / "empty.svg").write_text(f"{HEAD}</svg>")

@@ -45,7 +45,7 @@ CALLS = {
 
 
 @pytest.mark.parametrize("what", CALLS)
-def test_what_is_longer_than_any_is_refused_within_lists_too(what):
+def test_overlong_nested_lists_are_refused(what):
     with pytest.raises(brushsvg.Error) as refused:
         CALLS[what]()
     assert refused.value.code == "list-too-long"
@@ -69,12 +69,12 @@ UNLIKE = {
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("what", UNLIKE)
-def test_what_is_no_array_of_numbers_is_refused(what):
+def test_values_that_are_not_numeric_arrays_are_refused(what):
     with pytest.raises(TypeError):
         UNLIKE[what]()
 
 
-def test_a_generator_without_end_is_left_at_the_most():
+def test_an_endless_generator_is_read_only_up_to_the_limit():
     read = 0
 
     def endless():
@@ -103,13 +103,13 @@ def test_a_generator_without_end_is_left_at_the_most():
         np.ascontiguousarray(SQUARE[::-1])[::-1],
     ],
 )
-def test_rows_may_come_in_any_form(ring):
+def test_rows_may_have_any_array_form(ring):
     assert brushsvg.area([ring]) == 81
     poses = np.array(brushsvg.Pass("a", np.column_stack([np.asarray(ring), np.zeros(4)])).poses_mm)
     assert np.array_equal(poses[:, :2], SQUARE)
 
 
-def test_laws_answer_in_the_shape_of_their_arguments():
+def test_laws_return_the_shape_of_their_arguments():
     lag = brushsvg.find_brush("round-6").lag
     assert isinstance(lag(3), float) and lag([1, 2]).shape == (2,)
     assert lag(np.full((2, 3), 3.0)).tolist() == [[lag(3)] * 3] * 2
@@ -118,7 +118,7 @@ def test_laws_answer_in_the_shape_of_their_arguments():
 @pytest.mark.parametrize(
     "d", ["M0 0" + "h1" * 200, "M0 0l" + "1 1 " * 200, "M0 0a" + "3 3 0 0 1 1 1 " * 200, "M" + "1 1 " * 200]
 )
-def test_a_path_of_more_commands_than_any_drawing_has_is_read_up_to_there(monkeypatch, d):
+def test_a_path_with_too_many_commands_is_read_up_to_the_limit(monkeypatch, d):
     """A path with too many commands is read up to the limit.
 
     A path of 40 MB once needed 6 GB of memory and more than a minute.

@@ -67,7 +67,7 @@ def job(request, tmp_path, capsys, monkeypatch):
     return name, paths[1], text_of(paths[:1])
 
 
-def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
+def test_a_long_job_is_split_into_equivalent_programs(job, capsys):
     name, first, whole = job
     files = files_of(first)
     assert len(files) == (4 if name == "kr6-r900" else 3)
@@ -83,7 +83,7 @@ def test_a_long_job_is_several_programs_that_do_what_one_would(job, capsys):
         assert status == 0 and RUNNABLE in out, reported
 
 
-def test_python_has_the_same_texts_by_the_same_names(job):
+def test_python_returns_the_same_program_parts_with_the_same_names(job):
     name, first, _ = job
     texts = convert(first.parents[1] / "waves.json", cell=name).texts
     files = {
@@ -96,7 +96,7 @@ def test_python_has_the_same_texts_by_the_same_names(job):
     assert next(iter(texts)) == first.suffix
 
 
-def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
+def test_a_missing_or_foreign_part_is_refused(job, capsys):
     name, first, _ = job
     files = files_of(first)
     before = [path.read_bytes() for path in files]
@@ -137,7 +137,7 @@ def test_a_part_that_is_missing_or_another_one_is_refused(job, capsys):
         assert refused_with("line-unread")
 
 
-def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
+def test_a_stroke_with_too_many_lines_is_one_program_with_a_warning(tmp_path, capsys):
     (tmp_path / "a.json").write_text(_core.write_plan(waves(3, 1200)))
     words = "convert", tmp_path / "a.json", "-o", tmp_path / "a.script", "--cell", "ur5e"
     status, _, reported = in_json(capsys, *words)
@@ -147,7 +147,7 @@ def test_a_stroke_of_more_lines_is_one_program_and_a_warning(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(("name", "parts"), [("ur5e", "a-part2.script a-part3.script"), ("kr6-r900", "B.*.src")])
-def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
+def test_parts_of_an_earlier_job_are_reported(tmp_path, capsys, name, parts):
     output = tmp_path / f"a{LANGUAGES[name]}"
     for strokes in (3, 1):
         (tmp_path / "a.json").write_text(_core.write_plan(waves(strokes, 1200 if name == "ur5e" else 700)))
@@ -161,7 +161,7 @@ def test_parts_of_an_earlier_job_are_named(tmp_path, capsys, name, parts):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", [*MOST, "axidraw-ebb"])
-def test_a_page_of_a_thousand_strokes(name, tmp_path, capsys, monkeypatch):
+def test_a_page_of_a_thousand_strokes_is_split(name, tmp_path, capsys, monkeypatch):
     from page import STROKES, page
 
     from brushsvg.read import read_drawing

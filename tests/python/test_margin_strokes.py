@@ -43,7 +43,7 @@ def added(plan) -> list:
     return [each for each in plan.passes if each.settings.kind == "margin"]
 
 
-def test_they_stand_on_a_page_of_a_brush_that_is_not_calibrated(desk):
+def test_margin_strokes_are_added_for_an_uncalibrated_brush(desk):
     run("convert word.svg -o plan.json --brush mine.json --page page.svg")
     run("convert word.svg -o bare.json --brush mine.json")
     plan, bare = read_plan("plan.json"), read_plan("bare.json")
@@ -65,7 +65,7 @@ def test_they_stand_on_a_page_of_a_brush_that_is_not_calibrated(desk):
     assert len(added(read_plan("plan.json"))) == 3
 
 
-def test_a_brush_with_half_or_one_and_a_half_times_the_lag_paints_none_on_another_or_on_a_marker(desk):
+def test_margin_strokes_stay_apart_with_half_or_one_and_a_half_times_the_lag(desk):
     run("convert word.svg -o plan.json --brush mine.json --page page.svg")
     plan, brush = read_plan("plan.json"), brushsvg.find_brush("mine.json")
     page = job_page(plan)
@@ -88,7 +88,7 @@ def test_a_brush_with_half_or_one_and_a_half_times_the_lag_paints_none_on_anothe
             assert all(shape.distance(each) > 1 for key, each in shapes.items() if key != name)
 
 
-def test_the_program_is_checked_and_reported_without_them(desk, capsys):
+def test_check_and_report_ignore_margin_strokes(desk, capsys):
     run("convert word.svg -o with.ngc --brush mine.json --page page.svg --report with.json")
     run("convert word.svg -o bare.ngc --brush mine.json --report bare.json")
     reports = [json.loads((desk / f"{name}.json").read_text()) for name in ("with", "bare")]
@@ -107,7 +107,7 @@ def test_the_program_is_checked_and_reported_without_them(desk, capsys):
     assert not brushsvg.check("border.ngc", "word.svg", brush="mine.json").problems
 
 
-def test_convert_says_beforehand_what_they_teach(desk, capsys):
+def test_convert_reports_what_margin_strokes_will_calibrate(desk, capsys):
     words = "convert word.svg -o plan.json --brush mine.json --page page.svg".split()
     status, out, _ = in_json(capsys, *words)
     assert status == 0 and "margin strokes" in out and out.count("lag +-") == 3
@@ -124,7 +124,7 @@ def test_convert_says_beforehand_what_they_teach(desk, capsys):
     ],
     ids=["narrow sheet", "box of the workspace", "keep-out box"],
 )
-def test_where_there_is_no_room_none_is_added_and_a_notice_says_so(desk, capsys, width, cell):
+def test_without_space_no_margin_stroke_is_added_and_a_notice_is_given(desk, capsys, width, cell):
     lines = SVG.format(width, 80) if width > 50 else SVG.format(width, 12).replace("M12 52 H12", "M12 52 V40")
     (desk / "word.svg").write_text(lines.replace("M14 40 C24 16 34 16 12 38", "M8 20 V46"))
     run("cell new -o mine.toml")
@@ -138,7 +138,7 @@ def test_where_there_is_no_room_none_is_added_and_a_notice_says_so(desk, capsys,
     assert not check.problems and len(check.plan.passes) == 2
 
 
-def test_a_calibrated_brush_needs_none(desk):
+def test_a_calibrated_brush_gets_no_margin_strokes(desk):
     brush = brushsvg.find_brush("round-6")
     size = sum(len(getattr(brush, law).coefficients) for law in ("lag", "tip_gap", "tip_to_widest", "half_width"))
     brush.covariance = (1e-6 * np.eye(size)).tolist()
@@ -150,7 +150,7 @@ def test_a_calibrated_brush_needs_none(desk):
         assert not added(read_plan("plan.json"))
 
 
-def test_depths_that_were_only_typed_are_not_calibrated(desk):
+def test_typed_depths_do_not_count_as_calibrated(desk):
     """Depths that were only typed do not count as calibrated.
 
     The brush was calibrated down to 4 mm and typed in down to 8 mm. Its range covers both, and a job of 6 mm
@@ -166,7 +166,7 @@ def test_depths_that_were_only_typed_are_not_calibrated(desk):
     assert is_calibrated(brush, 3.9) and not is_calibrated(brush, 6.0)
 
 
-def test_figures_of_a_photograph_are_of_the_drawing(desk):
+def test_figures_of_a_photograph_exclude_margin_strokes(desk):
     """Figures from a photograph describe the drawing, not the margin strokes.
 
     The figures are equal with and without margin strokes, except for camera noise. `compare` finds the right
@@ -184,7 +184,7 @@ def test_figures_of_a_photograph_are_of_the_drawing(desk):
     assert seen["auto"]["elsewhere_mm2"] < 1
 
 
-def test_a_sheet_with_them_teaches_more(desk):
+def test_margin_strokes_calibrate_the_lag_at_more_depths(desk):
     """A sheet with margin strokes calibrates the lag at more depths.
 
     The drawing has two strokes at one depth each, so the lag at other depths stays unknown. The simulator

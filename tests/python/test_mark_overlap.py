@@ -19,7 +19,7 @@ def straight(name, a, b, half):
     )
 
 
-def test_who_touches_whom():
+def test_groups_contain_the_marks_that_touch():
     strokes = [
         straight("a", (0, 0), (20, 0), 1.0),
         straight("b", (10, 5), (10, 1.9), 1.0),
@@ -59,7 +59,7 @@ def test_pixels_agree_with_rings():
         assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *target])), rel=1e-3)
 
 
-def test_groups_are_judged_as_each_alone():
+def test_groups_have_the_same_overlap_alone_and_together():
     brush = find_brush("round-6")
     strokes = [straight(f"s{k}", (10, 10 + 9 * k), (40, 12 + 6 * k), 1.0 + 0.2 * k) for k in range(5)]
     marks = simulate(compensate(strokes, brush, (100, 100)).plan, brush).passes
@@ -73,7 +73,7 @@ def test_groups_are_judged_as_each_alone():
     assert reported.value.code == "out-of-range"
 
 
-def test_misses_are_those_of_each_pass():
+def test_tracking_errors_belong_to_their_pass():
     brush = find_brush("round-6")
     strokes = [straight(f"s{k}", (10, 10 + 9 * k), (40, 12 + 6 * k), 1.0 + 0.2 * k) for k in range(3)]
     passes = compensate(strokes, brush, (100, 100)).plan.passes

@@ -16,7 +16,7 @@ from brushsvg.machine.cells.cell import not_undone, reason_for_no_backlash
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 
-def test_overlaps_count_marks_where_they_are_and_without_their_displacement():
+def test_overlaps_are_given_with_and_without_displacement():
     brush = brush_of(_core.MarkLaws([4.0], [0.0, 0.5], [0.0, 0.5]), "b", (0.0, 6.0))
     ways = [np.array([[20, 20 + y, 0], [30, 20 + y, -4], [60, 25 + y, -4.0]]) for y in (0.0, 40.0)]
     marks = _core.simulate(_core.Plan("b", "", (1.0, 1.0), [_core.Pass("", way) for way in ways]), brush)
@@ -45,7 +45,7 @@ def test_overlaps_count_marks_where_they_are_and_without_their_displacement():
     assert placed == pytest.approx((1.0 + second) / 2, abs=1e-3)
 
 
-def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_nothing():
+def test_each_law_gets_its_own_covariance_rows_if_another_law_lacks_a_term():
     """Each law gets its own rows of the covariance, even if another law has no term.
 
     A ratio may depend on depth in principle although it is constant here. With the rows of other laws, the
@@ -61,7 +61,7 @@ def test_a_law_keeps_its_own_rows_of_the_covariance_where_a_power_of_another_is_
 
 
 @pytest.mark.parametrize("name", sorted(cell_names()))
-def test_the_table_for_a_cell_says_for_which_machines_its_lines_have_no_use(name):
+def test_the_table_for_a_cell_marks_lines_without_effect_on_some_machines(name):
     """The table for a cell marks the lines that have no use on a kind of machine.
 
     Without --cell, the kind of machine is unknown. Backlash was once printed for arms as well, whose cells

@@ -52,12 +52,12 @@ def run(text, cell=CELL):
     return found
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     assert text_for(TWO, header=("title: two strokes",)) == GOLDEN.read_text(encoding="ascii")
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_what_is_drawn_is_the_plan_and_check_takes_it(seed):
+def test_the_program_draws_the_plan_and_check_accepts_it(seed):
     rng = np.random.default_rng(seed)
     cell = replace(
         CELL,
@@ -84,7 +84,7 @@ def test_what_is_drawn_is_the_plan_and_check_takes_it(seed):
     assert against_plan.with_plan(ran, split_into_loads(plan, find_brush("rigid"), cell), cell)[1] == []
 
 
-def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):
+def test_the_program_stops_for_a_pen_of_another_colour(tmp_path, capsys):
     (tmp_path / "pens.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80"><g fill="none" '
         'stroke-width="1"><path d="M30 20h30" stroke="#000000"/><path d="M30 32h30" stroke="#ff0000"/></g></svg>'
@@ -114,7 +114,7 @@ def test_it_stops_for_a_pen_of_another_colour(tmp_path, capsys):
         (r"\nM400\n; end.*\n", "\n", "program-cut-short"),
     ],
 )
-def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, reported):
+def test_check_refuses_damaged_programs(tmp_path, capsys, old, new, reported):
     text = "".join(writer.encode(".gcode", TWO, find_brush("rigid"), "two", (), CELL))
     (tmp_path / "plan.json").write_text(_core.write_plan(TWO))
     (tmp_path / "two.gcode").write_text(text)
@@ -134,6 +134,6 @@ def test_check_refuses_what_was_damaged(tmp_path, capsys, old, new, reported):
         ({"stations": (Station("ink", (120.0, 10.0), depth_mm=1.0),)}, "cell-station"),
     ],
 )
-def test_a_cell_that_such_a_pen_cannot_be_is_refused(change, reported):
+def test_a_cell_impossible_for_a_servo_pen_is_refused(change, reported):
     with refused(reported):
         parse_cell(write_cell(replace(CELL, **change)))

@@ -174,7 +174,7 @@ def calibrated(tmp_path, capsys, monkeypatch):
     ids=lambda each: reported(each) if isinstance(each, tuple) else each,
     keep=45,
 )
-def test_a_number_of_a_measurement_is_bounded_by_what_it_means(name, path, calibrated):
+def test_each_measurement_value_has_a_physical_range(name, path, calibrated):
     content = painted() if name == "painted" else MEASURED[name]
     assert calibrated(json.dumps(content)) is None
     taken = [words for words, value in NEVER.items() if not calibrated(json.dumps(changed(content, path, value)))]
@@ -197,7 +197,7 @@ def test_a_number_of_a_measurement_is_bounded_by_what_it_means(name, path, calib
     ],
     ids=lambda each: reported(each) if isinstance(each, tuple) else "gone" if each is GONE else None,
 )
-def test_what_is_just_beyond_is_refused_before_marks_are_fitted(path, value, calibrated):
+def test_values_just_out_of_range_are_refused_before_marks_are_fitted(path, value, calibrated):
     assert calibrated(json.dumps(changed(painted(), path, value)))
 
 
@@ -216,7 +216,7 @@ def test_what_is_just_beyond_is_refused_before_marks_are_fitted(path, value, cal
     ],
     ids=lambda each: reported(each) if isinstance(each, tuple) else "gone" if each is GONE else str(each),
 )
-def test_what_is_just_beyond_is_refused(name, path, value, calibrated):
+def test_values_just_out_of_range_are_refused(name, path, value, calibrated):
     assert calibrated(json.dumps(changed(MEASURED[name], path, value)))
 
 
@@ -224,7 +224,7 @@ CELLS = ["1e9", "1e308", "1e400", "nan", "inf", "", "null", "seven", "--", "0x10
 
 
 @pytest.mark.parametrize("column", ["depth_mm", "value_mm"])
-def test_a_cell_of_a_table_is_bounded_by_what_it_means(column, calibrated):
+def test_each_table_value_has_a_physical_range(column, calibrated):
     def table(cell):
         lines = [("lag", d, f"{ROUND.lag(d):.3f}") for d in DEPTHS]
         lines += [("width", d, f"{2 * ROUND.half_width(d):.3f}") for d in DEPTHS]
@@ -254,7 +254,7 @@ CHART = json.loads(write_chart(chart(ROUND, (148.0, 210.0), "few")))
     ids=reported,
     keep=15,
 )
-def test_a_number_of_a_chart_is_bounded_by_what_it_means(path):
+def test_each_chart_value_has_a_physical_range(path):
     read_chart(json.dumps(CHART).encode())
     taken = []
     for words, value in [*NEVER.items(), ("-1", -1), ("gone", GONE)]:
@@ -272,7 +272,7 @@ def test_a_number_of_a_chart_is_bounded_by_what_it_means(path):
     assert taken == []
 
 
-def test_a_chart_for_a_plan_is_refused_by_its_name(calibrated, tmp_path):
+def test_a_chart_given_as_a_plan_is_refused_with_its_name(calibrated, tmp_path):
     (tmp_path / "chart.json").write_text(json.dumps(CHART))
     for given in ("chart.json", CHART):
         said = calibrated(json.dumps(painted() | {"plan": given}))

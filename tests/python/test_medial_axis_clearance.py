@@ -24,7 +24,7 @@ def drawn() -> list[np.ndarray]:
     return np.split(points, np.cumsum(counts)[:-1])
 
 
-def test_places_of_the_axis_are_as_far_from_the_outline_as_they_say():
+def test_axis_points_have_their_stated_distance_from_the_outline():
     shape = _core.fill(drawn(), "evenodd")
     _, branches = _core.medial_axis(shape, 0.7059)
     for branch in branches:

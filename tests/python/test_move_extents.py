@@ -67,7 +67,7 @@ def both(frame, start, end, circle):
 
 @given(FRAME, POINT, POINT, circles())
 @pytest.mark.slow
-def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start, end, circle):
+def test_extents_and_distances_match_sampled_points(frame, start, end, circle):
     some, places, step_mm = both(frame, start, end, circle)
     low, high = bounds(some)
     assert low == pytest.approx(places.min(axis=0), abs=step_mm) and (low <= places.min(axis=0) + 1e-9).all()
@@ -79,7 +79,7 @@ def test_the_least_and_greatest_are_those_of_all_places_on_the_way(frame, start,
 
 
 @given(FRAME, POINT, POINT, circles(), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
-def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, size):
+def test_a_path_through_a_box_is_found_inside_it(frame, start, end, circle, corner, size):
     low, high = np.array(corner), np.add(corner, size)
     some, places, step_mm = both(frame, start, end, circle)
     place = find_place_inside(some, low, high)
@@ -91,7 +91,7 @@ def test_a_way_through_a_box_is_found_there(frame, start, end, circle, corner, s
 
 
 @given(FRAME, circles(rise=st.floats(-100, 100)), POINT, st.tuples(*[st.floats(0.5, 300)] * 3))
-def test_a_circle_that_climbs_is_never_judged_too_kindly(frame, circle, corner, size):
+def test_extents_of_a_climbing_circle_are_never_underestimated(frame, circle, corner, size):
     """The extents of a climbing circle are never underestimated.
 
     Only edited programs contain a climbing circle. The whole space that circle and climb span is checked
@@ -122,7 +122,7 @@ def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
     assert find_place_inside(some, (3.9, -1, -3), (4.1, 1, -1)) == pytest.approx([4, 0, -2], abs=0.2)
 
 
-def test_ways_that_stay_in_a_place_or_run_along_a_side():
+def test_single_points_and_paths_along_a_side_of_a_box():
     box = (0, 0, 0), (10, 10, 10)
     assert find_place_inside(make_paths([[(5, 5, 5)]]), *box) == pytest.approx([5, 5, 5])
     assert find_place_inside(make_paths([[(5, 5, 15)]]), *box) is None
@@ -152,13 +152,13 @@ def test_a_corner_that_is_cut_stays_within_twice_the_cut(turn_rad, before_mm, af
         assert away <= 2 * tolerance_mm + 1e-9
 
 
-def test_a_circle_that_climbs_through_a_box_on_its_way_is_found():
+def test_a_circle_that_climbs_through_a_box_is_found():
     half = make_paths([], [((10, 0, 0), (-10, 0, 8), (0, 0, 1))])
     assert find_place_inside(half, (-1, 9, 3), (1, 11, 5)) is not None
     assert find_place_inside(half, (-1, -11, 3), (1, -9, 5)) is None
 
 
-def test_the_nearest_place_of_a_climbing_circle_is_on_its_way():
+def test_the_nearest_point_of_a_climbing_circle_is_on_its_path():
     climbing = make_paths([], [((2, 0, -3), (2, 0, 5), (0, 0, 1))])  # around the z axis; nearest at z 0
     assert distances_from_origin(climbing) == pytest.approx((2.0, math.hypot(2, 5)))
 

@@ -27,7 +27,7 @@ from brushsvg.cli import main
         [(4, 5)],
     ],
 )
-def test_the_widths_are_those_typed_in(widths):
+def test_the_brush_has_the_typed_widths(widths):
     brush = new_brush("mine", 5.0, widths)
     depths = np.linspace(0, brush.depth_range_mm[1], 500)
     halves = np.array([brush.half_width(d) for d in depths])
@@ -40,7 +40,7 @@ def test_the_widths_are_those_typed_in(widths):
     assert brush.lag.coefficients == (5.0,)
 
 
-def test_what_is_assumed_says_so():
+def test_assumed_laws_are_marked_as_assumed():
     brush = new_brush("mine", 5.0, [(3, 2.5), (8, 7)], 10)
     assert [getattr(brush, law).assumed for law in ("lag", "tip_gap", "tip_to_widest", "half_width")] == [
         True,
@@ -64,7 +64,7 @@ def test_what_is_assumed_says_so():
         ([(2, 1), (8, 13)], None, 3),  # the line through these points is negative at touch depth
     ],
 )
-def test_a_lag_that_grows_with_depth_is_that_typed_in(lags, at_rest_mm, terms):
+def test_typed_lags_that_grow_with_depth_are_kept(lags, at_rest_mm, terms):
     brush = new_brush("mine", lags, [(3, 2.5), (8, 7)])
     for depth, lag in lags:
         assert brush.lag(depth) == pytest.approx(lag, abs=0.3)
@@ -75,7 +75,7 @@ def test_a_lag_that_grows_with_depth_is_that_typed_in(lags, at_rest_mm, terms):
     assert gives(brush.lag.source, f"{lags[-1][1]} mm", "8 mm") or lags[0][0] == 8
 
 
-def test_one_lag_at_a_depth_is_the_lag_at_all():
+def test_one_lag_at_a_depth_is_the_lag_at_all_depths():
     one, other = new_brush("mine", [(4, 5.0)], [(3, 2.5)]), new_brush("mine", 5.0, [(3, 2.5)])
     assert one.lag == other.lag and one.lag.assumed
     twice = new_brush("mine", [(3, 5.0), (3, 5.4)], [(3, 2.5)]).lag
@@ -95,18 +95,18 @@ def test_one_lag_at_a_depth_is_the_lag_at_all():
         ([(1, 5), (2, 20), (4, 3), (5, 18), (7, 2)], "law-undetermined"),
     ],
 )
-def test_lags_that_no_brush_can_have_are_refused(lags, said):
+def test_impossible_lags_are_refused(lags, said):
     with refused(said):
         new_brush("mine", lags, [(3, 2.5), (8, 7)])
 
 
-def test_a_build_without_fits_says_so(monkeypatch):
+def test_a_build_without_fits_names_the_missing_package(monkeypatch):
     monkeypatch.delattr(_core, "fit_law")
     with refused("package-missing Ceres"):
         new_brush("mine", 5.0, [(3, 2.5)])
 
 
-def test_no_lag_is_a_pen():
+def test_zero_lag_makes_a_pen():
     pen = new_brush("pen", 0.0, [(0.2, 1.0)])
     assert pen.is_rigid() and pen.kind == "pen" and not pen.width_follows_depth()
     assert pen.half_width(0.01) == 0.5
@@ -123,12 +123,12 @@ def test_no_lag_is_a_pen():
         ([(3, 2)], 2, "depth-out-of-range 2"),
     ],
 )
-def test_what_no_brush_can_have_is_refused(widths, deepest, said):
+def test_impossible_widths_and_depths_are_refused(widths, deepest, said):
     with refused(said):
         new_brush("mine", 5.0, widths, deepest)
 
 
-def test_a_table_of_widths():
+def test_widths_can_be_read_from_a_table():
     assert read_widths("\ufeffdepth_mm, width_mm,note\n3, 2.5,a\n8,7,b\n") == [(3, 2.5), (8, 7)]
     for text, where, said in [
         ("3,2.5\n", "", "table-columns depth_mm,width_mm"),
@@ -143,7 +143,7 @@ def test_a_table_of_widths():
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("mark", [".", ","])
-def test_a_table_as_any_spreadsheet_writes_it(separator, mark, ending):
+def test_a_table_is_read_in_any_spreadsheet_format(separator, mark, ending):
     """A table is read in any form that a spreadsheet writes.
 
     Values that contain the separator are in quotes, and the sheet has empty rows and columns.
@@ -193,7 +193,7 @@ def test_a_table_as_any_spreadsheet_writes_it(separator, mark, ending):
         ('depth_mm;width_mm\n"3;2\n', "line 2, depth_mm", "not-a-number"),
     ],
 )
-def test_a_table_that_could_be_read_in_two_ways_is_refused(table, where, said):
+def test_an_ambiguous_table_is_refused(table, where, said):
     with refused(said, where) as refusal:
         read_widths(table)
     assert ("4.6" in str(refusal.value)) == table.endswith("3,2,5\n"), "only commas can be both"
@@ -230,7 +230,7 @@ def test_the_command_makes_a_brush_that_paints(tmp_path, monkeypatch, capsys):
     assert done.tracking_errors[0].largest_mm < 0.05
 
 
-def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monkeypatch, capsys):
+def test_a_copied_brush_paints_the_same_and_claims_no_measurement(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main("brush new -o mine.json --like round-6 --speed 12".split()) == 0
     assert "tip_gap" not in capsys.readouterr().out, "all of it is assumed, not some"
@@ -262,7 +262,7 @@ def test_a_brush_like_another_paints_the_same_and_claims_nothing(tmp_path, monke
         ("brush plot round-6 -o out.pdf", ".png or .svg"),
     ],
 )
-def test_wrong_usage(typed, said, tmp_path, monkeypatch, capsys):
+def test_wrong_usage_is_refused(typed, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(typed.split()) == 2
     assert said in capsys.readouterr().err
@@ -280,14 +280,14 @@ def test_wrong_usage(typed, said, tmp_path, monkeypatch, capsys):
         ("brush new -o odd.json --lag 5 --width-at 0.001=900", "odd.json", "not-millimetres"),
     ],
 )
-def test_what_makes_no_brush_is_refused(typed, file, said, tmp_path, monkeypatch, capsys):
+def test_input_that_makes_no_brush_is_refused(typed, file, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     status, _, ((about, reported),) = in_json(capsys, *typed.split())
     assert (status, about) == (1, file) and agrees(reported, said), reported
     assert not list(tmp_path.iterdir())
 
 
-def test_a_brush_is_not_written_over(tmp_path, monkeypatch, capsys):
+def test_an_existing_brush_is_not_overwritten(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.json").write_text("somebody's")
     status, _, ((_, reported),) = in_json(capsys, *"brush new -o mine.json --lag 5 --width-at 3=2".split())
@@ -318,7 +318,7 @@ def answered(monkeypatch, capsys, words, answers):
     return main([*map(str, words)]), capsys.readouterr().out, shown.getvalue()
 
 
-def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_same(tmp_path, monkeypatch, capsys):
+def test_a_terminal_prompts_for_three_depths_and_shows_equivalent_flags(tmp_path, monkeypatch, capsys):
     requested, typed = tmp_path / "asked.json", tmp_path / "typed.json"
     answers = "2 1.5 4 nonsense 5 3,5 6 8 5 7.5".split()
     status, out, shown = answered(monkeypatch, capsys, ["brush", "new", "-o", requested], answers)
@@ -335,18 +335,18 @@ def test_a_terminal_prompts_for_three_depths_and_shows_the_flags_that_do_the_sam
     assert one == other
 
 
-def test_answers_that_end_write_nothing(tmp_path, monkeypatch, capsys):
+def test_incomplete_answers_write_nothing(tmp_path, monkeypatch, capsys):
     out = tmp_path / "mine.json"
     status, _, _ = answered(monkeypatch, capsys, ["brush", "new", "-o", out], ["2", "1.5"])
     assert status == 1 and not out.exists()
 
 
-def test_programs_that_read_messages_are_not_prompted(tmp_path, monkeypatch, capsys):
+def test_json_messages_disable_prompts(tmp_path, monkeypatch, capsys):
     words = ["--messages", "json", "brush", "new", "-o", tmp_path / "mine.json"]
     assert answered(monkeypatch, capsys, words, "2 1.5 4 5 3.5 6 8 5 7.5".split())[0] == 2
 
 
-def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
+def test_brush_new_without_a_terminal_explains_how_to_measure(tmp_path, capsys):
     out = tmp_path / "mine.json"
     assert main(["brush", "new", "-o", str(out)]) == 2
     reported = capsys.readouterr()
@@ -365,7 +365,7 @@ def test_without_a_terminal_it_explains_how_to_measure(tmp_path, capsys):
         ("--like round-6", None),
     ],
 )
-def test_fewer_than_three_depths_are_warned_about(tmp_path, capsys, words, depths):
+def test_fewer_than_three_depths_cause_a_warning(tmp_path, capsys, words, depths):
     status, _, reported = in_json(capsys, "brush", "new", "-o", tmp_path / "mine.json", *words.split())
     assert status == 0
     notices = [notice for _, notice in reported if notice.code == "few-depths"]
@@ -373,7 +373,7 @@ def test_fewer_than_three_depths_are_warned_about(tmp_path, capsys, words, depth
     assert not depths or agrees(notices[0], f"few-depths {depths}")
 
 
-def test_the_lag_of_a_turn_is_that_of_the_brush_it_makes():
+def test_the_lag_from_a_turn_is_the_lag_of_the_brush():
     """The lag computed from a turn is the lag of the brush made from it.
 
     The middle of this brush's mark turns where the ruler read the turn.

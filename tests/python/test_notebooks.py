@@ -28,7 +28,7 @@ def reported(tmp_path):
     return run
 
 
-def test_notebooks_are_small_and_hold_no_output():
+def test_notebooks_are_small_and_contain_no_output():
     assert len(NOTEBOOKS) == 3
     for path in NOTEBOOKS:
         cells = json.loads(path.read_text())["cells"]
@@ -37,7 +37,7 @@ def test_notebooks_are_small_and_hold_no_output():
 
 
 @pytest.mark.slow
-def test_a_first_word(reported):
+def test_first_word_notebook_runs(reported):
     text, shown = reported(NOTEBOOKS[0])
     compensated, plain = (float(each) for each in re.findall(r"overlap [a-z ]*(\d\.\d+)", text))
     assert compensated > 0.93 > 0.7 > plain
@@ -46,7 +46,7 @@ def test_a_first_word(reported):
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_a_brush_from_a_table_and_from_marks(reported):
+def test_brush_notebook_runs(reported):
     text, shown = reported(NOTEBOOKS[1])
     off = {name: float(mm) for name, mm in re.findall(r"^(.+): lag off by (.+) mm at most", text, re.M)}
     assert set(off) == {"table", "section 4", "marks"}
@@ -56,7 +56,7 @@ def test_a_brush_from_a_table_and_from_marks(reported):
 
 
 @pytest.mark.slow
-def test_models_are_compared(reported):
+def test_model_comparison_notebook_runs(reported):
     text, shown = reported(NOTEBOOKS[2])
     own, angles, ruler = (float(each) for each in re.findall(r"overlap (\d\.\d+)", text))
     assert own > 0.95 and own > angles and own > ruler

@@ -52,7 +52,7 @@ def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
 
 
 @pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, True), (10.0, False)])
-def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(slant_mm, is_straight):
+def test_a_leg_is_straight_up_to_a_cut_and_bends_into_a_sharper_corner(slant_mm, is_straight):
     """A leg stays straight up to a slanted cut and bends into a sharper corner.
 
     The cuts are at 84, 70, 45 and 31 degrees. The leg once made a hook towards a corner of 70 degrees, which
@@ -72,7 +72,7 @@ def test_a_leg_stays_straight_to_a_cut_and_runs_into_a_corner_that_is_sharper(sl
         ("M10 45V24C16 14 26 9 36 9V16C28 16 20 20 17 27V45Z", 3.5),
     ],
 )
-def test_an_arm_whose_sides_bend_is_as_wide_at_its_cut(d, half_mm):
+def test_an_arm_with_bent_sides_keeps_its_width_up_to_its_cut(d, half_mm):
     """An arm with bent sides keeps its width up to its cut, as in C and r.
 
     The medial axis points past the middle of the cut. The stroke once ran on into the corner, where its half
@@ -90,7 +90,7 @@ def polygon(shape) -> str:
 
 
 @pytest.mark.parametrize("slant_deg", [-10, 0, 10, 20])
-def test_an_arm_of_a_round_c_ends_amid_its_cut(slant_deg):
+def test_an_arm_of_a_round_c_ends_in_the_middle_of_its_cut(slant_deg):
     """An arm of a round C ends in the middle of its cut.
 
     The corner where a bent side ends was once dropped later than the other corner of the cut. The path into
@@ -107,7 +107,7 @@ def test_an_arm_of_a_round_c_ends_amid_its_cut(slant_deg):
         assert half == pytest.approx(4, rel=0.12)
 
 
-def test_a_bar_runs_on_through_its_stem_where_that_has_a_stub():
+def test_a_bar_continues_through_its_stem_into_a_stub():
     """The left part of the bar of a bold f or t is painted.
 
     This part is too short for a branch of its own and once stayed blank.
@@ -147,7 +147,7 @@ def test_a_last_step_sideways_is_left_out():
     assert line[-1] == pytest.approx((40.3 - 3 * np.hypot(1, 0.1), 0, 3), abs=0.01)
 
 
-def test_a_hairline_that_ends_in_a_ball_keeps_its_way_from_the_stem():
+def test_a_hairline_that_ends_in_a_ball_keeps_its_course():
     """A hairline that ends in a ball keeps its course, as in the tail of a y.
 
     The straight cut of the stem is far behind the end and does not belong to the end.
@@ -193,7 +193,7 @@ def test_the_legs_of_an_apex_are_straight_and_begin_next_to_each_other(blunt_mm,
         ("M10 6H15.5V30.2L23 6H28.5L21.3 40Q15.7 46.1 10 40Z", 0.968),  # 0.948 towards one place
     ],
 )
-def test_lines_that_meet_in_a_round_corner_cover_it_either_way(d, least):
+def test_lines_that_meet_in_a_round_corner_cover_it(d, least):
     """Two lines cover the round corner in which they meet.
 
     The comparison stops short of the lines' ends, because discs leave the ends blunt.
@@ -203,7 +203,7 @@ def test_lines_that_meet_in_a_round_corner_cover_it_either_way(d, least):
     assert _core.area(_core.intersect(marks(made), shape)) > least * _core.area(shape)
 
 
-def test_what_turns_at_a_corner_as_one_stroke_is_one_line():
+def test_a_shape_that_turns_at_a_corner_is_one_line():
     """A shape that turns at a corner as one stroke has one connected line.
 
     A gap between the parts of the line would be refused.
@@ -224,7 +224,7 @@ def test_what_turns_at_a_corner_as_one_stroke_is_one_line():
         ("M10 28L45 6Q52 11 46 22Z", [45, 8]),  # narrow on the left: set down wide, lifted thin
     ],
 )
-def test_directions_are_those_of_writing(d, start):
+def test_strokes_run_in_the_direction_of_writing(d, start):
     (stroke,) = painted(path(d))
     assert ends(stroke)[0] == pytest.approx(start, abs=2.5)
 
@@ -242,7 +242,7 @@ def test_directions_are_those_of_writing(d, start):
         ("i", "M10 20H16V45H10ZM10 8H16V14H10Z", 2),
     ],
 )
-def test_letters_are_made_of_the_strokes_one_would_write(name, d, count):
+def test_letters_become_the_strokes_of_handwriting(name, d, count):
     made = painted(path(d))
     assert [stroke.id for stroke in made] == (["p"] if count == 1 else [f"p/{k}" for k in range(1, count + 1)])
     shape = target(made)
@@ -263,7 +263,7 @@ def test_pointed_tips_can_be_painted():
     assert _core.compensate(made, find_brush("round-6"), (100, 50)).plan.passes
 
 
-def test_where_lines_cross_they_stay_straight_and_both_have_the_crossing():
+def test_crossing_lines_stay_straight_and_both_cover_the_crossing():
     bar, stem = painted(path("M10 5H50V11H33V45H27V11H10Z"))
     line = _core.flatten(bar, 0.001)
     assert np.abs(line[:, 1] - 42).max() < 0.1, "the bar does not sag towards the stem"
@@ -285,7 +285,7 @@ def test_a_thick_line_that_bends_where_a_thin_one_crosses_it_is_one_stroke(half_
     assert _core.overlap(marks(made), target(made)) > 0.93  # with two arms the overlap is below 0.9
 
 
-def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
+def test_bars_precede_their_stems_and_words_go_from_left_to_right():
     assert [ends(stroke)[0][0] < 20 for stroke in painted(path("M10 5H50V11H33V45H27V11H10Z"))] == [
         True,
         False,
@@ -299,7 +299,7 @@ def test_bars_come_before_what_hangs_on_them_and_words_from_left_to_right():
     assert [ends(stroke)[0][0] for stroke in row] == sorted(ends(stroke)[0][0] for stroke in row)
 
 
-def test_a_stem_runs_up_to_its_serif_where_the_bowl_leaves_it_right_below():
+def test_a_stem_continues_to_its_serif_above_a_bowl():
     stem, bowl = painted(path("M6 9H22V15Q27 8 36 8V12Q28 13 22 22V48H14V13H6Z"))
     assert ends(stem) == [[8, 11], [18, 44]]
     assert ends(bowl)[0][0] < 22 < 33 < ends(bowl)[1][0], "the arm is a stroke of its own, from the stem"
@@ -309,7 +309,7 @@ def test_a_stem_runs_up_to_its_serif_where_the_bowl_leaves_it_right_below():
 
 
 @pytest.mark.parametrize(("top", "valley"), [(6, 24), (7, 24)])
-def test_a_stem_that_sticks_out_next_to_its_arch_is_a_stroke_of_its_own(top, valley):
+def test_a_stem_that_sticks_out_next_to_its_arch_is_a_separate_stroke(top, valley):
     """A stem that sticks out next to its arch is a stroke of its own.
 
     The humps of a script's n and m are too blunt for a branch of their own. They were once lost: the short
@@ -325,13 +325,13 @@ def test_a_stem_that_sticks_out_next_to_its_arch_is_a_stroke_of_its_own(top, val
     assert _core.area(_core.intersect(marks(made), letter)) > 0.93 * _core.area(letter)
 
 
-def test_a_blob_with_holes_that_is_but_one_crossing_is_painted():
+def test_a_blob_with_holes_and_a_single_crossing_is_painted():
     disc = "M{0} 25A{1} {1} 0 1 0 {2} 25A{1} {1} 0 1 0 {0} 25Z".format
     made = painted(path(disc(10, 15, 40) + disc(22.5, 0.5, 23.5) + disc(26.5, 0.5, 27.5), 'fill-rule="evenodd"'))
     assert _core.area(target(made)) == pytest.approx(np.pi * (15**2 - 2 * 0.5**2), rel=0.01)
 
 
-def test_the_inside_of_a_crossing_that_nothing_runs_through_is_the_target_of_a_line_that_ends_there():
+def test_the_inside_of_a_crossing_without_through_line_belongs_to_an_ending_line():
     from brushsvg.strokes.skeleton import outline_strokes
 
     square = [[4.3, 11.6], [7.1, 15.8], [2.2, 19.0], [-0.5, 14.8]]
@@ -341,7 +341,7 @@ def test_the_inside_of_a_crossing_that_nothing_runs_through_is_the_target_of_a_l
     assert _core.area(target(outline_strokes(shape))) == pytest.approx(_core.area(shape), rel=0.02)
 
 
-def test_slivers_are_no_strokes():
+def test_slivers_do_not_become_strokes():
     bar, sliver = "M0 5H20V9H0Z", "M20 9L40 9.004L20 9.008Z"
     (stroke,) = painted(path(bar + sliver))
     assert stroke.middle_mm[:, 0::2].max() < 21
@@ -349,7 +349,7 @@ def test_slivers_are_no_strokes():
         painted(path(sliver))
 
 
-def test_loops_that_are_slivers_leave_a_ring_from_any_beginning():
+def test_sliver_loops_leave_a_ring_for_any_start():
     from brushsvg.geometry.rings import signed_area, without_slivers
 
     bar = [[0, 0], [10, 0], [10, 4], [0, 4]]
@@ -368,7 +368,7 @@ def test_loops_that_are_slivers_leave_a_ring_from_any_beginning():
     assert (without_slivers(thin, 0.01) == thin).all(), "there is nothing else"
 
 
-def test_slivers_that_touch_a_shape_take_its_axis_nowhere():
+def test_slivers_that_touch_a_shape_do_not_move_its_axis():
     """Slivers that touch a shape do not pull its axis away from the shape.
 
     Where slivers touch, their corners are moved apart. Their sides once crossed then, and the axis went on
@@ -392,7 +392,7 @@ def test_slivers_that_touch_a_shape_take_its_axis_nowhere():
             assert (np.abs(points - (1, 5)) < 1.1).all()
 
 
-def test_the_branches_amid_a_sun_are_of_no_stroke_where_nothing_is_nearest_to_them():
+def test_branches_in_the_middle_of_a_sun_without_nearest_area_are_dropped():
     from brushsvg.strokes.skeleton import outline_strokes
 
     turn, random = np.linspace(0, 2 * np.pi, 88, endpoint=False), np.random.default_rng(2)
@@ -401,7 +401,7 @@ def test_the_branches_amid_a_sun_are_of_no_stroke_where_nothing_is_nearest_to_th
     assert len(made) > 40 and all(stroke.wanted_mm for stroke in made)
 
 
-def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
+def test_strokes_of_random_shapes_cover_the_shape_and_stay_inside_it():
     from brushsvg.strokes.skeleton import outline_strokes
 
     random = np.random.default_rng(5)
@@ -419,7 +419,7 @@ def test_strokes_of_random_shapes_make_up_the_shape_and_stay_in_it():
         assert _core.overlap(marks(made), shape) > 0.7
 
 
-def test_corners_stay_corners():
+def test_a_corner_of_a_shape_stays_a_corner_of_its_line():
     (ell,) = painted(path("M10 5H16V39H40V45H10Z"))
     line = _core.flatten(ell, 0.001)
     corner = np.hypot(line[:, 0] - 13, line[:, 1] - 8).min()
@@ -427,7 +427,7 @@ def test_corners_stay_corners():
     assert ends(ell) == [[13, 8], [37, 42]]
 
 
-def test_a_belly_amid_a_line_is_as_wide_as_it_is():
+def test_a_bulge_in_a_line_is_painted_at_full_width():
     """A bulge in the middle of a line is painted at its full width.
 
     The corner of the bulge leaves a node of the axis there. The width once changed evenly from one arm of the
@@ -444,7 +444,7 @@ def test_a_belly_amid_a_line_is_as_wide_as_it_is():
 
 
 @pytest.mark.parametrize(("turned_deg", "apart_mm"), [(0, 7.8), (12, 7.6), (90, 7.8)])
-def test_dots_that_touch_are_dots(turned_deg, apart_mm):
+def test_dots_that_touch_stay_separate_dots(turned_deg, apart_mm):
     """Two squares that overlap at a corner, as in Arabic letters, are two dots.
 
     They once became a line with a waist and lost their corners.
@@ -461,7 +461,7 @@ def test_dots_that_touch_are_dots(turned_deg, apart_mm):
 
 
 @pytest.mark.parametrize("waist_mm", [4.4, 2.4])
-def test_a_line_with_a_waist_is_a_line(waist_mm):
+def test_a_line_with_a_waist_is_one_line(waist_mm):
     """A line with a waist is one line.
 
     The waist is hardly narrower than the ends, or it is narrow but long.
@@ -486,7 +486,7 @@ def test_a_dot_is_a_dab_and_a_ring_is_closed_and_turns_left_from_the_top():
     assert later[0] < start[0]
 
 
-def test_fill_and_stroke_is_the_shape_grown_by_half_the_stroke():
+def test_fill_with_stroke_is_the_shape_grown_by_half_the_stroke_width():
     body = path(BAR, 'fill="red" stroke="red" stroke-width="2"')
     (grown,) = painted(body)
     assert {round(half, 2) for _, half in grown.half_width} == {4}
@@ -497,7 +497,7 @@ def test_fill_and_stroke_is_the_shape_grown_by_half_the_stroke():
     assert {round(half, 2) for _, half in shape.half_width} == {3}
 
 
-def test_a_fill_that_does_not_show_next_to_its_stroke_leaves_a_line():
+def test_a_fill_hidden_by_its_stroke_becomes_a_line():
     (line,) = painted(path("M10 10L30 11L50 10", 'stroke="red" stroke-width="4"'))
     assert line.wanted_mm == ()
     assert ends(line) == [[10, 10], [50, 10]]
@@ -511,7 +511,7 @@ def test_hairline_contours_can_be_read_as_shapes():
     assert {round(half, 2) for _, half in shape.half_width} == {3}
 
 
-def test_nothing_left_is_refused():
+def test_a_drawing_without_paintable_shapes_is_refused():
     with refused("nothing-to-paint 'no stroke'"):
         painted(path(BAR), paths_as="stroke")
     with refused("nothing-to-paint 'no area'"):
@@ -520,7 +520,7 @@ def test_nothing_left_is_refused():
     assert are_reported(notices, "outline-empty thin")
 
 
-def test_open_paths_are_closed_and_rules_of_filling_are_kept():
+def test_open_paths_are_closed_and_fill_rules_are_kept():
     (bar,) = painted(path("M10 20H60V26H10"))
     assert _core.area(bar.wanted_mm) == pytest.approx(300)
     square = "M10 5H50V45H10ZM20 15H40V35H20Z"
@@ -556,7 +556,7 @@ HOSTILE = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", HOSTILE)
 @pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
-def test_hostile_outlines(name, rule):
+def test_hostile_outlines_are_read_or_refused(name, rule):
     design = read(f'<g fill="red" stroke="none" fill-rule="{rule}">{path(HOSTILE[name])}</g>')
     try:
         made, _ = strokes(design)
@@ -575,7 +575,7 @@ def test_hostile_outlines(name, rule):
         assert _core.area(_core.unite([*marks(made), *shape])) < 1.1 * _core.area(shape) + 1e-3, "no paint outside"
 
 
-def test_scribbles_beyond_all_lettering_are_left_out_with_a_warning():
+def test_scribbles_that_are_too_complex_are_left_out_with_a_warning():
     points = np.random.default_rng(1).uniform(0, 50, (1000, 2)).round(2)
     scribble = "M" + "L".join(f"{x} {y}" for x, y in points) + "Z"
     design = read(f'<g fill="red" stroke="none">{path(scribble)}<path id="bar" d="{BAR}"/></g>')
@@ -608,7 +608,7 @@ def test_shapes_of_more_lines_than_any_page_are_refused():
         outline_strokes([np.vstack([there, np.add(there[::-1], (0, 0.2))])])
 
 
-def test_edges_side_by_side_are_counted_in_bands():
+def test_parallel_edges_are_counted_in_bands():
     from brushsvg.strokes.skeleton.fill_rule import _count_compared_pairs
 
     def pairs(ring):
@@ -644,7 +644,7 @@ def test_clearance_is_the_distance_from_the_outline_inside_and_out():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [np.nan, np.inf])
-def test_rings_with_a_number_that_is_none_are_refused(number):
+def test_rings_with_invalid_numbers_are_refused(number):
     ring = np.array([[0, 0], [5, 0], [5, number], [0, 5.0]])
     for ask in (_core.area, _core.unite, _core.fill, lambda rings: _core.medial_axis(rings, 0.1)):
         with refused("geometry-out-of-range"):
@@ -652,7 +652,7 @@ def test_rings_with_a_number_that_is_none_are_refused(number):
 
 
 @pytest.mark.thorough
-def test_a_hundred_thousand_vertices():
+def test_an_outline_of_a_hundred_thousand_vertices_is_read():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)
     ring = np.column_stack([30 + (20 + 0.01 * np.sin(900 * angle)) * np.cos(angle), 25 + 20 * np.sin(angle)])
     from brushsvg.strokes.skeleton import outline_strokes

@@ -60,11 +60,11 @@ def names(found):
     return [[station.name for station in stations] for stations in found]
 
 
-def test_no_reload_no_visits():
+def test_a_cell_without_reload_has_no_paint_visits():
     assert station_visits(whole(plan_of((10, "#000000", ""))), find_cell()) == ()
 
 
-def test_paint_lasts_so_far():
+def test_paint_is_fetched_after_the_length_of_a_load():
     plan = plan_of(*[(40, "#000000", "")] * 6)
     assert names(station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
         ["black"],
@@ -84,19 +84,19 @@ def test_paint_lasts_so_far():
     ]
 
 
-def test_every_stroke_or_every_layer():
+def test_paint_can_be_fetched_for_every_stroke_or_layer():
     plan = plan_of((9, "#000000", "a"), (9, "#000000", "a"), (9, "#000000", "b"))
     assert names(station_visits(whole(plan), cell_with(Reload("stroke")))) == [["black"]] * 3
     assert names(station_visits(whole(plan), cell_with(Reload("layer")))) == [["black"], [], ["black"]]
 
 
-def test_another_colour_is_washed_for():
+def test_the_brush_is_washed_before_another_colour():
     plan = plan_of((9, "#000000", ""), (9, "#FF0000", ""), (9, "#00ff00", ""), (9, "#000000", ""))
     found = names(station_visits(whole(plan), cell_with(Reload("length", wash="water"))))
     assert found == [["black"], ["water", "any"], [], ["water", "black"]], "red and green come from one vessel"
 
 
-def test_a_resumed_job_begins_with_paint():
+def test_a_resumed_job_starts_with_a_paint_visit():
     plan = plan_of(*[(40, "#000000", "")] * 4)
     assert names(station_visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
         [],
@@ -106,19 +106,19 @@ def test_a_resumed_job_begins_with_paint():
     ]
 
 
-def test_what_is_not_painted_again_asks_for_no_paint():
+def test_strokes_skipped_on_resume_need_no_paint():
     plan = plan_of((40, "#00ff00", ""), (40, "#000000", ""))
     cell = cell_with(Reload("stroke"), BLACK)
     assert names(station_visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
 
 
-def test_a_colour_that_nobody_serves_is_refused():
+def test_a_colour_without_a_station_is_refused():
     cell = cell_with(Reload("stroke"), BLACK)
     with refused("colour-not-served #ff0000 #000000", "s2"):
         station_visits(whole(plan_of((9, "#000000", ""), (9, "#ff0000", ""))), cell)
 
 
-def test_a_visit_goes_down_into_the_paint_and_drips_off():
+def test_a_visit_dips_the_brush_and_lets_it_drip():
     section = make_visit(BLACK, BRUSH, find_cell())
     assert section.title == "paint: black"
     reported = [
@@ -140,7 +140,7 @@ def test_a_visit_goes_down_into_the_paint_and_drips_off():
     assert wiped[-1].points_mm.tolist() == [[-10, 40, 10]]
 
 
-def test_paint_is_stirred_first_and_then_only_dipped_into_and_the_brush_washed_hard_or_rinsed(tmp_path, capsys):
+def test_paint_is_stirred_once_then_dipped_and_the_brush_washed_or_rinsed(tmp_path, capsys):
     """Paint is stirred first, then only dipped into; the brush is washed or rinsed.
 
     The tests' own interpreter runs the program. The visits are: full, short, hard wash and full, rinse and
@@ -226,13 +226,13 @@ def test_a_stroke_that_sweeps_through_a_vessel_is_refused():
     assert not reported(rim_mm=-3.5, surface_mm=-3.5)
 
 
-def test_a_person_dips_at_safe_height():
+def test_a_person_dips_the_brush_at_safe_height():
     section = make_visit(Station("hand", (5.0, 6.0), by_hand=True), BRUSH, find_cell())
     assert section.moves[0].points_mm.tolist() == [[5, 6, 10]]
     assert section.steps[-1].seconds is None and section.steps[-1].message.endswith(": hand")
 
 
-def test_a_station_out_of_the_box_is_refused():
+def test_a_station_outside_the_workspace_is_refused():
     cell = cell_with(Reload("stroke"))
     boxed = replace(cell, workspace=replace(cell.workspace, box_mm=((-15.0, -50.0, -30.0), (500.0, 200.0, 60.0))))
     broken = forbidden(SimpleNamespace(passes=[], sheet_mm=(1, 1)), BRUSH, boxed)
@@ -240,7 +240,7 @@ def test_a_station_out_of_the_box_is_refused():
 
 
 @pytest.mark.parametrize(("stir_mm", "can_be_used"), [(1.0, True), (4.0, False)])
-def test_cell_check_refuses_what_convert_would_refuse_of_a_station(capsys, tmp_path, stir_mm, can_be_used):
+def test_cell_check_and_convert_refuse_the_same_stations(capsys, tmp_path, stir_mm, can_be_used):
     cell = cell_with(Reload("stroke"), replace(BLACK, stir_mm=stir_mm))
     boxed = replace(
         cell,
@@ -254,7 +254,7 @@ def test_cell_check_refuses_what_convert_would_refuse_of_a_station(capsys, tmp_p
     assert (status == 0) is can_be_used
 
 
-def test_a_stroke_may_ask_for_paint_or_go_without():
+def test_a_stroke_may_request_or_refuse_paint():
     plan = plan_of((9, "#000000", ""), (9, "#000000", "", REQUESTED), (999, "#000000", "", REFUSED))
     assert names(station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
         ["black"],
@@ -265,7 +265,7 @@ def test_a_stroke_may_ask_for_paint_or_go_without():
     assert [(a_pass.stroke, a_pass.load) for a_pass in loads] == [(each.stroke, 0) for each in plan.passes]
 
 
-def test_names_do_not_make_a_stroke_a_part_of_another():
+def test_a_stroke_named_like_a_load_is_not_mistaken_for_one():
     """A stroke named like a load of another stroke is not mistaken for one.
 
     Loads are named s+2, and a drawing may use names of this form for its own strokes.
@@ -292,7 +292,7 @@ def test_names_do_not_make_a_stroke_a_part_of_another():
     assert station_visits(whole(plan), cell) == station_visits(loads, cell)
 
 
-def test_a_stroke_without_a_place_to_stop_at_is_warned_of():
+def test_a_stroke_without_a_possible_stop_causes_a_warning():
     brush = find_brush("round-6")
     cell = cell_with(Reload("length", 40.0, 5.0))
     step = np.array([(0, 0), (4, 0)] * 20, float)  # to and fro on the spot: the bristles are never pulled
@@ -326,7 +326,7 @@ def long_plan(brush):
     )
 
 
-def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
+def test_a_long_stroke_is_split_into_loads_with_the_same_mark():
     brush = find_brush("round-6")
     cell = cell_with(Reload("length", 120.0, 6.0))
     plan = long_plan(brush)
@@ -354,7 +354,7 @@ def test_a_long_stroke_is_painted_in_loads_and_its_mark_stays():
     assert split_into_loads(plan, brush, cell_with(Reload("length", 1000.0))) == whole(plan)
 
 
-def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
+def test_a_load_lasts_until_its_marks_are_narrower_than_allowed():
     """A load lasts until its marks are narrower than the cell allows.
 
     By hand: at 0.4 per metre, marks are 5 % narrower after 128.2 mm.
@@ -377,7 +377,7 @@ def test_a_load_lasts_until_marks_are_narrower_than_the_cell_allows():
     assert fetched(brush, Reload("layer", narrower_percent=5.0)) == [True] + [False] * 5, "no way is counted"
 
 
-def test_a_long_stroke_is_painted_in_parts_as_short_as_the_brush_asks_for():
+def test_a_long_stroke_is_split_by_the_paint_length_of_the_brush():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 1000.0, 6.0, narrower_percent=6.0))
     plan = long_plan(brush)
     assert split_into_loads(plan, brush, cell).strokes() == ["short", "long", "last"]
@@ -390,7 +390,7 @@ def test_a_long_stroke_is_painted_in_parts_as_short_as_the_brush_asks_for():
     assert shortest >= 0.94
 
 
-def test_prediction_narrows_whole_strokes_as_their_loads():
+def test_the_predicted_width_of_a_stroke_is_the_width_of_its_loads():
     """The predicted width of a whole stroke is the width that its loads give.
 
     One stroke needs three loads, and one goes on with the paint of the stroke before it. The test compares
@@ -419,7 +419,7 @@ def test_prediction_narrows_whole_strokes_as_their_loads():
     assert all(each.width_share.size == 0 for each in predict_plan_marks(plan, brush, cell=cell).passes)
 
 
-def test_parts_begin_where_they_were_cut():
+def test_loads_start_where_their_stroke_was_cut():
     """Loads begin where their stroke was cut.
 
     The test compares the dips along whole strokes with the paths of the loads. From one load to the next, the
@@ -436,14 +436,14 @@ def test_parts_begin_where_they_were_cut():
     assert dips[0] == 0.0 and 120 < dips[1] < 150
 
 
-def test_paint_that_lasts_too_short_to_come_back_is_refused():
+def test_paint_that_lasts_too_short_is_refused():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 1000.0, 6.0, narrower_percent=1.0))
     brush.paint = _core.Paint(1.0)
     with refused("load-too-short round-6 10.1 6"):
         split_into_loads(plan_of((40, "#000000", "")), brush, cell)
 
 
-def test_a_brush_that_says_nothing_of_its_paint_is_reported():
+def test_a_brush_without_paint_data_is_reported():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 200.0, narrower_percent=5.0))
     assert are_reported(report_missing_paint(brush, cell), "paint-unknown round-6 narrower_percent")
     assert not report_missing_paint(brush, cell_with(Reload("length", 200.0)))
@@ -451,7 +451,7 @@ def test_a_brush_that_says_nothing_of_its_paint_is_reported():
     assert not report_missing_paint(brush, cell)
 
 
-def test_loads_are_no_plan():
+def test_loads_are_not_split_or_reported_as_strokes():
     """Loads are not cut again, nor reported as if each load were a stroke."""
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     loads = split_into_loads(long_plan(brush), brush, cell)
@@ -465,7 +465,7 @@ def test_loads_are_no_plan():
         station_visits(long_plan(brush), cell)
 
 
-def test_loads_that_were_written_as_a_plan_are_not_cut_again():
+def test_loads_written_as_a_plan_are_not_split_again():
     """Loads that were written as a plan are not cut again.
 
     Each part is longer than a load, because the brush comes back a little before it goes on. If the parts
@@ -493,7 +493,7 @@ def test_loads_that_were_written_as_a_plan_are_not_cut_again():
             _core.read_plan(text.replace('"load": 2', f'"load": {written}'))
 
 
-def test_what_every_load_does_is_reported_once_of_its_stroke():
+def test_a_problem_of_every_load_is_reported_once_for_its_stroke():
     brush, cell = find_brush("round-6"), cell_with(Reload("length", 120.0, 6.0))
     plan = long_plan(brush)
     for a_pass in plan.passes:
@@ -502,7 +502,7 @@ def test_what_every_load_does_is_reported_once_of_its_stroke():
     assert [where for where, _ in reported] == ["short", "long", "last"]
 
 
-def test_all_reports_of_a_job_count_loads(tmp_path, monkeypatch, capsys):
+def test_all_reports_of_a_job_count_its_loads(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     brush = find_brush("round-6")
     (tmp_path / "long.json").write_text(_core.write_plan(long_plan(brush)))
@@ -524,7 +524,7 @@ def test_all_reports_of_a_job_count_loads(tmp_path, monkeypatch, capsys):
     assert "round-6, 5 strokes" in header and gives(reported["x.ngc"], time)
 
 
-def test_the_way_to_the_paint_is_looked_at_before_anything_is_written():
+def test_the_path_to_the_paint_is_checked_before_anything_is_written():
     """The path to the paint is checked before anything is written.
 
     Both ends of the path can be allowed although the path between them is not.
@@ -553,7 +553,7 @@ def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
     assert titles[5] == "stroke 3 of 5: long+2"
 
 
-def test_a_station_on_the_sheet_or_far_from_it_is_refused():
+def test_a_station_on_the_sheet_or_too_far_away_is_refused():
     for place, said in (
         ((40.0, 30.0), "station-on-sheet '400 x 100 mm'"),
         ((-90.0, 10.0), "tool-off-sheet 60.00 left"),
@@ -563,7 +563,7 @@ def test_a_station_on_the_sheet_or_far_from_it_is_refused():
         assert are_reported(reported, said)
 
 
-def test_check_simulates_each_stroke_freshly_dipped_where_a_cell_fetches_no_paint():
+def test_check_simulates_freshly_dipped_strokes_in_cells_without_reload():
     """A fault that narrows the marks over all strokes of a program is caught."""
     brush, cell = find_brush("round-6"), find_cell("linuxcnc-3axis")
     brush.paint = _core.Paint(2.0, lasts_mm=5000.0)

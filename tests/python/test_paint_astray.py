@@ -22,7 +22,7 @@ def brush():
 
 
 @pytest.mark.parametrize(("displaced_mm", "is_reported"), [(0.0, False), (0.8, False), (1.5, True), (2.5, True)])
-def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_reported):
+def test_paint_outside_a_shape_is_reported_with_its_distance(brush, displaced_mm, is_reported):
     """Paint outside a shape is reported by its distance from the shape.
 
     A straight mark that is shifted sideways is outside by the shift. Kaushan's B, painted as well as
@@ -38,13 +38,13 @@ def test_paint_is_reported_by_how_far_it_is_outside(brush, displaced_mm, is_repo
         assert float(away) == pytest.approx(displaced_mm, abs=0.11)
 
 
-def test_paint_on_a_neighbour_is_in_the_target(brush):
+def test_paint_on_a_neighbouring_stroke_is_not_outside(brush):
     run = _core.compensate([bar("a", 32.5)], brush, (100.0, 60.0)).plan.passes[0]
     assert find_paint_outside([bar("a", 30.0), bar("b", 33.0)], [run, None], brush) == []
     assert len(find_paint_outside([bar("a", 30.0), bar("b", 43.0)], [run, None], brush)) == 1
 
 
-def test_a_tracking_error_is_reported_where_the_brush_is_known_better(brush):
+def test_a_tracking_error_is_reported_beyond_the_uncertainty_of_the_brush(brush):
     """A tracking error is reported only where it exceeds the brush's uncertainty.
 
     The lag of round-6 has a standard deviation of 0.58 mm, which hides an error of 0.1 mm.

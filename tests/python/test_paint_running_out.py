@@ -76,7 +76,7 @@ def mean_overlap(work, rate):
 
 @pytest.mark.slow
 @sample("compensation", ["closed", "refined"], keep=1)
-def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
+def test_marks_of_a_job_with_one_load_have_the_drawn_width(tmp_path, compensation):
     """The marks of a job with one load are as wide as drawn.
 
     Without the correction, the last marks would be a sixth too narrow.
@@ -88,7 +88,7 @@ def test_a_job_of_one_load_comes_out_as_wide_as_drawn(tmp_path, compensation):
     assert not now.notices
 
 
-def test_next_to_the_middle_marks_are_as_wide_as_drawn(tmp_path):
+def test_sections_through_the_middle_of_marks_have_the_drawn_width(tmp_path):
     """A cut through the middle of each mark has the drawn width.
 
     Without the correction, the last marks were half as wide.
@@ -106,7 +106,7 @@ def test_next_to_the_middle_marks_are_as_wide_as_drawn(tmp_path):
         assert mark.intersection(cut).length == pytest.approx(2 * stroke.half_width[0][1], rel=0.01)
 
 
-def test_depth_falls_back_where_paint_is_fetched(tmp_path):
+def test_depth_returns_to_normal_after_a_paint_visit(tmp_path):
     cell = cell_with(Reload("length", 1e5, 6.0, narrower_percent=20.0))
     same = drawing().replace('stroke-width="', 'stroke-width="3" data-was="')
     work = prepared(tmp_path, 0.4, cell, drawn=same)
@@ -121,7 +121,7 @@ def test_depth_falls_back_where_paint_is_fetched(tmp_path):
     assert after and all(deepest[k] < deepest[k - 3] for k in after)
 
 
-def test_without_paint_plans_stay(tmp_path):
+def test_plans_without_paint_decay_are_unchanged(tmp_path):
     """A brush without paint, or with paint that never runs out, gets the usual plan.
 
     The two plans are equal to the last bit.
@@ -130,7 +130,7 @@ def test_without_paint_plans_stay(tmp_path):
     assert plans[0].split('"passes"')[1] == plans[1].split('"passes"')[1]
 
 
-def test_where_the_depths_end_it_is_said_once(tmp_path):
+def test_reaching_the_depth_limit_is_reported_once(tmp_path):
     work = prepared(tmp_path, 0.4)
     deepest = max(-np.asarray(one.poses_mm)[:, 2].min() for one in work.plan.passes)
     assert 9.9 < deepest <= 10
@@ -145,7 +145,7 @@ def test_where_the_depths_end_it_is_said_once(tmp_path):
 
 
 @pytest.mark.parametrize(("order", "first"), [("nearest", 1), ("drawn", 31)])
-def test_another_order_and_a_job_that_is_resumed_are_reported(tmp_path, order, first):
+def test_another_order_and_a_resumed_job_are_reported(tmp_path, order, first):
     work = prepared(tmp_path, 0.2)
     reported = simulate_and_check(work, ".ngc", Job(first_stroke=first), order).remarks()
     assert is_reported(reported, "paint-out-of-turn" + (" 31" if first > 1 else ""))
@@ -154,7 +154,7 @@ def test_another_order_and_a_job_that_is_resumed_are_reported(tmp_path, order, f
     assert not simulate_and_check(often, ".ngc", Job(first_stroke=first), order).remarks()
 
 
-def test_shapes_and_dabs_and_closed_paths_are_pressed_deeper_too(tmp_path):
+def test_shapes_dabs_and_closed_paths_are_pressed_deeper(tmp_path):
     shapes = (
         '<rect x="20" y="40" width="60" height="4" fill="#000"/>'
         '<path d="M100,40 l0,0" stroke="#000" stroke-width="4" stroke-linecap="round"/>'
@@ -171,7 +171,7 @@ def test_shapes_and_dabs_and_closed_paths_are_pressed_deeper_too(tmp_path):
         assert pressed > mean_overlap(off[0], 0.0) - 0.02
 
 
-def test_the_program_passes_its_own_check(tmp_path, capsys):
+def test_check_accepts_the_program(tmp_path, capsys):
     brush = brush_of(0.4)
     (tmp_path / "b.json").write_bytes(_core.write_brush(brush).encode())
     cell = cell_with(Reload("length", 200.0, 6.0, narrower_percent=15.0))

@@ -47,14 +47,14 @@ def scaled(by):
     return [{"stroke": m["stroke"], "outline_mm": [(np.array(m["outline_mm"][0]) * by).tolist()]} for m in marks()]
 
 
-def test_marks_and_plan_inline():
+def test_marks_and_plan_can_be_inline():
     painted = read_painted(plan(), marks(), None)
     assert [mark.stroke for mark in painted.marks] == ["corner-0", "straight-0", "corner-1", "straight-1"]
     assert painted.deepest_mm == 4 and painted.depths >= 2
     np.testing.assert_allclose(_core.area(painted.marks[0].outline_mm), 34 * 24, rtol=1e-6)
 
 
-def test_marks_and_plan_from_our_own_files():
+def test_marks_and_plan_can_be_file_names():
     brush_less = _core.Plan("", "", (200.0, 200.0), [_core.Pass(n, np.array(p, float)) for n, p in strokes()])
     brush = _core.Brush()
     brush.depth_range_mm = (0.0, 10.0)
@@ -73,7 +73,7 @@ def test_marks_and_plan_from_our_own_files():
     assert _core.overlap(painted.marks[2].outline_mm, done.passes[2].outline_mm) > 0.999
 
 
-def test_depths_are_counted_where_something_is_painted():
+def test_depths_are_counted_only_on_painted_marks():
     def at(*depths):
         return np.array([[30.0 * k, 0, -d] for k, d in enumerate(depths)])
 
@@ -173,12 +173,12 @@ def bent(mark, **changes):
         ),
     ],
 )
-def test_what_cannot_be_is_refused(plan_, marks_, where, said):
+def test_invalid_painted_marks_are_refused(plan_, marks_, where, said):
     with refused(said, where):
         read_painted(plan_, marks_, None)
 
 
-def test_a_plan_that_is_none_is_refused():
+def test_an_invalid_plan_is_refused():
     with pytest.raises(Error):
         read_painted({"passes": [{"stroke": "a"}]}, marks(), None)
 
@@ -192,7 +192,7 @@ def test_a_plan_that_is_none_is_refused():
         ({"marks": [], "expected": {"height_mm": -1}}, "expected.height_mm", "out-of-range 0 30"),
     ],
 )
-def test_the_file_itself(keys, where, said):
+def test_invalid_measurement_files_are_refused(keys, where, said):
     head = {"format": "brushsvg/measurements", "version": 1}
     with refused(said, where):
         read_measurements(json.dumps(head | keys).encode(), ".json")
@@ -210,7 +210,7 @@ def test_the_file_itself(keys, where, said):
         (lambda p: p - [100, 100], "marks-displaced 141"),
     ],
 )
-def test_a_sheet_in_another_place_is_reported_with_it(moved, said):
+def test_a_displaced_sheet_is_reported_with_its_displacement(moved, said):
     """A sheet in another place gets one report, with its displacement.
 
     Instead, each of these sheets was once queried for the ids of its strokes.
@@ -224,7 +224,7 @@ def test_a_sheet_in_another_place_is_reported_with_it(moved, said):
         read_painted(plan_, rows, None)
 
 
-def test_a_path_of_thousands_of_characters_does_not_fill_the_terminal():
+def test_a_very_long_path_is_shortened_in_the_message():
     def read(path):
         raise Error("the file cannot be read: its name is too long", code="file-unreadable")
 

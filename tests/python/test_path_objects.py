@@ -28,7 +28,7 @@ def away(points, others):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("given", [svgpathtools.parse_path(DATA), DATA], ids=["Path", "text"])
-def test_a_path_becomes_the_stroke_that_svgpathtools_draws(given):
+def test_a_path_object_gives_the_curve_of_svgpathtools(given):
     stroke = brushsvg.stroke_from_path(given, 3.0, id="s")
     theirs = sampled(svgpathtools.parse_path(DATA), 20000)
     ours = brushsvg.flatten(stroke, 0.001)[:, :2] @ (1, 1j)
@@ -36,7 +36,7 @@ def test_a_path_becomes_the_stroke_that_svgpathtools_draws(given):
     assert (stroke.id, stroke.closed, stroke.half_width) == ("s", False, ((0.0, 1.5), (1.0, 1.5)))
 
 
-def test_y_points_down_from_the_upper_edge_where_a_page_has_a_height():
+def test_y_points_down_if_a_page_height_is_given():
     up, down = (brushsvg.stroke_from_path("M10 20 L30 25", 3.0, page_height_mm=height) for height in (None, 100.0))
     assert np.allclose(np.asarray(up.middle_mm)[0, [0, 1, 6, 7]], (10, 20, 30, 25))
     assert np.allclose(np.asarray(down.middle_mm)[0, [0, 1, 6, 7]], (10, 80, 30, 75))
@@ -45,7 +45,7 @@ def test_y_points_down_from_the_upper_edge_where_a_page_has_a_height():
 
 
 @pytest.mark.parametrize("shape", [(1, 4, 2), (1, 8)])
-def test_arrays_are_cubics(shape):
+def test_arrays_are_read_as_cubics(shape):
     cubics = np.array([[0, 0], [10, 0], [20, 10], [30, 10.0]])
     stroke = brushsvg.stroke_from_path(cubics.reshape(shape), 2.0)
     assert np.array_equal(np.asarray(stroke.middle_mm), cubics.reshape(1, 8))
@@ -53,14 +53,14 @@ def test_arrays_are_cubics(shape):
     assert np.array_equal(as_complex.middle_mm, stroke.middle_mm)
 
 
-def test_what_ends_where_it_began_is_closed():
+def test_a_path_with_a_closing_command_is_closed():
     square = "M10 10 H30 V30 H10 "
     assert brushsvg.stroke_from_path(square + "Z", 2.0).closed
     assert not brushsvg.stroke_from_path(square, 2.0).closed
     assert brushsvg.stroke_from_path(svgpathtools.parse_path(square + "Z"), 2.0).closed
 
 
-def test_a_stroke_of_a_path_is_painted_and_its_way_comes_back_as_one():
+def test_a_stroke_from_a_path_is_painted_and_returned_as_a_path():
     stroke = brushsvg.stroke_from_path("M30 40 C50 70 80 70 100 40", 4.0)
     brush = brushsvg.find_brush("round-6")
     done = brushsvg.compensate([stroke], brush, (140, 100))
@@ -89,12 +89,12 @@ def test_a_stroke_of_a_path_is_painted_and_its_way_comes_back_as_one():
         ("M0 0 L10 0", np.nan, "out-of-range nan (0"),
     ],
 )
-def test_what_is_no_stroke_is_refused(path, width_mm, said):
+def test_invalid_paths_are_refused(path, width_mm, said):
     with refused(said):
         brushsvg.stroke_from_path(path, width_mm)
 
 
-def test_drawings_that_are_open_already_are_read_as_their_files_are(tmp_path):
+def test_open_documents_are_read_like_their_files(tmp_path):
     text = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50"><path id="a" '
     text += 'd="M10 20 C20 5 30 5 40 30" fill="none" stroke="#123456" stroke-width="3"/></svg>'
     (tmp_path / "a.svg").write_text(text)
@@ -107,7 +107,7 @@ def test_drawings_that_are_open_already_are_read_as_their_files_are(tmp_path):
         assert ours.elements[0].colour == "#123456"
 
 
-def test_an_ezdxf_document_is_read_as_its_file_is(tmp_path):
+def test_an_ezdxf_document_is_read_like_its_file(tmp_path):
     document = ezdxf.new("R2010", units=4)
     document.modelspace().add_lwpolyline([(0, 0, 1, 3, 0), (40, 10, 3, 1, 0.5), (60, 0, 1, 1, 0)])
     document.saveas(tmp_path / "a.dxf")
@@ -117,7 +117,7 @@ def test_an_ezdxf_document_is_read_as_its_file_is(tmp_path):
         assert np.array_equal(a.subpaths[0].cubics, b.subpaths[0].cubics)
 
 
-def test_what_is_neither_file_nor_document_is_refused():
+def test_objects_that_are_neither_file_nor_document_are_refused():
     for wrong in (None, 3, io.BytesIO(b"x"), object()):
         with refused("drawing-format ElementTree"):
             brushsvg.read_drawing(wrong)

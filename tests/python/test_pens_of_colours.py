@@ -27,7 +27,7 @@ def desk(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in (*SERVOS, "fr3")])
-def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, name):
+def test_a_program_stops_for_each_pen_change_and_check_requires_it(desk, capsys, name):
     program = f"pens{LANGUAGES[name]}"
     status, _, said = call(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
     assert status == 0 and sum(gives(line, "2") for line in said) == 1
@@ -43,7 +43,7 @@ def test_a_program_stops_for_each_other_pen_and_check_asks_for_it(desk, capsys, 
     assert status == 1 and is_reported(said, "other-station nothing 'pen 000000'")
 
 
-def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
+def test_a_job_resumed_after_a_pen_change_does_not_stop_for_it(desk, capsys):
     words = ("convert", "pens.svg", "-o", "rest.ngc", "--from-stroke")
     (resumed,) = call(capsys, *words, "2")[2]
     (behind,) = call(capsys, *words, "4")[2]
@@ -52,7 +52,7 @@ def test_who_resumes_behind_a_change_has_changed_the_pen(desk, capsys):
     assert call(capsys, "check", "rest.ngc", "pens.svg")[0] == 0
 
 
-def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
+def test_a_cell_without_pauses_reports_that_colours_are_drawn_as_one(desk, capsys):
     for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
         status, _, said = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
         assert status == 0 and is_reported(said, "colours-as-one")
@@ -63,7 +63,7 @@ def test_where_nobody_is_waited_for_it_is_said(desk, capsys):
     assert "M0" not in (desk / "pens.ngc").read_text()
 
 
-def test_speed_is_that_of_all_strokes_within_what_brush_and_cell_allow(desk, capsys):
+def test_one_speed_fits_all_strokes_within_the_limits(desk, capsys):
     assert call(capsys, "convert", "pens.svg", "-o", "pens.ngc", "--speed", "12")[0] == 0
     feeds = re.findall(r"F([\d.]+)", (desk / "pens.ngc").read_text())
     assert set(map(float, feeds)) == {720.0, 1500.0, 480.0}, "painting, approach and press"

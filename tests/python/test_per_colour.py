@@ -27,7 +27,7 @@ def names(text):
     return "".join(re.findall(r"(?m)^\(stroke \d+ of \d+: (\w+)\)", text))
 
 
-def test_each_colour_has_a_program(desk, capsys):
+def test_each_colour_gets_its_own_program(desk, capsys):
     status, _, reported = in_json(
         capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--picture", "all.png"
     )
@@ -42,7 +42,7 @@ def test_each_colour_has_a_program(desk, capsys):
         assert one.text == (desk / file).read_text(), "the same by --colour and from Python"
 
 
-def test_strokes_of_a_colour_are_where_they_are_in_all(desk, capsys):
+def test_strokes_of_one_colour_keep_their_positions(desk, capsys):
     """Strokes of one colour have the positions that they have in the whole drawing.
 
     If --fit were applied to each colour alone, each would fill the sheet.
@@ -55,20 +55,20 @@ def test_strokes_of_a_colour_are_where_they_are_in_all(desk, capsys):
     assert len(part) == 2 and all(places[each.stroke] == each.poses_mm.tolist() for each in part)
 
 
-def test_a_plan_is_parted_as_its_drawing_is(desk, capsys):
+def test_a_plan_is_split_by_colour_like_its_drawing(desk, capsys):
     assert in_json(capsys, "convert", "word.svg", "-o", "plan.json")[0] == 0
     assert in_json(capsys, "convert", "plan.json", "-o", "out.ngc", "--per-colour")[0] == 0
     assert [names(path.read_text()) for path in sorted(desk.glob("out*"))] == [*INKS.values()]
 
 
-def test_a_colour_that_is_not_there_is_refused(desk, capsys):
+def test_an_unknown_colour_is_refused(desk, capsys):
     status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--colour", "#00ff00")
     assert status == 1 and is_reported(reported, "nothing-to-paint #00ff00 #ffd700 #d32f2f #1a237e", "colour")
     assert in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour", "--from-stroke", "2")[0] == 2
     assert not list(desk.glob("out*"))
 
 
-def test_programs_of_colours_that_are_gone_are_named(desk, capsys):
+def test_outdated_programs_of_removed_colours_are_reported(desk, capsys):
     assert in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")[0] == 0
     text = (desk / "word.svg").read_text().replace("#ffd700", "#d32f2f")
     (desk / "word.svg").write_text(text)
@@ -90,7 +90,7 @@ def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
     assert in_json(capsys, *words, "--margin-strokes", "on")[0] == 2
 
 
-def test_none_is_written_where_one_is_there_already(desk, capsys):
+def test_one_existing_file_prevents_all_programs(desk, capsys):
     (desk / "out-2-d32f2f.ngc").write_text("mine")
     status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc", "--per-colour")
     assert status == 1 and is_reported(reported, "file-exists")
@@ -105,7 +105,7 @@ SHAPES = (
 )
 
 
-def test_a_shape_has_the_colour_of_its_fill_and_an_outline_its_own(tmp_path, monkeypatch, capsys):
+def test_a_shape_has_its_fill_colour_and_its_outline_the_stroke_colour(tmp_path, monkeypatch, capsys):
     """A shape has the colour of its fill, and its outline has its own colour.
 
     All of "fine" and "broad" was once painted in the colour of the outline.

@@ -17,7 +17,7 @@ def plan_of(*passes):
     return _core.Plan(brush="round-6", sheet_mm=(100, 100), passes=list(passes))
 
 
-def test_poses_are_read_without_a_copy_and_cannot_be_written_to():
+def test_poses_are_read_only_views_without_a_copy():
     a_pass = plan_of(_core.Pass("a", [[1, 2, 0], [3, 4, -1]])).passes[0]
     poses = a_pass.poses_mm
     assert poses.tolist() == [[1, 2, 0], [3, 4, -1]]
@@ -26,14 +26,14 @@ def test_poses_are_read_without_a_copy_and_cannot_be_written_to():
         poses[0, 0] = 5
 
 
-def test_a_view_outlives_its_pass_and_its_plan():
+def test_a_view_stays_valid_after_its_pass_and_plan_are_deleted():
     poses = plan_of(_core.Pass("a", np.full((1000, 3), -2.0))).passes[0].poses_mm
     gc.collect()
     plan_of(*(_core.Pass("b", np.zeros((1000, 3))) for _ in range(20)))
     assert np.all(poses == -2.0)
 
 
-def test_what_is_replaced_stays_as_it_was_for_who_holds_it():
+def test_references_to_replaced_passes_and_poses_stay_unchanged():
     plan = plan_of(_core.Pass("a", np.full((1000, 3), -2.0)), _core.Pass("b", np.full((1000, 3), -3.0)))
     first, poses = plan.passes[0], plan.passes[1].poses_mm
     plan.passes = [plan.passes[1]]
@@ -49,7 +49,7 @@ def test_changes_to_a_pass_of_a_plan_are_changes_to_the_plan():
     assert '"speed_mm_s": 7' in _core.write_plan(plan)
 
 
-def test_arcs():
+def test_arcs_are_stored_and_written():
     poses = [[0, 0, -1], [10, 0, -1], [20, 10, -1], [10, 20, -1], [0, 20, -1]]
     a_pass = _core.Pass("a", poses, arcs=[_core.Arc(first=1, last=3, centre_mm=(10, 10), direction=1)])
     plan = _core.read_plan(_core.write_plan(plan_of(a_pass)))
@@ -62,14 +62,14 @@ def test_arcs():
     assert "arcs" not in _core.write_plan(plan_of(a_pass))
 
 
-def test_an_arc_that_is_none_is_refused_by_the_simulator_too():
+def test_the_simulator_refuses_an_invalid_arc():
     a_pass = _core.Pass("V", [[0, 0, -1], [10, 0, -1], [20, 10, -1]], arcs=[_core.Arc(1, 2, (10, 11), 1)])
     with refused("arc-invalid 'arc 0' 2", "V") as caught:
         _core.simulate(plan_of(a_pass), find_brush("round-6"))
     assert re.search(r" -0\.95\d* mm off", caught.value.sentence)
 
 
-def test_nothing_is_added_to_a_copy_without_a_word():
+def test_appending_to_a_list_of_the_plan_raises():
     """Appending to plan.passes fails instead of changing a copy.
 
     plan.passes.append(...) once changed a temporary list, and the new pass was lost.
@@ -105,7 +105,7 @@ def test_nothing_is_added_to_a_copy_without_a_word():
     assert not any(array.flags.writeable for array in arrays)
 
 
-def test_laws_are_values():
+def test_laws_cannot_be_changed():
     """Laws cannot be changed.
 
     A law that was copied from a fit and given another floor once changed the fit's own law.
@@ -116,7 +116,7 @@ def test_laws_are_values():
             setattr(law, name, getattr(law, name))
 
 
-def test_where_a_stroke_comes_from_is_kept_in_fields():
+def test_the_origin_of_a_stroke_is_kept_in_fields():
     stroke = _core.Stroke(_core.StrokeId("icon/1", part=2, repeat=3, lane=4))
     assert stroke.id == "icon/1/2#3~4" and stroke.origin.element == "icon/1"
     (a_pass,) = _core.compensate(

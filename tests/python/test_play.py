@@ -33,7 +33,7 @@ def ways_in_small_steps(passes, backlash):
     return out
 
 
-def test_the_way_is_that_of_small_steps_with_few_poses():
+def test_the_backlash_path_agrees_with_a_simulation_in_small_steps():
     rng = np.random.default_rng(3)
     passes = [np.column_stack([rng.uniform(0, 60, (6, 2)), [0.0, -2.0, -4.0, -3.0, -1.0, 0.0]]) for _ in range(3)]
     reported = [core.Pass(stroke=f"s{k}", poses_mm=poses, speed_mm_s=20.0) for k, poses in enumerate(passes)]
@@ -53,7 +53,7 @@ def test_the_way_is_that_of_small_steps_with_few_poses():
 
 
 @pytest.mark.parametrize("height", [-0.4, 0.4])
-def test_a_tool_leans_from_where_it_touches_the_paper(height):
+def test_a_tool_starts_to_lean_where_it_touches_the_paper(height):
     """A tool begins to lean where it touches the paper.
 
     The brush is pressed on the spot and drawn to the right. The paper is lower or higher than taught.

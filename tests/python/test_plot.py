@@ -16,7 +16,7 @@ from brushsvg.model.plot import brush_picture, brush_picture_on, law_band, new_f
 
 @sample("name", ["round-6", "rigid"], keep=1)
 @pytest.mark.slow
-def test_both_kinds_of_picture_are_the_same_twice(name):
+def test_svg_and_png_pictures_are_reproducible(name):
     brush = find_brush(name)
     for suffix, start in ((".svg", b"<?xml"), (".png", b"\x89PNG")):
         picture = brush_picture(brush, suffix)
@@ -24,7 +24,7 @@ def test_both_kinds_of_picture_are_the_same_twice(name):
         assert picture == brush_picture(brush, suffix)
 
 
-def test_bands():
+def test_bands_follow_rmse_and_covariance():
     brush, depths = find_brush("round-6"), np.linspace(0, 10, 7)
     half, what = law_band(brush, "lag", depths)
     assert np.all(half == 0.58) and "RMSE" in what
@@ -39,7 +39,7 @@ def test_bands():
     assert "RMSE" in law_band(brush, "lag", depths)[1]
 
 
-def test_paint_is_drawn_where_the_brush_has_it():
+def test_paint_is_drawn_if_the_brush_has_paint():
     """The paint picture shows the decay of the brush's paint.
 
     The middle line falls to the value of the law, and the band around it widens with the length.
@@ -56,7 +56,7 @@ def test_paint_is_drawn_where_the_brush_has_it():
     assert [each.get_position()[0] for each in axes.texts].count(600) == 1, "where hairs run dry"
 
 
-def test_every_curve_is_named_once_and_no_name_is_on_a_law():
+def test_each_curve_is_labelled_once_and_no_label_covers_a_law():
     """Each curve is named once, and no name covers a law.
 
     The names are in one legend below the laws. Each law has its line, its band and its measurements.
@@ -74,7 +74,7 @@ def test_every_curve_is_named_once_and_no_name_is_on_a_law():
     assert all(each.get_label() in names for each in drawn)
 
 
-def test_without_matplotlib_the_command_to_run_is_said(tmp_path, monkeypatch, capsys):
+def test_missing_matplotlib_is_reported_with_the_install_command(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     status, _, ((_, reported),) = in_json(capsys, "brush", "plot", "round-6", "-o", tmp_path / "out.svg")
     assert (status, reported.code) == (1, "package-missing")

@@ -155,7 +155,7 @@ def mark_of(lines):
 
 
 @pytest.mark.parametrize(("style", "seed"), CORPUS)
-def test_programs_are_read_as_they_were_intended(style, seed):
+def test_plotter_programs_are_read_as_intended(style, seed):
     chance = random.Random(f"{style} {seed}")
     lines = drawing(chance)
     text = "\n".join(STYLES[style](lines, chance))
@@ -211,7 +211,7 @@ def test_strokes_can_be_left_out():
     assert lines_of(said, skip_comments=("Palette",)) == 1
 
 
-def test_coats_of_paint_at_one_place_are_no_dips():
+def test_several_coats_at_one_place_are_not_dips():
     coats = [np.array([(40, 40), (80, 40)])] * 3 + [np.array([(40, 60), (80, 60)])]
     assert lines_of("\n".join(by_z(coats, 5, 0)).encode()) == 4
 
@@ -232,7 +232,7 @@ def test_a_reading_that_loses_most_is_refused():
     assert lines_of("\n".join(text).encode(), paper_z_mm=4.0) >= 1
 
 
-def test_to_begin_and_end_at_z_0_turns_no_z():
+def test_starting_and_ending_at_z_0_does_not_invert_z():
     """Beginning and ending at z 0 does not invert z.
 
     All moves are G1 and all strokes single lines, so nothing else shows which height draws. Usually, z 0 is
@@ -245,7 +245,7 @@ def test_to_begin_and_end_at_z_0_turns_no_z():
     assert [np.ptp(each.subpaths[0].cubics.reshape(-1, 2), axis=0).tolist() for each in inner] == [[40, 0]] * 3
 
 
-def test_the_paper_of_a_z_that_falls_to_lift():
+def test_an_inverted_z_axis_is_recognized():
     lines = [np.array([(40, 40), (80, 40), (80, 50)]), np.array([(40, 60), (80, 60)])]
     text = "\n".join(inverted(lines)).encode()
     assert lines_of(text) == lines_of(text, paper_z_mm=5.0) == 2
@@ -253,7 +253,7 @@ def test_the_paper_of_a_z_that_falls_to_lift():
         lines_of(text, paper_z_mm=9.0)
 
 
-def test_check_refuses_a_z_that_falls_to_lift(tmp_path, monkeypatch, capsys):
+def test_check_refuses_an_inverted_z_axis(tmp_path, monkeypatch, capsys):
     """Check refuses a program whose z falls to lift the pen.
 
     The program draws at z 0.5 and travels at -4. Check once predicted the travel as paint.
@@ -267,7 +267,7 @@ def test_check_refuses_a_z_that_falls_to_lift(tmp_path, monkeypatch, capsys):
     assert status == 0 and is_reported(reported, "pen-reading 0.5 -4")
 
 
-def test_check_takes_the_height_of_the_paper(tmp_path, monkeypatch, capsys):
+def test_check_accepts_the_paper_height(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "touches.gcode").write_bytes(SKETCH)
     status, _, reported = in_json(capsys, "check", "touches.gcode")
@@ -286,7 +286,7 @@ def test_the_flags_reach_the_reader(tmp_path, monkeypatch, capsys):
     assert status == 0 and is_reported(reported, "strokes-skipped 1 2"), reported
 
 
-def test_words_that_are_about_the_drawing_make_no_dips():
+def test_words_about_the_drawing_are_not_read_as_dips():
     """Words about the drawing do not count as dips.
 
     A header, a text and remarks mention dips. Only one stroke, outside the drawing, is a dip.

@@ -33,7 +33,7 @@ def installed(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def test_it_is_copied_from_the_source_tree_and_replaces_an_older_one(profile, capsys):
+def test_the_plugin_is_copied_from_the_source_tree_and_replaces_an_older_one(profile, capsys):
     profile.mkdir(parents=True)
     (profile / "brushsvg_gone.inx").write_text("old")
     assert main(["setup", "inkscape"]) == 0
@@ -44,7 +44,7 @@ def test_it_is_copied_from_the_source_tree_and_replaces_an_older_one(profile, ca
     assert files == expected and "LICENSE" in files
 
 
-def test_the_zip_holds_the_same(profile, zipped):
+def test_the_zip_installs_the_same_files(profile, zipped):
     install_inkscape()
     from_tree = installed(profile)
     for path in profile.iterdir():
@@ -59,7 +59,7 @@ def test_the_zip_has_the_same_bytes_each_time(zipped, tmp_path):
     assert again.read_bytes() == zipped.read_bytes()
 
 
-def test_it_is_removed_and_what_is_not_ours_stays(profile, capsys):
+def test_removing_the_plugin_keeps_other_files(profile, capsys):
     install_inkscape()
     (profile / "notes.txt").write_text("mine")
     assert main(["setup", "inkscape", "--remove"]) == 0
@@ -77,13 +77,13 @@ def test_removing_needs_no_zip(capsys):
     assert main(["setup", "inkscape", "some.zip", "--remove"]) == 2
 
 
-def test_where_there_is_no_source_it_says_what_to_do(profile, tmp_path):
+def test_a_missing_source_tree_is_reported_with_the_zip_to_use(profile, tmp_path):
     with refused("plugin-missing brushsvg-inkscape.zip"):
         install_inkscape(source=tmp_path / "site-packages")
     assert not profile.exists()
 
 
-def test_what_is_not_the_zip_is_refused(profile, tmp_path, zipped):
+def test_a_file_other_than_the_plugin_zip_is_refused(profile, tmp_path, zipped):
     for name, make in (
         ("missing.zip", lambda path: None),
         ("text.zip", lambda path: path.write_text("no zip")),
@@ -97,7 +97,7 @@ def test_what_is_not_the_zip_is_refused(profile, tmp_path, zipped):
     assert not profile.exists()
 
 
-def test_a_name_in_the_zip_cannot_lead_elsewhere(profile, tmp_path, zipped):
+def test_a_name_in_the_zip_cannot_point_outside_the_folder(profile, tmp_path, zipped):
     with zipfile.ZipFile(zipped, "a") as file:
         file.writestr("../../evil.py", "x")
     install_inkscape(str(zipped))
@@ -108,7 +108,7 @@ def test_a_name_in_the_zip_cannot_lead_elsewhere(profile, tmp_path, zipped):
     "script", sorted(path.name for path in SOURCE.glob("*.py") if "import etree" in path.read_text())
 )
 @pytest.mark.parametrize("module", ["lxml", "cssselect"])
-def test_what_inkscapes_python_lacks_is_reported_with_its_package(tmp_path, script, module):
+def test_a_module_missing_in_inkscapes_python_is_reported_with_its_package(tmp_path, script, module):
     """A module that Inkscape's Python lacks is reported with its package.
 
     This happens where Inkscape was installed without its recommended packages.
@@ -130,7 +130,7 @@ def test_what_inkscapes_python_lacks_is_reported_with_its_package(tmp_path, scri
     assert done.stderr.endswith(f"  {sys.executable} -m pip install {module}\n")
 
 
-def test_where_inkscape_looks(monkeypatch):
+def test_the_extensions_folder_follows_the_platform(monkeypatch):
     monkeypatch.delenv("INKSCAPE_PROFILE_DIR", raising=False)
     monkeypatch.delenv("XDG_CONFIG_HOME", raising=False)
     monkeypatch.setenv("HOME", "/home/somebody")

@@ -28,7 +28,7 @@ BRUSH = brush_of()
 STROKE = [(10, 10, 0), (12, 10, -3), (30, 20, -3), (28, 20, 0)]
 
 
-def test_moves_in_order_with_their_meaning():
+def test_a_stroke_has_its_moves_in_order_with_their_meaning():
     made = program(plan_of(STROKE, [(50, 50, 0), (60, 50, -1)]), BRUSH, find_cell())
     sections = list(made.sections())
     assert [section.title for section in sections] == ["stroke 1 of 2: s1", "stroke 2 of 2: s2"]
@@ -37,7 +37,7 @@ def test_moves_in_order_with_their_meaning():
     assert np.vstack([moves[2].points_mm, moves[3].points_mm]) == pytest.approx(np.array(STROKE, float))
 
 
-def test_nothing_fast_or_sideways_near_the_paper():
+def test_moves_near_the_paper_are_slow_and_vertical():
     cell = find_cell()
     made = program(plan_of(STROKE, [(50, 50, -2), (60, 50, -2)], speed=5.0), BRUSH, cell)
     at = np.array([0.0, 0.0, cell.heights.safe_mm])
@@ -63,7 +63,7 @@ def moving_s(length, speed, acceleration=500.0):
     return length / speed + ramp
 
 
-def test_duration_counts_every_way_at_its_speed_from_rest_to_rest():
+def test_duration_counts_every_move_at_its_speed_from_rest_to_rest():
     cell, fast = find_cell(), brush_of(40.0)
     expected = moving_s(9, 30) + moving_s(1, 8) + moving_s(30, 20) + moving_s(1, 8) + moving_s(9, 60)
     line = [(0, 0, 0), (30, 0, 0)]
@@ -74,7 +74,7 @@ def test_duration_counts_every_way_at_its_speed_from_rest_to_rest():
     assert duration_s(unchecked_program(whole(plan_of(line)), BRUSH, cell)) == pytest.approx(slowed)
 
 
-def test_a_job_may_begin_later_and_the_paper_be_higher():
+def test_a_job_may_start_at_a_later_stroke_and_on_higher_paper():
     plan = plan_of(STROKE, STROKE, STROKE)
     made = program(plan, BRUSH, find_cell(), (), Job(z_offset_mm=0.25, first_stroke=2))
     assert [section.title for section in made.sections()] == ["stroke 2 of 3: s2", "stroke 3 of 3: s3"]
@@ -96,14 +96,14 @@ def test_a_job_may_begin_later_and_the_paper_be_higher():
         (np.zeros((0, 3)), "pass-empty"),
     ],
 )
-def test_limits_are_named_with_stroke_and_number(poses, said):
+def test_exceeded_limits_are_reported_with_stroke_and_value(poses, said):
     plan = plan_of(STROKE, poses)
     assert are_reported(forbidden(plan, BRUSH, find_cell()), f"{said} s2")
     with refused(said, "s2"):
         program(plan, BRUSH, find_cell())
 
 
-def test_speed_limits_and_nothing_to_paint():
+def test_speed_limits_and_empty_plans_are_refused():
     speed = "speed-out-of-range s1 51 '[0.000001, {}] mm/s' '{}'".format
     too_fast = forbidden(plan_of(STROKE, speed=51.0), brush_of(80.0), find_cell())
     assert are_reported(too_fast, speed("50.0", "cell linuxcnc-3axis"))
@@ -117,7 +117,7 @@ def test_speed_limits_and_nothing_to_paint():
 
 
 @pytest.mark.parametrize("limit", [40.0, 25.0, 3.0])
-def test_no_move_on_the_way_down_or_up_is_faster_than_the_brush_may_go(limit):
+def test_moves_down_and_up_respect_the_speed_limit_of_the_brush(limit):
     cell = find_cell()
     made = program(plan_of(STROKE, speed=min(limit, 20.0)), brush_of(limit), cell)
     speeds = {move.meaning: move.speed_mm_s for move in next(made.sections()).moves}
@@ -125,7 +125,7 @@ def test_no_move_on_the_way_down_or_up_is_faster_than_the_brush_may_go(limit):
     assert all(speed <= limit for meaning, speed in speeds.items() if meaning not in MEANINGS_AT_SAFE_HEIGHT)
 
 
-def test_the_workspace_ends_where_it_says():
+def test_workspace_limits_are_exact():
     assert forbidden(plan_of([(-30, -30, 0), (130, 90, -1)]), BRUSH, find_cell()) == []
 
 

@@ -81,7 +81,7 @@ def test_the_nearest_file_above_a_drawing_is_found(desk):
     assert brushsvg.find_project("nowhere/a.svg").path == str(desk / NAME)
 
 
-def test_the_search_ends_at_a_repository_and_at_home(desk, monkeypatch):
+def test_the_search_stops_at_a_repository_and_at_the_home_folder(desk, monkeypatch):
     (desk / "work/letters").mkdir(parents=True)
     project("")
     (desk / "work/.git").touch()  # .git is a file in a work tree and a folder in a clone
@@ -95,7 +95,7 @@ def test_the_search_ends_at_a_repository_and_at_home(desk, monkeypatch):
     assert find_project_file("work/letters/a.svg") is None and brushsvg.find_project("work/letters") is None
 
 
-def test_a_folder_of_that_name_is_none_and_a_path_is_needed(desk):
+def test_a_folder_is_not_a_project_file_and_the_argument_must_be_a_path(desk):
     (desk / NAME).mkdir()
     assert find_project_file("d.svg") is None
     with refused("wrong-type"):
@@ -105,7 +105,7 @@ def test_a_folder_of_that_name_is_none_and_a_path_is_needed(desk):
 # --- reading the project file
 
 
-def test_paths_are_relative_to_the_file_and_names_are_kept(desk):
+def test_paths_are_relative_to_the_project_file_and_names_are_kept(desk):
     (desk / "machines").mkdir()
     (desk / "sub").mkdir()
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
@@ -143,13 +143,13 @@ TYPED = {  # option: valid values, and refused values
 }
 
 
-def test_every_option_is_in_the_table():
+def test_every_option_is_in_the_project_table():
     flags = {flag for flag, choice in options().items() if choice not in CHOICE_VALUES}
     assert flags - {"join"} | {"sheet", "layer"} == set(TYPED)
 
 
 @pytest.mark.parametrize("flag", [*TYPED, *(flag for flag, choice in options().items() if choice in CHOICE_VALUES)])
-def test_values_are_those_of_the_command_line(desk, flag):
+def test_project_values_equal_command_line_values(desk, flag):
     choice = options().get(flag, flag)
     good, bad = TYPED.get(flag) or (" ".join(CHOICE_VALUES.get(choice, ())), "nonsense")
     more = ["--compensation", "constant"] if flag == "lag" else []
@@ -221,7 +221,7 @@ BAD = {  # text after the format line: code, key, and the values that the senten
 
 
 @pytest.mark.parametrize("text", BAD, ids=lambda text: repr(text[:30]))
-def test_a_file_that_is_not_valid_costs_one_sentence(desk, capsys, text):
+def test_an_invalid_project_file_is_refused_in_one_sentence(desk, capsys, text):
     expected, key = BAD[text]
     (desk / "mine.json").write_text("{}")
     project(text)
@@ -249,14 +249,14 @@ def test_a_file_that_is_not_valid_costs_one_sentence(desk, capsys, text):
         (b"x" * MAX_BYTES, "not-toml"),  # refused at once; a search that restarts at each letter takes hours
     ],
 )
-def test_a_file_that_is_none_of_ours_is_refused(desk, data, expected):
+def test_a_file_that_is_not_a_project_file_is_refused(desk, data, expected):
     (desk / NAME).write_bytes(data)
     with refused(expected):
         brushsvg.read_project(NAME)
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root reads everything")
-def test_a_file_that_may_not_be_read_is_refused(desk):
+def test_an_unreadable_project_file_is_refused(desk):
     project("")
     (desk / NAME).chmod(0)
     with refused("file-unreadable"):
@@ -266,7 +266,7 @@ def test_a_file_that_may_not_be_read_is_refused(desk):
 # --- precedence of settings
 
 
-def test_the_command_line_then_the_drawing_then_the_project_then_the_default(desk, capsys):
+def test_settings_come_from_command_line_drawing_project_then_default(desk, capsys):
     project('cell = "ur5e"\n[defaults]\ntolerance = 0.2\ncompensation = "none"')
     of_project = made()
     (desk / NAME).unlink()
@@ -280,7 +280,7 @@ def test_the_command_line_then_the_drawing_then_the_project_then_the_default(des
     assert made("--cell", "ur5e", "--tolerance", "0.3") == of_line != of_drawing
 
 
-def test_explain_says_of_each_setting_where_it_comes_from(desk, capsys):
+def test_explain_shows_the_source_of_each_setting(desk, capsys):
     project('cell = "ur5e"\npaper = "a4"\n[defaults]\ntolerance = 0.2\nspeed = 9')
     (desk / "d.svg").write_text(said(tolerance="0.1mm", brush="rigid"))
     lines = explained(capsys, "convert", "d.svg", "-o", "o.script", "--speed", "12", "--detail=fine")
@@ -317,7 +317,7 @@ def test_explain_works_without_a_project_file(desk, capsys):
     assert gives(lines["brush"], "default") and not gives(lines["brush"], "rigid")
 
 
-def test_an_option_that_was_typed_sets_others_of_the_project_back(desk, capsys):
+def test_a_typed_option_resets_related_project_options(desk, capsys):
     project('[defaults]\nfit = "60x40"\nstart = "pointed"\ncompensation = "constant"\nlag = 3')
     lines = explained(capsys, *"convert d.svg -o o.ngc --scale 0.9 --terminals butt --compensation closed".split())
     assert all(gives(lines[name], "default") for name in ("fit", "start", "lag"))
@@ -335,7 +335,7 @@ def test_an_option_that_was_typed_sets_others_of_the_project_back(desk, capsys):
     assert gives(explained(capsys, "convert", "d.svg", "-o", "q.ngc")["lag"], "default")
 
 
-def test_a_default_that_is_typed_counts_as_typed(desk, capsys):
+def test_a_typed_default_value_counts_as_typed(desk, capsys):
     project("[defaults]\nz-offset = 0.5")
     assert gives(explained(capsys, "convert", "d.svg", "-o", "o.ngc")["z-offset"], "0.5", NAME)
     assert gives(
@@ -348,7 +348,7 @@ def test_a_default_that_is_typed_counts_as_typed(desk, capsys):
 
 
 @pytest.mark.slow
-def test_what_does_not_suit_a_drawing_is_no_mistake(desk, capsys):
+def test_project_settings_that_do_not_apply_to_a_drawing_are_ignored(desk, capsys):
     project('[defaults]\nunits = "in"\npen = "z"\npaper-z = 0\nskip-comment = ["dip"]')
     for command in ("convert d.svg -o o.ngc", "preview d.svg -o o.png --show strokes"):
         status, _, reported = in_json(capsys, *command.split())
@@ -367,7 +367,7 @@ def test_what_does_not_suit_a_drawing_is_no_mistake(desk, capsys):
 
 
 @pytest.mark.slow
-def test_a_drawing_and_a_plan_name_the_brush_that_counts(desk, capsys):
+def test_the_brush_of_a_drawing_or_plan_overrides_the_project(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')
     (desk / "d.svg").write_text(said(brush="mine"))  # the name of a brush for which the project has a file
@@ -386,7 +386,7 @@ def test_a_drawing_and_a_plan_name_the_brush_that_counts(desk, capsys):
 
 
 @pytest.mark.slow
-def test_a_program_made_under_a_project_file_is_checked_under_it(desk, capsys, monkeypatch):
+def test_check_uses_the_project_file_of_the_program(desk, capsys, monkeypatch):
     (desk / "job").mkdir()
     (desk / "job/d.svg").write_text(DRAWING)
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
@@ -413,7 +413,7 @@ def test_a_program_made_under_a_project_file_is_checked_under_it(desk, capsys, m
     assert status == 1 and is_reported(reported, "cell-unknown arm")
 
 
-def test_check_believes_the_program_rather_than_the_project(desk, capsys):
+def test_the_program_header_overrides_the_project_in_check(desk, capsys):
     assert main(["convert", "d.svg", "-o", "o.ngc", "--quiet", "--brush", "rigid"]) == 0
     project('brush = "round-6"\ncell = "ur5e"\n[defaults]\nz-offset = 0.5')
     assert main(["check", "o.ngc", "d.svg"]) == 0
@@ -426,7 +426,7 @@ def test_check_believes_the_program_rather_than_the_project(desk, capsys):
 
 
 @pytest.mark.slow
-def test_a_batch_takes_the_project_of_its_first_drawing_and_each_drawing_counts_more(desk, capsys):
+def test_a_batch_uses_the_project_of_its_first_drawing_and_drawings_override_it(desk, capsys):
     for folder in ("one", "two"):
         (desk / folder).mkdir()
     (desk / "one/a.svg").write_text(DRAWING)
@@ -456,7 +456,7 @@ def test_a_batch_takes_the_project_of_its_first_drawing_and_each_drawing_counts_
         "chart -o c.script --drawing sub/d.svg",
     ],
 )
-def test_commands_without_a_drawing_take_the_project_of_the_current_folder(desk, capsys, words):
+def test_commands_without_a_drawing_use_the_project_of_the_current_folder(desk, capsys, words):
     (desk / "sub").mkdir()
     (desk / "sub/d.svg").write_text(DRAWING)
     place = "sub" if "sub" in words else "."
@@ -468,7 +468,7 @@ def test_commands_without_a_drawing_take_the_project_of_the_current_folder(desk,
     assert "round-6-angles" in program and "148" in program
 
 
-def test_a_comparison_of_brushes_has_the_one_of_the_project(desk, capsys):
+def test_a_comparison_of_brushes_includes_the_project_brush(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')
     (desk / "d.svg").write_text(said(brush="rigid"))
@@ -482,7 +482,7 @@ def test_a_comparison_of_brushes_has_the_one_of_the_project(desk, capsys):
     assert main(["preview", "d.svg", "--all-brushes"]) == 0
 
 
-def test_every_command_with_a_drawing_explains():
+def test_every_command_with_a_drawing_supports_explain():
     commands = dict(command_parser()._subparsers._group_actions[0].choices)
     setups = commands["setup"]._subparsers._group_actions[0].choices
     commands |= {f"setup {name}": command for name, command in setups.items()}
@@ -498,7 +498,7 @@ def test_every_command_with_a_drawing_explains():
     assert offers >= {"simulate-photo", "chart", "setup height", "setup first-run"}
 
 
-def test_settings_of_a_project_are_named_unless_quiet(desk, capsys):
+def test_project_settings_are_reported_unless_quiet(desk, capsys):
     project('cell = "ur5e"\n[defaults]\nz-offset = 0.5')
     capsys.readouterr()
     assert main(["convert", "d.svg", "-o", "o.script"]) == 0
@@ -513,7 +513,7 @@ def test_settings_of_a_project_are_named_unless_quiet(desk, capsys):
 # --- the init command
 
 
-def test_init_without_a_terminal_takes_its_answers_from_flags(desk, capsys):
+def test_init_without_a_terminal_uses_flags_as_answers(desk, capsys):
     status, _, _ = in_json(capsys, "init")
     assert status == 2 and not (desk / NAME).exists()
     (desk / "w").mkdir()
@@ -582,7 +582,7 @@ def test_init_asks_four_questions_each_with_a_default(desk):
     assert status == 1 and (desk / NAME).read_bytes() == before
 
 
-def test_what_init_writes_can_be_filled_in(desk):
+def test_the_file_written_by_init_can_be_completed(desk):
     (desk / "mine.json").write_text("{}")
     (desk / "machine.toml").write_text("")
     text = write_project()
@@ -605,7 +605,7 @@ def test_what_init_writes_can_be_filled_in(desk):
         ("convert said.svg -o o.ngc", "rigid"),
     ],
 )
-def test_a_misspelled_name_is_answered_with_the_nearest(desk, capsys, words, expected):
+def test_a_misspelled_name_suggests_the_nearest_name(desk, capsys, words, expected):
     (desk / "said.svg").write_text(said(brush="rigd"))
     assert main(words.split()) in (1, 2)
     assert gives(capsys.readouterr().err, "did you mean", f"{expected}?")
@@ -623,7 +623,7 @@ def test_a_misspelled_name_is_answered_with_the_nearest(desk, capsys, words, exp
         ('cell = "grbl-3axs"', "grbl-3axis"),
     ],
 )
-def test_a_misspelled_name_in_the_file_is_answered_with_the_nearest(desk, text, expected):
+def test_a_misspelled_name_in_the_file_suggests_the_nearest_name(desk, text, expected):
     project(text)
     with pytest.raises(brushsvg.Error) as reported:
         brushsvg.read_project(NAME)

@@ -25,29 +25,29 @@ def python(*words):
 
 
 @pytest.mark.parametrize("name", brushsvg.__all__)
-def test_every_public_name_is_there(name):
+def test_every_public_name_exists(name):
     assert getattr(brushsvg, name)
     assert name in dir(brushsvg)
 
 
-def test_names_and_table_agree():
+def test_public_names_agree_with_the_import_table():
     assert set(brushsvg.__all__) == {*brushsvg._HOME, *brushsvg._MODULES, "__version__"}
     with pytest.raises(AttributeError, match="varnish"):
         brushsvg.varnish  # noqa: B018
 
 
 @pytest.mark.parametrize("first", ["import brushsvg.strokes", "from brushsvg.jobs import preparation", "brushsvg.Plan"])
-def test_a_function_is_not_hidden_by_the_module_of_its_name(first):
+def test_a_module_does_not_hide_the_function_with_its_name(first):
     python("-c", f"import brushsvg; {first}; assert callable(brushsvg.strokes)")
 
 
-def test_each_reader_of_a_file_is_given_its_path():
+def test_each_file_reader_accepts_a_path():
     for name in (name for name in brushsvg.__all__ if name.startswith("read_")):
         assert next(iter(inspect.signature(getattr(brushsvg, name)).parameters)) == "path", name
 
 
 @pytest.mark.parametrize("name", ["cell.toml", "plan.json", "marks.json"])
-def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monkeypatch, name):
+def test_written_files_are_read_back_and_refusals_name_the_file(tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
     kind = name.split(".")[0]
     read, write = (getattr(brushsvg, f"{does}_{kind}") for does in ("read", "write"))
@@ -66,7 +66,7 @@ def test_what_is_written_is_read_back_and_refusals_name_the_file(tmp_path, monke
         assert refused.value.file == str(path)
 
 
-def test_what_is_set_up_has_the_extras_that_its_commands_need():
+def test_extras_contain_the_packages_their_commands_need():
     root = Path(__file__).parents[2]
     extras = tomllib.loads((root / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     requested = re.findall(
@@ -87,13 +87,13 @@ def test_what_is_set_up_has_the_extras_that_its_commands_need():
     assert installs.strip("\"'") == ".[text,plot,arm]"
 
 
-def test_importing_the_package_loads_nothing():
+def test_importing_the_package_loads_no_submodules():
     loaded = python("-c", "import sys, brushsvg; print(*sys.modules)").split()
     assert not {"numpy", "cv2", "brushsvg._core", "argparse"} & set(loaded)
 
 
 @pytest.mark.slow
-def test_the_demo_leaves_everything(tmp_path):
+def test_the_demo_writes_all_its_files(tmp_path):
     out = python(EXAMPLES / "demo.py", EXAMPLES / "vincent.svg", tmp_path / "demo")
     names = {path.name for path in (tmp_path / "demo").iterdir()}
     assert names == {f"vincent{end}" for end in (".plan.json", ".ngc", ".marks.svg", ".report.txt", ".html", ".png")}
@@ -124,7 +124,7 @@ def plan_of(poses, speed=20.0, sheet=(60.0, 30.0)):
 SOUND = [(10, 15, 0), (15, 15, -3), (40, 15, -3), (38, 15, 0)]
 
 
-def test_write_program_by_extension(tmp_path):
+def test_write_program_chooses_the_language_by_extension(tmp_path):
     brush = brushsvg.find_brush("round-6")
     brushsvg.write_program(tmp_path / "a.ngc", plan_of(SOUND), brush, title="one")
     assert (tmp_path / "a.ngc").read_text().startswith("(title: one)")
@@ -147,7 +147,7 @@ def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, said):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_choices_that_there_are_not_are_refused(tmp_path):
+def test_unknown_choices_are_refused(tmp_path):
     (tmp_path / "d.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm"><path d="M0 0h9v9z"/></svg>'
     )

@@ -18,14 +18,14 @@ BATCHES = 6
 LONG_S = 300  # catches a hang; it does not limit the speed
 
 
-def test_no_public_name_is_forgotten():
+def test_every_public_name_is_tested():
     inside = {f"{module}.{name}" for module in MODULES for name in getattr(brushsvg, module).__all__}
     assert set(ARGUMENTS) == (set(brushsvg.__all__) | inside) - {"__version__", *MODULES}
 
 
 @sample("batch", range(BATCHES), keep=2)
 @pytest.mark.slow
-def test_nonsense_ends_in_a_result_or_a_sentence(batch, tmp_path):
+def test_invalid_arguments_give_a_result_or_a_refusal(batch, tmp_path):
     done = subprocess.run(
         [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS | FITS)[batch::BATCHES]],
         capture_output=True,

@@ -41,7 +41,7 @@ def box(x, y, long, wide):
         ((0.8, 0.85, 0.8, 0.75, 0), "stroke5", (200, 260)),
     ],
 )
-def test_the_last_whole_mark_and_the_one_behind_it_bound_the_load(shares, whole, between):
+def test_the_last_complete_mark_and_the_next_mark_bound_the_load(shares, whole, between):
     painted, full = sheet(shares)
     found = find_ink_depletion(painted, full)
     assert (found.whole, found.dry) == (whole, f"stroke{int(whole[-1]) + 1}")
@@ -50,7 +50,7 @@ def test_the_last_whole_mark_and_the_one_behind_it_bound_the_load(shares, whole,
 
 
 @pytest.mark.parametrize("shares", [(1, 1, 1, 1, 1), (1, 0, 0.4, 1, 1), (0.7, 0.7, 0.7, 0.7, 0.7)])
-def test_where_the_last_mark_is_whole_none_ran_dry(shares):
+def test_a_complete_last_mark_shows_no_depletion(shares):
     painted, full = sheet(shares)
     assert find_ink_depletion(painted, full) is None
     assert painted.way_mm == pytest.approx(60 + sum(LENGTHS))

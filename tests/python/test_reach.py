@@ -32,7 +32,7 @@ def painted(made) -> list:
     return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
 
 
-def test_what_is_in_reach_and_what_was_drawn_stays(brush):
+def test_reachable_shapes_and_drawn_lines_stay_unchanged(brush):
     narrow = of("M10 20H60V26H10Z")
     line = of("M10 20H60", 'fill="none" stroke="red" stroke-width="20"')
     for made in (narrow, line):
@@ -42,7 +42,7 @@ def test_what_is_in_reach_and_what_was_drawn_stays(brush):
 
 
 @pytest.mark.parametrize(("width", "is_painted"), [(8.41, True), (8.59, True), (8.7, False)])
-def test_a_line_that_is_too_wide_by_less_than_one_sees_is_painted(brush, width, is_painted):
+def test_a_line_too_wide_by_an_invisible_amount_is_painted(brush, width, is_painted):
     """A line that is too wide by less than the eye can see is painted.
 
     A brush made for a typed width of 4.8 mm painted 4.791 mm, and a job was refused for one dot of 4.8 mm.
@@ -55,7 +55,7 @@ def test_a_line_that_is_too_wide_by_less_than_one_sees_is_painted(brush, width, 
         _core.compensate([made], brush, (100, 50))
 
 
-def test_the_nearest_width_is_painted_and_the_outline_stays_the_target(brush):
+def test_clamp_paints_the_nearest_width_with_the_outline_as_target(brush):
     made = of(WEDGE)
     (narrower,), target, (notice,) = within_reach(made, brush, "clamp")
     assert target == made
@@ -68,7 +68,7 @@ def test_the_nearest_width_is_painted_and_the_outline_stays_the_target(brush):
     assert re.findall(r"[\d.]+", notice.sentence) == [f"{widest:.3g}", "0", "8.4", "6"], "no count of widths"
 
 
-def test_passes_cover_the_shape_and_stay_in_it(brush):
+def test_passes_cover_the_shape_and_stay_inside_it(brush):
     for d in (
         WIDE,
         WEDGE,
@@ -90,7 +90,7 @@ def test_passes_cover_the_shape_and_stay_in_it(brush):
         assert _core.overlap(paint, shape) > 0.97, d
 
 
-def test_a_line_thinner_than_the_brush_is_painted_at_its_least_width():
+def test_a_line_thinner_than_the_brush_is_painted_at_the_smallest_width():
     """A line thinner than the brush is painted at the brush's smallest width.
 
     The whole job was once refused for such a line.
@@ -125,7 +125,7 @@ def test_a_sliver_that_is_less_than_half_of_the_smallest_mark_is_left_out():
         within_reach(made, liner, "refuse")
 
 
-def test_refusal_names_stroke_width_and_range(brush):
+def test_a_refusal_names_stroke_width_and_range(brush):
     with refused("width-out-of-reach 16 '[0, 8.4] mm' round-6", "p") as caught:
         within_reach(of(WIDE), brush, "refuse")
     assert caught.value.value == pytest.approx(16, abs=0.1)
@@ -152,7 +152,7 @@ def overlap(strokes, shape, brush) -> float:
     ],
     keep=3,
 )
-def test_a_shape_wider_than_the_brush_is_painted_whole_unless_its_width_is_to_be_the_nearest(brush, d):
+def test_a_shape_wider_than_the_brush_is_painted_whole_except_with_clamp(brush, d):
     """A shape wider than the brush is painted whole, except with "clamp".
 
     Half of a bar of 16 mm was once left blank, and a disc of 9.4 mm became a drop.
@@ -166,7 +166,7 @@ def test_a_shape_wider_than_the_brush_is_painted_whole_unless_its_width_is_to_be
     assert notice.code == "width-out-of-reach"
 
 
-def test_the_stems_of_a_drawing_are_of_one_weight(brush):
+def test_the_stems_of_a_drawing_have_one_weight(brush):
     """All stems of a drawing have one weight.
 
     In the word h66 in a bold serif, the h was filled with stems 11 mm wide, but the 6 was kept at 8.4 mm.
@@ -177,7 +177,7 @@ def test_the_stems_of_a_drawing_are_of_one_weight(brush):
         assert mark.bounds == pytest.approx(region(made[0].wanted_mm).bounds, abs=0.3)
 
 
-def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
+def test_a_width_hardly_out_of_reach_causes_no_warning(brush):
     """A width that is hardly out of reach causes no warning.
 
     Nine strokes of a word were once reported for a width of 8.45 mm instead of 8.4.
@@ -190,7 +190,7 @@ def test_a_width_that_is_hardly_out_of_reach_is_no_warning(brush):
         within_reach(of("M10 10H90V18.45H10Z"), brush, "refuse")
 
 
-def test_an_arm_that_is_hardly_too_wide_does_not_lead_to_passes(brush):
+def test_an_arm_hardly_too_wide_causes_no_passes_in_other_letters(brush):
     """An arm that is hardly too wide does not cause passes in other letters.
 
     The trial of a letter with this arm was once refused and not counted, and all other letters were filled.

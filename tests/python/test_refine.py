@@ -30,7 +30,7 @@ def curves(count: int, seed: int = 3) -> list:
 
 
 @pytest.mark.slow
-def test_never_worse_by_the_report_and_better_on_average():
+def test_refined_plans_are_never_worse_and_better_on_average():
     strokes = curves(10)
     closed, refined = overlaps(strokes, BRUSH, "closed"), overlaps(strokes, BRUSH, "refined")
     assert (refined >= closed).all()
@@ -38,7 +38,7 @@ def test_never_worse_by_the_report_and_better_on_average():
 
 
 @pytest.mark.slow
-def test_never_worse_on_small_drawings():
+def test_refined_plans_are_never_worse_on_small_drawings():
     won = gains(24, 5, BRUSH)  # tests/integration runs more drawings
     assert won.min() >= 0.0
     assert won.mean() > 0.02
@@ -71,7 +71,7 @@ def looks(stroke, method: str) -> tuple[float, float, int]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seen", [lambda stroke: stroke, with_teeth])
-def test_marks_that_turn_more_or_grow_thorns_are_paid_for_by_overlap(seen):
+def test_extra_turning_or_thorns_need_a_gain_of_overlap(seen):
     strokes = [seen(stroke) for stroke in curves(12, 8)]
     closed, refined = (np.array([looks(each, way) for each in strokes]) for way in ("closed", "refined"))
     won = refined - closed
@@ -79,7 +79,7 @@ def test_marks_that_turn_more_or_grow_thorns_are_paid_for_by_overlap(seen):
     assert (won[:, 0] > 0.0).sum() >= 3
 
 
-def test_a_beginning_that_is_to_be_exposed_may_be_pointed():
+def test_an_exposed_start_may_be_pointed():
     """An exposed beginning may be pointed.
 
     The point sticks out of the round end and covers it. In closed form, the overlap is 0.964.
@@ -89,7 +89,7 @@ def test_a_beginning_that_is_to_be_exposed_may_be_pointed():
     assert refined > closed + 0.005
 
 
-def test_a_corner_on_a_knife_s_edge_stays_as_it_was():
+def test_a_corner_with_almost_equal_alternatives_keeps_its_plan():
     """A corner with almost equal alternatives keeps its plan.
 
     Refinement once used another measure than the report. It kept a plan with 0.971, although the closed form
@@ -100,7 +100,7 @@ def test_a_corner_on_a_knife_s_edge_stays_as_it_was():
 
 
 @pytest.mark.slow
-def test_side_by_side_gives_what_each_alone_does():
+def test_parallel_refinement_equals_refinement_one_by_one():
     strokes = curves(19)
     together = _core.compensate(strokes, BRUSH, SHEET, "refined")
     for stroke, a_pass, miss in zip(strokes, together.plan.passes, together.tracking_errors, strict=True):
@@ -110,20 +110,20 @@ def test_side_by_side_gives_what_each_alone_does():
         assert miss.largest_mm == alone.tracking_errors[0].largest_mm
 
 
-def test_progress_counts_strokes():
+def test_progress_reports_the_number_of_strokes():
     seen = []
     _core.compensate(curves(9), BRUSH, SHEET, "refined", progress=lambda now, all_: seen.append((now, all_)))
     assert seen == [(8, 9), (9, 9)]
 
 
-def test_the_first_stroke_that_cannot_be_painted_is_named():
+def test_a_refusal_names_the_first_impossible_stroke():
     strokes = curves(6)
     strokes[2].half_width = strokes[4].half_width = [(0.0, 40.0)]
     with refused("width-out-of-reach 80.000", "s2"):
         _core.compensate(strokes, BRUSH, SHEET, "refined")
 
 
-def test_ctrl_c_is_heard():
+def test_ctrl_c_interrupts_refinement():
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores SIGINT
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
@@ -135,13 +135,13 @@ def test_ctrl_c_is_heard():
         signal.signal(signal.SIGINT, before)
 
 
-def test_an_unknown_way_is_refused():
+def test_an_unknown_compensation_is_refused():
     with refused("choice-unknown none constant closed refined"):
         _core.compensate(curves(1), BRUSH, SHEET, "best")
 
 
 @pytest.mark.slow
-def test_from_the_command_line(tmp_path, capsys):
+def test_the_command_line_refines_reproducibly(tmp_path, capsys):
     drawing = tmp_path / "curve.svg"
     drawing.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'

@@ -63,7 +63,7 @@ def bar(half, target=True):
     return stroke
 
 
-def test_outlines_within_reach_and_a_little_beyond_are_refined_towards():
+def test_outlines_up_to_slightly_beyond_reach_are_refinement_targets():
     greatest = BRUSH.half_width_range_mm()[1]
     for half in (0.5 * greatest, 1.05 * greatest):
         assert towards_reach(bar(min(half, greatest)), bar(half), BRUSH).wanted_mm
@@ -71,7 +71,7 @@ def test_outlines_within_reach_and_a_little_beyond_are_refined_towards():
 
 
 @pytest.mark.parametrize(("away_mm", "is_reported"), [(0.8, [True, False]), (2.5, [True, True])])
-def test_a_refined_mark_next_to_its_stroke_is_reported(away_mm, is_reported):
+def test_a_displaced_refined_mark_is_reported(away_mm, is_reported):
     """A refined mark next to its stroke is reported.
 
     The strokes are 4 mm wide. In closed form, the tracking error counts from the tolerance on. In a refined
@@ -147,7 +147,7 @@ def test_the_command_line_refines_within_its_cell(tmp_path, monkeypatch):
     assert cli.main(["check", "two.ngc", "two.svg", "--cell", "low.toml"]) == 0
 
 
-def test_a_dot_stays_round(tmp_path):
+def test_a_refined_dot_stays_round(tmp_path):
     """A dot stays round in a refined plan.
 
     Its footprint turns on the spot. When refinement moved the footprint, the dot had bulges.
@@ -170,7 +170,7 @@ def said_of_nothing(work):
     return [notice for notice in work.notices if notice.code == "flag-without-effect"]
 
 
-def test_refining_that_changes_nothing_says_so_and_why(tmp_path):
+def test_refinement_without_effect_is_reported_with_its_reason(tmp_path):
     (tmp_path / "bar.svg").write_text(BAR)
     refined = prepare(tmp_path / "bar.svg", Options(compensation="refined"))
     assert len(said_of_nothing(refined)) == 1 and NO_GAIN in said_of_nothing(refined)[0].sentence

@@ -55,7 +55,7 @@ def decode(data):
     return cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
 
 
-def test_png_shows_colours_at_their_places_and_order(painted):
+def test_png_shows_colours_at_their_places_and_in_order(painted):
     marks, brush, colours = painted
     image = decode(marks_png(marks, brush, SHEET, colours))
     assert image.shape[:2] == (600, 1200)
@@ -72,7 +72,7 @@ def decode_colour(colour):
 
 
 @pytest.mark.parametrize("at", [(0, 0), (6, 4), (20, 12), (34, 20), (46, 2)])
-def test_part_of_a_picture_is_what_the_whole_one_shows_there(painted, at):
+def test_part_of_a_picture_equals_the_whole_picture_there(painted, at):
     marks, brush, _ = painted
     (x, y), (width, height), px = at, (14, 10), 8
     whole = coverage(marks, brush, (0, 0, *SHEET), px)
@@ -81,7 +81,7 @@ def test_part_of_a_picture_is_what_the_whole_one_shows_there(painted, at):
     np.testing.assert_allclose(coverage(marks, brush, (x, y, width, height), px), shown, atol=1e-5)
 
 
-def test_svg_holds_the_same_paint_upside_down(painted):
+def test_svg_contains_the_same_paint_with_y_inverted(painted):
     marks, _, colours = painted
     root = ET.fromstring(marks_svg(marks, SHEET, colours, "A & B"))
     assert (root.get("width"), root.get("height"), root.get("viewBox")) == ("60mm", "30mm", "0 0 60 30")
@@ -98,7 +98,7 @@ def test_svg_holds_the_same_paint_upside_down(painted):
         assert area(back) == pytest.approx(area(trace.outline_mm), rel=1e-3)
 
 
-def test_a_colour_that_is_none_is_black(painted):
+def test_an_invalid_colour_is_drawn_black(painted):
     marks, brush, _ = painted
     colours = ["", "red", '"/><script/>']
     assert pixel(decode(marks_png(marks, brush, SHEET, colours)), 16, 6) == "#000000"
@@ -120,7 +120,7 @@ def test_the_toolpath_is_drawn_over_the_paint(painted):
     assert pixel(image, 10, 3) == pixel(image, 40, 18) == TOOLPATH
 
 
-def test_svg_numbers_are_plain(painted):
+def test_svg_numbers_are_plain_decimals(painted):
     marks, _, colours = painted
     marks.passes[0].outline_mm = []
     text = marks_svg(marks, SHEET, colours)
@@ -128,7 +128,7 @@ def test_svg_numbers_are_plain(painted):
 
 
 @pytest.mark.parametrize(("shape", "landscape"), [((90, 30), True), ((40, 40), True)])
-def test_panels_are_complete_at_one_scale(shape, landscape):
+def test_panels_are_complete_and_share_one_scale(shape, landscape):
     width, height = shape
     ring = np.array([(5, 5), (5 + width, 5), (5 + width, 5 + height), (5, 5 + height)], float)
     line = ring[[0, 2]]
@@ -144,7 +144,7 @@ def test_panels_are_complete_at_one_scale(shape, landscape):
     assert ink == pytest.approx(2 * grey, rel=0.1), "one panel of the target, two painted over it"
 
 
-def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone():
+def test_parallel_painting_equals_painting_each_stroke_alone():
     """Several processors paint a page as each stroke is painted alone.
 
     Where strokes cross, their order does not change the picture. Where no strokes cross, the picture is the
@@ -177,7 +177,7 @@ def test_a_page_of_many_strokes_is_painted_by_several_processors_as_each_alone()
 PLACES = {1: (16.0, 4.4), 2: (59.5, 29.5)}
 
 
-def test_numbers_of_places_stay_inside_and_off_the_paint(painted):
+def test_place_numbers_stay_inside_the_picture_and_off_the_paint(painted):
     """The numbers of places stay inside the picture and off the paint.
 
     The second place is in a corner of the sheet.

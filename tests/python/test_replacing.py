@@ -43,7 +43,7 @@ def is_kept(capsys, path, *words):
     return kept and in_json(capsys, *words, "--force")[0] == 0
 
 
-def test_a_program_and_a_picture_are_replaced_as_they_were_written(desk, capsys):
+def test_unchanged_programs_and_pictures_are_replaced(desk, capsys):
     assert in_json(capsys, *CONVERT)[0] == 0
     first = Path("a.ngc").read_bytes()
     Path("a.svg").write_text(DRAWING.format(3))
@@ -52,7 +52,7 @@ def test_a_program_and_a_picture_are_replaced_as_they_were_written(desk, capsys)
 
 
 @pytest.mark.parametrize("name", ["a.ngc", "a.png"])
-def test_what_was_edited_since_is_kept(desk, capsys, name):
+def test_edited_files_are_kept(desk, capsys, name):
     assert in_json(capsys, *CONVERT)[0] == 0
     with open(name, "ab") as file:
         file.write(b"\n(mine)\n")
@@ -62,14 +62,14 @@ def test_what_was_edited_since_is_kept(desk, capsys, name):
     assert in_json(capsys, *CONVERT)[0] == 0, "as it was written now"
 
 
-def test_what_brushsvg_did_not_write_is_kept(desk, capsys):
+def test_files_not_written_by_brushsvg_are_kept(desk, capsys):
     Path("a.ngc").write_text("(mine)\n")
     assert is_kept(capsys, "a.ngc", *CONVERT)
     Path("b.json").write_text("{}")
     assert is_kept(capsys, "b.json", "convert", "a.svg", "-o", "b.json")
 
 
-def test_a_program_in_several_files_replaces_none_of_others(desk, capsys, monkeypatch):
+def test_a_program_in_several_files_replaces_no_other_files(desk, capsys, monkeypatch):
     monkeypatch.setitem(MAX_PROGRAM_POINTS, "fanuc", 60)
     two = DRAWING.format(2).replace("</g>", '<path d="M20 50c10-20 30 20 50 0" stroke-width="2"/></g>')
     Path("a.svg").write_text(two)
@@ -89,7 +89,7 @@ SOURCES = {
 
 
 @pytest.mark.parametrize("kind", SOURCES)
-def test_brushes_cells_and_drawings_are_never_replaced_by_themselves(desk, capsys, kind):
+def test_brushes_cells_and_drawings_are_never_replaced_automatically(desk, capsys, kind):
     path, words = SOURCES[kind]
     Path("font.svg").write_text(FONT)
     assert in_json(capsys, *words)[0] == 0, words
@@ -101,13 +101,13 @@ def test_no_program_replaces_a_brush(desk, capsys):
     assert is_kept(capsys, "own.json", "convert", "a.svg", "-o", "own.json")
 
 
-def test_where_nothing_can_be_remembered_files_are_somebodys(desk, capsys, monkeypatch):
+def test_files_are_kept_if_the_record_cannot_be_written(desk, capsys, monkeypatch):
     Path("state").write_text("no folder")
     assert in_json(capsys, *CONVERT)[0] == 0
     assert is_kept(capsys, "a.ngc", *CONVERT)
 
 
-def test_who_is_refused_for_a_home_that_cannot_be_written_reads_where(desk, capsys, monkeypatch):
+def test_a_refusal_because_of_an_unwritable_home_names_its_path(desk, capsys, monkeypatch):
     """A refusal because of an unwritable home names the path.
 
     Root may write anywhere, so the test uses a stand-in for os.access.
@@ -125,7 +125,7 @@ def test_a_device_is_written_through(desk, capsys):
     assert [in_json(capsys, "convert", "a.svg", "-o", "out.ngc")[0] for _ in range(2)] == [0, 0]
 
 
-def test_what_is_remembered_stays_small(desk, monkeypatch):
+def test_the_record_of_written_files_stays_small(desk, monkeypatch):
     Path("x").write_text("x")
     monkeypatch.setattr(replacing, "MAX_RECORD_BYTES", 1000)
     for _ in range(20):

@@ -49,7 +49,7 @@ def two_strokes():
     return found
 
 
-def test_compensation_is_seen_in_the_figures(two_strokes):
+def test_compensation_improves_the_figures(two_strokes):
     (_, without), (rows, with_it) = two_strokes["none"], two_strokes["closed"]
     assert without.overlap < 0.85 < 0.93 < with_it.overlap <= 1
     assert with_it.centre_largest_mm < 0.05
@@ -61,7 +61,7 @@ def test_compensation_is_seen_in_the_figures(two_strokes):
     assert with_it.drawn_mm == pytest.approx(80)
 
 
-def test_the_sum_weighs_by_length(two_strokes):
+def test_the_total_is_weighted_by_length(two_strokes):
     rows, total = two_strokes["none"]
     expected = (60 * rows[0].width_error_mm + 20 * rows[1].width_error_mm) / 80
     assert total.width_error_mm == pytest.approx(expected)
@@ -115,7 +115,7 @@ def test_json_is_complete_and_without_nan():
     assert read["warnings"] == [reported]
 
 
-def test_text_names_every_stroke_and_says_what_is_not_known():
+def test_text_names_every_stroke_and_marks_unknown_values():
     made = Report("", "round-6", "", None, (UNKNOWN,), UNKNOWN, 75.4)
     for details in (False, True):
         text = to_text(made, details)
@@ -131,7 +131,7 @@ def test_text_names_every_stroke_and_says_what_is_not_known():
     assert long.endswith(": 1\n  odd\n")
 
 
-def test_strokes_that_touch_are_judged_together():
+def test_strokes_that_touch_are_compared_together():
     brush = find_brush("round-6")
     strokes = [
         straight("down", (40, 60), (40, 20), 2.0),
@@ -149,7 +149,7 @@ def test_strokes_that_touch_are_judged_together():
     assert f"down + across    {format_overlap(letter.overlap)}" in text
 
 
-def test_a_stroke_painted_twice_is_no_worse_as_a_letter():
+def test_a_repeated_stroke_does_not_lower_the_overlap_of_its_letter():
     brush = find_brush("round-6")
     strokes = [straight("a", (20, 20), (60, 20), 2.0), straight("b", (60, 20), (20, 20), 2.0)]
     plan = compensate(strokes, brush, (90, 80)).plan
@@ -180,7 +180,7 @@ def test_the_worst_place_is_reported():
     assert read["groups"] == []
 
 
-def test_groups_in_json():
+def test_json_contains_groups():
     made = Report("T", "b", "closed", 0.05, (ROW,), ROW, 5, groups=(Group(("a", "b"), 0.9512345678),))
     assert json.loads(to_json(made))["groups"] == [{"strokes": ["a", "b"], "overlap": 0.951235}]
 
@@ -202,7 +202,7 @@ def test_the_text_is_at_most_ten_lines():
     assert len(to_text(full, details=True).splitlines()) > 60
 
 
-def test_places_are_in_the_json_with_the_verdict():
+def test_json_contains_places_and_the_verdict():
     made = Report("T", "b", "closed", 0.05, (ROW,), ROW, 5, places=(PLACE,))
     read = json.loads(to_json(made))
     assert read["verdict"] == made.verdict == to_text(made).splitlines()[0]
@@ -221,7 +221,7 @@ def test_places_are_in_the_json_with_the_verdict():
     ]
 
 
-def test_csv_has_a_row_for_each_stroke_and_empty_cells_for_what_is_not_known():
+def test_csv_has_a_row_per_stroke_and_empty_cells_for_unknown_values():
     row = Figures('a "b", c', 0.9, 0.01, 0.04, 0.125, 0, 60.0, 81.5, 42, WORST)
     interval = Confidence(0.4, None, 0.2)
     known = PlanConfidence("covariance", "words", (interval, interval), interval)
@@ -250,7 +250,7 @@ def test_the_worst_place_is_where_the_lag_is_not_compensated():
     assert {place.code for place in places} <= {"stroke-start", "stroke-end"}, "plain ends are pointed"
 
 
-def test_paint_of_another_stroke_is_no_difference():
+def test_paint_of_another_stroke_is_not_a_difference():
     brush = find_brush("round-6")
     strokes = [straight("down", (40, 60), (40, 20), 2.0), straight("across", (25, 41), (60, 41), 2.0)]
     plan = compensate(strokes, brush, (90, 80)).plan

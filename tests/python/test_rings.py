@@ -39,7 +39,7 @@ class Endless:
         lambda some: _core.Plan("b", "", (9, 9), some),
     ],
 )
-def test_a_list_longer_than_any_is_refused_before_it_is_copied(call):
+def test_an_overlong_list_is_refused_before_it_is_copied(call):
     some = Endless(10_000_001)
     with pytest.raises(Error) as refused:
         call(some)
@@ -49,7 +49,7 @@ def test_a_list_longer_than_any_is_refused_before_it_is_copied(call):
         call(range(10**9))
 
 
-def test_rings_that_run_clockwise_are_refused_not_lost():
+def test_clockwise_rings_are_refused():
     turned = SQUARE[::-1]
     assert overlap([SQUARE], [SQUARE]) == 1
     for call in (
@@ -65,7 +65,7 @@ def test_rings_that_run_clockwise_are_refused_not_lost():
     assert coverage([turned], (0, 0, 4, 4), 1.0).min() == 1
 
 
-def test_places_are_within_rings_as_shapely_has_it():
+def test_is_within_agrees_with_shapely():
     random = np.random.default_rng(5)
     around = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     outer = (5 + np.sin(7 * around))[:, None] * np.column_stack([np.cos(around), np.sin(around)])

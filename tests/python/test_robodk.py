@@ -65,7 +65,7 @@ def test_a_circle_right_after_the_press_is_painted_at_the_speed_of_painting():
     assert speeds[-1] == "speed 17" and speeds[-2] != "speed 17"
 
 
-def test_a_tilted_brush_is_written_pose_by_pose():
+def test_a_tilted_brush_is_written_as_single_poses():
     """A tilted brush is written pose by pose.
 
     The brush leans by 20 degrees towards x from its second pose on, with the tip where the plan has it.
@@ -97,7 +97,7 @@ def test_a_tilted_brush_is_written_pose_by_pose():
         ("def ", "de ", "post-failed SyntaxError"),
     ],
 )
-def test_what_a_post_cannot_do_is_refused(tmp_path, old, new, said):
+def test_a_post_that_fails_is_refused(tmp_path, old, new, said):
     text = POST.read_text()
     assert old in text
     (tmp_path / "post.py").write_text(text.replace(old, new, 1))
@@ -105,7 +105,7 @@ def test_what_a_post_cannot_do_is_refused(tmp_path, old, new, said):
         text_for(cell_with(tmp_path / "post.py"))
 
 
-def test_a_post_that_is_nowhere_and_tables_of_other_languages_are_refused(tmp_path):
+def test_a_missing_post_and_tables_of_other_languages_are_refused(tmp_path):
     with refused("file-unreadable nowhere.py"):
         text_for(cell_with(tmp_path / "nowhere.py"))
     with refused("key-missing robodk"):
@@ -114,7 +114,7 @@ def test_a_post_that_is_nowhere_and_tables_of_other_languages_are_refused(tmp_pa
         parse_cell(write_cell(replace(cell_with(POST), language="krl")))
 
 
-def test_it_is_written_and_not_checked(tmp_path, capsys):
+def test_a_robodk_program_is_written_without_a_check(tmp_path, capsys):
     (tmp_path / "mine.toml").write_text(write_cell(cell_with(POST)))
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="70mm" height="50mm" viewBox="0 0 70 50">'

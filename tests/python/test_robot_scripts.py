@@ -94,7 +94,7 @@ def touched(ran: Run, cell) -> list[tuple[Leg, np.ndarray]]:
 
 @pytest.mark.parametrize("paper", [SQUARE, TURNED, LEANING], ids=["square", "turned", "leaning"])
 @pytest.mark.parametrize("name", NAMES)
-def test_the_arm_goes_through_the_plans_poses(name, paper):
+def test_the_arm_passes_all_poses_of_the_plan(name, paper):
     cell = on(name, paper)
     rows = touched(sound(text_for(cell), cell), cell)
     writes_circles = name in CIRCLES
@@ -110,14 +110,14 @@ def test_the_arm_goes_through_the_plans_poses(name, paper):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_brush_stands_on_the_papers_normal(name):
+def test_the_brush_is_held_along_the_paper_normal(name):
     cell = on(name, LEANING)
     cell = replace(cell, tool=replace(cell.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=30.0))
     assert max(leg.tilt_rad for leg in sound(text_for(cell), cell).legs) < 1e-5
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_corners_are_blended_within_reach_and_not_where_the_brush_turns_back(name):
+def test_corners_are_blended_within_limits_and_not_at_reversals(name):
     finest = (0.001,) if name == "cr5" else ()
     cell = replace(on(name, SQUARE), blending=Blending(0.05, 2.0, *finest))
     legs = [leg for leg, _ in touched(sound(text_for(cell), cell), cell)]
@@ -157,7 +157,7 @@ def test_dobot_gets_whole_blends_and_whole_speeds():
     assert [leg.speed_mm_s for leg in sound(fine, cell).legs] == speeds
 
 
-def test_what_dobot_cannot_express_is_refused():
+def test_values_that_dobot_cannot_express_are_refused():
     text = write_cell(find_cell("cr5"))
     with refused("out-of-range [1, 5000]"):
         parse_cell(text.replace("press_mm_s = 10.0", "press_mm_s = 0.9"))
@@ -169,7 +169,7 @@ def test_what_dobot_cannot_express_is_refused():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_brush_is_raised_before_it_goes_anywhere(name):
+def test_the_brush_is_raised_before_any_other_move(name):
     cell = on(name, SQUARE)
     low, high = (sound(text_for(cell), cell, height_mm=height) for height in (21.0, 300.0))
     assert low.legs[0].end == pytest.approx((-100, -400, 40)) and low.legs[0].speed_mm_s == 50
@@ -177,7 +177,7 @@ def test_the_brush_is_raised_before_it_goes_anywhere(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_paint_is_waited_for(name):
+def test_the_program_waits_for_paint(name):
     stations = (
         Station("red", (120.0, 10.0), ("#ff0000",), depth_mm=5.0, hold_s=0.5),
         Station('ha"n\\d', (120.0, 50.0), by_hand=True),
@@ -191,14 +191,14 @@ def test_paint_is_waited_for(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_golden(name):
+def test_programs_equal_the_golden_files(name):
     golden = GOLDEN / f"two_strokes{LANGUAGES[name]}"
     assert text_for(find_cell(name)).encode("ascii") == golden.read_bytes()
 
 
 @pytest.mark.parametrize("paper", [SQUARE, TURNED, LEANING], ids=["square", "turned", "leaning"])
 @pytest.mark.parametrize("name", NAMES)
-def test_what_is_written_is_read(name, paper):
+def test_a_written_program_is_read_back(name, paper):
     cell = on(name, paper)
     text = text_for(cell)
     read = read_program(text, LANGUAGES[name], cell)
@@ -278,7 +278,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("name", "old", "new", "said"), REFUSED)
-def test_what_the_reader_refuses(name, old, new, said):
+def test_the_reader_refuses_invalid_programs(name, old, new, said):
     text = text_for(find_cell(name))
     assert old in text
     with refused(said):
@@ -293,7 +293,7 @@ SAME = [  # equal for the controller
 
 
 @pytest.mark.parametrize(("name", "old", "new"), SAME)
-def test_what_the_reader_takes_for_the_same(name, old, new):
+def test_the_reader_accepts_equivalent_text(name, old, new):
     cell = find_cell(name)
     text = text_for(cell)
     assert old in text
@@ -319,7 +319,7 @@ def test_no_title_sets_the_encoding_of_python(title):
 
 @pytest.mark.slow
 @sample("name", NAMES, keep=2)
-def test_no_dangerous_program_is_allowed(name, tmp_path):
+def test_check_refuses_dangerous_programs(name, tmp_path):
     """No dangerous program passes check, in a sample.
 
     tests/integration has three hundred of each job.
@@ -387,7 +387,7 @@ def test_the_interpreter_refuses_broken_programs(name, old, new):
 
 @pytest.mark.skipif(not find_spec("xarm"), reason="the vendor's SDK is not installed")
 @pytest.mark.parametrize("broken", [None, ("MOST, is_radian", "MOST, in_radian"), ("set_mode(0)", "set_mode(0, 0, 0)")])
-def test_every_call_is_one_of_the_vendors_sdk(broken):
+def test_every_call_exists_in_the_vendors_sdk(broken):
     from xarm.wrapper import XArmAPI
 
     cell = replace(
@@ -418,7 +418,7 @@ def test_a_robot_slower_than_rapid_can_express_is_refused():
 
 @pytest.mark.skipif(not find_spec("rapidchecker"), reason="rapidchecker is not installed")
 @pytest.mark.parametrize("broken", [None, *(pair[1:] for pair in BROKEN[1:3])])
-def test_rapidchecker_knows_the_grammar(tmp_path, broken):
+def test_rapidchecker_accepts_the_program(tmp_path, broken):
     cell = replace(
         on("irb120", SQUARE), reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),)
     )
@@ -429,7 +429,7 @@ def test_rapidchecker_knows_the_grammar(tmp_path, broken):
     assert (done.returncode == 0) == (broken is None), done.stdout
 
 
-def test_settings_within_a_function_of_dobots_are_not_sorted():
+def test_settings_inside_a_dobot_function_keep_their_order():
     texts = ["(title: a)", "function paint()", "User(1)", "end"]
     acts = [Act(k, "text", text) for k, text in enumerate(texts, 1)]
     assert _has_setting_in_function(acts) and not _has_setting_in_function(acts[:2])

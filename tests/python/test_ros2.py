@@ -47,7 +47,7 @@ def run(text: str, cell):
 
 
 @pytest.mark.parametrize("paper", [SQUARE, TURNED, LEANING], ids=["square", "turned", "leaning"])
-def test_the_brush_goes_through_the_plans_poses(paper):
+def test_the_brush_passes_all_poses_of_the_plan(paper):
     cell = on("fr3", paper)
     cell = replace(cell, tool=replace(cell.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=30.0))
     text = text_for(cell)
@@ -62,7 +62,7 @@ def test_the_brush_goes_through_the_plans_poses(paper):
     assert speeds[on_paper].max() < 20.01 and speeds.max() < 100.01
 
 
-def test_speeds_and_accelerations_are_the_cells():
+def test_speeds_and_accelerations_respect_the_cell():
     """Speeds and accelerations stay within the cell's limits.
 
     The test uses differences between rows, which the rounding of the table changes only a little.
@@ -84,7 +84,7 @@ def test_speeds_and_accelerations_are_the_cells():
     assert ramps.sum() > 20 and np.median(changes[ramps[1:] & ramps[:-1]]) > 0.5 * most
 
 
-def test_corners_that_cannot_be_cut_are_stopped_at_and_others_are_slow():
+def test_uncut_corners_are_stops_and_cut_corners_are_slow():
     cell = on("fr3", SQUARE)
     rows = table(cell)
     gentle = replace(cell, speeds=replace(cell.speeds, acceleration_mm_s2=20.0))
@@ -104,7 +104,7 @@ def message(text: str) -> tuple[list[list[float]], str, str]:
     return [[float(cell) for cell in row[:8]] for row in rows], *frames
 
 
-def test_json_has_the_rows_of_the_table():
+def test_json_contains_the_rows_of_the_table():
     cell = on("fr3", SQUARE)
     post, whole = POSTS["ros2"], made(cell)
     csv, traj = ("".join(text_of(post, whole, suffix)) for suffix in (".csv", ".traj"))
@@ -143,7 +143,7 @@ def test_rosbags_reads_the_message(name):
     assert bytes(store.serialize_cdr(reported, kind)) == data
 
 
-def test_a_job_as_table_and_as_json_may_be_run(tmp_path, capsys):
+def test_check_accepts_a_job_as_table_and_as_json(tmp_path, capsys):
     plan = _core.Plan("round-6", "", (100.0, 60.0), [_core.Pass("wave", POSES, 20.0)])
     (tmp_path / "a.json").write_text(_core.write_plan(plan))
     for suffix in (".csv", ".traj", ".cdr"):
@@ -158,7 +158,7 @@ def test_a_job_as_table_and_as_json_may_be_run(tmp_path, capsys):
     assert "no JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
 
 
-def test_golden():
+def test_programs_equal_the_golden_files():
     assert text_for(find_cell("fr3")).encode("ascii") == (GOLDEN / "two_strokes.csv").read_bytes()
 
 
@@ -176,14 +176,14 @@ def test_golden():
         ("# end: the brush is held up\n", "", "program-cut-short"),
     ],
 )
-def test_what_the_reader_refuses(old, new, said):
+def test_the_reader_refuses_invalid_programs(old, new, said):
     text = text_for(find_cell("fr3"))
     assert old in text
     with refused(said):
         read_program(text.replace(old, new, 1), ".csv", find_cell("fr3"))
 
 
-def test_a_person_cannot_be_waited_for_and_frames_have_names():
+def test_manual_stations_are_refused_and_frames_need_names():
     cell = find_cell("fr3")
     by_hand = replace(cell, reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),))
     for each, said in (
@@ -198,7 +198,7 @@ def test_a_person_cannot_be_waited_for_and_frames_have_names():
             parse_cell(write_cell(each))
 
 
-def test_check_accepts_lifts_that_are_hardly_longer_than_what_is_rounded(tmp_path, monkeypatch, capsys):
+def test_check_accepts_lifts_hardly_longer_than_the_rounding(tmp_path, monkeypatch, capsys):
     """Check accepts lifts that are hardly longer than the rounding.
 
     The lifts are about 0.015 mm long, on a machine that leans. Their speed depends on the last decimals of

@@ -107,7 +107,7 @@ def test_a_rough_letter_has_the_strokes_of_the_clean_one(letter, kind):
     assert overlap(found, clean) > 0.97 * overlap(expected, clean)
 
 
-def test_strokes_of_noise_of_0_3_mm_are_as_many():
+def test_noise_of_0_3_mm_does_not_change_the_number_of_strokes():
     for clean in LETTERS.values():
         found = outline_strokes(roughened(clean, 0.3, 0.3))
         assert abs(len(found) - len(outline_strokes(clean))) <= 1
@@ -170,7 +170,7 @@ CLEAN = {
 
 
 @pytest.mark.parametrize("name", CLEAN)
-def test_a_clean_shape_stays_as_it_is(name):
+def test_a_clean_shape_stays_unchanged(name):
     """A clean shape stays unchanged.
 
     A first attempt mistook the corners of a nonagon and the teeth of a gear for dents.
@@ -193,12 +193,12 @@ def test_rounded_coordinates_of_many_points_are_not_rough(step_mm, decimals):
 
 
 @pytest.mark.parametrize("sigma_mm", [0.05, 0.1, 0.2])
-def test_roughness_follows_the_noise(sigma_mm):
+def test_measured_roughness_equals_the_noise(sigma_mm):
     assert measure_roughness_mm(roughened(LETTERS["S"], sigma_mm, 0.3))[0] == pytest.approx(sigma_mm, rel=0.35)
 
 
 @pytest.mark.parametrize("side_mm", [0.1, 0.3])
-def test_pixels_are_rough_by_half_of_them(side_mm):
+def test_the_roughness_of_a_pixel_outline_is_half_a_pixel(side_mm):
     """The roughness of a pixel outline is half a pixel.
 
     The steps are as regular as the teeth of a gear.
@@ -222,7 +222,7 @@ def test_specks_and_pinholes_of_a_rough_shape_are_left_out():
     assert len(smooth_rough_outlines([*letter, pinhole, speck, dot])) == len(smooth_rough_outlines(letter)) + 1
 
 
-def test_a_large_rough_shape_stays_within_its_memory():
+def test_a_large_rough_shape_stays_within_the_memory_limit():
     """Smoothing a large rough shape stays within its memory limit.
 
     Smoothing needs points every 0.1 mm along 80 m.

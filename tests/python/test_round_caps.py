@@ -64,7 +64,7 @@ def test_both_ends_are_round(drawn, width_mm):
     assert strays_mm(blunt, width_mm) > 1.0
 
 
-def test_a_hidden_beginning_is_round_as_well():
+def test_a_covered_start_is_round():
     painted, _ = mark(line(8), "round", "round")
     left = shapely.box(0, 0, 50, 50)
     beyond = painted.symmetric_difference(MIDDLE.buffer(4, quad_segs=64)).intersection(left)
@@ -78,12 +78,12 @@ def test_narrower_lines_need_no_turn(width_mm):
     assert len(plan.passes[0].poses_mm) < 20
 
 
-def test_squared_ends_of_a_path_with_a_width_alone_are_straight():
+def test_butt_ends_of_a_line_are_straight():
     painted, _ = mark(line(8), "butt", "butt")
     assert all(painted.contains(shapely.Point(x, y)) for x in (26.8, 78.2) for y in (21.8, 28.2))
 
 
-def test_the_end_of_a_stem_below_its_serif_is_covered_and_others_are_not():
+def test_only_stem_ends_below_a_serif_are_covered():
     made = of("M20 10H50V13H39V37H50V40H20V37H31V13H20Z")
     (stem,) = [
         each for each in made if abs(np.diff(each.middle_mm[:, 0]).sum()) + abs(np.ptp(each.middle_mm[:, 0::2])) < 3

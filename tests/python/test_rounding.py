@@ -64,7 +64,7 @@ SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2)
     ("poses", "ends", "centre_mm"),
     [(ONE_CHORD, (3, 4), (50, 40)), (FLAT, (2, 4), (40, 4e5 + 20)), (SMALL, (2, 5), (50, 40))],
 )
-def test_a_circle_that_cannot_be_written_is_run_along_its_chords(name, decimals, poses, ends, centre_mm):
+def test_a_circle_that_cannot_be_written_becomes_chords(name, decimals, poses, ends, centre_mm):
     circle = _core.Arc(*ends, centre_mm, 1)
     text, said = found_by_check(poses, [circle], cell_of(name, decimals))
     assert said is None
@@ -72,7 +72,7 @@ def test_a_circle_that_cannot_be_written_is_run_along_its_chords(name, decimals,
         assert "movec" not in text
 
 
-def test_a_circle_that_can_be_written_is_one():
+def test_a_circle_that_can_be_written_stays_a_circle():
     poses = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70, -40, 4), (60, 40, -2), UP]
     text, said = found_by_check(poses, [_core.Arc(2, 5, (50, 40), 1)], cell_of("ur5e", 4))
     assert said is None and text.count("movec") == 1
@@ -83,7 +83,7 @@ def test_a_circle_that_can_be_written_is_one():
 @pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4, 2e-3])
 @pytest.mark.parametrize("rotation_deg", [(0, 0, 0), (0, 0, 12.3), (1.1, -2.3, 12.3)])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e"])
-def test_what_goes_up_almost_straight_is_as_fast_as_what_is_written(name, rotation_deg, sideways_mm):
+def test_almost_vertical_moves_are_accepted_after_rounding(name, rotation_deg, sideways_mm):
     cell = cell_of(name, 3, paper=Paper((0.0, -400.0, 20.0), rotation_deg))
     poses = [DOWN, (20 + sideways_mm, 20, -2), (40, 25, -2), (40 + sideways_mm, 25, -1), (60, 50, -1), UP]
     assert found_by_check(poses, [], cell)[1] is None
@@ -91,7 +91,7 @@ def test_what_goes_up_almost_straight_is_as_fast_as_what_is_written(name, rotati
 
 @pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4])
 @pytest.mark.parametrize("x", [40.0, 40.0004])
-def test_a_servo_stays_where_less_than_half_a_unit_is_gone_next_to_its_lift(x, sideways_mm):
+def test_a_servo_skips_moves_below_half_a_unit_next_to_a_lift(x, sideways_mm):
     """A servo stays in place if it moves by less than half a unit next to its lift.
 
     From 40.0004 to 40.0007 is 3e-4 mm, but one unit after rounding. No post wrote this move, and no reader
@@ -123,7 +123,7 @@ def to_and_fro(chance: random.Random) -> list:
 @pytest.mark.slow
 @sample("table", SERVO_ROWS, keep=1)
 @pytest.mark.parametrize("step_mm", [0.05, 0.2, 0.5])
-def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, step_mm):
+def test_check_accepts_back_and_forth_strokes_of_a_servo(tmp_path, capsys, table, step_mm):
     """Check accepts the to-and-fro strokes that a servo paints.
 
     Check once refused half of these programs. It ignored a rest in the middle of a lift, left out moves of
@@ -145,7 +145,7 @@ def test_what_a_servo_paints_to_and_fro_is_known_again(tmp_path, capsys, table, 
             assert status == 0, ([each.poses_mm for each in both], reported)
 
 
-def test_a_landing_between_two_coarse_values_is_known_again():
+def test_check_accepts_a_landing_between_two_coarse_values():
     poses = [
         (25.711771, 28.8686, -0.368637),
         (25.560389, 28.99917, -2.423742),
@@ -156,13 +156,13 @@ def test_a_landing_between_two_coarse_values_is_known_again():
 
 
 @pytest.mark.parametrize("turn_deg", np.linspace(99.99, 100.01, 9))
-def test_a_robot_stops_where_the_corner_that_is_written_is_sharp(turn_deg):
+def test_a_robot_stops_at_corners_that_are_sharp_after_rounding(turn_deg):
     angle = np.radians(turn_deg)
     poses = [DOWN, (30, 20, -2), (40, 20, -2), (40 + np.cos(angle), 20 + np.sin(angle), -2), (50, 50, -2), UP]
     assert found_by_check(poses, [], cell_of("ur5e", 3))[1] is None
 
 
-def test_places_are_those_of_the_text_in_the_frame_that_it_has():
+def test_positions_are_rounded_in_the_frame_of_the_text():
     a_pass = SimpleNamespace(poses_mm=[(1.23456, 2.0, 0.0), (1.2349, 2.0, -1.0)], arcs=[], tool_axes=())
     upright = as_written(a_pass, cell_of("linuxcnc-3axis", 3), np.eye(4))
     assert upright.poses_mm[:, 0].tolist() == [1.235, 1.235]
@@ -177,7 +177,7 @@ def test_places_are_those_of_the_text_in_the_frame_that_it_has():
 STEEP = [(49.4, 50, 0), (57.4, 50, -3.4833148), (57.310625, 50, -1.5511636), (57.35, 50, 0)]
 
 
-def test_what_is_steep_and_slow_on_paper_that_is_level_is_not_straight_down():
+def test_steep_slow_moves_on_level_paper_are_not_vertical():
     assert found_by_check(STEEP, [], find_cell("grbl-servo"))[1] is None
 
 
@@ -189,7 +189,7 @@ HALF_TURN = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70, 110, 12), (60, 40, -2),
     [find_cell("grbl-servo"), replace(find_cell("jaka-zu3"), paper=Paper((0.0, -400.0, 20.0), (1, -2, 12)))],
     ids=["servo", "leaning"],
 )
-def test_circles_that_are_run_as_lines_take_no_rest(cell):
+def test_circles_written_as_lines_have_no_stops(cell):
     took_s = [
         duration_s(
             unchecked_program(
@@ -206,7 +206,7 @@ def test_circles_that_are_run_as_lines_take_no_rest(cell):
 
 @pytest.mark.parametrize("decimals", [3, 4, 6])
 @pytest.mark.parametrize("name", LANGUAGES)
-def test_no_move_is_shorter_than_what_anything_shows(name, decimals):
+def test_no_move_is_shorter_than_the_rounding(name, decimals):
     chance = np.random.default_rng(decimals)
     steps = np.column_stack([chance.uniform(-1e-3, 1e-3, (40, 2)), np.zeros(40)])
     poses = [DOWN, (30, 20, -2), *np.add(np.cumsum(steps, axis=0), (45, 22, -2)), (60, 40, -2), UP]
@@ -218,7 +218,7 @@ def test_no_move_is_shorter_than_what_anything_shows(name, decimals):
     assert np.linalg.norm(written.poses_mm[[0, -1]] - np.array(poses)[[0, -1]], axis=1).max() < 1e-6
 
 
-def test_no_circle_begins_or_ends_next_to_one_by_less_than_a_move():
+def test_circles_separated_by_less_than_a_move_are_merged():
     first, last = arc((50, 40), 14, -70, -40, 4), arc((50, 40), 14, -39.998, -10, 4)
     poses = [DOWN, (30, 20, -2), *first, *last, (60, 40, -2), UP]
     arcs = [_core.Arc(2, 5, (50, 40), 1), _core.Arc(6, 9, (50, 40), 1)]
@@ -258,7 +258,7 @@ def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
 @pytest.mark.parametrize("turn", [1, -1])
 @pytest.mark.parametrize("degrees", [361.0, 371.4, 540.0, 800.0])
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "grbl-3axis", "ur5e", "jaka-zu3"])
-def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees, turn):
+def test_a_circle_beyond_a_full_turn_keeps_all_its_turns(name, degrees, turn):
     """A circle that goes on beyond its beginning keeps all its turns.
 
     A small closed triangle was turned by 371.4 degrees. Written in one line, the circle ran 11.4 degrees, or
@@ -277,7 +277,7 @@ def test_a_circle_that_goes_on_beyond_its_beginning_loses_no_turn(name, degrees,
 
 @pytest.mark.parametrize("at", [100, 180, 190, 250])
 @pytest.mark.parametrize("name", ["ur5e", "jaka-zu3"])
-def test_a_circle_whose_named_pose_is_half_way_round_or_farther_is_read(name, at):
+def test_a_circle_is_read_back_with_its_via_pose_anywhere(name, at):
     """A circle is read back with its named pose at any position.
 
     The program line names the middle one of the poses, which can be anywhere on the circle.
@@ -289,7 +289,7 @@ def test_a_circle_whose_named_pose_is_half_way_round_or_farther_is_read(name, at
     assert said is None and text.count("movc(" if name == "jaka-zu3" else "movec") == 1
 
 
-def test_a_whole_circle_in_one_line_is_not_read():
+def test_a_whole_circle_in_one_line_is_refused():
     text = "G21 G90 G94 G17 G40 G80\nG0 Z5\nG1 X10 Y10 F600\nG2 X10 Y10 I5 J0\nM2\n"
     with refused("line-incomplete 4"):
         read_program(text, ".gcode", find_cell("grbl-3axis"))
@@ -316,7 +316,7 @@ def drawing(chance: random.Random) -> str:
 
 @pytest.mark.slow
 @sample("seed", range(24), keep=6)
-def test_check_allows_all_that_convert_writes(seed, tmp_path, capsys):
+def test_check_accepts_all_programs_of_convert(seed, tmp_path, capsys):
     chance = random.Random(seed)
     name = chance.choice(["linuxcnc-3axis", "grbl-3axis", "ur5e"])
     cell, source, program = tmp_path / "c.toml", tmp_path / "a.svg", tmp_path / f"a{LANGUAGES[name]}"
@@ -330,7 +330,7 @@ def test_check_allows_all_that_convert_writes(seed, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(("cell", "radius_mm"), [("grbl-servo", 7.5048828125), ("irb120", 7.505615234375)])
-def test_check_allows_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, tmp_path, capsys):
+def test_check_accepts_marks_that_touch_the_edge_of_the_sheet(cell, radius_mm, tmp_path, capsys):
     """Check accepts marks that touch the edge of the sheet.
 
     The marks are as large as convert allows. Whole servo values, or corners that are cut, then extend the

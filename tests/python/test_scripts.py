@@ -14,7 +14,7 @@ SCRIPTS = [path for folder in ("benchmarks", "examples", "tools") for path in so
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
-def test_what_a_script_takes_from_the_package_is_there(script):
+def test_names_that_scripts_import_exist(script):
     for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
         if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("brushsvg"):
             continue

@@ -47,12 +47,12 @@ def run(text):
     return rows, waited
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     header = ("title: two strokes", "brush: round-6, 2 strokes")
     assert text_of(*TWO, header=header, cell="grbl-servo") == GOLDEN.read_text(encoding="ascii")
 
 
-def test_heights_along_the_way_are_the_plans():
+def test_heights_along_the_path_equal_the_plan():
     rows, _ = run(text_of(*TWO, cell="grbl-servo"))
     for _, poses, _ in TWO:
         for pose in poses:
@@ -61,7 +61,7 @@ def test_heights_along_the_way_are_the_plans():
             assert away <= CELL.servo.step_mm / 2 + 0.02, "half a step, and half a value"
 
 
-def test_the_lift_alone_takes_its_time():
+def test_only_lifts_wait_for_the_servo():
     _, waited = run(text_of(("dab", [(10, 10, 0), (10, 10, -2), (10, 10, 0)], 20.0), cell="grbl-servo"))
     down_s = (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 20 + CELL.heights.clearance_mm / 6 + 2 / 6
     up_s = 2 / 6 + CELL.heights.clearance_mm / 6 + (CELL.heights.safe_mm - CELL.heights.clearance_mm) / 50
@@ -70,7 +70,7 @@ def test_the_lift_alone_takes_its_time():
 
 
 @pytest.mark.parametrize(("values", "step_mm"), [(80, 0.5), (150, 0.25), (1000, 0.1)])
-def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm):
+def test_no_lift_is_faster_than_programmed_after_rounding(values, step_mm):
     """No lift is faster than programmed, for the values that are written.
 
     The last part of a line is held at half a step from its end height. A lift after the line begins there,
@@ -100,7 +100,7 @@ def test_no_lift_is_faster_than_programmed_by_the_written_values(values, step_mm
 
 @pytest.mark.parametrize("rim_mm", [-5.0, 0.0])
 @pytest.mark.parametrize("language", ["grbl-servo", "grbl-3axis"])
-def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, capsys, language, rim_mm):
+def test_moves_in_a_vessel_below_the_paper_are_slow(tmp_path, monkeypatch, capsys, language, rim_mm):
     """The brush moves slowly into and out of a vessel that is lower than the paper.
 
     Programs once moved down to the vessel and up again at the speed for free air, and the reader refused
@@ -120,7 +120,7 @@ def test_a_vessel_lower_than_the_paper_is_left_slowly(tmp_path, monkeypatch, cap
     assert RUNNABLE in out
 
 
-def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
+def test_a_clearance_below_one_servo_value_is_refused():
     coarse = replace(CELL, servo=Servo(((-10.0, 0.0), (5.0, 50.0))), heights=replace(CELL.heights, clearance_mm=0.5))
     with refused("cell-heights 0.5 '[0.6, 5] mm'", "heights.clearance_mm"):
         parse_cell(write_cell(coarse))
@@ -133,7 +133,7 @@ def test_a_clearance_that_a_value_of_the_servo_does_not_know_is_refused():
         (-9.0, "-11.0"),  # the deepest pose
     ],
 )
-def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, height):
+def test_heights_outside_the_servo_table_are_refused(z_offset, height):
     """Heights outside the servo's table are refused.
 
     Otherwise they would silently become the ends of the table: the brush would travel through the paint, or
@@ -159,7 +159,7 @@ def test_paper_so_high_or_low_that_heights_leave_the_table_is_refused(z_offset, 
         border((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
 
 
-def test_only_what_grbl_knows():
+def test_the_program_contains_only_words_grbl_knows():
     text = text_of(*TWO, cell="grbl-servo")
     assert not re.search(r"Z-?\d", text)
     assert max(map(len, text.splitlines())) <= 70
@@ -167,7 +167,7 @@ def test_only_what_grbl_knows():
     assert min(values) >= 200 and max(values) == 800
 
 
-def test_values_follow_the_table():
+def test_servo_values_follow_the_table():
     assert [servo_values_at(CELL.servo, height) for height in (-10, -5, 0, 5, 12)] == [
         200,
         400,
@@ -177,7 +177,7 @@ def test_values_follow_the_table():
     ]
 
 
-def test_the_output_is_never_switched_off():
+def test_the_servo_output_is_never_switched_off():
     """The program contains no command that switches the output off.
 
     In laser mode, grbl switches the output off if the motion mode is not G1, at M5 and at M2.
@@ -189,7 +189,7 @@ def test_the_output_is_never_switched_off():
     assert text.splitlines()[-1].startswith("(end: ")
 
 
-def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
+def test_a_lift_may_wait_less_if_rounded_heights_are_nearer():
     """A lift may wait less if rounded heights make it begin nearer to its end.
 
     Rounded heights do not show the exact value at which the line before a lift was held. A lift that began
@@ -204,7 +204,7 @@ def test_a_lift_may_wait_as_much_less_as_rounded_heights_begin_nearer():
     assert not like.is_same(lift(0.150), lift(0.325)), "shorter than that something was taken away"
 
 
-def test_lifts_that_are_none_are_left_out_up_to_the_end_of_either_program():
+def test_lifts_caused_by_rounding_are_ignored_in_the_comparison():
     def lift(value):
         return Act(1, "lift", same=(value,))
 
@@ -218,7 +218,7 @@ def test_lifts_that_are_none_are_left_out_up_to_the_end_of_either_program():
 
 @pytest.mark.parametrize("width_mm", [0.0004, 0.002, 0.003, 0.006, 0.04, 0.08, 0.3])
 @pytest.mark.parametrize(("name", "suffix"), [("grbl-servo", ".nc"), ("axidraw-ebb", ".ebb")])
-def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
+def test_a_steep_path_is_pressed_and_lifted_in_place(name, suffix, width_mm):
     """A steep path is pressed and lifted on the spot.
 
     Strokes of the typed brush begin this steeply, and every servo plotter refused them (too-steep).
@@ -238,7 +238,7 @@ def test_a_steep_way_is_pressed_and_lifted_on_the_spot(name, suffix, width_mm):
 
 @pytest.mark.parametrize("cell", ["grbl-servo", "axidraw-ebb"])
 @pytest.mark.parametrize("lag", ["2", "5", "8"])
-def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypatch, capsys, lag, cell):
+def test_check_accepts_a_straight_line_by_a_brush_with_constant_lag(tmp_path, monkeypatch, capsys, lag, cell):
     """Check accepts a straight line by a brush with a constant lag.
 
     This stroke ends with a lift of 2.1 mm on a path of 0.04 mm, in parts of nearly two steps each.
@@ -256,7 +256,7 @@ def test_check_accepts_a_straight_line_by_a_brush_of_one_lag(tmp_path, monkeypat
     assert status == 0, reported
 
 
-def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypatch, capsys):
+def test_check_accepts_a_pose_with_the_previous_servo_value(tmp_path, monkeypatch, capsys):
     """Check accepts a pose that has the servo value of the pose before it.
 
     The program leaves out the second pose, and the line begins 0.024 mm higher than planned.
@@ -279,7 +279,7 @@ def test_check_accepts_a_pose_at_the_value_of_the_one_before(tmp_path, monkeypat
 
 
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])
-def test_a_steep_way_of_rounded_parts_is_no_jump(width_mm):
+def test_rounded_parts_of_a_steep_path_are_not_a_jump(width_mm):
     """Rounded parts of a steep path do not look like a jump.
 
     Coordinates rounded by half a unit of 3e-3 mm shortened the time of the path, and check rejected its own
@@ -298,7 +298,7 @@ def test_a_lift_before_any_feed_has_a_speed():
     assert all(step.speed_mm_s > 0 for section in read.sections for step in section.steps)
 
 
-def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
+def test_the_tip_respects_the_speed_limit_of_the_brush_on_a_slope():
     """The tip is nowhere faster than the brush allows on a slope.
 
     The machine's feed ignores the lift: at 20 mm/s, a slope of 1.2 gave the tip 31 mm/s.
@@ -320,7 +320,7 @@ def test_the_tip_is_nowhere_faster_than_the_brush_on_a_slope():
 
 
 @pytest.mark.parametrize("name", [name for name in cell_names() if find_cell(name).servo])
-def test_shipped_tables_hold_the_safe_height_over_thicker_paper(name):
+def test_shipped_tables_reach_the_safe_height_over_thicker_paper(name):
     """Shipped servo tables reach the safe height over thicker paper as well.
 
     The table of grbl-servo once ended at the safe height, so every positive --z-offset was refused.

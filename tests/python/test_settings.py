@@ -30,7 +30,7 @@ def plan_with(settings):
     return Plan("b", "", (9, 9), [Pass("a", np.zeros((1, 3)), settings=settings)])
 
 
-def test_they_go_to_a_file_and_back():
+def test_settings_are_written_and_read_back():
     text = write_plan(plan_with(Settings(**ALL)))
     assert f'"settings": {WRITTEN}' in text
     (back,) = _core.read_plan(text).passes
@@ -39,7 +39,7 @@ def test_they_go_to_a_file_and_back():
     assert '"settings": {}' in write_plan(plan_with(Settings()))
 
 
-def test_keys_of_others_are_kept_behind_the_known_ones():
+def test_unknown_keys_are_kept_after_the_known_ones():
     text = write_plan(plan_with(Settings(order=1)))
     text = text.replace('{"order":1}', '{"theirs":[1,{"a":2.50}],"order":1}')
     (back,) = _core.read_plan(text).passes
@@ -48,7 +48,7 @@ def test_keys_of_others_are_kept_behind_the_known_ones():
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_each_is_part_of_the_value(name):
+def test_each_setting_is_part_of_the_value(name):
     one, same, none = Settings(**{name: ALL[name]}), Settings(**{name: ALL[name]}), Settings()
     assert one == same and hash(one) == hash(same) and one != none
     assert repr(one) == f"Settings({name}={ALL[name]!r})"
@@ -58,20 +58,20 @@ def test_each_is_part_of_the_value(name):
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_a_value_of_another_type_is_refused_where_it_is_read(name):
+def test_a_value_of_another_type_is_refused_on_reading(name):
     text = write_plan(plan_with(Settings())).replace('"settings": {}', f'"settings": {{"{name}": [1]}}')
     with pytest.raises(Error) as refused:
         _core.read_plan(text)
     assert (refused.value.where, refused.value.code) == (f"passes[0].settings.{name}", "wrong-type")
 
 
-def test_a_pass_carries_what_its_stroke_says():
+def test_a_pass_has_the_settings_of_its_stroke():
     stroke = _core.Stroke("a", [[0, 0, 5, 0, 9, 0, 20, 0]], half_width=[(0, 1)], settings=Settings(order=4))
     made = _core.compensate([stroke], find_brush("round-6"), (50, 50))
     assert made.plan.passes[0].settings == stroke.settings == Settings(order=4)
 
 
-def test_what_is_not_replaced_stays():
+def test_settings_that_are_not_replaced_stay():
     settings = Settings(**ALL)
     for name in ALL:
         now = settings.replaced(**{name: None})

@@ -40,7 +40,7 @@ def is_refused(middles, displacements):
         ((1.0, 0.97), "smaller"),
     ],
 )
-def test_another_scale_is_refused(by, said):
+def test_a_sheet_of_another_scale_is_refused(by, said):
     found = fit_sheet_scale(A5, off(A5, 1, 0.3, by))
     with refused(f"marks-scaled {said} --bar", "marks"):
         refuse_scale(found)
@@ -48,7 +48,7 @@ def test_another_scale_is_refused(by, said):
         assert abs(share - (true - 1)) < 3 * error < 0.01
 
 
-def test_the_number_is_reported():
+def test_the_scale_error_is_reported_with_its_uncertainty():
     scatter = np.random.default_rng(0).normal(0, 0.05, A5.shape)
     with refused("marks-scaled smaller") as caught:
         refuse_scale(fit_sheet_scale(A5, -0.03 * A5 + scatter))
@@ -56,7 +56,7 @@ def test_the_number_is_reported():
 
 
 @pytest.mark.parametrize("count", [8, 12, 16])
-def test_displacements_alone_are_no_scale(count):
+def test_displacements_alone_are_not_a_scale_error(count):
     rng = np.random.default_rng(count)
     wrong = 0
     for seed in range(400):
@@ -65,7 +65,7 @@ def test_displacements_alone_are_no_scale(count):
     assert wrong <= 1
 
 
-def test_an_undetermined_scale_says_nothing():
+def test_an_undetermined_scale_is_accepted():
     shift = off(A5, 3, 0.5, (0.9, 0.9))
     assert fit_sheet_scale(A5[:7], shift[:7]) is None, "too few to know the scatter"
     row = np.column_stack([np.linspace(0, 200, 12), np.full(12, 40.0)])
@@ -73,7 +73,7 @@ def test_an_undetermined_scale_says_nothing():
     refuse_scale(None)
 
 
-def test_a_sheet_as_exact_as_a_scan_passes():
+def test_a_sheet_as_exact_as_a_scan_is_accepted():
     """A sheet as exact as a scan is accepted.
 
     Without noise, any difference of scale is significant. The test allows the scale error of a scan.

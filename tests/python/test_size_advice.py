@@ -37,7 +37,7 @@ def painted(strokes):
     return _core.simulate(plan, BRUSH).passes, strokes
 
 
-def test_too_large_a_drawing_is_advised_to_shrink():
+def test_a_smaller_size_is_suggested_for_a_drawing_that_is_too_large():
     found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # refused, because it is 16 mm wide
     assert found.best == 0.5
@@ -47,14 +47,14 @@ def test_too_large_a_drawing_is_advised_to_shrink():
     assert "--scale" not in size_advice.advise_on_size(found, None)
 
 
-def test_a_drawing_of_the_right_size_is_left_alone():
+def test_a_drawing_of_the_right_size_gets_no_suggestion():
     found = size_advice.best_size([line(150, 1.5)] * 40, BRUSH, painted)
     assert (found.best, found.tried, found.strokes) == (1.0, size_advice.MAX_FIRST_STROKES, 40)
     advice = size_advice.advise_on_size(found)
     assert gives(advice, "0.35", "2.8", "6", "40")
 
 
-def test_what_looks_better_is_tried_as_it_is_made():
+def test_better_sizes_are_tried_with_the_settings_of_the_drawing():
     """Sizes that look better are tried in the way in which the drawing is made.
 
     A first look costs a few strokes at nine sizes. The advice then holds for more strokes.
@@ -76,7 +76,7 @@ def test_what_looks_better_is_tried_as_it_is_made():
     assert found.best == 1.0  # no size looked better
 
 
-def test_nothing_is_advised_where_no_size_can_be_painted():
+def test_nothing_is_suggested_if_no_size_can_be_painted():
     assert size_advice.advise_on_size(size_advice.best_size([line(200, 40.0)], BRUSH, painted)) == ""
 
 
@@ -93,7 +93,7 @@ DABS = "".join(f'<path d="M{20 * k} 50h0" stroke-width="{w}"/>' for k, w in enum
 SHEET = '<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100">'
 
 
-def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
+def test_sizes_are_tried_with_refinement_if_requested(tmp_path):
     """Sizes are tried with refinement if the drawing is refined.
 
     0.7 times was once advised for an overlap of 0.82 instead of 0.69. Refined dabs reach 0.86, and 0.83 at
@@ -108,7 +108,7 @@ def test_sizes_are_tried_as_the_drawing_is_refined(tmp_path):
 
 
 @pytest.mark.thorough
-def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
+def test_sizes_are_tried_with_passes_if_requested(tmp_path):
     """Sizes are tried with shapes filled in passes if the drawing has passes.
 
     A square filled in passes was once advised to shrink, as if one stroke painted it.
@@ -122,7 +122,7 @@ def test_sizes_are_tried_as_shapes_are_filled(tmp_path):
         assert gives(advice, "0.5", "1.4") and "--scale" not in advice
 
 
-def test_scaling_a_stroke_scales_all_of_it():
+def test_scaling_a_stroke_scales_its_line_width_and_target():
     stroke = line(50, 2.0)
     stroke.wanted_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
     twice = size_advice.scaled(stroke, 2.0)
@@ -147,7 +147,7 @@ def ran(capsys, *words):
     return status, out, err
 
 
-def test_all_brushes_in_one_table(drawing, capsys, tmp_path):
+def test_all_brushes_are_compared_in_one_table(drawing, capsys, tmp_path):
     mine = tmp_path / "mine.json"
     assert ran(capsys, "brush", "new", "-o", str(mine), "--lag", "1", "--width-at", "2=2", "--depth-max", "2")[0] == 0
     status, out, _ = ran(capsys, "preview", drawing(), "--all-brushes", "--brush", str(mine))
@@ -170,7 +170,7 @@ def test_refused_strokes_count_against_a_brush(drawing, capsys):
     assert row["overlap"] < 0.4
 
 
-def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
+def test_the_report_suggests_a_size_if_strokes_are_refused(drawing, capsys):
     status, out, err = ran(capsys, "preview", drawing(20))
     assert status == 1
     assert re.search(r"--scale 0\.\d+", out)
@@ -179,7 +179,7 @@ def test_the_report_advises_where_strokes_are_refused(drawing, capsys):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
-def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
+def test_the_picture_shows_missing_strokes(drawing, capsys, tmp_path, suffix):
     made = tmp_path / f"misses{suffix}"
     assert ran(capsys, "preview", drawing(), "--compensation", "none", "--show", "errors", "-o", str(made))[0] == 0
     if suffix == ".svg":
@@ -200,7 +200,7 @@ def test_the_picture_shows_what_is_missing(drawing, capsys, tmp_path, suffix):
         (["-o", "x.pdf"], ".png"),
     ],
 )
-def test_wrong_usage(drawing, capsys, words, said):
+def test_wrong_usage_is_refused(drawing, capsys, words, said):
     status, _, err = ran(capsys, "preview", drawing(), *words)
     assert status == 2
     assert said in err

@@ -66,7 +66,7 @@ def goes(reported, machine):
 
 
 @pytest.mark.parametrize("machine", [BENT, NARROW, BOTH])
-def test_there_and_back(machine):
+def test_commanded_and_true_positions_are_inverse(machine):
     target = np.random.default_rng(1).uniform((-20, -20, -6), (140, 110, 2), (500, 3))
     reported = commanded_mm(target, machine)
     assert goes(reported, machine) == pytest.approx(target, abs=1e-7)
@@ -75,7 +75,7 @@ def test_there_and_back(machine):
 
 
 @pytest.mark.parametrize("machine", [BENT, NARROW, BOTH])
-def test_lines_on_the_paper_are_lines_all_along(desk, machine):
+def test_straight_lines_on_the_paper_stay_straight(desk, machine):
     work = preparation.prepare("two.svg")
     reported = commanded_places(text_of(work, cell_with(machine)))
     between = np.vstack([a + np.linspace(0, 1, 9)[:, None] * (b - a) for a, b in pairwise(reported)])
@@ -100,7 +100,7 @@ def test_lines_on_the_paper_are_lines_all_along(desk, machine):
     keep=2,
 )
 @pytest.mark.parametrize("machine", [BENT, NARROW, ON_A_MAP])
-def test_check_reads_back_what_was_planned(desk, capsys, name, machine):
+def test_check_reads_back_the_plan(desk, capsys, name, machine):
     if LANGUAGES[name] in (".nc", ".ebb"):
         machine = replace(
             machine, lean_mm_per_mm=(0.0, 0.0), map_mm=(), height_mm=0.0
@@ -116,7 +116,7 @@ def test_check_reads_back_what_was_planned(desk, capsys, name, machine):
     assert status == 1 and any("curve" in line or "hook" in line for line in err)
 
 
-def test_the_mark_comes_back(desk):
+def test_the_mark_is_read_back(desk):
     work, cell = preparation.prepare("two.svg"), cell_with(BOTH)
     back = simulate_program.simulate_program(
         read_program(text_of(work, cell), ".ngc", cell), work.brush, cell, work.plan.sheet_mm
@@ -147,7 +147,7 @@ def test_circles_are_written_as_lines():
     assert np.hypot(*(deep[:, :2] - [60, 40]).T) == pytest.approx(20.0, abs=0.015)
 
 
-def test_strokes_beyond_where_it_was_measured_are_reported(desk, capsys):
+def test_strokes_outside_the_measured_area_are_reported(desk, capsys):
     work = preparation.prepare("two.svg")
     assert beyond_field(work.plan.passes, cell_with(BENT)) == []
     assert beyond_field(work.plan.passes, cell_with(None)) == []
@@ -182,18 +182,18 @@ def test_strokes_beyond_where_it_was_measured_are_reported(desk, capsys):
         (["field_mm = [1.0, 2.0]"], "machine.field_mm", "wrong-type"),
     ],
 )
-def test_a_table_that_is_no_field_is_refused(lines, where, said):
+def test_an_invalid_field_table_is_refused(lines, where, said):
     text = write_cell(find_cell("linuxcnc-3axis"))
     with refused(said, where):
         parse_cell(f"{text}\n[machine]\n" + "\n".join(lines) + "\n")
 
 
-def test_the_table_is_written_as_it_is_read():
+def test_the_field_table_is_read_back_unchanged():
     cell = replace(find_cell("linuxcnc-3axis"), machine=BOTH)
     assert parse_cell(write_cell(cell)) == cell
 
 
-def test_a_corrected_cell_undoes_the_field_as_well():
+def test_a_corrected_cell_compensates_the_field():
     """A corrected cell also undoes the field.
 
     Faults beyond the cell are added at the position to which the cell moved the tool.
@@ -205,7 +205,7 @@ def test_a_corrected_cell_undoes_the_field_as_well():
     assert goes(reported, now)[:, :2] == pytest.approx(twice, abs=1e-3)
 
 
-def test_corrections_of_cells_without_a_field_are_still_theirs():
+def test_corrections_for_a_cell_without_a_field_stay_valid():
     plain = Machine((0.3, -0.2), (1.01, 0.99), 0.012)
     # This is the value at commit 06aaa888.
     of_before = "7ccbf0b11ef28f6cc52756145aa04d87cf6649893894d3ca953761c866dc2b9d"

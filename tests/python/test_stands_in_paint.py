@@ -40,7 +40,7 @@ def problems(path, text, cell):
     return brushsvg.check(path, "a.svg", cell=cell).problems
 
 
-def test_the_middle_of_a_circle_holds_the_brush_upright(desk):
+def test_a_changed_circle_middle_that_tilts_the_brush_is_refused(desk):
     path, text = written("lrmate200id")
     number = re.search(r"C P\[(\d+)\]", text)[1]
     point = re.search(rf"P\[{number}\]\{{[^}}]*\}}", text)[0]
@@ -63,7 +63,7 @@ RAMPS = {  # patterns for a lift in small steps without its last step, and for o
 
 @pytest.mark.parametrize("number", [0, 1])  # down to the paper, and up
 @pytest.mark.parametrize("cell", RAMPS)
-def test_a_servo_goes_to_the_paper_in_small_steps(desk, cell, number):
+def test_a_servo_lift_in_one_step_is_refused(desk, cell, number):
     """Check refuses a lift in one step.
 
     The changed lift waits as long as all its steps did.
@@ -114,7 +114,7 @@ def later(text, from_row, more_s):
     return "\n".join(rows) + "\n"
 
 
-def test_a_part_of_a_stroke_that_takes_longer_is_a_stop(desk, capsys):
+def test_a_slow_part_of_a_stroke_is_reported_as_a_stop(desk, capsys):
     path, text = written("axidraw-ebb")
     slices = [*re.finditer(r"SM,(\d+)(?=,-?[1-9]\d?,-?[1-9]\d?\n)", text)]
     amid = slices[len(slices) // 2]
@@ -130,7 +130,7 @@ def test_a_part_of_a_stroke_that_takes_longer_is_a_stop(desk, capsys):
     assert is_reported(problems(path, slow, "fr3"), "stands-in-paint")
 
 
-def test_a_stroke_that_is_slower_as_a_whole_is_none(desk):
+def test_a_uniformly_slower_stroke_is_not_a_stop(desk):
     path, text = written("axidraw-ebb")
     slow = re.sub(r"SM,(\d+)(?=,-?\d+,-?\d+\n)", lambda each: f"SM,{int(each[1]) * 5 // 4}", text)
     assert not is_reported(problems(path, slow, "axidraw-ebb"), "stands-in-paint")

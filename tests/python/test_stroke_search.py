@@ -45,7 +45,7 @@ def painted(tmp_path, d, **options):
 
 
 @pytest.mark.parametrize("d", CORNERS.values(), ids=CORNERS)
-def test_nothing_that_one_sees_is_missing_or_sticks_out(tmp_path, d):
+def test_no_visible_area_is_missing_or_overpainted(tmp_path, d):
     shape, mark, _ = painted(tmp_path, d)
     assert mark.difference(shape.buffer(0.3)).area < 0.1
     missing = shape.buffer(-0.15).difference(mark)
@@ -79,7 +79,7 @@ def test_hairlines_hold_a_letter_together_in_few_strokes(tmp_path, d):
     assert shape.intersection(mark).area / shape.union(mark).area > 0.95
 
 
-def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
+def test_the_arms_of_a_k_touch_its_stem(tmp_path):
     """The arms of a k touch its stem.
 
     Each stroke was within its own limb, and a gap of 0.24 mm was left between them without a notice.
@@ -90,7 +90,7 @@ def test_the_arms_of_a_k_stay_on_its_stem(tmp_path):
     assert len(shapely.get_parts(shape)) == len(shapely.get_parts(mark)) == 1
 
 
-def test_corners_are_bare_where_strokes_shall_turn_and_end_plainly(tmp_path):
+def test_corners_stay_bare_with_plain_turns_and_ends(tmp_path):
     plans = [painted(tmp_path, CORNERS["an L"], **plain)[2] for plain in ({}, {"corners": "turn"}, {"end": "round"})]
     assert len(plans[0].passes) > len(plans[1].passes) == len(plans[2].passes) == 1
 
@@ -107,7 +107,7 @@ def test_a_counter_stays_open(tmp_path):
 
 
 @pytest.mark.parametrize(("detail", "corners"), [("draft", 0), ("normal", 4), ("fine", 4)])
-def test_the_detail_says_how_small_an_area_gets_a_stroke(detail, corners):
+def test_the_detail_setting_limits_the_area_that_gets_a_stroke(detail, corners):
     """The detail setting decides how small an area can be and still get a stroke.
 
     A square of 5 mm, painted by a dot, lacks 0.21 squares of its half width in each corner.
@@ -120,7 +120,7 @@ def test_the_detail_says_how_small_an_area_gets_a_stroke(detail, corners):
     assert len(added) == corners
 
 
-def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
+def test_a_stroke_with_user_defined_ends_stays_unchanged(tmp_path):
     d, words = CORNERS["a slab on both sides"], 'data-brushsvg-end="round" data-brushsvg-start="pointed"'
     file = tmp_path / "s.svg"
     file.write_text(
@@ -133,7 +133,7 @@ def test_a_stroke_whose_ends_the_artist_set_stays_as_it_is(tmp_path):
 
 
 @pytest.mark.parametrize("plain", [{"end": "round"}, {"start": "pointed"}, {"corners": "turn"}])
-def test_the_sides_of_a_wide_shape_are_painted_with_any_ends(tmp_path, plain):
+def test_the_sides_of_a_wide_shape_are_painted_with_any_end_style(tmp_path, plain):
     """The sides of a wide shape are painted with any kind of end.
 
     Only two thirds of a bar 12 mm wide were painted once an end was set.

@@ -17,32 +17,32 @@ def named(*elements):
     return [stroke.id for stroke in result], notices
 
 
-def test_names_are_the_elements():
+def test_strokes_are_named_after_their_elements():
     names, notices = named(("v", 1), ("", 1), ("i", 2), ("", 3))
     assert names == ["v", "stroke1", "i/1", "i/2", "stroke2/1", "stroke2/2", "stroke2/3"]
     assert notices == []
 
 
-def test_a_name_given_twice_stays_with_the_first_and_the_second_is_reported():
+def test_a_duplicate_name_stays_with_the_first_and_is_reported():
     names, notices = named(("p", 1), ("p", 1), ("p-2", 1), ("p", 2))
     assert names == ["p", "p-3", "p-2", "p-4/1", "p-4/2"]
     assert [notice.where for notice in notices] == ["p", "p"]
     assert "'p-3'" in notices[0].sentence
 
 
-def test_names_that_only_collide_once_numbered():
+def test_names_that_collide_after_numbering_are_made_unique():
     assert named(("p", 2), ("p/1", 1))[0] == ["p/1", "p/2", "p/1-2"]
     assert named(("stroke1", 1), ("", 1))[0] == ["stroke1", "stroke1-2"]
     assert named(("p", 2), ("p", 1))[0] == ["p/1", "p/2", "p-2"]
 
 
-def test_thousands_of_equal_names_are_separated():
+def test_thousands_of_equal_names_are_made_unique():
     names, notices = named(*[("p", 1)] * 5000)
     assert len(set(names)) == 5000
     assert len(notices) == 4999
 
 
-def test_a_stroke_carries_what_the_drawing_says():
+def test_a_stroke_has_the_properties_of_its_element():
     element = Element(
         "s",
         (LINE, SubPath(LINE.cubics + 5, closed=True)),
@@ -72,13 +72,13 @@ def test_from_svg_to_strokes_in_drawing_order():
     assert notices == []
 
 
-def test_repeats_are_separated_from_names_that_look_like_them():
+def test_repeats_differ_from_names_that_look_like_repeats():
     made = (Element("a", (LINE,), 1.0, settings={"passes": 2}), Element("a#2", (LINE,), 1.0))
     names = [stroke.id for stroke in strokes(Design((10.0, 10.0), made))[0]]
     assert len(set(names)) == 3, names
 
 
-def test_no_stroke_is_called_as_the_parts_of_another_are():
+def test_no_stroke_has_the_name_of_a_part_of_another_stroke():
     """No stroke has a name that a part of another stroke gets.
 
     Lifted at its corners, `a` becomes a, a~2, a~3. The name `a~2` once stood for a second stroke.
@@ -165,12 +165,12 @@ def test_a_long_zigzag_keeps_its_teeth():
         ([(5, 5), (9, 9)], np.array([[3], [3]]), "sizes-differ 'one row' 2 widths.ravel"),
     ],
 )
-def test_points_that_are_no_stroke_are_refused(points, width, said):
+def test_points_that_form_no_stroke_are_refused(points, width, said):
     with refused(said, "s"):
         Stroke.from_points(points, width, "s")
 
 
 @pytest.mark.parametrize("points", [[(1, 2, 3)], [1, 2], "ab", None])
-def test_points_of_another_shape_are_of_the_wrong_type(points):
+def test_an_array_of_the_wrong_shape_is_a_type_error(points):
     with pytest.raises(TypeError):
         Stroke.from_points(points, 3.0)

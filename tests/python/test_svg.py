@@ -88,7 +88,7 @@ def random_path(rng):
     return text
 
 
-def test_paths_draw_what_svgpathtools_draws():
+def test_paths_agree_with_svgpathtools():
     rng = random.Random(7)
     compared = 0
     for _ in range(60):
@@ -111,7 +111,7 @@ def test_paths_draw_what_svgpathtools_draws():
     assert compared > 300
 
 
-def test_subpaths_are_unbroken_and_begin_where_the_last_one_closed():
+def test_subpaths_are_continuous_and_start_where_the_last_one_closed():
     line = in_user_units("M1 1h4v4zl-2 3M9 9t1 1")
     assert [subpath.closed for subpath in line.subpaths] == [True, False, False]
     for subpath in line.subpaths:
@@ -129,7 +129,7 @@ def test_closing_adds_a_line_only_where_there_is_a_gap():
     assert snapped[-1, 3].tolist() == [0, 0]
 
 
-def test_segments_without_length_vanish_among_others():
+def test_segments_without_length_are_dropped():
     cubics = in_user_units("M0 0l0 0 4 0 0 0c0 0 0 0 0 0l0 1e-8 0 4").subpaths[0].cubics
     assert len(cubics) == 2
     assert np.array_equal(cubics[1, 0], cubics[0, 3])
@@ -226,13 +226,13 @@ def test_damaged_paths_are_read_up_to_the_error(d, cubics, character, found):
 
 
 @pytest.mark.parametrize("d", ["L1 1", "nan", "1 1", ",M1 1L2 2", "M", "M5", "M1e9 1L2 2", "\u017f1 1"])
-def test_a_path_damaged_from_the_start_leaves_nothing(d):
+def test_a_path_damaged_from_the_start_is_left_out(d):
     design = read(f'<path id="bad" d="{d}"/><path d="M0 0H1"/>')
     assert [(notice.where, notice.damaged) for notice in design.notices] == [("bad", True)]
     assert len(design.elements) == 1
 
 
-def test_the_range_counts_on_paper():
+def test_coordinate_limits_apply_on_paper():
     scaled = '<g transform="scale(1e-6)"><path stroke-width="1e6" d="M1e6 0H9e6"/></g>'
     assert ends(only(scaled)) == [[1, 0], [9, 0]]
     design = read('<path id="ok" d="M0 0H5"/><path id="far" d="M0 0H5" transform="translate(1e6 0)"/>')
@@ -290,7 +290,7 @@ def corners(body):
     return (points * (1, -1) + (0, 50)).round(9).tolist()
 
 
-def test_shapes_start_and_run_as_svg_prescribes():
+def test_shapes_have_the_start_and_direction_of_the_svg_standard():
     box = [[1, 2], [11, 2], [11, 7], [1, 7], [1, 2]]
     assert ends(only('<rect x="1" y="2" width="10" height="5"/>')) == box
     rounded = corners('<rect x="1" y="2" width="10" height="5" rx="2" ry="1"/>')
@@ -306,7 +306,7 @@ def test_shapes_start_and_run_as_svg_prescribes():
     assert [only(f"<{shape}/>").subpaths[0].closed for shape in shapes] == [True, False, True]
 
 
-def test_corner_radii_are_clamped_and_stand_in_for_each_other():
+def test_corner_radii_are_clamped_and_a_missing_one_equals_the_other():
     clamped = only('<rect width="10" height="4" rx="9" ry="9"/>').subpaths[0].cubics * (1, -1) + (0, 50)
     assert np.abs(np.hypot(*((points_along(clamped) - (5, 2)) / (5, 2)).T) - 1).max() < 1e-4
     assert clamped[0, 0].tolist() == [5, 0]
@@ -315,7 +315,7 @@ def test_corner_radii_are_clamped_and_stand_in_for_each_other():
     assert corners('<rect width="10" height="4" ry="0"/>')[:2] == [[0, 0], [10, 0]]
 
 
-def test_lengths_in_shapes_take_units_and_percentages():
+def test_lengths_in_shapes_accept_units_and_percentages():
     page = 'width="100mm" height="50mm" stroke="red"'
     assert ends(only('<line x1="1in" y1="5mm" x2="50%" y2="100%"/>', page)) == [[25.4, 5], [50, 50]]
     circle = only('<circle cx="50" cy="25" r="10%"/>')
@@ -339,13 +339,13 @@ def test_lengths_in_shapes_take_units_and_percentages():
         ("", (1, 2)),
     ],
 )
-def test_transforms(text, point):
+def test_transforms_are_applied(text, point):
     a, b, c, d, e, f = parse_transform(text)
     assert (a + 2 * c + e, b + 2 * d + f) == pytest.approx(point, abs=1e-12)
 
 
 @pytest.mark.parametrize("text", ["translate(1 2),,rotate(3)", "translate(1 2),", ",translate(1 2)"])
-def test_transforms_that_browsers_ignore_are_damaged(text):
+def test_transforms_that_browsers_ignore_are_reported_as_damaged(text):
     with refused("transform-unread character"):
         parse_transform(text)
 
@@ -401,7 +401,7 @@ def test_y_points_up_from_the_lower_left_corner():
         ),
     ],
 )
-def test_viewports(page, sheet, corner):
+def test_viewports_follow_view_box_and_aspect_ratio(page, sheet, corner):
     design = read('<line id="l" x1="10" y1="10" x2="11" y2="12" stroke="red"/>', page)
     assert design.sheet_mm == pytest.approx(sheet)
     assert design.elements[0].subpaths[0].cubics[0, 0] == pytest.approx(corner)
@@ -417,7 +417,7 @@ def test_without_a_size_the_view_box_is_read_in_px(size):
     assert "50.8 x 25.4 mm" in notice.sentence
 
 
-def test_one_size_gives_the_other_by_the_view_box():
+def test_a_missing_width_or_height_follows_from_the_view_box():
     design = read('<line x2="96" stroke="red"/>', 'height="10mm" viewBox="0 0 200 100"')
     assert design.sheet_mm == pytest.approx((20, 10))
     assert len(design.notices) == 1
@@ -445,7 +445,7 @@ def test_a_given_sheet_replaces_the_size_and_keeps_scale_and_upper_left_corner()
         ('width="5 furlongs" height="5"', "not-a-length width '5 furlongs'"),
     ],
 )
-def test_pages_that_are_refused(page, reported):
+def test_invalid_pages_are_refused(page, reported):
     with refused(reported):
         read('<line x2="1" stroke="red"/>', page)
 
@@ -472,11 +472,11 @@ def test_pages_that_are_refused(page, reported):
         ('<path d="M0 0H5" transform="scale(-1.02 1)"/>', math.sqrt(1.02)),
     ],
 )
-def test_stroke_widths(body, width):
+def test_stroke_widths_are_read(body, width):
     assert only(body).stroke_width_mm == pytest.approx(width, rel=1e-12)
 
 
-def test_a_width_under_an_uneven_transform_is_the_mean_and_is_reported():
+def test_a_width_under_an_uneven_transform_is_averaged_with_a_notice():
     design = read('<path id="p" d="M0 0H5" transform="scale(4 1)"/>')
     assert design.elements[0].stroke_width_mm == pytest.approx(2)
     assert [notice.where for notice in design.notices] == ["p"]
@@ -506,11 +506,11 @@ def test_a_width_under_an_uneven_transform_is_the_mean_and_is_reported():
         ("lab(50% 20 20)", None),
     ],
 )
-def test_colours(text, colour):
+def test_colours_are_read(text, colour):
     assert parse_colour(text) == colour
 
 
-def test_colours_are_inherited_and_current():
+def test_colours_are_inherited_and_currentcolor_works():
     body = '<g stroke="blue" color="lime"><path d="M0 0H5"/><path d="M0 0H5" stroke="currentColor"/></g>'
     assert [element.colour for element in read(body).elements] == ["#0000ff", "#00ff00"]
     design = read('<path id="p" d="M0 0H5" stroke="#12"/>')
@@ -533,7 +533,7 @@ def test_colours_are_inherited_and_current():
         "<title>x</title><desc>x</desc><metadata><a>x</a></metadata>",
     ],
 )
-def test_what_is_not_intended_to_be_seen_is_left_out_without_a_word(hidden):
+def test_hidden_elements_are_left_out_without_notice(hidden):
     assert only(hidden + '<path id="seen" d="M0 0H5"/>').id == "seen"
 
 
@@ -618,7 +618,7 @@ GRADIENT = '<linearGradient id="g"><stop/><stop stop-color="red"/></linearGradie
         ),
     ],
 )
-def test_what_is_not_read_is_named(body, where, reported):
+def test_unsupported_content_is_named(body, where, reported):
     design = read(FIRST + body)
     (named,) = (notice for notice in design.notices if notice.where == where)
     assert agrees(named, reported)
@@ -634,17 +634,17 @@ def test_what_is_not_read_is_named(body, where, reported):
         '<rect width="5" height="5" marker-end="url(#a)"/>',
     ],
 )
-def test_what_changes_nothing_is_not_named(body):
+def test_unsupported_content_without_effect_is_not_named(body):
     assert only(body)
 
 
-def test_names_and_sentences_stay_on_one_line():
+def test_names_and_messages_stay_on_one_line():
     design = read('<path id="a&#10;b&#x85;" d="M0 0H5"/><path id="c" d="M0 0H5&#10;&#x85;x"/>')
     assert design.elements[0].id == "a b"
     assert "found 'x'" in design.notices[0].sentence.replace("? ", "").replace("?", "")
 
 
-def test_the_default_fill_of_a_stroked_path_is_no_news():
+def test_the_default_fill_of_a_stroked_path_is_not_reported():
     assert only('<path d="M0 0H5V5Z"/>', 'width="9" height="9" stroke="red"')
 
 
@@ -657,7 +657,7 @@ def test_a_subpath_without_length_is_a_dab():
 
 
 @pytest.mark.parametrize("body", ["", "<text id='t'>x</text>", "<path id='t' d='nan'/>", "<path id='t' d='M1 1'/>"])
-def test_nothing_to_paint_is_refused_with_a_reason(body):
+def test_a_drawing_without_strokes_is_refused_with_a_reason(body):
     with refused("nothing-to-paint") as caught:
         read(body)
     assert (": t: " in str(caught.value)) == bool(body)
@@ -694,19 +694,19 @@ def test_damage_is_the_first_reason_given():
         (b'<svg xmlns="http://example.org/"/>', "not-svg <svg>"),
     ],
 )
-def test_what_is_not_svg_is_refused(data, reported):
+def test_files_that_are_not_svg_are_refused(data, reported):
     with refused(reported):
         read_svg(data)
 
 
-def test_encodings():
+def test_text_encodings_are_read():
     body = f'<svg {NAMESPACES} {PAGE}><path id="\u00e4" d="M0 0h1"/></svg>'
     for encoding in ("utf-8", "utf-8-sig", "utf-16", "iso-8859-1", "windows-1252"):
         data = f'<?xml version="1.0" encoding="{encoding.removesuffix("-sig")}"?>{body}'.encode(encoding)
         assert read_svg(data).elements[0].id == "\u00e4"
 
 
-def test_a_drawing_program_may_abbreviate_with_entities():
+def test_internal_entities_are_expanded():
     data = f"""<?xml version="1.0"?><!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "svg11.dtd" [
       <!ENTITY ns_svg "http://www.w3.org/2000/svg"><!ENTITY st0 "fill:none;stroke:#00ff00;">]>
       <svg xmlns="&ns_svg;" {PAGE}><path style="&st0;" d="M0 0H5"/></svg>"""
@@ -726,7 +726,7 @@ LAUGHS = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
         (f'<!ATTLIST g a CDATA "{"x" * 100_000}">', "<g/>" * 5000, "xml-entity"),
     ],
 )
-def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, reported):
+def test_entity_bombs_and_external_files_are_refused_early(subset, content, reported):
     data = f"<!DOCTYPE svg [{subset}]><svg>{content}</svg>".encode()
     tracemalloc.start()
     with refused(reported):
@@ -736,7 +736,7 @@ def test_bombs_and_foreign_files_are_refused_before_they_grow(subset, content, r
     assert peak < 5e6
 
 
-def test_deep_nesting_is_walked_without_recursion():
+def test_deep_nesting_is_read_without_recursion():
     depth = 20_000
     assert only("<g>" * depth + FIRST + "</g>" * depth)
 
@@ -754,7 +754,7 @@ def test_deep_nesting_is_walked_without_recursion():
         f'<path stroke="rgb({"1" * 100_000}" d="M0 0H1"/>',
     ],
 )
-def test_long_nonsense_takes_no_longer_than_its_length(body):
+def test_long_invalid_input_is_read_in_linear_time(body):
     assert read(FIRST + body).elements  # code with quadratic running time would not end
 
 
@@ -775,7 +775,7 @@ def test_long_nonsense_takes_no_longer_than_its_length(body):
         "STROKE:Red;--Own:x;-a:b;_a:b;opacity:-.5;x:1e3;y:+1;z:1em;v:1e;w:a-",
     ],
 )
-def test_declarations_are_what_css_says_they_are(text):
+def test_style_declarations_follow_css(text):
     parsed = tinycss2.parse_blocks_contents(text, skip_comments=True, skip_whitespace=True)
     target = [
         (each.name if each.name.startswith("--") else each.lower_name, value, each.important)
@@ -785,7 +785,7 @@ def test_declarations_are_what_css_says_they_are(text):
     assert list(declarations(text)) == target
 
 
-def test_files(tmp_path):
+def test_drawings_are_read_by_file_name_and_unreadable_ones_refused(tmp_path):
     drawing = f'<svg {NAMESPACES} {PAGE}><path d="M0 0H5"/></svg>'
     (tmp_path / "vincent.SVG").write_text(drawing)
     assert read_drawing(tmp_path / "vincent.SVG").title == "", "a path is no title"
@@ -816,7 +816,7 @@ def loaded_by(code: str, *arguments) -> set[str]:
 HEAVY = {"scipy", "cv2", "svgpathtools", "ezdxf"}
 
 
-def test_reading_a_small_drawing_loads_nothing_heavy(tmp_path):
+def test_reading_a_small_drawing_loads_no_large_library(tmp_path):
     drawing = tmp_path / "small.svg"
     drawing.write_text(f'<svg {NAMESPACES} {PAGE}><style>path{{fill:none}}</style>{FIRST}<circle r="3"/></svg>')
     loaded = loaded_by("import sys, brushsvg\nbrushsvg.read_drawing(sys.argv[1])", drawing)
@@ -824,7 +824,7 @@ def test_reading_a_small_drawing_loads_nothing_heavy(tmp_path):
     assert not loaded & HEAVY
 
 
-def test_help_loads_nothing_that_computes():
+def test_help_loads_no_numeric_library():
     loaded = loaded_by("import sys\nfrom brushsvg.cli import main\nassert main(['--help']) == 0")
     assert "brushsvg.cli.arguments" in loaded
     assert not loaded & {*HEAVY, "numpy", "tinycss2"}

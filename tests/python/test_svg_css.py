@@ -49,7 +49,7 @@ def width(css, body=P):
         ("path{stroke-width:50%} svg{stroke-width:2}", pytest.approx(0.5 * (100**2 + 50**2) ** 0.5 / 2**0.5)),
     ],
 )
-def test_rules(css, mm):
+def test_selectors_and_rules_set_the_stroke_width(css, mm):
     assert width(css) == mm
 
 
@@ -73,7 +73,7 @@ MM = 96 / 25.4  # in px
         ("calc(100% / 2)", 0.5 * (100**2 + 50**2) ** 0.5 / 2**0.5),
     ],
 )
-def test_lengths_are_computed(value, px):
+def test_css_lengths_are_computed(value, px):
     assert width(f"path{{stroke-width:{value}}}") == pytest.approx(px)
     assert width(f":root{{--w:{value}}} path{{stroke-width:var(--w)}}") == pytest.approx(px)
     (circle,) = read(f'<circle cx="20" cy="20" style="r:{value.replace("3 * 2", "6px")}"/>').elements
@@ -102,12 +102,12 @@ def test_lengths_are_computed(value, px):
         ),
     ],
 )
-def test_what_comes_to_no_one_length_is_damage_as_before(value):
+def test_values_that_are_not_a_single_length_are_damaged(value):
     design = read(f"<style>path{{stroke-width:{value}}}</style>{P}")
     assert are_reported(design.notices, "stroke-width-invalid") and design.notices[0].damaged
 
 
-def test_attribute_rule_style_and_importance():
+def test_attribute_rule_style_and_important_have_css_precedence():
     body = '<path id="p" d="M0 0H5" stroke-width="2"{}/>'
     assert width("", body.format("")) == 2
     assert width("path{stroke-width:3}", body.format("")) == 3
@@ -116,18 +116,18 @@ def test_attribute_rule_style_and_importance():
     assert width("path{stroke-width:3!important}", body.format(' style="stroke-width:4!important"')) == 4
 
 
-def test_style_elements_of_html_count():
+def test_style_elements_in_the_html_namespace_are_read():
     style = '<style xmlns="http://www.w3.org/1999/xhtml">path{stroke-width:2}</style>'
     assert read(style + P).elements[0].stroke_width_mm == 2
 
 
-def test_rules_are_inherited_and_a_variable_may_be_set_below():
+def test_rules_are_inherited_and_variables_can_be_overridden():
     css = "g{stroke-width:var(--w);--w:3} .in{--w:7;stroke-width:var(--w)}"
     design = read(f'<style>{css}</style><g><path d="M0 0H5"/><path class="in" d="M0 0H5"/></g>')
     assert [element.stroke_width_mm for element in design.elements] == [3, 7]
 
 
-def test_display_visibility_and_geometry_by_rule():
+def test_display_visibility_and_geometry_can_be_set_by_rules():
     css = "#x{display:none} #y{visibility:hidden} #z{d:path('M1 2H3')} circle{r:4px;transform:translate(10px,2px)}"
     body = '<path id="x" d="M0 0H5"/><path id="y" d="M0 0H5"/><path id="z" d="M0 0H9"/><circle id="c" r="9"/>'
     design = read(f"<style>{css}</style>{body}")
@@ -136,7 +136,7 @@ def test_display_visibility_and_geometry_by_rule():
     assert design.elements[1].subpaths[0].cubics[0, 0].tolist() == [14, 48]
 
 
-def test_lengths_without_a_unit_are_none_in_css():
+def test_lengths_without_a_unit_are_invalid_in_css():
     """Lengths without a unit are invalid in CSS.
 
     In an attribute they are px. Browsers drop an invalid declaration, and the next weaker declaration counts.
@@ -169,11 +169,11 @@ def test_own_properties_are_inherited_only_when_requested():
         ("@namespace url(urn:x);path{stroke-width:2}", "css-unread @namespace"),
     ],
 )
-def test_a_part_of_a_style_sheet_is_not_read(css, said):
+def test_unsupported_parts_of_a_style_sheet_are_reported(css, said):
     assert is_reported(read(f"<style>{css}</style>{P}").notices, said)
 
 
-def test_a_variable_that_leads_to_itself_is_no_value():
+def test_a_self_referencing_variable_has_no_value():
     design = read(f"<style>:root{{--a:var(--b)x;--b:var(--a)}} path{{stroke-width:var(--a)}}</style>{P}")
     assert design.elements[0].stroke_width_mm == 1
     assert are_reported(design.notices, "css-invalid stroke-width var(--a) --b") and design.notices[0].damaged
@@ -198,13 +198,13 @@ def test_a_variable_that_leads_to_itself_is_no_value():
         ("".join(f"[a{k}]{{stroke:red}}" for k in range(2000)), '<path d="M0 0H1"/>' * 4000),
     ],
 )
-def test_selectors_that_would_take_for_ever_are_refused(css, body, monkeypatch):
+def test_selectors_that_take_too_many_steps_are_refused(css, body, monkeypatch):
     monkeypatch.setattr(selectors, "STEP_LIMIT", 20_000)
     with refused("css-too-complex"):
         read(f"<style>{css}</style>{body}")
 
 
-def test_deep_and_wide_documents_with_rules():
+def test_deep_and_wide_documents_with_rules_are_read():
     css = "g path{stroke-width:2} g + path{stroke:blue}"
     design = read(f"<style>{css}</style>{'<g>' * 5000}{P}{'</g>' * 5000}{'<g/>' * 5000}{P}")
     assert [element.stroke_width_mm for element in design.elements] == [2, 1]
@@ -231,7 +231,7 @@ def test_deep_and_wide_documents_with_rules():
         ("g:only-of-type", True),
     ],
 )
-def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
+def test_selectors_in_a_copy_match_only_copied_elements(selector, reaches):
     """In a copy, selectors match within the copied elements only.
 
     See SVG 2, 5.6.3. Inkscape matches at the place of the original. If this gives another style, a notice
@@ -245,13 +245,13 @@ def test_in_a_copy_selectors_see_what_is_copied_and_no_more(selector, reaches):
     assert {notice.code for notice in design.notices} <= {"css-of-copies"}
 
 
-def test_a_copy_in_a_copy_is_seen_for_itself():
+def test_a_nested_copy_is_matched_separately():
     body = '<defs><g id="a"><path id="p" d="M0 0H5"/></g><g id="b"><use href="#p"/><use href="#a"/></g></defs>'
     design = read(f'<style>g path{{stroke-width:7}}</style>{body}<use href="#b"/>')
     assert [element.stroke_width_mm for element in design.elements] == [1, 7]
 
 
-def test_trees_of_copies_count_as_steps(monkeypatch):
+def test_copies_count_toward_the_step_limit(monkeypatch):
     monkeypatch.setattr(selectors, "STEP_LIMIT", 20_000)
     nested = "".join(f'<g id="g{k}">' for k in range(300)) + "<i/>" * 300 + "</g>" * 300
     uses = "".join(f'<use href="#g{k}"/>' for k in range(300))
@@ -260,7 +260,7 @@ def test_trees_of_copies_count_as_steps(monkeypatch):
         read(f"<style>b{{stroke:red}}</style>{P}<defs>{nested}</defs>{uses}")
 
 
-def test_select():
+def test_elements_can_be_selected_with_css_selectors():
     body = '<g id="g"><path id="a" d="M0 0H5"/><text>x</text></g><path id="b" d="M0 0H5"/><use id="u" href="#a"/>'
     assert [element.id for element in read(body, select="#g").elements] == ["a"]
     assert [element.id for element in read(body, select="path").elements] == ["a", "b"], "a copy is its use's"
@@ -276,20 +276,20 @@ def test_select():
     "body",
     [f'<path style="stroke:{"(" * 30_000}" d="M0 0H5"/>', f"<style>{'a{' * 30_000}</style>{P}"],
 )
-def test_css_nested_too_deeply(body):
+def test_css_nested_too_deeply_is_refused(body):
     try:
         assert read(P + body).elements
     except Error as reported:
         assert agrees(reported, "css-too-complex")
 
 
-def test_style_sheets_without_end_are_refused(monkeypatch):
+def test_overlong_style_sheets_are_refused(monkeypatch):
     monkeypatch.setattr(style_sheets, "TEXT_LIMIT", 1000)
     with refused("css-too-complex 1300 1000"):
         read(f"<style>{'.a{top:1;red}' * 50}</style><style>{'.a{top:1;red}' * 50}</style>{P}")
 
 
 @pytest.mark.parametrize("style", ["transform:rotate({}deg)", "transform:scale({})", "rotate:{}deg"])
-def test_a_number_that_no_machine_holds_is_reported(style):
+def test_a_number_beyond_floating_point_range_is_reported(style):
     (notice,) = read(f'<path id="p" style="{style.format("1" * 400)}" d="M0 0H5"/>').notices
     assert notice.damaged and agrees(notice, "transform-unread", "p")

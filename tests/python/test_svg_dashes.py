@@ -15,7 +15,7 @@ def speed(t, cubic):
     return np.hypot(*((1 - t) ** 2 * d[0] + 2 * t * (1 - t) * d[1] + t * t * d[2]))
 
 
-def test_arc_length_against_quadrature():
+def test_arc_length_agrees_with_quadrature():
     random = np.random.default_rng(3)
     cubics = random.uniform(0, 50, (40, 4, 2))
     cubics[1:, 0] = cubics[:-1, 3]
@@ -32,7 +32,7 @@ def test_arc_length_against_quadrature():
         assert begins[k] + quad(speed, 0, end, args=(cubics[k],), limit=200)[0] == pytest.approx(distance, abs=5e-3)
 
 
-def test_dashes_of_a_straight_line():
+def test_dashes_divide_a_straight_line():
     design = read('<path id="p" d="M0 0H20" stroke-dasharray="4 2" stroke-dashoffset="1"/>')
     spans = [(start[0], end[0]) for _, start, end in lines(design)]
     assert spans == [(0, 3), (5, 9), (11, 15), (17, 20)]
@@ -57,7 +57,7 @@ def test_dashes_of_a_straight_line():
         ('style="stroke-dasharray:5px,5px;stroke-dashoffset:-5"', 2),
     ],
 )
-def test_patterns(attributes, count):
+def test_dash_patterns_are_read(attributes, count):
     assert len(read(f'<path d="M0 0H20" {attributes}/>').elements[0].subpaths) == count
 
 
@@ -78,14 +78,14 @@ def test_path_length_stretches_the_dashes(said, ends):
     assert agrees(notice, "path-length-unread pathLength x", "p")
 
 
-def test_path_length_is_of_all_sub_paths_and_stretches_the_offset():
+def test_path_length_covers_all_sub_paths_and_stretches_the_offset():
     body = '<path d="M0 0H20M0 9H20" stroke-dasharray="2" stroke-dashoffset="1" pathLength="20" transform="scale(.5)"/>'
     spans = [(start[0], end[0]) for _, start, end in lines(read(body))]
     assert spans[:2] == [(0, 1), (3, 5)] and len(spans) == 6
 
 
 @pytest.mark.parametrize("more", ["", ' pathLength="2"'])
-def test_dashes_of_a_stroke_that_does_not_scale_do_not_either(more):
+def test_dashes_of_a_non_scaling_stroke_do_not_scale(more):
     """Dashes of a non-scaling stroke do not scale either.
 
     They are in px of the screen, like the stroke's width: 3 mm are 3 mm under any transform. With pathLength,
@@ -98,13 +98,13 @@ def test_dashes_of_a_stroke_that_does_not_scale_do_not_either(more):
     assert np.allclose(spans, [(0, 5), (10, 15)])
 
 
-def test_a_list_of_dashes_that_is_none_is_reported():
+def test_an_invalid_dash_list_is_reported():
     for text in ("20 10,", "1,,2", ",3"):
         (notice,) = read(f'<path d="M0 0H20" stroke-dasharray="{text}"/>').notices
         assert agrees(notice, "dashes-unread stroke-dasharray")
 
 
-def test_dashes_go_round_corners_and_a_closed_line_has_no_seam():
+def test_dashes_continue_around_corners_and_across_the_seam():
     square = read('<path d="M0 0H10V10H0Z" stroke-dasharray="7 3"/>').elements[0].subpaths
     assert all(not piece.closed for piece in square)
     assert [round(float(knots(piece.cubics)[:, -1].sum()), 9) for piece in square] == [7, 7, 7, 7]
@@ -126,7 +126,7 @@ def test_each_dash_is_on_the_line():
     assert np.allclose(lengths[1:-1], 2.0, atol=1e-6)
 
 
-def test_dashes_too_many_to_paint_are_refused(monkeypatch):
+def test_too_many_dashes_are_refused(monkeypatch):
     monkeypatch.setattr(element, "_MAX_DASHES", 300)
     line = '<path id="p" d="M0 0H20" stroke-dasharray="0.05"/>'
     assert len(read(line).elements[0].subpaths) == 200

@@ -22,7 +22,7 @@ def why_not(body, name):
     return caught.value
 
 
-def test_inkscapes_layers_win_over_groups_with_names():
+def test_inkscape_layers_override_named_groups():
     marked = 'inkscape:groupmode="layer" inkscape:label="Ink"'
     assert layers(f'<g id="g1">{A}</g><g id="g2"><g {marked}>{B}</g></g>') == {"a": "", "b": "Ink"}
 
@@ -39,25 +39,25 @@ def test_inkscapes_layers_win_over_groups_with_names():
         ('id="bell_x07_"', "bell_x07_"),
     ],
 )
-def test_the_outermost_groups_with_names_are_layers(group, name):
+def test_the_outermost_named_groups_are_layers(group, name):
     body = f'<g><g {group}><g id="inner">{A}</g></g></g>{B}'
     assert layers(body) == {"a": name, "b": ""}
     assert [element.id for element in arrange(read(body), Layout(layers=(name,))).elements] == ["a"]
 
 
-def test_a_group_around_all_is_a_page_with_layers():
+def test_a_group_around_everything_is_a_page_with_layers():
     body = f'<title>t</title><defs/><switch><g id="Page"><g id="One">{A}</g><g id="Two">{B}</g></g></switch>'
     assert layers(body) == {"a": "Page/One", "b": "Page/Two"}
     assert layers(f'<g id="Page"><g id="One">{A}</g>{B}</g>') == {"a": "Page/One", "b": "Page"}
     assert layers(f'<rect id="board" width="9" height="9"/><g id="Top"><g id="One">{A}</g></g>')["a"] == "Top"
 
 
-def test_a_name_before_a_stroke_of_a_name_holds_all_of_them():
+def test_a_layer_prefix_before_a_slash_selects_all_its_layers():
     body = f'<g id="Icon/one">{A}</g><g id="Icon/two">{B}</g>'
     assert [element.id for element in arrange(read(body), Layout(layers=("Icon",))).elements] == ["a", "b"]
 
 
-def test_a_layer_is_found_by_its_end_in_any_case_unless_two_match():
+def test_a_layer_is_found_by_its_unique_ending_ignoring_case():
     body = f'<g id="Page"><g id="Ink_one"><g id="Fine">{A}</g></g><g id="Two">{B}</g></g>'
     for name in ("Page/Ink_one", "Ink_one", "ink one", "page/ink one"):
         assert [element.id for element in arrange(read(body), Layout(layers=(name,))).elements] == ["a"]
@@ -67,7 +67,7 @@ def test_a_layer_is_found_by_its_end_in_any_case_unless_two_match():
     assert [element.id for element in arrange(read(body), Layout(layers=("Y/Fine",))).elements] == ["b"]
 
 
-def test_why_a_layer_is_not_painted():
+def test_a_layer_that_is_not_painted_is_reported_with_the_reason():
     marked = 'inkscape:groupmode="layer" inkscape:label'
     body = (
         f'{A}<g {marked}="Off" style="display:none">{B}<g {marked}="In">{B}</g></g><g {marked}="Faint" '
@@ -81,14 +81,14 @@ def test_why_a_layer_is_not_painted():
     assert agrees(why_not(body, "New"), "layer-unknown New Off Off/In Faint Bad Empty")
 
 
-def test_layers_without_end_are_bounded_in_length():
+def test_long_layer_lists_are_shortened():
     depth = 3000
     body = '<g inkscape:groupmode="layer" inkscape:label="layer">' * depth + A + "</g>" * depth
     (element,) = read(body).elements
     assert len(element.layer) == 599
 
 
-def test_nothing_to_paint_names_every_reason():
+def test_a_refusal_for_nothing_to_paint_names_every_reason():
     body = (
         '<text id="t">x</text><text>y</text><g display="none"/><path d="M0 0H1" data-brushsvg-skip="yes"/>'
         '<image/><path id="p" d="M0 0"/>'
@@ -99,7 +99,7 @@ def test_nothing_to_paint_names_every_reason():
         read('<g display="none"/><path d="M0 0H1" visibility="hidden"/>')
 
 
-def test_lengths_in_the_size_of_the_font():
+def test_lengths_in_em_and_ex_follow_the_font_size():
     px = 25.4 / 96
     svg = HEAD.replace('width="100mm" height="50mm" viewBox="0 0 100 50"', 'width="400" height="200"')
     body = (

@@ -35,7 +35,7 @@ def notices_of(design):
 
 
 @pytest.mark.parametrize("server", SERVERS.values(), ids=SERVERS)
-def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
+def test_an_unsupported_paint_is_named_for_fill_and_stroke(server):
     of = "paint-unread p {} #s #000000".format
     assert are_reported(notices_of(painted("url(#s)", "none", before=server)), of("fill"))
     assert are_reported(notices_of(painted("url(#s)", "red", before=server)), of("fill")), "under a stroke, too"
@@ -44,7 +44,7 @@ def test_a_paint_that_is_not_read_is_named_for_fill_and_stroke(server):
 
 
 @pytest.mark.parametrize("server", NOTHING.values(), ids=NOTHING)
-def test_a_paint_of_nothing_paints_nothing(server):
+def test_an_empty_paint_server_paints_nothing(server):
     design = painted("url(#s)", "blue", before=server)
     assert (design.elements[1].fill_rule, design.elements[1].colour, notices_of(design)) == (
         "",
@@ -69,7 +69,7 @@ def test_a_gradient_of_one_colour_is_that_colour(gradient):
 
 
 @pytest.mark.parametrize("colour", ["#ff000033", "#f003", "rgba(255,0,0,.2)", "hsl(0 100% 50% / 20%)"])
-def test_a_colour_seen_through_is_named_where_it_paints(colour):
+def test_a_translucent_colour_is_reported_where_it_paints(colour):
     of = "opacity-unread p {} 0.2 1".format
     assert are_reported(notices_of(painted(colour, "none")), of("fill"))
     assert are_reported(notices_of(painted(colour, "blue")), of("fill"))
@@ -81,13 +81,13 @@ def test_a_colour_seen_through_is_named_where_it_paints(colour):
 
 
 @pytest.mark.parametrize("colour", ["transparent", "#f000", "rgb(1 2 3 / 0)"])
-def test_a_colour_of_glass_paints_nothing(colour):
+def test_a_fully_transparent_colour_paints_nothing(colour):
     assert painted(colour, "blue").elements[1].fill_rule == ""
     assert painted("blue", colour).elements[1].stroke_width_mm == 0
     assert len(painted("none", "currentColor", f'color="{colour}"').elements) == 1
 
 
-def test_opacities_are_named_for_what_is_painted():
+def test_opacities_are_reported_only_for_painted_parts():
     assert are_reported(notices_of(painted("red", "blue", 'fill-opacity=".5"')), "opacity-unread fill-opacity 1")
     assert notices_of(painted("none", "blue", 'fill-opacity=".5"')) == []
     assert notices_of(painted("red", "blue", 'fill-opacity="2" opacity="101%" stroke-opacity="1.0"')) == []
@@ -97,12 +97,12 @@ def test_opacities_are_named_for_what_is_painted():
         read(BOTH.format("red", "blue", 'opacity="1e-9"'))
 
 
-def test_a_visibility_that_is_none_counts_as_not_given():
+def test_an_invalid_visibility_is_ignored():
     assert len(painted("red", "blue", 'visibility="x"').elements) == 2
     assert len(painted("red", "blue", 'visibility="HIDDEN"').elements) == 1
 
 
-def test_a_paint_is_looked_up_once(monkeypatch):
+def test_a_paint_server_is_looked_up_once(monkeypatch):
     """Each paint server is looked up once.
 
     3,000 shapes with a gradient of 3,000 stops once took twenty seconds.
@@ -114,7 +114,7 @@ def test_a_paint_is_looked_up_once(monkeypatch):
     assert len(requested) == 50
 
 
-def test_a_box_is_measured_once(monkeypatch):
+def test_a_bounding_box_is_computed_once(monkeypatch):
     requested = []
     bounds = element.PaintedElements.bounds
     monkeypatch.setattr(element.PaintedElements, "bounds", lambda *words: requested.append(1) or bounds(*words))
@@ -123,7 +123,7 @@ def test_a_box_is_measured_once(monkeypatch):
     assert len(requested) == 1
 
 
-def test_white_is_reported():
+def test_white_paint_is_reported():
     """White paint is reported.
 
     Shapes under white paint are painted too, because paint is not cut off by shapes on top.
@@ -138,7 +138,7 @@ def test_white_is_reported():
     assert not notices_of(painted("#e8e8e8", "none"))
 
 
-def test_a_fill_of_another_colour_than_the_stroke_keeps_it():
+def test_a_fill_keeps_its_colour_next_to_another_stroke_colour():
     for fill, stroke, colours in (
         ("#f00", "#000", [("#ff0000", "nonzero"), ("#000000", "")]),
         ("#f00", "red", [("#ff0000", "nonzero")]),

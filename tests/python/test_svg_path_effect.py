@@ -23,7 +23,7 @@ def width_at(design, fraction):
     return float(np.interp(fraction, subpath.widths[:, 0], subpath.widths[:, 1]))
 
 
-def test_the_line_that_was_drawn_with_its_width():
+def test_a_power_stroke_is_its_original_line_with_widths():
     design = powered()
     (element,) = design.elements
     assert element.subpaths[0].cubics[[0, -1], [0, 3]].tolist() == [[10, 40], [50, 40]]
@@ -33,7 +33,7 @@ def test_the_line_that_was_drawn_with_its_width():
 
 
 @pytest.mark.parametrize("reference", ["#ä", "#%C3%A4"])
-def test_effects_are_referred_to_as_urls_do(reference):
+def test_effects_are_referenced_like_urls(reference):
     effects = EFFECT.format(points="0,1 | 1.5,3", kind="Linear", scale=1, effect="powerstroke", visible="true")
     drawn = (effects.replace('id="e"', 'id="ä"'), PATH.format("").replace('"#e"', f'"{reference}"'))
     assert width_at(read("<defs>{}</defs>{}".format(*drawn)), 0) == pytest.approx(2)
@@ -44,7 +44,7 @@ def test_widths_scale_with_the_transform_and_the_effect():
     assert width_at(powered("1.5,-3 | 0,1"), 0.75) == pytest.approx(6), "sorted; the side does not matter"
 
 
-def test_johan_is_flat_at_its_points_and_in_the_middle_between_them():
+def test_johan_interpolation_is_flat_at_its_points_and_midpoints():
     design = powered("0,1 | 2,3", "CubicBezierJohan")
     assert width_at(design, 0.5) == pytest.approx(4)
     assert width_at(design, 0.05) < 2 + 0.05 * 4
@@ -63,17 +63,17 @@ def test_catmull_rom_passes_through_its_points():
         ({"points": "0,1 | nan"}, "path-effect-unread points outline"),
     ],
 )
-def test_what_is_not_read_is_named(choices, said):
+def test_unsupported_effect_settings_are_named(choices, said):
     assert is_reported(powered(**choices).notices, said, "p")
 
 
-def test_an_effect_that_leaves_an_outline_is_named():
+def test_an_unsupported_effect_with_an_outline_is_reported():
     design = powered(effect="taper_stroke")
     assert are_reported(design.notices, "path-effect-unread p taper_stroke outline")
     assert not design.elements[0].is_stroked
 
 
-def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():
+def test_hidden_and_line_effects_use_the_path_data():
     for choices in ({"visible": "false"}, {"effect": "spiro"}):
         (element,) = powered(**choices).elements
         assert element.fill_rule and not element.is_stroked
@@ -82,7 +82,7 @@ def test_a_hidden_effect_or_one_that_makes_lines_leaves_d():
 
 @pytest.mark.parametrize("other", ["spiro", "bspline", "mirror_symmetry", "powerstroke", "skeletal"])
 @pytest.mark.parametrize("order", ["#e;#f", "#f; #e"])
-def test_next_to_another_effect_the_outline_counts(other, order):
+def test_the_outline_is_used_if_there_is_another_effect(other, order):
     """Next to another path effect, the outline counts.
 
     Inkscape shows the outline. The line under a Spiro was once drawn 5 mm from its visible position.
@@ -98,13 +98,13 @@ def test_next_to_another_effect_the_outline_counts(other, order):
     assert not read(f"<defs>{hidden}</defs>{PATH.replace('#e', order).format('')}").notices
 
 
-def test_in_a_group_with_effects_the_outline_counts():
+def test_the_outline_is_used_in_a_group_with_effects():
     effects = EFFECT.format(effect="powerstroke", visible="true", kind="Linear", points="0,1", scale=1)
     design = read(f'<defs>{effects}</defs><g inkscape:path-effect="#x"><g>{PATH.format("")}</g></g>')
     assert design.elements[0].fill_rule
     assert are_reported(design.notices, "path-effect-unread p PowerStroke group outline")
 
 
-def test_many_points_on_a_long_line():
+def test_many_width_points_are_interpolated():
     design = powered(" | ".join(f"{k / 500:.4f},{1 + k % 3}" for k in range(1001)))
     assert width_at(design, 0.5) == pytest.approx(2 * (1 + 500 % 3))

@@ -26,28 +26,28 @@ def test_references_are_read_as_urls(href):
     assert len(design.elements) == 1 and not design.notices
 
 
-def test_the_id_as_written_comes_before_the_unquoted_one():
+def test_the_id_as_written_precedes_the_unquoted_id():
     near, far = (f'<path id="{name}" d="M0 {y}H10"/>' for name, y in (("%C3%A4", 1), ("ä", 9)))
     design = read(f"<defs>{far}{near}</defs><use href='#%C3%A4'/>")
     assert [line[1:] for line in lines(design)] == [((0, 1), (10, 1))]
 
 
 @pytest.mark.parametrize("paint", ["url(#ä)", "url(#%C3%A4)", "url('#%C3%A4')"])
-def test_paints_are_referred_to_as_urls(paint):
+def test_paints_are_referenced_as_urls(paint):
     stop = '<stop stop-color="#123456"/>'
     body = f'<linearGradient id="ö">{stop}</linearGradient><linearGradient id="ä" href=" #%C3%B6"/>'
     design = read(f'{body}<path d="M0 0H10" fill="none" stroke="{paint}"/>')
     assert [element.colour for element in design.elements] == ["#123456"]
 
 
-def test_use_hands_its_style_down_and_may_come_first():
+def test_use_passes_its_style_on_and_may_precede_its_target():
     group = f'<g id="g">{LINE}<path d="M0 1H4" stroke-width="2"/></g>'
     body = f'<use id="u" href="#g" stroke-width="3"/><defs>{group}</defs>'
     design = read(body)
     assert [(element.id, element.stroke_width_mm) for element in design.elements] == [("u/l", 3), ("u", 2)]
 
 
-def test_use_of_use_and_of_a_group_that_is_drawn_itself():
+def test_use_may_refer_to_a_use_or_a_visible_group():
     body = f'<g id="g">{LINE}</g><use id="u" href="#g" x="10"/><use id="v" href="#u" x="1"/>'
     assert lines(read(body)) == [
         ("l", (0, 0), (4, 0)),
@@ -74,7 +74,7 @@ def test_nested_svg_has_its_own_viewport():
     assert lines(read('<svg width="0" height="5"><path id="x" d="M0 0H5"/></svg>' + LINE)) == [("l", (0, 0), (4, 0))]
 
 
-def test_what_a_viewport_hides_is_left_out_or_reported():
+def test_elements_hidden_by_a_viewport_are_left_out_or_reported():
     body = '<svg width="10" height="10"><path id="out" d="M20 1H30"/><path id="over" d="M5 5H15"/>{}</svg>'
     design = read(body.format('<path id="in" d="M1 1Q5 -1 9 1"/>'))
     assert [element.id for element in design.elements] == ["over", "in"]
@@ -100,7 +100,7 @@ def test_what_a_viewport_hides_is_left_out_or_reported():
         ('<svg id="s" viewBox="0 0 1"/>', "viewbox-invalid '0 0 1'", True),
     ],
 )  # fmt: skip
-def test_uses_that_lead_nowhere(body, said, damaged):
+def test_broken_use_references_are_reported(body, said, damaged):
     design = read(LINE + body)
     (found,) = (notice for notice in design.notices if agrees(notice, said))
     assert found.damaged == damaged
@@ -114,13 +114,13 @@ def test_use_chains_that_double_are_refused(monkeypatch):
         read(f'<defs>{chain}<g id="a40">{LINE}</g></defs><use href="#a0"/>')
 
 
-def test_a_long_chain_of_uses_is_walked_without_recursion():
+def test_a_long_chain_of_uses_is_read_without_recursion():
     chain = "".join(f'<use id="u{k}" href="#u{k + 1}"/>' for k in range(3000))
     design = read(f"<defs>{chain}{LINE.replace('l', 'u3000', 1)}</defs><use href='#u0'/>")
     assert len(design.elements) == 1
 
 
-def test_path_data_without_end_is_refused(monkeypatch):
+def test_overlong_path_data_is_refused(monkeypatch):
     monkeypatch.setattr(svg_element, "_MAX_PATH_DATA", 1000)
     assert read(LINE * 100).elements
     with refused("drawing-too-large 1000"):
@@ -136,7 +136,7 @@ def test_switch_paints_the_first_child_that_applies():
     assert not design.notices
 
 
-def test_transforms_as_css_writes_them_and_about_an_origin():
+def test_css_transforms_and_origins_are_applied():
     def start(attributes):
         return lines(read(f'<path d="M10 0H20" {attributes}/>'))[0][1]
 
@@ -166,7 +166,7 @@ def test_transforms_as_css_writes_them_and_about_an_origin():
 
 
 @pytest.mark.parametrize("text", ["rotate(90deg)", "translateX(2)", "scale(50%)", "translate(2px 3px)", "skew(3)"])
-def test_the_attribute_has_neither_units_nor_the_functions_of_css(text):
+def test_the_transform_attribute_refuses_units_and_css_functions(text):
     design = read(f'<path d="M10 0H20" transform="{text}"/>')
     assert lines(design)[0][1] == (10, 0)
     assert [notice.damaged for notice in design.notices] == [True]
@@ -191,7 +191,7 @@ def test_the_attribute_has_neither_units_nor_the_functions_of_css(text):
         ("-10px 0 5px", (-10, 0)),
     ],
 )
-def test_transform_origin_in_all_its_words(origin, point):
+def test_transform_origin_accepts_all_keywords(origin, point):
     x, y = point
     for said in (
         f'transform="scale(2)" transform-origin="{origin}"',
@@ -202,13 +202,13 @@ def test_transform_origin_in_all_its_words(origin, point):
 
 
 @pytest.mark.parametrize("origin", ["top 20px", "20px left", "left left", "1 2 3 4", "10% 20% 30%", "x", "5,6"])
-def test_a_transform_origin_that_is_none_is_reported(origin):
+def test_an_invalid_transform_origin_is_reported(origin):
     design = read(f'<path id="p" d="M10 4H20" transform="scale(2)" transform-origin="{origin}"/>')
     assert lines(design)[0][1] == (20, 8)
     assert [notice.damaged for notice in design.notices] == [True]
 
 
-def test_transform_box_counts_from_the_shape():
+def test_transform_box_uses_the_box_of_the_shape():
     def start(attributes, shape='path d="M10 4H20V14"'):
         return lines(read(f"<{shape} {attributes}/>"))[0][1]
 
@@ -227,7 +227,7 @@ def test_transform_box_counts_from_the_shape():
         assert notice.damaged and agrees(notice, "transform-unread transform-box", "p")
 
 
-def test_translate_rotate_and_scale_as_properties():
+def test_translate_rotate_and_scale_properties_are_applied():
     def start(style, attribute=""):
         return lines(read(f'<path d="M10 0H20" style="{style}" {attribute}/>'))[0][1]
 
@@ -254,14 +254,14 @@ def test_a_transform_of_the_drawing_itself_is_reported():
     "mix-blend-mode:darken offset-path:none animation:a mask-image:none -webkit-filter:blur(5px)"
     " content-visibility:hidden all:unset".split(),
 )
-def test_what_css_alone_says_is_reported(name):
+def test_unsupported_css_only_properties_are_reported(name):
     of, value = name.split(":")
     reported = read(f'<g id="g" style="{name}"><path d="M0 0H5"/></g>').notices
     said = f"css-unread g {of.removeprefix('-webkit-')}"
     assert are_reported(reported, *([] if value == "none" else [said]))
 
 
-def test_empty_attributes_count_as_not_given():
+def test_empty_attributes_are_ignored():
     names = "x y rx ry transform transform-origin stroke stroke-width opacity style class fill visibility"
     empty = " ".join(f'{name}=""' for name in names.split())
     design = read(f'<rect width="5" height="5" {empty}/><use href="#a" x="" y=" "/><path id="a" d="M0 0H1"/>')
@@ -277,18 +277,18 @@ def test_empty_attributes_count_as_not_given():
     assert read_svg(sized.encode()).sheet_mm == (30, 40)
 
 
-def test_a_blank_before_a_unit_is_no_length():
+def test_a_blank_before_a_unit_is_invalid():
     (notice,) = read('<path id="p" d="M0 0H5" stroke-width="12 px"/>').notices
     assert notice.damaged and agrees(notice, "stroke-width-invalid '12 px' blank", "p")
 
 
-def test_what_d_says_in_css_is_a_path_or_counts_as_not_given():
+def test_an_invalid_css_d_property_is_ignored():
     for text in ("M1 1H3", "path(evenodd, 'M1 1H3')", "path('M1 1H3' x)", "circle(5px)"):
         assert lines(read(f'<path d="M0 0H5" style="d:{text}"/>'))[0][1:] == ((0, 0), (5, 0))
     assert len(read('<path d="M0 0H5" style="d:none"/><path d="M0 0H5"/>').elements) == 1
 
 
-def test_an_empty_href_wins_over_the_old_one():
+def test_an_empty_href_overrides_xlink_href():
     design = read('<path id="a" d="M0 0H5"/><use id="u" href="" xlink:href="#a"/>')
     assert are_reported(design.notices, "use-of-nothing u href")
 
@@ -301,7 +301,7 @@ def test_nameless_elements_are_counted_and_notices_use_the_same_name():
     assert [notice.where for notice in design.notices] == ["text 1", "path 2", "path 3", "stroke3 (path 4)"]
 
 
-def test_layers_in_layers_and_notices_know_where_they_are():
+def test_nested_layers_are_kept_and_notices_name_their_layer():
     body = """<g inkscape:groupmode="layer" inkscape:label="A"><g inkscape:groupmode="layer" inkscape:label="B">
       <path d="M0 0H4"/><text id="t">x</text></g></g>"""
     design = read(body)
@@ -385,14 +385,14 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
         ('colour="red"', "setting-invalid data-brushsvg-colour width speed"),
     ],
 )
-def test_settings_that_make_no_sense_stop_convert(setting, said):
+def test_invalid_settings_stop_convert(setting, said):
     design = read(f'<path id="p" d="M0 0H4" data-brushsvg-{setting}/>')
     (notice,) = design.notices
     assert agrees(notice, said) and notice.damaged, notice
     assert not design.elements[0].settings
 
 
-def test_the_advice_for_illustrator_is_of_the_drawing_for_any_sheet():
+def test_the_advice_for_illustrator_does_not_depend_on_the_requested_sheet():
     text = (
         '<!-- Generator: Adobe Illustrator 27.0 --><svg xmlns="http://www.w3.org/2000/svg" width="283.5px" '
         'height="198.4px" viewBox="0 0 283.5 198.4"><path fill="none" stroke="#000" d="M50 60h100"/></svg>'
@@ -411,7 +411,7 @@ def test_the_advice_for_illustrator_is_of_the_drawing_for_any_sheet():
         ('width="80mm" style="height:40mm"', (80.0, 40.0), []),
     ],
 )
-def test_a_page_whose_size_stands_in_its_style(attributes, sheet_mm, reported):
+def test_a_page_size_in_the_style_is_read(attributes, sheet_mm, reported):
     text = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100" {attributes}>{LINE}</svg>'
     design = read_svg(text.encode())
     assert design.sheet_mm == pytest.approx(sheet_mm)

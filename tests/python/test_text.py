@@ -73,7 +73,7 @@ def starts(text, glyphs=GLYPHS, **options):
 # Single-line fonts
 
 
-def test_a_letter_stands_upright_with_20_mm_and_half_a_width_around_it():
+def test_a_letter_is_upright_with_a_margin_of_20_mm_plus_half_its_width():
     document, notices = text_svg("T", svg_font(), size_mm=10, width_mm=1)
     root = ET.fromstring(document.encode())
     # The ink is 4 by 7 mm, and the line's width adds 1 mm.
@@ -97,28 +97,28 @@ def test_the_size_is_the_em_of_the_font():
     assert drawn("T", font, size_mm=20) == drawn("T", size_mm=10)
 
 
-def test_a_font_without_units_has_1000_to_the_em():
+def test_a_font_without_units_has_1000_units_per_em():
     assert drawn("T", svg_font(face="")) == drawn("T")
 
 
-def test_glyphs_follow_at_their_advance_or_the_fonts():
+def test_glyphs_follow_at_their_own_advance_or_the_fonts():
     # I is at 100 with an advance of 200; T starts at 0 and has the font's advance of 400.
     assert starts("ITI I") == [0, 1, 6, 11]
 
 
-def test_sub_paths_that_touch_stay_apart():
+def test_sub_paths_that_touch_stay_separate():
     glyph = '<glyph unicode="L" d="M 0 700 L 0 0 M 0 0 L 300 0"/>'
     assert drawn("L", svg_font(glyph)) == ["M 20.5000,20.5000 L 20.5000,27.5000 M 20.5000,27.5000 L 23.5000,27.5000"]
 
 
-def test_a_point_stays_a_dab_and_a_closed_line_closed():
+def test_points_stay_dabs_and_closed_lines_stay_closed():
     assert drawn("i")[0].endswith(" M 20.5000,20.5000 L 20.5000,20.5000")
     document, _ = text_svg("o", svg_font(), size_mm=10)
     (path,) = paths(document)
     assert path.get("d") == "M 20.5000,23.5000 L 23.5000,23.5000 L 23.5000,20.5000 L 20.5000,20.5000 Z"
 
 
-def test_curves_keep_their_shape_and_bound_the_ink_themselves():
+def test_ink_bounds_come_from_the_curve_not_its_handles():
     """The bounds of the ink come from the curve, not from its handles.
 
     The handles reach up to 400, the curve itself to 300.
@@ -127,7 +127,7 @@ def test_curves_keep_their_shape_and_bound_the_ink_themselves():
     assert d == "M 20.5000,23.5000 C 20.5000,19.5000 23.5000,19.5000 23.5000,23.5000"
 
 
-def test_every_command_against_svgpathtools():
+def test_every_path_command_agrees_with_svgpathtools():
     """Every path command agrees with svgpathtools.
 
     Tilted arcs are left to the next test: svgpathtools 1.8 turns them the wrong way under a flip.
@@ -158,7 +158,7 @@ def test_a_tilted_arc_is_mirrored_with_its_letter():
         assert min(abs(part.point(part.radialrange(target)[0][1]) - target) for part in ours) < 3e-4
 
 
-def test_a_new_line_begins_below_where_the_first_did():
+def test_a_new_line_starts_below_the_first():
     one, two = drawn("I\nI", line_spacing=1.5)
     assert one == "M 20.5000,27.5000 L 20.5000,20.5000"
     assert two == "M 20.5000,42.5000 L 20.5000,35.5000"
@@ -166,18 +166,18 @@ def test_a_new_line_begins_below_where_the_first_did():
     assert len(drawn("I\n\nI")) == 2
 
 
-def test_ligatures_the_longest_first():
+def test_the_longest_ligature_is_used():
     document, _ = text_svg("ffiffi f", svg_font(), size_mm=10)
     assert [path.get("id") for path in paths(document)] == ["glyph-1-ffi", "glyph-2-ffi", "glyph-3-f"]
     document, _ = text_svg("fff", svg_font(), size_mm=10)
     assert [path.get("id") for path in paths(document)] == ["glyph-1-f", "glyph-2-f", "glyph-3-f"]
 
 
-def test_of_two_glyphs_for_a_character_the_first_counts():
+def test_the_first_of_two_glyphs_for_a_character_is_used():
     assert drawn("I", svg_font(GLYPHS + '<glyph unicode="I" d="M 0 0 L 9 9"/>')) == drawn("I")
 
 
-def test_a_letter_and_its_accent_find_the_glyph_of_both():
+def test_a_letter_and_its_accent_use_the_composed_glyph():
     assert drawn("e\u0301") == drawn("\u00e9")
 
 
@@ -192,7 +192,7 @@ def test_a_letter_and_its_accent_find_the_glyph_of_both():
         'u1="T" u2="I" id="first"/><hkern k="999" u1="T" u2="I"',
     ],
 )
-def test_kerning(kern):
+def test_kerning_moves_the_next_glyph(kern):
     glyphs = GLYPHS + f'<hkern k="150" {kern}/>'
     # T is 400 wide and the line of I is at 100: 5 mm without kerning, 3.5 mm with it. No other pair is moved.
     assert starts("TI", glyphs) == [0, 3.5]
@@ -200,11 +200,11 @@ def test_kerning(kern):
 
 
 @pytest.mark.parametrize("kern", ['u1="T" u2="o"', 'u1="I" u2="T"', 'u1="U+0055-0060" u2="I"', 'g1="T"', 'u2="I"'])
-def test_kerning_of_other_pairs(kern):
+def test_kerning_does_not_affect_other_pairs(kern):
     assert starts("TI", GLYPHS + f'<hkern k="150" {kern}/>') == [0, 5]
 
 
-def test_a_comma_is_kerned_though_commas_part_the_list():
+def test_a_comma_can_be_kerned():
     assert starts("T,", GLYPHS + '<hkern k="150" u1="T" u2=","/>') == [0, 3]
     assert starts("T,", GLYPHS) == [0, 4.5]
 
@@ -219,7 +219,7 @@ def test_characters_without_a_glyph_are_left_out_and_named_once():
     assert agrees(notice, "glyph-missing U+040B 20")
 
 
-def test_nothing_left():
+def test_text_without_glyphs_is_refused():
     assert agrees(refusal("\u03a9", svg_font()), "nothing-to-paint U+03A9")
     assert agrees(refusal("  \n", svg_font()), "nothing-to-paint")
     assert agrees(refusal("", svg_font()), "text-empty")
@@ -244,7 +244,7 @@ def test_control_characters_are_dropped_and_markup_is_escaped():
         ("M 0 0 L 1e400 0", "glyph-damaged 1e6 7"),
     ],
 )
-def test_a_broken_glyph_is_skipped_and_keeps_its_room(d, said):
+def test_a_broken_glyph_is_skipped_and_keeps_its_advance(d, said):
     glyphs = GLYPHS + f'<glyph unicode="x" glyph-name="ex" horiz-adv-x="300" d="{d}"/>'
     document, (notice,) = text_svg("IxIx", svg_font(glyphs), size_mm=10)
     assert [path.get("id") for path in paths(document)] == ["glyph-1-I", "glyph-2-I"]
@@ -253,7 +253,7 @@ def test_a_broken_glyph_is_skipped_and_keeps_its_room(d, said):
     assert second - first == pytest.approx(5)
 
 
-def test_what_is_not_painted_of_a_glyph_is_named():
+def test_unpainted_parts_of_a_glyph_are_reported():
     glyphs = GLYPHS + '<glyph unicode="m" d="M 0 0 M 1 1 L 2 2"/><glyph unicode="e"><path d="M 0 0 L 1 1"/></glyph>'
     _, notices = text_svg("me", svg_font(glyphs))
     assert [(notice.where, notice.code) for notice in notices] == [
@@ -262,7 +262,7 @@ def test_what_is_not_painted_of_a_glyph_is_named():
     ]
 
 
-def test_outlines_in_an_svg_font_are_named():
+def test_filled_glyphs_in_an_svg_font_are_reported():
     _, notices = text_svg("oo", svg_font())
     assert [notice.code for notice in notices] == ["font-of-outlines"]
 
@@ -285,13 +285,13 @@ def test_outlines_in_an_svg_font_are_named():
         (svg_font(GLYPHS + '<hkern u1="I" u2="I" k="wide"/>'), "font-damaged k wide"),
     ],
 )
-def test_what_is_no_font_is_refused_in_a_sentence(font, said):
+def test_files_that_are_not_fonts_are_refused(font, said):
     with refused(said):
         text_svg("II", font)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
-def test_other_encodings(encoding):
+def test_fonts_in_other_encodings_are_read(encoding):
     assert drawn("I", svg_font().decode().encode(encoding)) == drawn("I")
 
 
@@ -299,7 +299,7 @@ def test_other_encodings(encoding):
 
 
 @pytest.mark.parametrize("value", [0, -1, float("nan"), float("inf"), 1000.5])
-def test_numbers_out_of_range(value):
+def test_numbers_out_of_range_are_refused(value):
     reported = f"out-of-range {value:g}"
     assert agrees(refusal("I", svg_font(), size_mm=value), f"{reported} size '(0, 1000] mm'")
     assert agrees(refusal("I", svg_font(), width_mm=value), f"{reported} width")
@@ -308,7 +308,7 @@ def test_numbers_out_of_range(value):
         assert agrees(refusal("I", svg_font(), sheet_mm=(10, value)), f"{reported} sheet")
 
 
-def test_a_given_sheet_has_the_ink_in_its_middle_or_is_refused():
+def test_text_is_centred_on_a_given_sheet_or_refused():
     assert drawn("T", sheet_mm=(100, 60)) == ["M 48.0000,26.5000 L 52.0000,26.5000 M 50.0000,26.5000 L 50.0000,33.5000"]
     assert drawn("T", sheet_mm=(5, 8)) == ["M 0.5000,0.5000 L 4.5000,0.5000 M 2.5000,0.5000 L 2.5000,7.5000"]
     reported = refusal("T", svg_font(), size_mm=10, sheet_mm=(4.9, 60))
@@ -317,18 +317,18 @@ def test_a_given_sheet_has_the_ink_in_its_middle_or_is_refused():
     assert agrees(reported, "text-does-not-fit '60 x 7.9 mm'")
 
 
-def test_too_much():
+def test_overlong_text_is_refused():
     assert agrees(refusal("I" * 100_001, svg_font()), "text-too-long 100001 100000")
     assert agrees(refusal("T" * 3000, svg_font(), size_mm=1000), "text-too-long '[0, 1e6] mm'")
     heavy = svg_font(f'<glyph unicode="x" d="M 0 0{" L 1 1 L 0 0" * 2000}"/>')
     assert agrees(refusal("x" * 1000, heavy), "text-too-long 4000000")
 
 
-def test_same_input_same_bytes():
+def test_same_input_gives_the_same_bytes():
     assert text_svg("ffi TI", svg_font()) == text_svg("ffi TI", svg_font())
 
 
-def test_writing_from_right_to_left_is_named():
+def test_right_to_left_text_is_reported():
     glyphs = GLYPHS + '<glyph unicode="\u05d0" d="M 0 0 L 9 9"/>'
     _, (notice,) = text_svg("I\n\u05d0", svg_font(glyphs))
     assert agrees(notice, "text-direction 2")
@@ -407,7 +407,7 @@ def test_a_width_for_outlines_is_reported_to_have_no_effect(ttf):
     assert text_svg("A", ttf, size_mm=10) == (document, notices[:-1])
 
 
-def test_an_outline_is_filled_at_its_exact_place(ttf):
+def test_an_outline_glyph_is_filled_at_its_exact_position(ttf):
     document, _ = text_svg("A", ttf, size_mm=10, width_mm=3)
     root = ET.fromstring(document.encode())
     assert root.get("viewBox") == "0 0 46 47"
@@ -422,12 +422,12 @@ def test_an_outline_is_filled_at_its_exact_place(ttf):
     }
 
 
-def test_quadratic_curves_come_as_the_same_cubics(ttf):
+def test_quadratic_curves_become_equal_cubics(ttf):
     (glyph,), _ = filled("o", ttf)
     assert glyph[1] == "M 20.0000,23.0000 C 22.0000,19.0000 24.0000,19.0000 26.0000,23.0000 Z"
 
 
-def test_outlines_are_kerned_and_joined(ttf):
+def test_outline_glyphs_are_kerned_and_ligatures_joined(ttf):
     glyphs, _ = filled("AVA", ttf)
     assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "24.0000,20.0000", "30.0000,27.0000"]
     glyphs, _ = filled("fi i", ttf)
@@ -436,7 +436,7 @@ def test_outlines_are_kerned_and_joined(ttf):
     assert [name for name, _ in glyphs] == ["glyph-1-f", "glyph-2-i"]
 
 
-def test_a_glyph_is_raised_as_the_font_says(ttf):
+def test_a_glyph_is_raised_as_the_font_specifies(ttf):
     """A glyph is raised as the font specifies.
 
     The pair A A moves its first letter 10 to the right and 100 up.
@@ -445,12 +445,12 @@ def test_a_glyph_is_raised_as_the_font_says(ttf):
     assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "25.9000,28.0000"]
 
 
-def test_outlines_of_several_lines(ttf):
+def test_outline_text_may_have_several_lines(ttf):
     glyphs, _ = filled("A\n A", ttf, line_spacing=2)
     assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "23.0000,47.0000"]
 
 
-def test_no_box_for_what_an_outline_font_lacks(ttf):
+def test_a_missing_outline_glyph_is_left_out_without_a_box(ttf):
     glyphs, (notice,) = filled("A\u03a9A", ttf)
     assert [d.split()[1] for _, d in glyphs] == ["20.0000,27.0000", "26.0000,27.0000"]
     assert agrees(notice, "glyph-missing U+03A9 \u03a9")
@@ -458,7 +458,7 @@ def test_no_box_for_what_an_outline_font_lacks(ttf):
     assert agrees(refusal("\ue000", ttf), "nothing-to-paint U+E000")
 
 
-def test_two_directions_in_a_line_are_named(ttf):
+def test_mixed_text_directions_in_a_line_are_reported(ttf):
     _, notices = filled("A\u05d0", ttf)
     assert agrees(notices[-1], "text-direction 1 two")
 
@@ -481,7 +481,7 @@ def test_a_woff_bomb_is_refused(ttf, monkeypatch):
     assert agrees(refusal("A", repacked(ttf, "woff")), "file-too-large 500")
 
 
-def test_the_first_of_a_collection(ttf):
+def test_the_first_font_of_a_collection_is_used(ttf):
     """The first font of a collection is used.
 
     The test puts a collection header before one font and moves the offsets of its tables accordingly.
@@ -493,7 +493,7 @@ def test_the_first_of_a_collection(ttf):
     assert filled("AV", header + ttf[:12] + moved + ttf[12 + 16 * count :]) == filled("AV", ttf)
 
 
-def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypatch):
+def test_outline_fonts_need_the_extra_and_line_fonts_do_not(ttf, monkeypatch):
     monkeypatch.delitem(sys.modules, "brushsvg.read.text.outline_font", raising=False)
     monkeypatch.delattr("brushsvg.read.text.outline_font", raising=False)
     monkeypatch.setitem(sys.modules, "uharfbuzz", None)
@@ -503,7 +503,7 @@ def test_without_the_extra_outlines_are_refused_and_lines_are_not(ttf, monkeypat
     assert len(drawn("TI")) == 2
 
 
-def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
+def test_damaged_fonts_give_a_drawing_or_a_refusal(ttf):
     woff = repacked(ttf, "woff")
     refusals = set()
     for font in (ttf, woff):
@@ -527,7 +527,7 @@ def test_damaged_fonts_give_a_sentence_or_a_drawing(ttf):
         ("hmtx", None, b"", "font-damaged hmtx 0"),
     ],
 )
-def test_a_font_that_does_not_say_how_large_it_is_is_refused(ttf, tag, at, becomes, said):
+def test_a_font_without_a_valid_em_size_is_refused(ttf, tag, at, becomes, said):
     """A font without a valid em size is refused.
 
     HarfBuzz would accept the font, with 1000 units to the em or with each letter an em wide.
@@ -548,7 +548,7 @@ def outcome(font):
         return error
 
 
-def test_composites_that_hold_each_other_end():
+def test_recursive_composite_glyphs_terminate():
     """Reading composite glyphs that contain each other comes to an end.
 
     Each glyph contains the next one twice, and the last glyph contains the first one. Without a limit,

@@ -68,7 +68,7 @@ def lines_of(font, letter):
     return [np.round((line - corner) * 10).astype(int).tolist() for line in lines]
 
 
-def test_letters_are_the_lines_that_were_drawn(font):
+def test_letters_are_read_as_their_drawn_lines(font):
     assert lines_of(font, "L") == [[[0, 700], [0, 0], [400, 0]]]
     assert lines_of(font, "I") == [[[0, 0], [0, 700]]]
     assert lines_of(font, "A") == [[[0, 0], [250, 700], [500, 0]], [[100, 250], [400, 250]]]

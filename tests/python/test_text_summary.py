@@ -13,12 +13,12 @@ def summarized(reported):
     return [tuple(each) for each in summarized_notices(notice(*each) for each in reported)]
 
 
-def test_few_of_a_kind_stay_as_they_are():
+def test_few_notices_with_one_code_stay_unchanged():
     reported = [(f"p{k}", f"width {k} mm is odd") for k in range(MOST_ALIKE)] + [("q", "it is dashed")]
     assert summarized(reported) == reported
 
 
-def test_many_of_a_kind_are_counted_where_the_first_of_them_stood():
+def test_many_notices_with_one_code_are_counted_at_the_first():
     reported = [("a", "one thing")]
     reported += [(f"p{k}", f"'p{k}' is 1.{k}e-0{k} mm off, x -{k}, range [0, {k}]", "off") for k in range(5)]
     reported[3:3] = [("b", "another thing")]
@@ -28,7 +28,7 @@ def test_many_of_a_kind_are_counted_where_the_first_of_them_stood():
     assert summarized([]) == []
 
 
-def test_four_with_the_same_sentence_are_named():
+def test_four_notices_with_one_sentence_are_listed():
     reported = [(law, "measured to 4 mm") for law in ("lag", "tip_gap", "tip_to_widest", "half_width")]
     assert summarized(reported) == [("lag, tip_gap, tip_to_widest and half_width", "measured to 4 mm")]
     for others, count in (
@@ -42,7 +42,7 @@ def test_four_with_the_same_sentence_are_named():
         assert gives(where, "lag", count) and sentence == "measured to 4 mm"
 
 
-def test_a_kind_is_a_code_for_any_sentence():
+def test_notices_are_grouped_by_code_for_any_sentence():
     reworded = [notice(f"p{k}", "wide" if k % 2 else "too broad", "width") for k in range(5)]
     (one,) = summarized_notices(reworded)
     assert gives(one.where, "p0", "4") and one.code == "width"
@@ -53,7 +53,7 @@ def test_a_kind_is_a_code_for_any_sentence():
     assert summarized_notices(without_codes) == without_codes, "only what has a code is of a kind"
 
 
-def test_many_that_concern_no_element_are_counted_in_the_sentence():
+def test_many_notices_without_element_are_counted_in_the_sentence():
     reported = [("", f"marker {k} cannot be seen", "marker") for k in range(5)]
     ((where, sentence),) = summarized(reported)
     assert where == "" and gives(sentence, "marker 0 cannot be seen", "4")

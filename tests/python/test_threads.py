@@ -45,14 +45,14 @@ def made(job) -> tuple:
     return dict(found.texts), str(found.figures), found.time_s, found.notices
 
 
-def test_jobs_in_threads_end_as_they_do_alone(desk):
+def test_jobs_in_threads_give_the_same_results_as_alone(desk):
     alone = [made(job) for job in JOBS]
     with ThreadPoolExecutor(AT_ONCE) as pool:
         together = list(pool.map(made, JOBS * 2))
     assert together == alone * 2
 
 
-def test_one_that_is_given_up_does_not_end_the_others(desk):
+def test_cancelling_one_job_does_not_cancel_the_others(desk):
     alone, gone = made(JOBS[2]), threading.Event()
     gone.set()
 

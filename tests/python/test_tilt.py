@@ -50,7 +50,7 @@ def reported(change):
 # Written and read -------------------------------------------------------------------------------------------
 
 
-def test_a_tilt_comes_back_as_it_was_written():
+def test_a_tilt_is_read_back_as_written():
     text = _core.write_plan(plan())
     assert json.loads(text)["version"] == 2
     back = _core.read_plan(text)
@@ -59,13 +59,13 @@ def test_a_tilt_comes_back_as_it_was_written():
     assert _core.write_plan(back) == text
 
 
-def test_a_plan_without_is_written_as_before():
+def test_a_plan_without_tilt_is_written_as_before():
     text = _core.write_plan(plan(tool_axes=np.zeros((0, 3))))
     assert json.loads(text)["version"] == 1
     assert "tool_axes" not in text
 
 
-def test_a_file_of_version_2_need_not_tilt():
+def test_a_file_of_version_2_may_have_no_tilt():
     def upright(document, one):
         del one["tool_axes"]
 
@@ -97,7 +97,7 @@ def axis(row, *value):
         (lambda document, one: one.update(arcs=[[1, 2, 45, 40, 1]]), "arc-invalid tilted", "tool_axes"),
     ],
 )
-def test_what_is_no_tilt_is_refused(change, expected, where):
+def test_an_invalid_tilt_is_refused(change, expected, where):
     if where.startswith("tool_axes"):
         where = f"passes[1].{where}"
     with refused(expected, where):
@@ -111,7 +111,7 @@ def test_three_decimals_are_enough():
             _core.read_plan(reported(axis(1, *rounded)))
 
 
-def test_what_cannot_be_read_is_not_written():
+def test_an_invalid_tilt_is_not_written():
     with refused("tool-axis-invalid tilted 40 30"):
         _core.write_plan(plan(axes(0, 5, 40, 5)))
 
@@ -119,7 +119,7 @@ def test_what_cannot_be_read_is_not_written():
 # A value ----------------------------------------------------------------------------------------------------
 
 
-def test_a_tilt_is_part_of_the_pass():
+def test_a_tilt_is_part_of_the_value_of_a_pass():
     one = plan().passes[1]
     other = copy.copy(one)
     assert pickle.loads(pickle.dumps(one)) == one == other
@@ -155,13 +155,13 @@ READERS = {
 
 
 @pytest.mark.parametrize("name", READERS)
-def test_who_knows_an_upright_brush_only_refuses(name):
+def test_functions_without_tilt_support_refuse_tilted_plans(name):
     with refused("tilt-unsupported 12", "tilted"):
         READERS[name](plan())
 
 
 @pytest.mark.parametrize("name", [name for name in READERS if not name.startswith("read_")])
-def test_and_takes_one_that_is_held_upright(name):
+def test_functions_without_tilt_support_accept_upright_axes(name):
     made = READERS[name](plan(axes(0, 0, 0, 0)))
     passes = {"thin_out": [made], "on_way": [made], "interrupted": made, "as_run": made}.get(name, [])
     for one in passes:
@@ -198,7 +198,7 @@ def test_cells_that_cannot_tilt_the_brush_write_no_program(tmp_path):
         ["preview", "a.json", "-o", "a.svg", "--band"],
     ],
 )
-def test_commands_refuse(words, tmp_path, capsys, monkeypatch):
+def test_commands_without_tilt_support_refuse_tilted_plans(words, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.json").write_text(_core.write_plan(plan()))
     status, _, heard = in_json(capsys, *words)
@@ -211,7 +211,7 @@ def test_commands_refuse(words, tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("suffix", [".json", ".svg", ".png"])
-def test_predict_shows_the_mark_and_says_that_no_program_paints_it(suffix, tmp_path, capsys):
+def test_preview_shows_a_tilted_mark_and_reports_unsupported_cells(suffix, tmp_path, capsys):
     given, made = tmp_path / "a.json", tmp_path / f"b{suffix}"
     pictures = []
     for tool_axes in (axes(0, 0, 0, 0), axes(0, 20, 20, 20)):
@@ -224,7 +224,7 @@ def test_predict_shows_the_mark_and_says_that_no_program_paints_it(suffix, tmp_p
     assert pictures[0] != pictures[1]
 
 
-def test_marks_say_how_the_brush_leans():
+def test_marks_contain_the_tilt_of_the_brush():
     marks = brushsvg.simulate(plan(axes(0, 10, 10, 10)), BRUSH)
     brushsvg.trace_outlines(marks, BRUSH)
     upright, tilted = marks.passes
@@ -253,14 +253,14 @@ def test_marks_say_how_the_brush_leans():
         ),
     ],
 )
-def test_marks_that_cannot_lean_so_are_refused(change, expected, where):
+def test_marks_with_an_impossible_tilt_are_refused(change, expected, where):
     document = json.loads(_core.write_marks(brushsvg.simulate(plan(), BRUSH)))
     change(document, document["passes"][1])
     with refused(expected, f"passes[1].{where}"):
         _core.read_marks(json.dumps(document))
 
 
-def test_a_pass_whose_axes_are_none_is_not_simulated():
+def test_a_pass_with_invalid_axes_is_not_simulated():
     with refused("tool-axis-invalid tilted 2 45 30", "tilted"):
         brushsvg.simulate(plan(axes(0, 5, 45, 12)), BRUSH)
     with refused("sizes-differ 3 4", "tilted"):

@@ -191,7 +191,7 @@ def strokes(tips, cell):
 
 
 @pytest.mark.parametrize("name", TILTING)
-def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
+def test_tip_position_and_brush_tilt_match_the_plan(name):
     cell = anyhow(name)
     tips, turned = COMMANDED[name](text_for(plan(TILTED), cell), cell)
     (on,), paper = strokes(tips, cell)
@@ -215,7 +215,7 @@ def test_the_tip_is_where_the_plan_has_it_and_the_brush_held_as_it_says(name):
 
 @pytest.mark.skipif(not find_spec("rapidchecker"), reason="rapidchecker is not installed")
 @pytest.mark.parametrize("broken", [None, (", num q4)", ", q4)")])
-def test_rapidchecker_knows_the_grammar_of_a_tilt(tmp_path, broken):
+def test_rapidchecker_accepts_a_tilted_program(tmp_path, broken):
     text = text_for(plan(TILTED), brushsvg.find_cell("irb120"))
     (tmp_path / "p.mod").write_text(text.replace(*broken, 1) if broken else text, newline="")
     (tmp_path / "rapidchecker.toml").write_text("indentation_check = false\n")
@@ -258,7 +258,7 @@ def test_an_xarm_receives_the_lines_as_written():
     assert len(rows) > 15
 
 
-def test_a_pass_without_a_place_is_left_as_it_is():
+def test_a_pass_with_an_invalid_position_is_returned_unchanged():
     """A pass with an invalid position is returned unchanged.
 
     The simulation of the plan refuses it.
@@ -267,7 +267,7 @@ def test_a_pass_without_a_place_is_left_as_it_is():
     assert split_turning_moves(a_pass) is a_pass
 
 
-def test_the_plan_s_own_poses_are_among_those_of_a_robot():
+def test_robot_poses_include_the_poses_of_the_plan():
     of = plan(TILTED)
     steps = split_turning_moves(of.passes[0])
     for pose, axis in zip(of.passes[0].poses_mm, of.passes[0].tool_axes, strict=True):
@@ -275,14 +275,14 @@ def test_the_plan_s_own_poses_are_among_those_of_a_robot():
         assert away.min() < 1e-9
 
 
-def test_the_tip_stays_in_place_while_the_tool_leans_and_goes_down_on_the_spot():
+def test_the_tip_stays_in_place_while_the_tool_tilts_and_lands():
     poses = [(20.0, 30.0, 0.0), (20.0, 30.0, -4.0), (40.0, 30.0, -4.0)]
     steps = split_turning_moves(_core.Pass("s", poses, 5.0, tool_axes=axes(0, 20, 20)))
     down = np.asarray(steps.poses_mm)[np.asarray(steps.poses_mm)[:, 0] < 20.1]
     assert len(down) > 8 and np.abs(down[:, :2] - (20.0, 30.0)).max() < 1e-9
 
 
-def test_a_turn_of_less_than_a_degree_is_slowed_too():
+def test_a_turn_of_less_than_a_degree_is_slowed():
     cell = brushsvg.find_cell("ur5e")
     speed_mm_s = limit_turning_speed(20.0, 0.05, 0.5, cell)
     assert speed_mm_s == pytest.approx(0.05 * cell.tool.turn_deg_s / 0.5)
@@ -290,7 +290,7 @@ def test_a_turn_of_less_than_a_degree_is_slowed_too():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
+def test_even_turning_between_poses_paints_the_predicted_mark(seed):
     """A robot that turns evenly between poses paints what the simulation predicts.
 
     In the simulation, the point where the brush's axis meets the paper moves straight between poses, and the
@@ -329,7 +329,7 @@ def test_a_robot_that_turns_evenly_between_poses_does_what_is_predicted(seed):
         assert np.degrees(np.linalg.norm(lean - target)) < 0.03
 
 
-def test_rotations_are_scipys():
+def test_rotations_agree_with_scipy():
     random = np.random.default_rng(5)
     for turned in Rotation.random(200, random_state=1):
         assert of_quaternion(np.roll(turned.as_quat(), 1)) == pytest.approx(turned.as_matrix(), abs=1e-12)
@@ -389,7 +389,7 @@ def read_leaning():
 
 @pytest.mark.parametrize("name", TILTING)
 @pytest.mark.parametrize("of_cell", [lambda name: None, anyhow])
-def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
+def test_check_accepts_tilted_programs(name, of_cell, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(np.zeros((0, 3)), TILTED), of_cell(name))
     assert in_json(capsys, "convert", given, "-o", made, *words)[0] == 0
     assert in_json(capsys, "check", made, given, *words)[0] == 0
@@ -397,7 +397,7 @@ def test_check_allows_what_is_written(name, of_cell, tmp_path, capsys):
 
 
 @sample("seed", range(2 * len(TILTING)), keep=5)
-def test_check_allows_random_tilts(seed, tmp_path, capsys):
+def test_check_accepts_random_tilts(seed, tmp_path, capsys):
     """Check accepts random tilts.
 
     Strokes, tilts, papers, tools and machine errors are all random. Strokes that turn too fast are left out.
@@ -422,13 +422,13 @@ def test_check_allows_random_tilts(seed, tmp_path, capsys):
     assert status == 0 or is_reported(said, "tool-turns-too-fast")
 
 
-def test_on_paper_that_leans_has_a_map_and_gives_way(tmp_path, capsys):
+def test_check_accepts_tilted_programs_on_tilted_mapped_paper(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED), read_leaning())
     assert in_json(capsys, "convert", given, "-o", made, *words)[0] == 0
     assert in_json(capsys, "check", made, given, *words)[0] == 0
 
 
-def test_check_plays_the_tilted_mark(tmp_path, capsys):
+def test_check_simulates_the_tilted_mark(tmp_path, capsys):
     """Check simulates the tilted mark.
 
     Its picture agrees with the prediction for the tilted brush, not for an upright brush.
@@ -448,7 +448,7 @@ def test_check_plays_the_tilted_mark(tmp_path, capsys):
     assert _core.overlap(ran.marks.outline_mm, rings["upright"]) < 0.97
 
 
-def test_of_another_tilt_or_none_is_refused(tmp_path, capsys):
+def test_a_program_with_another_tilt_is_refused(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     for other in (np.zeros((0, 3)), axes(0, 9, 9, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))):
@@ -538,7 +538,7 @@ def test_damaged_directions_are_refused(name, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("name", TILTING)
-def test_a_header_that_does_not_say_that_the_brush_is_tilted_is_refused(name, tmp_path, capsys):
+def test_a_tilted_program_needs_the_tilt_in_its_header(name, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     # FANUC remarks are short and continue on the next line.
@@ -574,7 +574,7 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
     assert is_reported(said, "line-unread")
 
 
-def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
+def test_a_serialized_trajectory_has_the_rotations_of_the_table(tmp_path):
     cell = brushsvg.find_cell("fr3")
     made = make_checked_program(split_into_loads(plan(TILTED), BRUSH, cell), BRUSH, cell).allowed()
     table, message = (made_of(program_in_robot_frame(made)) for made_of in (ros2.csv, ros2.cdr))
@@ -586,7 +586,7 @@ def test_a_serialized_trajectory_turns_as_the_table_does(tmp_path):
     assert len(np.unique(points["turn_xyzw"], axis=0)) > 10
 
 
-def test_other_places_upright_where_they_lean_and_lines_lost_are_refused(tmp_path, capsys):
+def test_changed_positions_missing_tilts_and_lost_lines_are_refused(tmp_path, capsys):
     given, made, words = written(tmp_path, "ur5e", plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     text = made.read_text()
@@ -621,7 +621,7 @@ def test_a_tilt_beyond_the_cells_limit_is_refused():
 
 
 @pytest.mark.parametrize(("tilt_deg", "count"), [(15.0005, 0), (15.0015, 1)])
-def test_a_tilt_may_exceed_the_limit_by_rounding_alone(tilt_deg, count):
+def test_a_tilt_may_exceed_the_limit_only_by_rounding(tilt_deg, count):
     cell = brushsvg.find_cell("ur5e")
     cell = replace(cell, tool=replace(cell.tool, tilt_limit_deg=15.0, turn_deg_s=360.0))
     (a_pass,) = plan(axes(0, 5, 10, tilt_deg, 10)).passes
@@ -642,7 +642,7 @@ def test_a_tool_that_would_turn_too_fast_is_refused():
 
 
 @pytest.mark.parametrize("name", TILTING)
-def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, tmp_path, capsys):
+def test_check_accepts_turns_and_tilts_exactly_at_the_limit(name, tmp_path, capsys):
     """Check accepts a program whose turns and tilts are exactly at the limit.
 
     Rounded positions shorten some paths, and rounded directions increase some tilts.
@@ -664,19 +664,19 @@ def test_what_turns_and_tilts_just_as_much_as_it_may_is_allowed_by_check(name, t
     assert in_json(capsys, "check", made, *words)[0] == 0
 
 
-def test_no_turn_on_the_spot():
+def test_a_turn_in_place_is_refused():
     poses = [[20, 20, 0], [30, 20, -2], [30, 20, -2], [60, 20, 0]]
     with refused("tool-turns-too-fast", "s0"):
         text_for(plan(axes(0, 0, 10, 10), poses=poses), brushsvg.find_cell("ur5e"))
 
 
-def test_a_place_that_stands_twice_is_no_turn():
+def test_a_repeated_position_is_not_a_turn():
     poses = [[20, 20, 0], [30, 20, -2], [30, 20, -2], [60, 20, 0]]
     (a_pass,) = plan(axes(10, 10, 10, 10), poses=poses).passes
     assert check_tilt_limits(a_pass, brushsvg.find_cell("ur5e")) == []
 
 
-def test_in_the_air_it_turns_as_slowly():
+def test_turns_in_the_air_respect_the_turning_speed():
     cell = brushsvg.find_cell("ur5e")
     robot = run(text_for(plan(axes(*[30] * 5)), cell))
     turns = []
@@ -690,7 +690,7 @@ def test_in_the_air_it_turns_as_slowly():
     assert max(turns) > cell.tool.turn_deg_s * 0.9
 
 
-def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
+def test_corners_of_a_tilted_stroke_are_cut_as_far_as_the_mark_allows(tmp_path, capsys):
     """Corners of a tilted stroke are cut as far as the mark allows.
 
     The joints are cut like the joints of an upright stroke. A cut that shifts the mark is refused.
@@ -715,7 +715,7 @@ def test_corners_are_cut_as_much_as_the_mark_allows(tmp_path, capsys):
         (np.multiply(POSES, (1, np.inf, 1)), axes(0, 8, 8, 20, 20), "not-finite"),
     ],
 )
-def test_what_is_no_tilt_is_refused_before_anything_is_made_of_it(poses, held, expected, tmp_path):
+def test_an_invalid_tilt_is_refused_before_use(poses, held, expected, tmp_path):
     with np.errstate(all="ignore"), refused(expected):
         brushsvg.write_program(tmp_path / "a.script", plan(held, poses=poses), BRUSH, cell=brushsvg.find_cell("ur5e"))
     with np.errstate(all="ignore"):
@@ -733,7 +733,7 @@ def arm_problems(of, cell):
 
 
 @pytest.mark.arm
-def test_an_arm_is_followed_as_the_brush_is_held():
+def test_the_joint_check_uses_the_tilt_of_the_brush():
     """The check of an arm's joints uses the tilt of the brush.
 
     At the edge of its reach, a UR5e can paint with the handle towards itself. It cannot paint with the handle
@@ -751,7 +751,7 @@ def test_an_arm_is_followed_as_the_brush_is_held():
 
 
 @pytest.mark.arm
-def test_a_joint_that_turns_too_fast_by_the_tilt_alone_is_refused():
+def test_a_joint_that_turns_too_fast_because_of_the_tilt_is_refused():
     cell = brushsvg.find_cell("ur5e")
     slow = replace(cell, arm=replace(cell.arm, speeds_deg_s=(9.0,) * 6), speeds=replace(cell.speeds, travel_mm_s=20.0))
     upright, tilted = plan(np.zeros((0, 3))), plan(TILTED)
@@ -772,7 +772,7 @@ def test_predict_warns_of_paint_off_the_sheet(words, tmp_path, capsys):
     assert is_reported(said, "mark-off-sheet right", "s0")
 
 
-def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
+def test_the_cell_sets_tilt_limit_and_turning_speed(tmp_path, capsys):
     """The cell file sets the tilt limit and the turning speed.
 
     They are keys of the table [tool].
@@ -788,7 +788,7 @@ def test_a_cell_says_how_far_and_how_fast(tmp_path, capsys):
     assert is_reported(said, "out-of-range 31 30")
 
 
-def test_a_tool_held_otherwise_by_more_than_a_brush_shows_is_not_the_same():
+def test_a_visibly_different_tool_axis_is_a_change():
     like = _ActComparison(brushsvg.find_cell("ur5e"), upright=np.eye(3))
 
     def turned(deg):
@@ -797,7 +797,7 @@ def test_a_tool_held_otherwise_by_more_than_a_brush_shows_is_not_the_same():
     assert like.is_same_rotation(turned(0.4), ()) and not like.is_same_rotation(turned(0.7), ())
 
 
-def test_a_paper_that_leans_otherwise_is_not_the_same():
+def test_a_different_paper_tilt_is_a_change():
     like = _ActComparison(brushsvg.find_cell("ur5e"))
     ours = Act(1, "text", "paper = p[0.1, 0.2, 0.3, 0.000000, 0.000000, 0.000000]")
     hardly, more = (

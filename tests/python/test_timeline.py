@@ -63,7 +63,7 @@ def test_time_runs_from_0_to_the_end_of_the_program(played):
     assert [chapter.first_row for chapter in rows.chapters] == sorted({c.first_row for c in rows.chapters})
 
 
-def test_every_point_of_the_program_is_met_at_the_time_it_is_reached(played):
+def test_every_program_point_is_reached_at_its_time(played):
     _, _, program, rows = played
     now_s, here = 0.0, None
     for step in (step for section in program.sections() for step in section.steps):
@@ -93,7 +93,7 @@ def test_the_tool_is_never_faster_than_its_move(played):
     assert (path_mm - 0.5 * fastest * time_s)[painting].max() > FARTHER_MM
 
 
-def test_the_brush_does_what_the_marks_say_and_nothing_in_the_air(played):
+def test_the_brush_follows_the_marks_and_is_absent_in_the_air(played):
     work, marks, _, rows = played
     chapters = [chapter for chapter in rows.chapters if chapter.trace is not None]
     assert [chapter.trace for chapter in chapters] == [0, 1]
@@ -130,7 +130,7 @@ def test_a_wait_for_a_person_is_a_short_pause_with_its_message(works):
 
 
 @pytest.mark.parametrize("name", ["grbl-servo", "axidraw-ebb"])
-def test_a_servo_is_waited_for(works, name):
+def test_the_timeline_waits_for_a_servo(works, name):
     work, _ = works()
     cell = find_cell(name)
     loads = split_into_loads(work.plan, work.brush, cell)
@@ -152,7 +152,7 @@ def test_a_stroke_may_begin_and_end_pressed(works):
     assert (~np.isnan(rows.depth_mm)).sum() == sum(len(trace.pose) for trace in marks.passes)
 
 
-def test_where_the_marks_say_lifted_the_brush_is_in_the_air(works):
+def test_lifted_rows_of_the_marks_are_in_the_air(works):
     work, marks = works()
     (line, _), plan = marks.passes, work.plan
     plan.passes = plan.passes[:1]
@@ -164,7 +164,7 @@ def test_where_the_marks_say_lifted_the_brush_is_in_the_air(works):
     assert (np.isnan(rows.contact_mm[:, 0]) == np.isnan(rows.depth_mm)).all()
 
 
-def test_nothing_to_play_is_refused(works):
+def test_an_empty_plan_is_refused(works):
     work, _ = works()
     plan = work.plan
     plan.passes = []

@@ -44,7 +44,7 @@ def tool():
 
 
 @pytest.mark.slow
-def test_the_stubs_are_what_the_tool_makes(tool):
+def test_the_stubs_equal_the_output_of_the_tool(tool):
     made = tool.stub_files()
     assert set(made) == {path.name for path in STUBS.iterdir()}
     for name, text in made.items():
@@ -54,7 +54,7 @@ def test_the_stubs_are_what_the_tool_makes(tool):
 
 @pytest.mark.thorough
 @pytest.mark.slow
-def test_stubtest_finds_nothing(tmp_path):
+def test_stubtest_finds_no_errors(tmp_path):
     (tmp_path / "allowed").write_text("\n".join(BEYOND_STUBS))
     words = ["-m", "mypy.stubtest", "brushsvg._core", "--allowlist", tmp_path / "allowed", "--concise"]
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, cwd=tmp_path)
@@ -77,7 +77,7 @@ PLANTED = (
 
 
 @pytest.mark.slow
-def test_examples_have_no_error_of_types_and_planted_ones_are_found(tmp_path):
+def test_examples_have_no_type_errors_and_planted_ones_are_found(tmp_path):
     examples = sorted((ROOT / "examples").glob("*.py"))
     sound = tmp_path / "sound.py"
     sound.write_text(PROGRAM)
@@ -92,7 +92,7 @@ def test_examples_have_no_error_of_types_and_planted_ones_are_found(tmp_path):
         assert any(line.endswith(f"[{said}]") for line in lines), (wrong, lines)
 
 
-def test_type_checkers_see_that_there_are_types():
+def test_the_package_is_marked_as_typed():
     assert (STUBS.parent / "py.typed").is_file()
     source = Path(brushsvg.__file__).read_text()
     reported = source.split("if TYPE_CHECKING:")[1].split("__version__: str")[0]

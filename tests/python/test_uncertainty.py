@@ -33,7 +33,7 @@ def report(drawing, capsys, *flags):
     return capsys.readouterr()
 
 
-def test_the_report_says_how_far_off_and_where_from(drawing, capsys):
+def test_the_report_states_uncertainty_and_its_source(drawing, capsys):
     reported = report(drawing, capsys, "--details").out
     (titles,) = [line for line in reported.splitlines() if line.startswith("stroke ")]
     assert titles.count("+-") == 3
@@ -49,7 +49,7 @@ def test_the_report_says_how_far_off_and_where_from(drawing, capsys):
     assert found["total"]["uncertainty_95"]["middle_mm"] == bow["middle_mm"]
 
 
-def test_a_width_that_was_measured_counts(drawing, tmp_path, capsys):
+def test_a_measured_width_is_part_of_the_uncertainty(drawing, tmp_path, capsys):
     brush = find_brush("round-6")
     law = brush.half_width
     brush.half_width = _core.Profile(law.coefficients, rmse_mm=0.2)
@@ -58,7 +58,7 @@ def test_a_width_that_was_measured_counts(drawing, tmp_path, capsys):
     assert found["strokes"][0]["uncertainty_95"]["width_mm"] == pytest.approx(2 * 1.959963985 * 0.2)
 
 
-def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):
+def test_missing_rmse_and_covariance_are_reported_once(drawing, tmp_path, capsys):
     reported = report(drawing, capsys, "--brush", "rigid", "--details").out
     assert "+-" not in reported
     assert reported.count("RMSE") == 1
@@ -70,7 +70,7 @@ def test_without_rmse_and_covariance_it_is_said_once(drawing, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("suffix", [".svg", pytest.param(".png", marks=pytest.mark.slow)])
-def test_a_band_with_a_legend(drawing, tmp_path, suffix):
+def test_a_picture_shows_the_band_and_a_legend(drawing, tmp_path, suffix):
     plain, banded = tmp_path / f"plain{suffix}", tmp_path / f"banded{suffix}"
     assert main(["preview", drawing, "-o", str(plain)]) == 0
     assert main(["preview", drawing, "-o", str(banded), "--band"]) == 0
@@ -85,7 +85,7 @@ def test_a_band_with_a_legend(drawing, tmp_path, suffix):
     assert changed[changed.shape[0] * 9 // 10 :].mean() > 0.001  # the legend
 
 
-def test_a_band_is_for_pictures(drawing, tmp_path, capsys):
+def test_a_band_is_refused_for_other_formats(drawing, tmp_path, capsys):
     assert main(["preview", drawing, "-o", str(tmp_path / "m.json"), "--band"]) == 2
     assert gives(capsys.readouterr().err, "--band")
 

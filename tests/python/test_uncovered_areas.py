@@ -45,7 +45,7 @@ def bar_less(tmp_path):
     return drawn, stem
 
 
-def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
+def test_a_bar_without_a_stroke_is_reported_with_place_and_share(tmp_path):
     drawn, stem = bar_less(tmp_path)
     found = unreached(drawn, [stem], find_brush("round-6"))
     assert len(found) == 2
@@ -58,7 +58,7 @@ def test_a_bar_without_a_stroke_is_named_with_its_place_and_share(tmp_path):
 
 
 @pytest.mark.parametrize("measured_mm", [(0.0, 10.0), None])
-def test_a_brush_that_begins_with_no_width_is_looked_at_as_any(tmp_path, measured_mm):
+def test_a_brush_whose_width_starts_at_0_is_handled_normally(tmp_path, measured_mm):
     """A brush whose width begins at 0 is handled like any other brush.
 
     Photographed brushes are measured from depth 0. With such a file, each filled shape once ended in a
@@ -81,11 +81,11 @@ def brush_file(tmp_path, changed) -> str:
     return str(file)
 
 
-def test_blunt_corners_are_not_named(tmp_path):
+def test_blunt_corners_are_not_reported(tmp_path):
     assert prepared(tmp_path, "M20 5H28V25H20Z").unreached == ()
 
 
-def test_corners_that_a_squared_end_runs_into_are_not_named(tmp_path):
+def test_corners_at_a_butt_end_are_not_reported(tmp_path):
     """Corners at a squared end are not reported as unreached.
 
     Discs leave these corners blank, and a corner of 45 degrees counts as a limb.
@@ -95,7 +95,7 @@ def test_corners_that_a_squared_end_runs_into_are_not_named(tmp_path):
     assert not is_reported(work.notices, "unreached")
 
 
-def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path):
+def test_a_shape_far_wider_than_the_brush_is_reported_unless_filled(tmp_path):
     work = prepared(tmp_path, WIDE, wide="clamp")
     assert sum(piece.share for piece in work.unreached) > 0.3
     assert is_reported(work.notices, "unreached", "p")
@@ -110,7 +110,7 @@ def test_a_shape_far_wider_than_the_brush_is_named_unless_it_is_filled(tmp_path)
     assert filled.unreached == ()
 
 
-def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_share(tmp_path):
+def test_the_unpainted_part_of_a_blunt_start_is_reported_with_place_and_share(tmp_path):
     """The unpainted part next to a blunt beginning is reported with place and share.
 
     A seventh of a short stem stays blank next to its pointed beginning, and this was not reported.
@@ -131,7 +131,7 @@ def test_what_the_mark_leaves_of_a_blunt_beginning_is_named_with_its_place_and_s
     assert not prepared(tmp_path, THIN).missed
 
 
-def test_it_is_outlined_in_every_picture(tmp_path):
+def test_uncovered_areas_are_outlined_in_every_picture(tmp_path):
     import cv2
 
     work = prepared(tmp_path, WIDE, wide="clamp")
@@ -144,7 +144,7 @@ def test_it_is_outlined_in_every_picture(tmp_path):
     assert b'class="blank"' not in outputs.make_picture(".svg", small, predict(small))
 
 
-def test_the_report_gives_it_as_the_reason(tmp_path):
+def test_the_report_names_an_uncovered_area_as_the_reason(tmp_path):
     """The report names an unreached area as the reason for a fault.
 
     The bar of a t was once explained with "8.43 mm wide, wider than 8.4".
@@ -168,7 +168,7 @@ def test_the_report_gives_it_as_the_reason(tmp_path):
     assert worst([UncoveredArea("q", (x, y), 0.04, [square])]).code != "unreached"
 
 
-def test_what_discs_leave_of_a_corner_is_no_tracking_error(tmp_path):
+def test_a_corner_left_blank_by_discs_is_not_a_tracking_error(tmp_path):
     """A corner that discs leave blank is not a tracking error.
 
     For the corners of a bar with slanted cuts, the report once said: tracking error up to 0.012 mm.

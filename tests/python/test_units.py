@@ -21,21 +21,21 @@ from brushsvg.units import length_mm, length_px, size_mm
         ("-2.mm", -2.0),
     ],
 )
-def test_lengths_in_mm(text, mm):
+def test_lengths_are_converted_to_mm(text, mm):
     assert length_mm(text) == pytest.approx(mm, abs=1e-12)
 
 
-def test_a_bare_number_counts_in_the_requested_unit():
+def test_a_bare_number_is_in_the_requested_unit():
     assert length_mm("2", "in") == 50.8
 
 
 @pytest.mark.parametrize("text", ["1in", "2.54cm", "25.4mm", "101.6Q", "72pt", "6pc", "96px", "96", "48%"])
-def test_every_way_to_say_an_inch_in_px(text):
+def test_an_inch_in_every_unit_is_96_px(text):
     assert length_px(text, 200.0) == pytest.approx(96.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("text", ["", "mm", "5 furlongs", "2em", "nan", "inf", "1e999", "1,5mm", "\u0665mm", "0x10"])
-def test_what_is_no_length_is_refused_with_what_was_found(text):
+def test_an_invalid_length_is_refused_and_quoted(text):
     with pytest.raises(Error) as refused:
         length_mm(text)
     assert text.strip() in str(refused.value)
@@ -62,11 +62,11 @@ def test_a_long_text_is_refused_at_once_and_shortened():
         ("96pxx96PX", (25.4, 25.4)),
     ],
 )
-def test_sizes(text, size):
+def test_sizes_are_converted_to_mm(text, size):
     assert size_mm(text) == size
 
 
 @pytest.mark.parametrize("text", ["210", "x", "0x5", "5x-1", "1e9x1", "nanx1", "1x2furlongs", "1mm2mm"])
-def test_what_is_no_size_is_refused(text):
+def test_an_invalid_size_is_refused(text):
     with pytest.raises(Error):
         size_mm(text)

@@ -94,7 +94,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "vincent.svg"
 
 
 @pytest.mark.parametrize("paper", [CELL.paper, Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0))])
-def test_the_robot_goes_through_the_plans_poses(paper):
+def test_the_robot_passes_all_poses_of_the_plan(paper):
     cell = replace(CELL, paper=paper)
     rows = touched(run(text_for(cell)), cell)
     target = [
@@ -112,7 +112,7 @@ def test_the_robot_goes_through_the_plans_poses(paper):
 
 
 @pytest.mark.slow
-def test_the_marks_are_the_plans():
+def test_the_simulated_marks_equal_the_planned_marks():
     brush = find_brush("round-6")
     work = preparation.prepare(EXAMPLE)
     cell = preflight.as_exact_as(CELL, 0.05)
@@ -136,7 +136,7 @@ def test_the_marks_are_the_plans():
     assert _core.overlap(*rings) > 0.999
 
 
-def test_the_brush_stands_on_the_papers_normal():
+def test_the_brush_is_held_along_the_paper_normal():
     cell = replace(CELL, paper=Paper((-300.0, -500.0, 40.0), (2.0, -3.0, 25.0)), tool=replace(CELL.tool, spin_deg=30.0))
     robot = run(text_for(cell))
     normal = robot_from_paper(cell)[:3, 2]
@@ -146,7 +146,7 @@ def test_the_brush_stands_on_the_papers_normal():
     assert robot.tcp[:3] == (0.0, 0.0, 0.15)
 
 
-def test_where_it_turns_back_it_stops_and_elsewhere_it_blends_within_reach():
+def test_the_robot_stops_at_reversals_and_blends_other_corners():
     rows = touched(run(text_for()), CELL)
     for before, here, after in zip(rows, rows[1:], rows[2:], strict=False):
         into, out = here[1] - before[1], after[1] - here[1]
@@ -159,7 +159,7 @@ def test_where_it_turns_back_it_stops_and_elsewhere_it_blends_within_reach():
     assert any(row[3] > 0.1 for row in rows)
 
 
-def test_the_brush_is_raised_before_it_goes_anywhere():
+def test_the_brush_is_raised_before_any_other_move():
     low = run(text_for(), start=(-0.1, -0.5, 0.021, 3.14159265, 0, 0))
     first, second = (event[1][0] for event in low.events[:2])
     assert first[:2] == pytest.approx((-0.1, -0.5)) and first[2] == pytest.approx(0.04)
@@ -168,7 +168,7 @@ def test_the_brush_is_raised_before_it_goes_anywhere():
     assert len(high.events) == len(low.events) - 1
 
 
-def test_paint_is_waited_for():
+def test_the_program_waits_for_paint():
     stations = (
         Station("red", (120.0, 10.0), ("#ff0000",), depth_mm=5.0, hold_s=0.5),
         Station("hand", (120.0, 50.0), by_hand=True),
@@ -180,7 +180,7 @@ def test_paint_is_waited_for():
     assert waits[1][0] == "popup" and waits[1][1].endswith(": hand") and len(waits) == 2
 
 
-def test_golden():
+def test_program_equals_the_golden_file():
     assert text_for() == GOLDEN.read_text(encoding="ascii")
 
 
@@ -233,12 +233,12 @@ def test_a_tool_that_is_pressed_too_hard_ends_the_program(newtons, halts):
         assert len(robot.events) == len(run(text_for()).events)
 
 
-def test_the_weight_of_the_tool_is_no_contact():
+def test_the_weight_of_the_tool_does_not_count_as_contact():
     high = run(text_for(WATCHED), force=lambda pose: 80.0)
     assert not high.is_halted and high.none_n == 80.0
 
 
-def test_while_a_hand_is_at_the_brush_nothing_watches():
+def test_contact_is_not_monitored_during_manual_work():
     stations = (Station("hand", (120.0, 50.0), by_hand=True),)
     text = text_for(replace(WATCHED, reload=Reload("layer"), stations=stations))
     lines = [line.strip() for line in text.splitlines()]
@@ -256,7 +256,7 @@ def test_while_a_hand_is_at_the_brush_nothing_watches():
         ("kr6-r900", Contact(force_n=10.0), "cell-contact krl"),
     ],
 )
-def test_a_contact_that_a_language_has_no_word_for_is_refused(name, contact, reported):
+def test_a_contact_limit_is_refused_in_languages_without_one(name, contact, reported):
     with refused(reported):
         parse_cell(write_cell(replace(find_cell(name), contact=contact)))
 
@@ -273,7 +273,7 @@ def test_a_contact_that_a_language_has_no_word_for_is_refused(name, contact, rep
         ("xarm6", Contact(sensitivity=4), "done(arm.set_collision_sensitivity(4))\n", ""),
     ],
 )
-def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_path, capsys):
+def test_check_refuses_a_program_with_weaker_contact_monitoring(name, contact, old, new, tmp_path, capsys):
     cell = replace(find_cell(name), contact=contact)
     (tmp_path / "own.toml").write_text(write_cell(cell))
     program = tmp_path / f"first{POSTS[cell.language].extensions[0]}"
@@ -290,7 +290,7 @@ def test_check_refuses_a_program_that_feels_less(name, contact, old, new, tmp_pa
     assert in_json(capsys, "check", program, "--cell", name)[0] == 1
 
 
-def test_a_blend_is_left_out_only_where_it_would_be_written_as_none():
+def test_a_blend_is_left_out_only_if_it_rounds_to_zero():
     points = np.array([[0.0, 0, -1], [1, 0, -1], [2, 1, -1], [3, 1, -1]])
     move = Move("paint", points, 20.0, blends_mm=np.array([0.004, 0.006, 0.05, 0.0]))
     lines = "".join(_move_lines(move, np.eye(3), "a=1", 5)).splitlines()

@@ -381,7 +381,7 @@ def reached(value, way):
     return value
 
 
-def test_no_value_type_is_forgotten():
+def test_every_value_type_is_tested():
     classes = {each for _, each in inspect.getmembers(_core, inspect.isclass)}
     public = {getattr(brushsvg, name) for name in brushsvg.__all__} | {getattr(laws, n) for n in laws.__all__}
     enums = {_core.Norm, _core.Lines}
@@ -390,7 +390,7 @@ def test_no_value_type_is_forgotten():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_value_is_shown_compared_copied_and_pickled(name, tmp_path):
+def test_values_support_repr_comparison_copy_and_pickle(name, tmp_path):
     values = list(NAMES[name](tmp_path))
     for number, value in enumerate(values):
         shown = repr(value)
@@ -408,7 +408,7 @@ def test_a_value_is_shown_compared_copied_and_pickled(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_no_array_is_silently_detached(name, tmp_path):
+def test_writing_to_an_array_raises_or_changes_its_owner(name, tmp_path):
     """Writing to an array either raises or changes the value that owns it."""
     value = NAMES[name](tmp_path)[0]
     for way, array in arrays_of(value):
@@ -433,14 +433,14 @@ def test_a_copy_shares_nothing():
         assert PLAN.passes[0].poses_mm.tolist() == [list(map(float, pose)) for pose in POSES]
 
 
-def test_what_another_version_pickled_is_refused():
+def test_a_pickle_of_another_version_is_refused():
     state = _core.Arc(0, 1, (3, 4), 1).__getstate__()
     with pytest.raises(TypeError, match="another version"):
         _core.Arc.__new__(_core.Arc).__setstate__(state[:-1])
 
 
 @pytest.mark.parametrize("kind", [kind for kind in vars(_core).values() if isinstance(kind, type)])
-def test_what_was_never_made_has_nothing_to_show(kind):
+def test_an_unconstructed_object_raises_type_error(kind):
     """An object without a finished constructor raises TypeError instead of crashing.
 
     A debugger shows such objects, and so does pytest when a constructor refuses its arguments. Uninitialized
@@ -457,7 +457,7 @@ def test_what_was_never_made_has_nothing_to_show(kind):
             ask()
 
 
-def test_repr_says_sizes_and_units():
+def test_repr_shows_sizes_and_units():
     reported = [
         (BRUSH, "round-6", "0 to 10 mm", "3.1 to 13.7 mm", "8.4 mm"),
         (PLAN, "round-6", "2 passes", "6 poses", "100 x 60 mm"),
@@ -469,7 +469,7 @@ def test_repr_says_sizes_and_units():
         assert all(part in repr(value) for part in parts), repr(value)
 
 
-def test_pictures_are_there_where_a_notebook_runs_and_only_there():
+def test_repr_pictures_exist_only_in_notebooks():
     asks = "import brushsvg; print(hasattr(brushsvg.find_brush('round-6'), '_repr_svg_'))"
     runs = "import sys, types; sys.modules['IPython'] = types.ModuleType('IPython'); " + asks
     for words, said in ((asks, "False"), (runs, "True")):
@@ -477,7 +477,7 @@ def test_pictures_are_there_where_a_notebook_runs_and_only_there():
         assert done.stdout.strip() == said
 
 
-def test_a_notebook_has_pictures(tmp_path):
+def test_values_have_pictures_in_a_notebook(tmp_path):
     from brushsvg import notebook
 
     for value, part in (
@@ -497,6 +497,6 @@ def test_a_notebook_has_pictures(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["element", "layer", "colour"])
-def test_bytes_are_no_text(name):
+def test_bytes_are_not_accepted_as_text(name):
     with pytest.raises(TypeError):
         STROKE.replaced(**({"id": _core.StrokeId(b"a")} if name == "element" else {name: b"a"}))

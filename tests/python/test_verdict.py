@@ -58,16 +58,16 @@ def known_to(middle_mm):
         (known_to(None), GOOD, ()),
     ],
 )
-def test_each_reason_counts(made, begins, named):
+def test_each_reason_changes_the_verdict(made, begins, named):
     assert made.verdict.startswith(begins) and gives(made.verdict, *named)
     assert (made.verdict == GOOD) == (begins == GOOD)
 
 
-def test_the_thresholds_are_those_of_the_docs():
+def test_the_thresholds_equal_the_documentation():
     assert (GOOD_OVERLAP, USABLE_OVERLAP, UNCERTAIN_MM) == (0.95, 0.7, 1.0)
 
 
-def test_what_forbids_goes_before_what_warns_and_the_rest_is_counted():
+def test_errors_precede_warnings_and_further_ones_are_counted():
     assert verdict(["A"], ["B"]) == f"{NOT}A"
     assert verdict([], ["A", "", "B"]) == f"{BUT}A, and B"
     assert gives(verdict([], ["A", "B", "C", "D"]), "A", "B", "2") and "C" not in verdict([], ["A", "B", "C"])
@@ -75,7 +75,7 @@ def test_what_forbids_goes_before_what_warns_and_the_rest_is_counted():
 
 
 @pytest.mark.parametrize(("share", "words"), [(1.0, "100 %"), (0.999, "99 %"), (0.989, "98 %"), (0.0, "0 %")])
-def test_only_all_is_a_hundred_percent(share, words):
+def test_only_a_complete_share_is_100_percent(share, words):
     assert percent(share) == words
 
 
@@ -84,7 +84,7 @@ def test_overlap_is_rounded_down(overlap, words):
     assert format_overlap(overlap) == words
 
 
-def test_a_report_has_ten_lines_and_all_of_them_in_the_details():
+def test_a_report_has_ten_lines_and_details_list_everything():
     made = Report(GOOD, tuple("abcdefghijk"), ("table",))
     assert len(made.text().splitlines()) == 10 and gives(made.text().splitlines()[-1], "3")
     assert made.text(details=True).splitlines() == [GOOD, *"abcdefghijk", "", "table"]

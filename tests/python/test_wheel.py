@@ -124,7 +124,7 @@ def test_code_of_a_library_under_the_gpl_is_refused(word):
     assert list(contents.problems_of_library(a_library() + word))
 
 
-def test_the_module_of_a_developer_is_refused(wheel):
+def test_a_module_of_a_developer_build_is_refused(wheel):
     """A developer's own build is refused.
 
     The module is linked to Debian's Ceres, which needs SuiteSparse and LAPACK.
@@ -136,7 +136,7 @@ def test_the_module_of_a_developer_is_refused(wheel):
     assert all(word in problems for word in ("cholmod", "cxsparse", "lapack"))
 
 
-def test_what_is_missing_or_too_large_is_refused(wheel, monkeypatch):
+def test_a_missing_file_or_oversized_wheel_is_refused(wheel, monkeypatch):
     (problem,) = contents.problems_of(changed(wheel, **{f"{INFO}/{contents.BILL}": None}))
     assert contents.BILL in problem
     (problem,) = contents.problems_of(changed(wheel, **{f"{INFO}/licenses/third-party/ceres.txt": None}))
@@ -146,12 +146,12 @@ def test_what_is_missing_or_too_large_is_refused(wheel, monkeypatch):
     assert "1000" in problem
 
 
-def test_the_path_of_the_builder_is_refused():
+def test_a_path_of_the_build_machine_is_refused():
     assert not list(contents.problems_of_library(a_library()))
     assert list(contents.problems_of_library(a_library() + b"/home/somebody/brushsvg/cpp/values/plan.cpp\0"))
 
 
-def test_the_page_lists_what_is_inside(wheel):
+def test_the_page_lists_the_bundled_libraries(wheel):
     text = contents.page(wheel, "some.whl is\nconsistent")
     for each in FOUND:
         assert f"| {each.name} | {each.version} | {each.licence} | `{each.purl}` |" in text

@@ -11,7 +11,7 @@ from brushsvg.planning.touching_strokes import find_worse_strokes
 SHORT_BAR = '<path d="M10 12H34V28H10Z"/>'
 
 
-def test_a_filled_shape_is_painted_no_worse_by_its_refined_passes(tmp_path):
+def test_refined_passes_do_not_lower_the_overlap_of_a_filled_shape(tmp_path):
     drawing = tmp_path / "bar.svg"
     drawing.write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="50mm" height="40mm" viewBox="0 0 50 40">{SHORT_BAR}</svg>'
@@ -32,7 +32,7 @@ def turned_deg(rings) -> float:
     return float(np.degrees(sum(np.abs(each).sum() for each in turns)))
 
 
-def test_a_stroke_that_makes_its_letter_restless_is_worse_and_its_neighbour_is_not():
+def test_only_the_stroke_that_adds_turning_counts_as_worse():
     """A stroke that makes its letter restless is worse, and its neighbour is not.
 
     Two bars touch. One is refined to cover a little more; the other waves and also covers more.

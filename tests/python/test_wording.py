@@ -113,7 +113,7 @@ def wording() -> str:
 
 
 @pytest.mark.wording
-def test_wording_is_as_it_was_read():
+def test_wording_equals_the_golden_file():
     reported, read = (text.split(TITLE) for text in (wording(), WORDING.read_text(encoding="utf-8")))
     assert reported == read, "if it is intended: make wording, and read what git says of the file"
 

@@ -59,7 +59,7 @@ def desk(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(("limits", "said"), [(RING, AWAY), (POST, KEPT)])
 @pytest.mark.parametrize(("name", "of_stroke", "way"), [("bar", "bar", ""), ("pair", "right", " way")])
-def test_no_way_goes_through_the_robot_itself(desk, capsys, name, of_stroke, way, limits, said):
+def test_no_path_goes_through_the_robot(desk, capsys, name, of_stroke, way, limits, said):
     """No path goes through the robot itself.
 
     Only the two ends of a path were once checked, and nothing was checked between strokes.
@@ -84,7 +84,7 @@ LEFT = {"keep_out_mm": (((-285.0, -40.0, 0.0), (-235.0, 40.0, 300.0)), ((0.0, 30
 
 
 @pytest.mark.parametrize(("limits", "x_mm"), [(RING, 20), (POST, 20), (LEFT, 20), ({}, -20)])
-def test_of_a_resumed_job_only_the_rest_is_checked(desk, capsys, limits, x_mm):
+def test_only_the_rest_of_a_resumed_job_is_checked(desk, capsys, limits, x_mm):
     """In a resumed job, only the rest is checked.
 
     The first stroke, the path from it and its paint may break any limit, because the machine does not repeat
@@ -103,7 +103,7 @@ def test_of_a_resumed_job_only_the_rest_is_checked(desk, capsys, limits, x_mm):
     assert status == 1 and is_reported(reported, "stroke-unknown 3 '[1, 2]'"), reported
 
 
-def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes(desk, capsys):
+def test_height_strokes_and_their_paths_avoid_forbidden_boxes(desk, capsys):
     """Height measurements and the paths between them keep out of forbidden boxes.
 
     The box is a clip between the first two lanes, and its top is not lower than the lanes.
@@ -137,7 +137,7 @@ def test_strokes_that_find_the_paper_and_the_ways_between_them_keep_out_of_boxes
         ),
     ],
 )
-def test_visits_to_the_paint_and_the_ways_from_them_keep_out_of_boxes(desk, capsys, language, box, who, said):
+def test_paint_visits_and_their_paths_avoid_forbidden_boxes(desk, capsys, language, box, who, said):
     ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, rim_mm=4.0, wipe_mm=((-18.0, 40.0, 5.0), (-12.0, 40.0, 5.0)))
     cell = find_cell(language)
     cell = replace(
@@ -189,7 +189,7 @@ def test_a_circle_that_bulges_beyond_the_margin_is_refused(desk, capsys):
     assert are_reported(forbidden(plan_of(poses, [below]), BRUSH, find_cell()), "tool-off-sheet 5.00 lower")
 
 
-def test_a_rise_on_paper_that_leans_ends_below_the_box():
+def test_a_rise_on_tilted_paper_may_end_below_a_box():
     """A rise on paper that leans ends below the top of the box.
 
     The highest position over the sheet is checked before all else. Nothing is painted there.
@@ -207,7 +207,7 @@ def test_a_rise_on_paper_that_leans_ends_below_the_box():
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "jaka-zu3"])
 @pytest.mark.parametrize(("limit", "said"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")])
-def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsys, name, limit, said):
+def test_a_rise_before_the_first_move_avoids_forbidden_boxes(desk, capsys, name, limit, said):
     """A rise before the first move keeps out of the forbidden space.
 
     Over the stroke, everything up to the safe height is allowed. On paper that leans, the tool first rises
@@ -237,7 +237,7 @@ def test_a_rise_before_the_first_move_keeps_out_of_what_is_forbidden(desk, capsy
         assert status == 1 and is_reported(reported, f"{said} rise mine"), reported
 
 
-def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk, capsys):
+def test_a_path_exactly_at_a_limit_stays_valid_after_rounding(desk, capsys):
     """A path that keeps a limit exactly still keeps it after rounding.
 
     The reach once had no allowance for the rounding of a program, and check then refused the program.
@@ -258,7 +258,7 @@ def test_what_keeps_a_limit_to_the_last_digit_keeps_it_when_it_was_rounded(desk,
     assert (status, err) == (0, [])
 
 
-def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
+def test_corners_keep_a_clearance_of_twice_the_cut():
     near = robot(keep_out_mm=(((-10.0, 0.015, 0.0), (10.0, 50.0, 100.0)),))
     path = make_paths([[(-100, 0, 50), (100, 0, 50)]])
     assert near.blending.tolerance_mm == 0.01
@@ -270,20 +270,20 @@ def test_near_a_corner_that_may_be_cut_twice_the_cut_is_kept_free():
     assert find_broken_limits(path, np.eye(4), replace(robot(**RING), blending=exact.blending)) == []
 
 
-def test_a_way_between_two_places_says_only_what_they_do_not():
+def test_a_path_reports_only_limits_that_its_end_points_keep():
     cell = robot(**RING)
     (said,) = find_limits_broken_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
     assert agrees(said, "out-of-reach way 0.0")
     assert find_limits_broken_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
 
 
-def test_a_number_shows_that_it_is_outside():
+def test_a_reported_value_is_visibly_out_of_range():
     cell = robot(reach_mm=(150.0, 850.0))
     (said,) = find_broken_limits(make_paths([[(850.0004, 0, 0)]]), np.eye(4), cell)
     assert agrees(said, "out-of-reach 850.0004")
 
 
-def test_boxes_to_keep_out_of_are_written_read_and_named(desk, capsys):
+def test_forbidden_boxes_are_written_read_and_named(desk, capsys):
     cell = robot(**POST)
     assert parse_cell(write_cell(cell)) == cell
     (desk / "mine.toml").write_text(write_cell(cell))
@@ -293,7 +293,7 @@ def test_boxes_to_keep_out_of_are_written_read_and_named(desk, capsys):
         parse_cell(write_cell(turned))
 
 
-def test_jobs_before_the_first_stroke_ask_their_whole_way():
+def test_setup_jobs_check_their_whole_path():
     cell = robot(keep_out_mm=(((-1.0, -200.0, 0.0), (1.0, 200.0, 300.0)),))
     with refused("in-kept-out-box") as caught:
         border((20.0, 20.0, 580.0, 180.0), BRUSH, cell, SHEET)
@@ -302,7 +302,7 @@ def test_jobs_before_the_first_stroke_ask_their_whole_way():
     assert len(list(paper_height(BRUSH, cell, SHEET, 1.0, -1.0, 0.1).sections())) == 21
 
 
-def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
+def test_a_wipe_beyond_the_sheet_does_not_cross_the_sheet():
     """A wipe beyond the sheet must not be reached across the sheet.
 
     Vessel and wipe are next to the sheet. The tip, full of paint, once crossed the sheet at the height of the
@@ -317,7 +317,7 @@ def test_a_wipe_beyond_the_sheet_is_not_reached_over_it():
 
 
 @pytest.mark.parametrize("at_once", [1, 7, 10_000])
-def test_ways_are_checked_in_any_groups(monkeypatch, at_once):
+def test_path_checks_do_not_depend_on_grouping(monkeypatch, at_once):
     """The result does not depend on how many moves are checked at once.
 
     The strokes are on both sides of the robot, and some paths between them go through it.
@@ -338,7 +338,7 @@ EDGES = (
 )
 
 
-def test_a_stroke_that_chooses_how_it_begins_chooses_what_the_cell_can_run(tmp_path, capsys):
+def test_an_automatic_start_is_one_that_the_cell_can_run(tmp_path, capsys):
     """An automatic beginning is chosen so that the cell can run it.
 
     At the edge, a round beginning once landed beyond the workspace, and the whole drawing was refused.
@@ -372,7 +372,7 @@ BARS = (
 )
 
 
-def test_a_cut_beginning_that_the_cell_cannot_cut_is_round_or_pointed(tmp_path, capsys):
+def test_a_butt_start_outside_the_workspace_becomes_round_or_pointed(tmp_path, capsys):
     cell = find_cell()
     cell = replace(cell, name="tight", workspace=replace(cell.workspace, margin_mm=2.0))
     (tmp_path / "tight.toml").write_text(write_cell(cell), encoding="utf-8")
@@ -389,7 +389,7 @@ def test_a_cut_beginning_that_the_cell_cannot_cut_is_round_or_pointed(tmp_path, 
     assert np.array_equal(chosen[0], rounded[0]) and not np.array_equal(rounded[0], butt[0])
 
 
-def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed(tmp_path, capsys):
+def test_a_stroke_whose_round_start_exceeds_the_sheet_starts_pointed(tmp_path, capsys):
     """A stroke whose round beginning exceeds the sheet begins pointed.
 
     The round beginning is 0.17 mm beyond the edge, and the drawing was once refused.
@@ -406,7 +406,7 @@ def test_a_stroke_whose_round_beginning_is_too_wide_for_the_sheet_begins_pointed
 
 
 @pytest.mark.parametrize(("margin_mm", "strokes"), [(8.0, 3), (3.0, 1)])
-def test_a_stroke_that_was_added_is_left_out_where_the_cell_has_no_room_for_it(tmp_path, margin_mm, strokes):
+def test_an_extra_stroke_outside_the_workspace_is_left_out(tmp_path, margin_mm, strokes):
     """An added stroke is left out where the cell has no room for it.
 
     The drawing was once refused because strokes into the corners of an L were 0.6 mm beyond the workspace.

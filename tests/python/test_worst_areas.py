@@ -21,7 +21,7 @@ def found(target, painted, most=5):
     return worst_areas(target, painted, (0.0, 20.0), PX, LINES, most)
 
 
-def test_the_largest_comes_first_with_its_place_size_and_stroke():
+def test_the_largest_area_is_first_with_place_size_and_stroke():
     target = sheet((1, 4, 9, 6), (1, 14, 9, 16))
     painted = sheet((2, 4, 9, 6), (1, 14, 9, 16), (1, 16, 4, 16.5))
     missing, outside = found(target, painted)
@@ -33,13 +33,13 @@ def test_the_largest_comes_first_with_its_place_size_and_stroke():
     assert [area.stroke for area in found(target, painted, most=1)] == [0]
 
 
-def test_paint_that_is_displaced_is_one_place():
+def test_displaced_paint_is_one_area():
     (area,) = found(sheet((1, 4, 5, 6)), sheet((1.2, 4.4, 5, 6.4)))
     assert area.missing_mm2 > 1 and area.outside_mm2 > 1
     assert area.words.count("mm^2") == 2
 
 
-def test_slivers_and_specks_are_no_places():
+def test_slivers_and_specks_are_not_reported():
     target = sheet((1, 4, 9, 6))
     assert found(target, sheet((1, 4, 9, 6.15))) == []
     assert len(found(target, sheet((1, 4, 9, 6.25)))) == 1

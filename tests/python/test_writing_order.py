@@ -66,7 +66,7 @@ def lines_of(d: str, script: str = "latin") -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("d, places", LETTERS.values(), ids=LETTERS)
-def test_lines_are_painted_in_the_order_of_writing(d, places):
+def test_lines_are_painted_in_writing_order(d, places):
     found = lines_of(d)
     off = np.array([[np.hypot(*(line - (x, 50 - y)).T).min() for line in found] for x, y in places])
     order = off.argmin(axis=1)
@@ -88,7 +88,7 @@ def test_a_dot_above_a_bar_comes_first_in_a_character():  # the dot of an i come
     ],
     ids=["r", "7"],
 )
-def test_an_arm_that_leaves_its_stem_in_an_arch_is_written_from_there(d, first, last):
+def test_an_arm_that_leaves_its_stem_in_an_arch_starts_at_the_stem(d, first, last):
     line = max(lines_of(d), key=lambda line: line[:, 0].max())
     assert np.hypot(*(line[0] - (first[0], 50 - first[1]))) < 2
     assert np.hypot(*(line[-1] - (last[0], 50 - last[1]))) < 2
@@ -100,25 +100,25 @@ def test_a_hairline_between_two_stems_is_written_upwards():
     assert hairline[0, 1] < hairline[-1, 1]
 
 
-def test_a_hairline_from_one_stem_down_to_the_next_stays():  # the diagonal of an N
+def test_a_diagonal_from_one_stem_down_to_the_next_is_written_downwards():  # the diagonal of an N
     _, slant, _ = lines_of("M8 5H14V8L32 31V5H38V45H32V39L14 16V45H8Z")
     assert slant[0, 1] > slant[-1, 1]
 
 
-def test_letters_stand_side_by_side_with_dots_and_accents_above_and_parts_of_characters_do_not():
+def test_letters_are_side_by_side_but_parts_of_one_character_are_not():
     stem, dot, letter = (0, 0, 6, 30), (0, 36, 6, 42), (12, 0, 30, 30)
     assert stand_side_by_side(np.array([stem, dot, letter]))
     roof, below = (0, 30, 30, 36), (2, 0, 28, 25)
     assert not stand_side_by_side(np.array([roof, below]))
 
 
-def test_the_stem_of_a_bold_4_is_no_flick_of_its_slant():
+def test_the_stem_of_a_bold_4_is_not_part_of_its_slant():
     _, stem = lines_of(LETTERS["bold 4"][0])
     assert np.ptp(stem[:, 0]) < 0.5, "straight up to the top"
     assert stem[0, 1] > 38 > 12 > stem[-1, 1]
 
 
-def test_a_roof_is_one_letter_with_what_stands_below_it_and_lines_of_text_follow_each_other():
+def test_a_roof_joins_the_parts_below_it_and_text_lines_follow_each_other():
     roof, left, right, near_by = (0, 30, 20, 40), (0, 5, 8, 31), (12, 5, 20, 31), (25, 5, 40, 40)
     assert [set(each) for each in group_areas(np.array([right, near_by, left, roof]), "latin")] == [
         {0, 2, 3},
