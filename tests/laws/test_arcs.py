@@ -83,7 +83,7 @@ chains = st.lists(move, min_size=1, max_size=5)
 
 
 @given(chains)
-def test_arcs_against_solve_ivp_with_events(moves):
+def test_arcs_agree_with_solve_ivp_with_events(moves):
     chain = Chain(moves)
     rows = chain.rows()
     state = (chain.start - LAG * oracle.unit(chain.heading), chain.heading, True)
@@ -155,7 +155,7 @@ def test_a_turn_in_place_keeps_the_contact(side, off_mm):
     assert np.hypot(*(found[2:] - resting).T).max() <= max(0.0, off_mm) * (1 + 3.1**2 / 2) + 1e-9
 
 
-def test_the_check_value():
+def test_an_arc_has_the_documented_check_value():
     """k = 1/40, r = 8, psi0 = 0.7, s = 60."""
     chain = Chain([(-0.7, 40.0, 1.5)], lag=8.0)
     rows = chain.rows(make_brush([8.0]))
@@ -173,7 +173,7 @@ def test_on_a_circle_smaller_than_the_lag_the_patch_comes_to_rest(radius):
 
 @pytest.mark.parametrize("degrees", [100, 120, 150, 180, -135])
 @pytest.mark.parametrize("half_width", [1.68, 0.4])
-def test_plans_of_ours_paint_the_same_with_arcs_and_chords(degrees, half_width):
+def test_planned_arcs_paint_the_same_as_chords(degrees, half_width):
     a = np.radians(degrees)
     points = np.array([[20, 50], [60, 50], [60 + 30 * np.cos(a), 50 + 30 * np.sin(a)]])
     cubics = np.array([np.concatenate([p, p + (q - p) / 3, q - (q - p) / 3, q]) for p, q in itertools.pairwise(points)])

@@ -15,7 +15,7 @@ REPEATS = 300
 
 
 @pytest.mark.parametrize("law", [tables.LAG, tables.TIP_GAP, tables.WIDEST], ids=lambda law: law.name)
-def test_its_laws_come_back_within_its_intervals(law):
+def test_the_laws_of_the_article_are_recovered_within_its_intervals(law):
     back = tables.come_back(law, REPEATS, np.random.default_rng(3))
     first = int(law.through_zero)  # no interval where there is no constant term
     assert 0.92 <= back.in_own[first:].mean() <= 0.985
@@ -26,7 +26,7 @@ def test_its_laws_come_back_within_its_intervals(law):
         assert back.half_interval_95[first:] == pytest.approx(law.half_interval_95[first:], rel=0.15)
 
 
-def test_angles_are_about_three_times_worse():
+def test_laws_from_angles_are_about_three_times_less_accurate():
     rng = np.random.default_rng(4)
     strokes = tables.by_strokes(100, rng)
     angles = tables.by_angles(tables.ANGLE_NOISE_RAD, 100, rng)
@@ -37,7 +37,7 @@ def test_angles_are_about_three_times_worse():
     assert angles.lag_off_mm > 2.5 * strokes.lag_off_mm  # of the truth, not only of their data
 
 
-def test_what_the_printed_readings_would_give():
+def test_readings_as_printed_give_wrong_laws():
     """(17) lacks the lag: its b is r + b. The outline of an angular stroke shows r - e, the article reads it as r."""
     brush = find_brush("round-6")
     for row in tables.readings(brush, np.array([2.0, 6.0, 10.0])):

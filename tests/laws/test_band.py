@@ -79,7 +79,7 @@ def seen(brush, trace, pose):
 
 
 @pytest.mark.thorough
-def test_against_monte_carlo(brush, painted):
+def test_the_band_agrees_with_monte_carlo(brush, painted):
     work, marks, brushes = painted
     reported = uncertainty.uncertainty(work.plan, brush, marks)
     assert reported.source == uncertainty.COVARIANCE
@@ -109,7 +109,7 @@ def test_against_monte_carlo(brush, painted):
     assert compared >= 10
 
 
-def test_the_band_holds_the_edges(brush, painted):
+def test_the_band_contains_95_percent_of_the_edges(brush, painted):
     """Along a stroke some 95 % of the edges of brushes drawn from the covariance are in it."""
     work, marks, brushes = painted
     band = uncertainty.band(work.plan, brush, marks)

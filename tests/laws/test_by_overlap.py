@@ -69,7 +69,7 @@ def calibrated():
 
 
 @pytest.mark.thorough
-def test_where_marks_are_displaced_the_brush_is_little_wider_than_it_is():
+def test_displaced_marks_widen_the_brush_only_slightly():
     # by the overlap where marks are alone it was 38 % wider at half of the depth, its lag 10 % longer
     brush, _ = sheet()
     made, _ = calibrated()
@@ -79,7 +79,7 @@ def test_where_marks_are_displaced_the_brush_is_little_wider_than_it_is():
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.08)
 
 
-def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
+def test_overlap_is_at_least_that_of_edges_and_no_interval_is_given():
     made, reported = calibrated()
     assert made.found.overlap >= made.found.before
     assert not any(made.brush.half_width.half_interval_95)
@@ -87,7 +87,7 @@ def test_marks_overlap_no_less_than_by_edges_and_no_interval_is_claimed():
     assert reported and not re.search(r"\+- \d", report(made).text(True))
 
 
-def test_lean_that_edges_did_not_look_for_comes_back():
+def test_lean_that_edges_did_not_estimate_is_recovered():
     # a simplex alone confused lean and lag: 0.06 and -0.18
     _, marks = painted(DISPLACED_LITTLE_MM, lean=(0.3, -0.2), turn=0.0, height=0.1)
     as_run = machine_added(brushsvg.calibrate(marks, "b").fit).offsets
@@ -96,7 +96,7 @@ def test_lean_that_edges_did_not_look_for_comes_back():
 
 
 @pytest.mark.thorough
-def test_a_map_that_edges_did_not_look_for_comes_back_with_the_turn():
+def test_a_map_that_edges_did_not_estimate_is_recovered_with_the_rotation():
     by_map = np.array([[0.01, -0.03], [0.05, 0.012]])
     _, marks = painted(DISPLACED_LITTLE_MM, by_map=by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b").fit
@@ -121,7 +121,7 @@ def machine_added(made, fit=None):
 
 
 @pytest.mark.thorough
-def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
+def test_the_report_shows_lean_and_map_of_edges_and_overlap():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(DISPLACED_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", machine=("lean", "axes")).fit
@@ -132,7 +132,7 @@ def test_the_report_says_lean_and_map_of_edges_and_overlap_together():
 
 
 @pytest.mark.thorough
-def test_edges_that_know_the_machine_predict_best_and_keep_their_intervals():
+def test_edges_with_the_known_machine_predict_best_and_keep_intervals():
     lean, by_map = (0.3, -0.2), ((0.02, 0.01), (0.0, -0.02))
     _, marks = painted(DISPLACED_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", aim="overlap", machine=("lean", "axes")).fit
@@ -172,7 +172,7 @@ def reported(brush) -> object:
 
 
 @pytest.mark.thorough
-def test_at_one_depth_the_lag_at_the_touch_comes_back_from_how_marks_end():
+def test_mark_ends_give_the_lag_at_touch_for_one_depth():
     # A lift lengthens the mark by 4 mm. With the lag held to the lag of the depth, a lift did not lengthen
     # it.
     found = by_one_depth(round_brush([2.0, 1.0]))
@@ -195,7 +195,7 @@ def by_one_depth(brush):
 
 
 @pytest.mark.thorough
-def test_what_is_changed_is_what_predicts_marks_that_had_no_part_and_the_report_says_so():
+def test_changes_are_kept_if_they_predict_held_out_marks_and_reported():
     # The fit by edges keeps lean at 0. On marks that are left out, laws alone cannot replace the lean.
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 3)
     lean, moved = np.array([0.9, -0.7]), np.random.default_rng(4).normal(0, 0.3, (len(strokes), 2))
@@ -227,7 +227,7 @@ def outlines(target):
     return mask_outlines(paint, 127, 1 / target.px_per_mm, (left, bottom + height))
 
 
-def test_of_few_marks_it_is_not_known_what_predicts():
+def test_few_marks_do_not_show_which_brush_predicts_best():
     brush, strokes = round_brush([1.0, 1.0]), painter.chart_strokes(4.0, 1)
     targets = targets_of(strokes, brush)
     marks = [

@@ -102,7 +102,7 @@ def test_angle_series_give_lag_and_tip_gap():
         assert made.brush.tip_gap(depth) == pytest.approx(GAP * depth, rel=0.01)
 
 
-def test_angle_series_with_a_degree_of_noise():
+def test_angle_series_with_one_degree_of_noise_give_the_laws():
     rng = np.random.default_rng(5)
     rows = [series(d, rng, 1.0) for d in np.repeat(DEPTHS, 3)]
     for total in (False, True):
@@ -134,7 +134,7 @@ def noisy_series(rng, degrees, first_degrees):
 
 
 @pytest.mark.parametrize(("degrees", "first_degrees"), [(1.0, 1.0), (2.0, 0.0)])
-def test_intervals_of_angle_series_cover_the_truth(degrees, first_degrees):
+def test_intervals_of_angle_series_contain_the_truth(degrees, first_degrees):
     """Intervals of angle series contain the truth.
 
     The scatter of lag and tip gap grows with the lag. Without weights, the tip gap's interval held only 85 to
@@ -150,7 +150,7 @@ def test_intervals_of_angle_series_cover_the_truth(degrees, first_degrees):
     assert 0.925 <= np.mean(lags) <= 0.985
 
 
-def test_the_scatter_of_a_series_is_that_of_repeated_readings():
+def test_the_scatter_of_a_series_agrees_with_repeated_readings():
     rng = np.random.default_rng(8)
     found = {d: [] for d in (2.0, 9.0)}
     for _ in range(400):
@@ -191,7 +191,7 @@ def centre_lines_and_footprints(rng, from_depth=2.0):
     )
 
 
-def test_other_depths_decide_with_which_sign_of_e_a_centre_line_is_read():
+def test_other_depths_decide_the_sign_of_e_for_a_centre_line():
     """Other depths decide the sign of e with which a centre line is read.
 
     Once each line was compared with laws fitted to that line, and the widest section at depth 1 was 0.4 mm
@@ -210,7 +210,7 @@ def test_other_depths_decide_with_which_sign_of_e_a_centre_line_is_read():
     assert all(is_held or is_said for is_held, is_said in zip(held, said, strict=True))
 
 
-def test_centre_lines_are_weighed_by_the_scatter_of_their_own_points():
+def test_centre_lines_are_weighted_by_the_scatter_of_their_points():
     """Centre lines are weighted by the scatter of their own points.
 
     Their scatter was once pulled towards the scatter of footprints, which is ten times larger. Intervals of
@@ -226,7 +226,7 @@ def test_centre_lines_are_weighed_by_the_scatter_of_their_own_points():
     assert deviation < 1.35 * np.sqrt(np.mean(own) * 5 / len(own))
 
 
-def test_laws_fitted_together_are_of_the_type_of_laws_fitted_alone():
+def test_joint_fits_and_single_fits_return_the_same_type():
     rng = np.random.default_rng(4)
     rows = {
         "lag": values(DEPTHS, lag(DEPTHS) + rng.normal(0, 0.1, DEPTHS.size)),
@@ -284,7 +284,7 @@ def test_side_view_and_straight_stroke_give_the_tip_gap():
 
 
 @sample("kind", ["angular", "side_view"], keep=1)
-def test_intervals_cover_the_truth_through_corrections(kind):
+def test_intervals_include_the_errors_of_corrections(kind):
     """The interval of a law includes the errors of the laws that corrected it."""
     rng = np.random.default_rng(11)
     depths = np.repeat(DEPTHS, 2)
@@ -314,7 +314,7 @@ def test_intervals_cover_the_truth_through_corrections(kind):
 
 
 @pytest.mark.thorough
-def test_the_covariance_is_that_of_repeated_calibrations():
+def test_the_covariance_agrees_with_repeated_calibrations():
     """The covariance agrees with the scatter of 600 calibrations.
 
     It includes the correlations between laws.
@@ -357,7 +357,7 @@ def test_check_values_of_the_model(total):
     assert found["lag_rmse_mm"] < 1e-6 and found["left_out"] == 0
 
 
-def test_plain_and_total_lines_are_those_of_numpy():
+def test_plain_and_total_least_squares_agree_with_numpy():
     rng = np.random.default_rng(7)
     s = np.arange(1, 7.0)
     alpha = 2 * np.arctan(np.exp(-s / 5.0)) + rng.normal(0, 0.05, 6)
@@ -404,6 +404,6 @@ def test_plain_and_total_lines_are_those_of_numpy():
         ({}, "", "measurement-missing"),
     ],
 )
-def test_what_cannot_be_calibrated_says_what_to_do(rows, where, said):
+def test_impossible_calibrations_are_refused_with_a_remedy(rows, where, said):
     with refused(said, where):
         calibrate(from_dict(**rows), "b")

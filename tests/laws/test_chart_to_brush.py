@@ -58,7 +58,7 @@ def painted(tmp_path_factory):
     return made, find_brush(desk / "own.json")
 
 
-def test_the_brush_that_painted_it_comes_back(painted):
+def test_the_brush_that_painted_the_chart_is_recovered(painted):
     _, found = painted
     was = truth()
     for depth in DEPTHS:
@@ -67,7 +67,7 @@ def test_the_brush_that_painted_it_comes_back(painted):
         assert found.tip_gap(depth) == pytest.approx(was.tip_gap(depth), rel=0.08)
 
 
-def test_as_sure_as_was_said_before(painted):
+def test_intervals_agree_with_the_prediction_before_painting(painted):
     made, found = painted
     said, _ = expected_brush(made.plan, truth(), NOISE_MM)
     for law in ("lag", "tip_gap", "half_width"):
@@ -78,7 +78,7 @@ def test_as_sure_as_was_said_before(painted):
         assert np.mean(off <= 1.5 * after) > 0.6, (law, off, after)
 
 
-def test_a_common_shift_of_edges_is_in_the_intervals():
+def test_intervals_include_a_common_shift_of_edges():
     """A picture shows all paint 0.04 mm wider than it is: no mark separates that from a wider brush."""
     made = chart(find_brush("round-6"), (148.0, 210.0), "few")
     marks = _core.simulate(made.plan, truth())

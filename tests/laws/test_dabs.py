@@ -152,7 +152,7 @@ def wide_at(outline, x):
     ["lopsided", *(pytest.param(name, marks=pytest.mark.slow) for name in ("ellipse", "egg"))],
     keep=1,
 )
-def test_outlines_and_widths_come_back(name, tmp_path, capsys):
+def test_outlines_and_widths_are_recovered(name, tmp_path, capsys):
     """Outlines and widths come back.
 
     With assumed drops of the true widths, outlines would be 0.2 to 0.7 mm off.
@@ -213,7 +213,7 @@ def with_lag(brush, coefficients):
     [("ellipse", 0.96, 0.985), ("egg", 0.96, 0.985), ("lopsided", 0.8, 0.97)],
     keep=1,
 )
-def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys):
+def test_outlines_from_dabs_improve_the_prediction_of_a_word(name, drops, own_outlines, tmp_path, capsys):
     """The outlines from dabs predict a word better than drops do.
 
     A brush with drops has the true lag and widths, and its prediction is limited. The sideways place of a
@@ -233,7 +233,7 @@ def test_a_word_is_predicted_better(name, drops, own_outlines, tmp_path, capsys)
     [("egg", (0.98, 1.0), 0.975), ("lopsided", (0.0, 0.8), 0.965)],
     keep=1,
 )
-def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys):
+def test_strokes_and_dabs_together_predict_a_word(name, fitted, own_lag, tmp_path, capsys):
     """Strokes and dabs together predict a word.
 
     A chart of strokes gives lag, and eggs for outlines. Dabs then give the brush's own outlines, and with
@@ -267,7 +267,7 @@ def test_from_strokes_and_dabs_to_a_word(name, fitted, own_lag, tmp_path, capsys
     assert (reported.verdict == GOOD) == (name != "egg"), reported
 
 
-def test_the_same_from_below_through_glass(tmp_path, capsys):
+def test_a_photograph_from_below_through_glass_gives_the_outlines(tmp_path, capsys):
     """A photograph from below through glass gives the outlines as well.
 
     The sheet is clear. A mirrored picture is refused if it is given as a normal one, and the reverse.
@@ -285,7 +285,7 @@ def test_the_same_from_below_through_glass(tmp_path, capsys):
         assert status == 1 and reported[-1][1].code == "photo-mirrored", reported
 
 
-def test_a_chart_of_dabs_needs_the_brush_whose_lag_is_known(tmp_path, capsys):
+def test_a_chart_of_dabs_needs_a_brush_with_known_lag(tmp_path, capsys):
     (tmp_path / "photo.jpg").write_bytes(photographed("lopsided"))
     (tmp_path / "dabs.json").write_text(write_chart(printed()))
     files = [str(tmp_path / name) for name in ("photo.jpg", "dabs.json", "own.json")]

@@ -73,7 +73,7 @@ ONE = {
 
 
 @sample("cause", ONE, keep=2)
-def test_what_is_wrong_is_named_and_measured(job, cause, capsys):
+def test_each_fault_is_named_and_measured(job, cause, capsys):
     fault_values, numbers = ONE[cause]
     folder, _ = job
     found = compared(job, fault_values, 1, "--corrected-cell", str(folder / "corrected.toml"))
@@ -101,7 +101,7 @@ def test_what_is_wrong_is_named_and_measured(job, cause, capsys):
 
 
 @sample("number", [104, 105], keep=1)
-def test_all_of_it_at_once_is_within_its_intervals(job, number, capsys):
+def test_all_faults_together_are_within_their_intervals(job, number, capsys):
     """Faults of brush, paper and machine together: height of the paper, lag and width look much alike."""
     _, plan = job
     rng = np.random.default_rng([24, number])
@@ -116,7 +116,7 @@ def test_all_of_it_at_once_is_within_its_intervals(job, number, capsys):
     assert rows["lag"]["half_95"] < 0.06 and rows["width"]["half_95"] < 0.06
 
 
-def test_without_faults_no_cause_is_certain(job, capsys):
+def test_a_sheet_without_faults_has_no_certain_cause(job, capsys):
     found = compared(job, studio.Faults())
     assert found["mend_first"] is None, found
     rows = {row["name"]: row for row in found["numbers"]}
@@ -124,7 +124,7 @@ def test_without_faults_no_cause_is_certain(job, capsys):
     assert found["overlap"] > 0.96
 
 
-def test_few_strokes_blame_nobody(job, capsys, tmp_path):
+def test_few_strokes_give_no_cause(job, capsys, tmp_path):
     few = studio.WORD[: studio.WORD.index('<path id="wave"')] + "</g></svg>"
     (tmp_path / "few.svg").write_text(few)
     words = ["simulate-photo", str(tmp_path / "few.svg"), "-o", str(tmp_path / "few.jpg"), "--quiet"]

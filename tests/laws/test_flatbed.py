@@ -149,7 +149,7 @@ def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
 
 
 @pytest.mark.parametrize("margin_mm", [0, 10, 20])
-def test_light_paint_on_dark_paper_is_read_however_much_of_it_is_bare(margin_mm):
+def test_light_paint_on_dark_paper_is_read_with_any_share_of_bare_paper(margin_mm):
     """Light paint on dark paper is read, however much paper is bare.
 
     With 10 mm of bare paper around, the dark paper between marks was once read as paint.
@@ -196,7 +196,7 @@ def test_paper_that_is_nearly_black_is_refused():
 
 
 @pytest.mark.parametrize("paper", [0.85, 1.05])
-def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
+def test_a_missing_scan_resolution_is_reported(paper):
     """A user who forgets the resolution of a scan is reminded.
 
     White paper on the glass has the largest values, which was once reported as overexposed.
@@ -208,7 +208,7 @@ def test_who_forgets_the_resolution_of_a_scan_is_reminded(paper):
 
 
 @pytest.mark.parametrize(("turn_deg", "side"), [(2, "left"), (-3, "right"), (180, ""), (180.5, "")])
-def test_how_a_scan_is_turned_is_reported_without_a_sign(turn_deg, side):
+def test_the_rotation_of_a_scan_is_reported_without_a_sign(turn_deg, side):
     sentence = describe_reading(read(scanned(turn_deg=turn_deg)))
     degrees = re.search(r"turned by (\S+) degrees( to the )?(\w*)", sentence)
     assert float(degrees[1]) == pytest.approx(abs(turn_deg), abs=1.5) and degrees[3] == side, sentence
@@ -237,7 +237,7 @@ def test_another_chart_is_refused():
     assert code_of(scanned(), made=other)[0] in ("photo-paint-elsewhere", "scan-resolution")
 
 
-def test_the_mirrored_scan_of_another_chart_is_one_of_another_chart():
+def test_the_mirrored_scan_of_another_chart_is_refused_as_another_chart():
     """The mirrored scan of another chart is refused as another chart.
 
     It was once reported as mirrored, like every second picture.
@@ -268,7 +268,7 @@ def test_a_printed_page_is_read_without_resolution():
 
 
 @pytest.mark.skipif(not hasattr(_core, "fit_marks"), reason="built without Ceres")
-def test_a_scan_gives_the_brush_back(tmp_path, capsys):
+def test_a_scan_recovers_the_brush(tmp_path, capsys):
     (tmp_path / "scan.png").write_bytes(cv2.imencode(".png", scanned(300, 92)[..., ::-1])[1].tobytes())
     (tmp_path / "chart.json").write_text(write_chart(a5()))
     photo, made, out = (str(tmp_path / name) for name in ("scan.png", "chart.json", "own.json"))

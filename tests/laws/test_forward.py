@@ -34,7 +34,7 @@ def at_poses(rows):
 
 
 @pytest.mark.parametrize("name", LAGS)
-def test_taut_law_is_its_differential_equation(name):
+def test_the_taut_law_solves_its_differential_equation(name):
     rng = np.random.default_rng(3)
     for _ in range(40):
         depths = rng.uniform(0.3, 10, 2)
@@ -52,7 +52,7 @@ def test_taut_law_is_its_differential_equation(name):
 
 
 @pytest.mark.parametrize("depths", [(0.0, 10.0), (10.0, 0.0), (0.0, 1e-3), (4.0, 4.0), (2.0, 8.0)])
-def test_taut_law_over_the_whole_depth_range(depths):
+def test_the_taut_law_holds_over_the_whole_depth_range(depths):
     poses = np.array([[0, 0, depths[0]], [12.0, 5.0, depths[1]]])
     target, _ = oracle.taut(ROUND, poses, 2.0)
     contact = -ROUND(depths[0]) * oracle.unit(2.0)
@@ -62,7 +62,7 @@ def test_taut_law_over_the_whole_depth_range(depths):
 
 @pytest.mark.parametrize("lag", [0.1, 3.0, 8.0, 39.999, 40.0, 40.001, 60.0])
 @pytest.mark.parametrize("curvature", [0.0, 1 / 40, -1 / 40, 1e-9])
-def test_arc_is_its_differential_equation(lag, curvature):
+def test_an_arc_solves_its_differential_equation(lag, curvature):
     from scipy.integrate import solve_ivp
 
     for psi0 in (-1.3, -0.2, 0.0, 0.7, 1.5):
@@ -83,7 +83,7 @@ def test_arc_is_its_differential_equation(lag, curvature):
 
 @pytest.mark.parametrize("lifts", [False, True])
 @sample("name", LAGS, keep=2)
-def test_simulator_against_solve_ivp_with_events(name, lifts):
+def test_the_simulator_agrees_with_solve_ivp_with_events(name, lifts):
     rng = np.random.default_rng([5, lifts, *name.encode()])
     brush, pulls = make_brush(LAGS[name]), []
     for _ in range(8):
@@ -109,7 +109,7 @@ def test_simulator_against_solve_ivp_with_events(name, lifts):
 
 
 @pytest.mark.parametrize("lifts", [False, True])
-def test_simulator_against_slow_stepping(lifts):
+def test_the_simulator_agrees_with_slow_stepping(lifts):
     rng = np.random.default_rng(7)
     names = [name for name in LAGS if name != "floor"] * 8
     plans = [random_poses(rng, 9, lifts=lifts) for _ in names]
@@ -120,7 +120,7 @@ def test_simulator_against_slow_stepping(lifts):
         assert rows.contact_mm[at_poses(rows)][down] == pytest.approx(target[down], abs=1e-5)
 
 
-def test_simulator_against_slow_stepping_of_a_law_with_a_floor():
+def test_the_simulator_agrees_with_slow_stepping_of_a_law_with_a_floor():
     rng = np.random.default_rng(8)
     plans = [random_poses(rng, 6) for _ in range(12)]
     stepped = oracle.step_all(plans, [law("floor")] * 12, 1000)
@@ -194,7 +194,7 @@ def test_passing_over_the_patch_keeps_the_last_heading():
         assert stops.heading_rad[end] == 0
 
 
-def test_heading_before_the_first_motion():
+def test_the_heading_before_the_first_motion_is_the_first_heading():
     poses = np.array([[1, 1, 0.0], [1, 1, -3], [1, 1, -2], [-4, 1 + 5 * np.sqrt(3), -3], [9, 9, -3]])
     rows = rows_of(poses, make_brush())
     first = rows.pose <= 2
@@ -216,7 +216,7 @@ def test_rigid_pen_follows_the_tcp():
 
 
 @pytest.mark.parametrize("tolerance", [0.2, 0.02, 0.002])
-def test_rows_are_as_close_as_the_tolerance_asks(tolerance):
+def test_row_spacing_follows_the_tolerance(tolerance):
     """Rows are as close as the tolerance requires.
 
     Half way between two rows, no point of the footprint is further from the line between them.
@@ -258,7 +258,7 @@ FIGURE_3 = np.array(
 )
 
 
-def test_figure_3():
+def test_figure_3_of_the_article_is_reproduced():
     poses = [[0, -10, -5.0], [0, 0, -5.0], *([s, 0, -5.0] for s in FIGURE_3[:, 0])]
     rows = rows_of(poses, make_brush(LAGS["constant"], tip_gap=(1.0,)))
     rows_at = at_poses(rows)[2:]
@@ -270,7 +270,7 @@ def test_figure_3():
         assert core.lag.tip_direction(np.pi / 2, alpha, s, 3.0, 1.0) == pytest.approx(beta, abs=1e-8)
 
 
-def test_depth_2_to_8():
+def test_the_example_of_depth_2_to_8_is_reproduced():
     start = np.array([0.0, 0.0]) - ROUND(2.0) * oracle.unit(1.2)
     contact = core.lag.drag_straight(start, [0, 0], [20, 0], 2.0, 8.0, profile(*LAGS["round"]))
     assert np.arctan2(-contact[1], 20 - contact[0]) == pytest.approx(0.160941370, abs=1e-8)
@@ -278,13 +278,13 @@ def test_depth_2_to_8():
     assert np.log(np.tan(0.6) / np.tan(0.5 * 0.160941370)) == pytest.approx(2.138103176, abs=2e-8)
 
 
-def test_arc_value():
+def test_the_arc_example_is_reproduced():
     assert core.lag.drag_arc(0.7, 1 / 40, 8.0, 60.0) == pytest.approx(-0.200791034, abs=1e-8)
     settled = core.lag.drag_arc(0.7, 1 / 40, 8.0, 2000.0)
     assert np.sin(settled) == pytest.approx(-8 / 40, abs=1e-12)
 
 
-def test_figure_12():
+def test_figure_12_of_the_article_is_reproduced():
     poses = [[0, -40, -5.0], *([s, 0, -5.0] for s in (0, 10, 20, 40, 80))]
     rows = rows_of(poses, make_brush([13.0]))
     away = -rows.contact_mm[at_poses(rows)[2:], 1]
@@ -314,7 +314,7 @@ def test_loose_brush_rests_until_the_mirrored_angle(psi0):
     assert np.tan(psi / 2) == pytest.approx(np.tan(start / 2) * np.exp(-4 / 3.0), abs=1e-8)
 
 
-def test_circle_smaller_than_the_lag():
+def test_a_circle_smaller_than_the_lag_brings_the_patch_to_rest():
     turn = np.linspace(0, 6 * np.pi, 3 * 3600 + 1)
     circle = 2.0 * oracle.unit(turn)
     poses = np.column_stack([circle, np.full(len(turn), -5.0)])
@@ -323,7 +323,7 @@ def test_circle_smaller_than_the_lag():
     assert rows.contact_mm[at_poses(rows)[-3600]] == pytest.approx(rows.contact_mm[-1], abs=1e-12)
 
 
-def test_bristle_values():
+def test_bristle_check_values_are_reproduced():
     third = core.bristle_coefficients("third_derivative")
     free = core.bristle_coefficients("shear_free")
     assert third == pytest.approx(np.array([4, 3, -4, 1]) / (2 * np.e - 3), abs=1e-12)
@@ -338,7 +338,7 @@ def test_bristle_values():
             assert w2 - 2 * w3 + w4 == pytest.approx(1.0, abs=1e-12)
 
 
-def test_round_6_is_the_article_s_brush():
+def test_round_6_is_the_brush_of_the_article():
     brush = pytest.importorskip("brushsvg.model.library").find_brush("round-6")
     assert brush.lag.coefficients == pytest.approx(LAGS["round"][0], abs=0)
     for d in np.linspace(0, 10, 41):
@@ -391,7 +391,7 @@ def test_splitting_a_move_changes_nothing(steps, name, parts):
 # begins without a lag, and its first way is a rounding error
 @example([(8.0, 0.0, 7.0)], "small near 0", 2.0, 2.0, False)
 @given(moves, names, st.floats(-3, 3), st.floats(-200, 200), st.booleans())
-def test_turning_mirroring_and_shifting_the_sheet(steps, name, angle, shift, mirror):
+def test_marks_follow_rotation_mirroring_and_translation_of_the_sheet(steps, name, angle, shift, mirror):
     poses, brush = poses_from(steps), make_brush(LAGS[name])
     here = patch_at_poses(poses, brush)
     c, s = np.cos(angle), np.sin(angle)
@@ -403,7 +403,7 @@ def test_turning_mirroring_and_shifting_the_sheet(steps, name, angle, shift, mir
     assert found[:, 2:] == pytest.approx(here[:, 2:] @ matrix.T, abs=1e-8)
 
 
-def test_lifted_on_the_spot_a_brush_keeps_its_heading():
+def test_a_brush_lifted_in_place_keeps_its_heading():
     """A brush that is lifted on the spot keeps its heading.
 
     Its lever shrinks to 0 there, and no move gives a heading.
@@ -441,13 +441,13 @@ def test_patches_never_drift_apart(steps, name, dx, dy):
     assert np.all(np.diff(apart) <= 1e-9)
 
 
-def test_poses_no_brush_can_hold_are_refused():
+def test_impossible_poses_are_refused():
     for poses in ([[0, 0, 0], [5, 0, -10.5]], [[0, 0, 0], [np.nan, 0, -1]], [[0, 0, 0], [np.inf, 0, -1.0]]):
         with pytest.raises(ValueError, match=r"."):
             core.simulate(core.Plan(passes=[make_pass(np.array(poses, float))]), make_brush())
 
 
-def test_poses_above_the_paper_are_refused_unless_they_are_a_machines_motion():
+def test_poses_above_the_paper_are_refused_except_in_realised_motion():
     rising = [[0, 0, 0], [8, 0, -4], [20, 0, 0.5], [30, 0, -4], [40, 0, 0]]
     plan, brush = make_plan(np.array(rising, float)), make_brush()
     with refused("above-paper 'pose 2' 0.5") as caught:
@@ -461,7 +461,7 @@ def test_poses_above_the_paper_are_refused_unless_they_are_a_machines_motion():
 
 
 @pytest.mark.parametrize(("first", "last"), [(-4.0, -6.0), (0.0, -6.0), (-4.0, 0.0), (0.0, 0.0)])
-def test_each_pose_has_its_row_also_where_a_pass_begins_or_ends_on_the_paper(first, last):
+def test_each_pose_has_a_row_even_if_a_pass_starts_or_ends_on_the_paper(first, last):
     poses = np.array([[0, 0, first], [9, 0, -4], [40, 0, -6], [40, 30, last]])
     rows = core.simulate(make_plan(poses), make_brush()).passes[0]
     at = rows.pose_rows

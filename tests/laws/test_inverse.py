@@ -210,7 +210,7 @@ def test_widest_point_stays_within_the_tolerance(middle, half_width, tolerance):
 
 
 @pytest.mark.parametrize("half_width", [0.25, 1.0, 1.68, 2.5])
-def test_taut_rows_reach_from_the_landing_to_the_end(half_width):
+def test_the_brush_is_taut_from_the_landing_to_the_end(half_width):
     """The brush is taut from the landing to the end of a stroke.
 
     If the brush hung loose most of the way, the tolerance would mean little.
@@ -224,7 +224,7 @@ def test_taut_rows_reach_from_the_landing_to_the_end(half_width):
 
 
 @pytest.mark.parametrize("name", LAGS)
-def test_any_lag_law(name):
+def test_compensation_works_for_any_lag_law(name):
     rng, brush = np.random.default_rng(23), make_brush(LAGS[name])
     for _ in range(4):
         middle = smooth(rng, 3)
@@ -247,7 +247,7 @@ def _compensated_in_a_process(half_width, results):
 
 
 @pytest.mark.parametrize("thick", [2.0, 2.5, 3.0])
-def test_a_taper_too_steep_for_the_lever_comes_to_an_end(thick):
+def test_compensation_of_a_taper_too_steep_for_the_lever_terminates(thick):
     """Compensation of a taper from 0.25 mm to 5 mm within 7.5 mm terminates.
 
     In this taper, the lever e grows faster than the widest point advances.
@@ -323,7 +323,7 @@ BENDS = {
 
 @pytest.mark.parametrize("wide", [(1.68, 1.68), (1.0, 2.0)])
 @pytest.mark.parametrize("bend", BENDS)
-def test_contact_comes_back(bend, wide):
+def test_the_contact_follows_its_predicted_path_on_bends(bend, wide):
     middle_mm, parts = BENDS[bend]
     painted = Painted(stroke_of(middle_mm, [(0.0, wide[0]), (1.0, wide[1])]), 1e-6, parts=2, step=1.0, few_poses=False)
     length = sum(p[0] for p in parts)
@@ -386,7 +386,7 @@ def reach(painted, point, direction, rows):
 
 @pytest.mark.parametrize("half_width", [0.25, 0.5, 1.0, 1.68, 2.5, 4.0])
 @sample("seed", [11, 12], keep=1)
-def test_ends_of_the_mark(half_width, seed):
+def test_the_mark_has_no_tail_and_no_paint_before_its_start(half_width, seed):
     """A mark has no tail after the lift and no paint before the requested start.
 
     The patch rests while the brush is lifted.
@@ -409,7 +409,7 @@ def test_ends_of_the_mark(half_width, seed):
 
 
 def test_a_plain_lift_would_leave_a_tail():
-    """The measure of test_ends_of_the_mark finds the tail of an uncompensated stroke."""
+    """The measure of the test above finds the tail of an uncompensated stroke."""
     painted = Painted(stroke_of(line((0, 0), (40, 0)), [(0.0, 1.68)]), 1e-3, method="none", parts=12, step=0.5)
     contact = painted.rows.contact_mm
     lifting = painted.rows.pose >= painted.rows.pose[-1] - 12
@@ -429,7 +429,7 @@ def test_a_dab_has_its_widest_section_where_it_was_drawn():
 
 
 @pytest.mark.parametrize("tolerance", [0.5, 0.05, 1e-3])
-def test_none_keeps_the_tcp_on_the_middle_line(tolerance):
+def test_compensation_none_keeps_the_tcp_on_the_middle_line(tolerance):
     middle = np.vstack([smooth(np.random.default_rng(5), 3)])
     found = core.compensate([stroke_of(middle, [(0.0, 0.8), (1.0, 2.0)])], ROUND, (99.0, 99.0), "none", tolerance)
     poses, on = found.plan.passes[0].poses_mm, oracle.Middle(middle)
@@ -448,7 +448,7 @@ def test_none_keeps_the_tcp_on_the_middle_line(tolerance):
 
 @pytest.mark.parametrize("lag", [None, 5.0])
 @pytest.mark.parametrize("tolerance", [0.05, 1e-3])
-def test_constant_runs_a_constant_lag_ahead(lag, tolerance):
+def test_compensation_constant_runs_a_constant_lag_ahead(lag, tolerance):
     middle = line((0, 0), (20, 0), (20, 18))
     curve = smooth(np.random.default_rng(5), 3)
     for cubics, has_corner in ((middle, True), (curve, False)):
@@ -577,7 +577,7 @@ def beginning(middle, half_width, start):
 
 @pytest.mark.parametrize("half_width", [0.8, 1.4, 2.0])
 @pytest.mark.parametrize("middle", [line((20, 20), (60, 20)), arc(25.0, 1.2), arc(12.0, 1.5)])
-def test_a_round_beginning_is_round_and_stays_inside_of_the_stroke(middle, half_width):
+def test_a_round_start_is_round_and_stays_inside_the_stroke(middle, half_width):
     pointed, _ = beginning(middle, half_width, "pointed")
     rounded, beyond = beginning(middle, half_width, "round")
     assert pointed < 0.85
@@ -586,7 +586,7 @@ def test_a_round_beginning_is_round_and_stays_inside_of_the_stroke(middle, half_
 
 
 @sample("half_width", [3.0, 3.5, 3.7, 4.2], keep=2)
-def test_the_rear_of_a_wide_footprint_is_covered_too(half_width):
+def test_a_round_start_covers_the_rear_of_a_wide_footprint(half_width):
     middle = line((20, 20), (60, 20))
     pointed, _ = beginning(middle, half_width, "pointed")
     rounded, _ = beginning(middle, half_width, "round")
@@ -608,7 +608,7 @@ def poses_of(middle, half_width, **options):
         (line((20, 20), (60, 20)), [(0.0, 0.15), (0.5, 2.0), (1.0, 2.0)]),  # a taper
     ],
 )
-def test_what_cannot_be_round_is_pointed(middle, half_width):
+def test_a_start_that_cannot_be_round_is_pointed(middle, half_width):
     pointed = poses_of(middle, half_width)
     for start in ("round", "auto"):
         np.testing.assert_array_equal(poses_of(middle, half_width, start=start), pointed)
@@ -623,7 +623,7 @@ def test_what_cannot_be_round_is_pointed(middle, half_width):
     ],
     keep=1,
 )
-def test_what_has_no_room_for_a_way_back_is_turned_round_first(middle, half_width, least):
+def test_a_start_without_space_for_the_way_back_turns_first(middle, half_width, least):
     import shapely
 
     stroke = stroke_of(middle, half_width)
@@ -710,7 +710,7 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
     ids=["diamond", "askew", "of five corners"],
     keep=1,
 )
-def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
+def test_dots_keep_other_corners(corners, rounded_mm, least):
     """Dots with other corners keep them, as in Arabic letters.
 
     None of these dots fills 0.92 of a rectangle, so they were once painted as discs.
@@ -732,7 +732,7 @@ def test_dots_with_other_corners_have_them(corners, rounded_mm, least):
 
 
 @sample(("radius_mm", "least"), [(5.2, 0.97), (6.4, 0.97), (6.8, None), (8.0, None)], keep=2)
-def test_a_disc_wider_than_the_brush_is_gone_round_where_nothing_stays_bare_between(radius_mm, least):
+def test_a_disc_wider_than_the_brush_gets_a_ring_if_no_gap_remains(radius_mm, least):
     import shapely
 
     drawn = shapely.Point(50, 50).buffer(radius_mm, 64)
@@ -767,7 +767,7 @@ def test_a_dot_without_corners_stays_round(corners):
         ([67, 59, 73, 54, 74, 45, 73, 34], 3.2),
     ],
 )
-def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
+def test_wide_lines_start_round_for_any_bend(cubic, half_width):
     """A wide line begins round, however it bends.
 
     Lines without space for this once began pointed, with an overlap of 0.94.
@@ -788,7 +788,7 @@ def test_wide_lines_begin_round_however_they_bend(cubic, half_width):
 
 
 @pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 3.9, 4.1])
-def test_bars_of_all_widths_begin_alike(half_width):
+def test_bars_of_all_widths_start_alike(half_width):
     """Bars of all widths begin alike.
 
     Wide bars once began pointed next to round ones, which gave every stem of a sans a roof.
@@ -798,7 +798,7 @@ def test_bars_of_all_widths_begin_alike(half_width):
     np.testing.assert_array_equal(poses_of(bar, [(0.0, half_width)], start="auto"), rounded)
 
 
-def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
+def test_auto_chooses_a_suitable_start_and_a_stroke_can_override_it():
     bar = line((20, 20), (60, 20))
     pointed, rounded = poses_of(bar, [(0.0, 2.0)]), poses_of(bar, [(0.0, 2.0)], start="round")
     assert len(rounded) > len(pointed)
@@ -820,7 +820,7 @@ def test_auto_takes_what_suits_and_a_stroke_may_say_it_itself():
 
 @pytest.mark.parametrize("half_width", [1.0, 2.0, 3.0, 4.0])
 @pytest.mark.parametrize("middle", [line((20, 20), (60, 20)), line((20, 20), (50, 20))])
-def test_a_pointed_end_is_a_pointed_beginning_mirrored(middle, half_width):
+def test_a_pointed_end_is_a_mirrored_pointed_start(middle, half_width):
     mark = painted_region(poses_of(middle, [(0.0, half_width)], start="pointed", end="pointed"))
     _, low, right, high = mark.bounds
     assert right == pytest.approx(middle[0, 6] + half_width, abs=0.05), "it ends where the drawing ends"
@@ -865,7 +865,7 @@ def end_of_bar(half_width, slope, **options):
 
 
 @sample(("half_width", "slope"), [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3)], keep=2)
-def test_a_butt_end_is_as_straight_as_its_cut(half_width, slope):
+def test_a_butt_end_follows_its_cut(half_width, slope):
     rounded, _, _ = end_of_bar(half_width, slope)
     butt, beyond, there = end_of_bar(half_width, slope, end="butt")
     assert rounded < 0.9 - 0.05 * abs(slope)
@@ -921,7 +921,7 @@ def beginning_of_bar(half_width, slope, poses):
     [(1.5, 0.0), (2.0, -0.6), (2.0, 1.0), (3.0, 0.3), (4.2, 0.0)],
     keep=2,
 )
-def test_a_butt_beginning_is_as_straight_as_its_cut(half_width, slope):
+def test_a_butt_start_follows_its_cut(half_width, slope):
     plans = {start: plan_of_bar(half_width, slope, start=start) for start in ("round", "butt", "auto")}
     rounded, _ = beginning_of_bar(half_width, slope, plans["round"])
     butt, beyond = beginning_of_bar(half_width, slope, plans["butt"])
@@ -931,7 +931,7 @@ def test_a_butt_beginning_is_as_straight_as_its_cut(half_width, slope):
     np.testing.assert_array_equal(plans["auto"], plans["butt"])
 
 
-def test_a_stroke_has_butt_ends_at_both_sides():
+def test_a_stroke_can_have_butt_ends_on_both_sides():
     import shapely
 
     middle = np.array([(20.0, 20.0, 35.0, 20.0, 45.0, 20.0, 60.0, 28.0)])
@@ -971,7 +971,7 @@ ROUND_CAP = [
         (2.0, [(20, 18), (70, 18), (70, 22), (20, 22)]),  # goes on in another stroke
     ],
 )
-def test_what_is_no_cut_ends_round(half_width, target):
+def test_an_outline_without_a_cut_at_its_end_ends_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
     stroke.wanted_mm = [np.array(target, float)]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("round", "butt")]
@@ -990,7 +990,7 @@ def test_what_is_no_cut_ends_round(half_width, target):
         (2.0, [(10, 18), (60, 18), (60, 22), (10, 22)]),  # goes on in another stroke
     ],
 )
-def test_what_begins_with_no_cut_is_round(half_width, target):
+def test_an_outline_without_a_cut_at_its_start_starts_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
     stroke.wanted_mm = [np.array(target, float)]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("round", "butt")]
@@ -998,7 +998,7 @@ def test_what_begins_with_no_cut_is_round(half_width, target):
 
 
 @pytest.mark.parametrize("middle", [line((20, 20), (28, 20)), line((20, 20), (25, 20), (25, 50))])
-def test_a_beginning_without_room_for_the_way_back_is_round(middle):
+def test_a_butt_start_without_space_for_the_way_back_is_round(middle):
     """A beginning without space for the way back is round.
 
     It is too short for a tip that is set down inside, or the tip would stick out next to a corner.
@@ -1007,7 +1007,7 @@ def test_a_beginning_without_room_for_the_way_back_is_round(middle):
     np.testing.assert_array_equal(poses_of(middle, [(0.0, 3.0)], start="butt"), rounded)
 
 
-def test_round_caps_are_not_cut_where_beginnings_are_chosen():
+def test_automatic_starts_keep_round_caps():
     middle, half_width = line((20, 20), (60, 20)), [(0.0, 2.0)]
     rounded = poses_of(middle, half_width, start="round")
     np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), rounded)
@@ -1018,7 +1018,7 @@ def test_round_caps_are_not_cut_where_beginnings_are_chosen():
     np.testing.assert_array_equal(plan.passes[0].poses_mm, butt)
 
 
-def test_round_caps_stay_round_where_ends_are_chosen():
+def test_automatic_ends_keep_round_caps():
     middle, half_width = line((20, 20), (60, 20)), [(0.0, 2.0)]
     rounded = poses_of(middle, half_width)
     np.testing.assert_array_equal(poses_of(middle, half_width, end="auto"), rounded)

@@ -131,7 +131,7 @@ def learnt(request, tmp_path_factory):
     return studio, truth
 
 
-def test_a_word_brings_the_brush_nearer_to_the_truth(learnt):
+def test_a_painted_word_improves_the_brush(learnt):
     studio, truth = learnt
     depths = np.linspace(1, deepest(read_plan(studio.folder / "word.json")), 10)
     before, now = studio.brush("mine.json"), studio.brush()
@@ -145,14 +145,14 @@ def test_a_word_brings_the_brush_nearer_to_the_truth(learnt):
         assert np.all(band < 0.1 * true), law
 
 
-def test_given_twice_it_is_refused(learnt, capsys):
+def test_a_photograph_given_twice_is_refused(learnt, capsys):
     studio, _ = learnt
     status, _, reported = in_json(capsys, *studio.words("mine-3.json", prior="mine-2.json"))
     assert status == 1 and is_reported(reported, "photo-learned-twice mine-2"), reported
     assert not (studio.folder / "mine-3.json").exists()
 
 
-def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, capsys):
+def test_marks_with_less_information_than_the_prior_keep_the_brush(tmp_path, capsys):
     studio = Studio(tmp_path, BARS, 0.004)
     studio.paint(3, true_brush())
     assert in_json(capsys, *studio.words())[0] == 0
@@ -163,7 +163,7 @@ def test_marks_that_say_less_than_is_known_leave_the_brush_as_it_was(tmp_path, c
         assert law_band(now, law, DEPTHS)[0] == pytest.approx(law_band(before, law, DEPTHS)[0])
 
 
-def test_one_depth_says_less_of_others(tmp_path, capsys):
+def test_one_depth_gives_little_information_about_others(tmp_path, capsys):
     """One depth shows little of other depths.
 
     Marks at one depth and above leave the values far below uncertain. The intervals there still contain the
@@ -181,7 +181,7 @@ def test_one_depth_says_less_of_others(tmp_path, capsys):
         assert is_now[3] < 0.6 * was[3] and is_now[-1] > 2 * is_now[3], (law, was, is_now)
 
 
-def test_what_is_not_this_job_is_refused(tmp_path, capsys):
+def test_a_photograph_of_another_job_is_refused(tmp_path, capsys):
     studio = Studio(tmp_path)
     studio.paint(4, true_brush())
     (tmp_path / "other.svg").write_text((HEAD + WORD + "</g></svg>").replace("M14 34", "M15 34"))
@@ -201,7 +201,7 @@ def test_what_is_not_this_job_is_refused(tmp_path, capsys):
     assert not (tmp_path / "mine-2.json").exists()
 
 
-def test_strokes_that_share_paint_are_left_out_with_their_names(tmp_path, capsys):
+def test_strokes_that_share_paint_are_left_out_and_named(tmp_path, capsys):
     studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
     studio.paint(5, true_brush(1.05, 0.95))
     status, _, reported = in_json(capsys, *studio.words())
@@ -213,7 +213,7 @@ def test_strokes_that_share_paint_are_left_out_with_their_names(tmp_path, capsys
 
 
 @pytest.mark.thorough
-def test_a_second_look_that_finds_no_lone_stroke_keeps_the_first_result(tmp_path, capsys, monkeypatch):
+def test_a_second_pass_without_single_strokes_keeps_the_first_result(tmp_path, capsys, monkeypatch):
     studio = Studio(tmp_path, WORD + '<path id="slash" d="M20 84 L44 66" stroke-width="3"/>')
     studio.paint(5, true_brush(1.05, 0.95))
     looks = []
@@ -228,7 +228,7 @@ def test_a_second_look_that_finds_no_lone_stroke_keeps_the_first_result(tmp_path
 
 
 @pytest.mark.thorough
-def test_the_plan_of_a_corrected_word_says_where_the_tool_went(tmp_path, capsys):
+def test_the_plan_of_a_corrected_word_contains_the_tool_path(tmp_path, capsys):
     studio = Studio(tmp_path)
     shift = [
         {

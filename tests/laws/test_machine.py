@@ -108,7 +108,7 @@ def lag_off(made, brush):
     [("lean", "axes"), ("lean", "axes", "tilt"), ("tilt",), ("lean", "axes", "field"), ("field",)],
     keep=1,
 )
-def test_brush_and_machine_come_back(parts):
+def test_brush_and_machine_are_recovered(parts):
     brush, painted = painted_by(5, parts)
     made = calibrate_marks(painted, "b", options=options_for(parts))
     truth = {
@@ -143,7 +143,7 @@ def test_brush_and_machine_come_back(parts):
 
 
 @pytest.mark.parametrize("seed", [5, 6])
-def test_without_a_field_none_is_said_to_be_certain(seed):
+def test_a_machine_without_a_field_has_no_certain_field(seed):
     _, painted = painted_by(seed, ())
     made = calibrate_marks(painted, "b", options=options_for(("field",)))
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
@@ -152,14 +152,14 @@ def test_without_a_field_none_is_said_to_be_certain(seed):
     assert "field_mm" not in report(made).text(True)
 
 
-def test_without_the_machine_the_lag_is_off():
+def test_ignoring_the_machine_gives_a_wrong_lag():
     brush, painted = painted_by(5, ("lean",))
     assert lag_off(calibrate_marks(painted, "b", options=options_for(())), brush) > 0.03
     assert lag_off(calibrate_marks(painted, "b", options=options_for(("lean",))), brush) < 0.03
 
 
 @pytest.mark.parametrize("seed", [54, 2005])
-def test_no_lag_that_looks_like_lean_is_where_the_fit_begins(seed):
+def test_the_fit_does_not_start_with_a_lag_that_looks_like_lean(seed):
     """The fit does not begin with a lag that looks like lean.
 
     The machines lean by 1 and 0.8 mm per mm. If lags are tried with a fixed machine, the first lag comes back
@@ -172,7 +172,7 @@ def test_no_lag_that_looks_like_lean_is_where_the_fit_begins(seed):
     assert max(half for _, half in found["numbers"].values()) < 0.15, "and it is known what it is"
 
 
-def test_strokes_of_one_direction_are_said_to_separate_lean_from_lag_badly():
+def test_strokes_of_one_direction_are_reported_to_separate_lean_poorly():
     _, painted = painted_by(5, ("lean",), one_way=True)
     assert are_reported(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 0 0.8")
     assert machine_found.doubts(painted, options_for(())) == []
@@ -180,7 +180,7 @@ def test_strokes_of_one_direction_are_said_to_separate_lean_from_lag_badly():
     assert machine_found.doubts(both, options_for(("lean",))) == []
 
 
-def test_an_exact_machine_is_found_to_be_exact():
+def test_an_exact_machine_is_recovered_as_exact():
     brush, painted = painted_by(5, ())
     made = calibrate_marks(painted, "b", options=options_for(("lean", "axes")))
     found = machine_found.numbers(made.fit, made.covariance, made.expected)
@@ -192,7 +192,7 @@ def test_an_exact_machine_is_found_to_be_exact():
 
 
 @pytest.mark.parametrize("seed", [5, 6])
-def test_no_lean_is_known_no_better_than_some(seed):
+def test_zero_lean_is_as_uncertain_as_a_real_lean(seed):
     """The absence of lean is known no better than a real lean.
 
     A brush that is pressed on the spot points where a lean of micrometres moves the tool. With this lean, the
@@ -210,7 +210,7 @@ def test_no_lean_is_known_no_better_than_some(seed):
     assert np.all(known[0.0] > 0.4 * known[1.0]), known
 
 
-def test_a_machine_runs_circles_by_their_chords():
+def test_a_machine_runs_circles_as_chords():
     """A machine runs circles by their chords.
 
     The test has half a circle through three poses, whose chords alone would be another stroke.

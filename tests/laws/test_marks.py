@@ -166,7 +166,7 @@ def marks_of(poses, brush, tolerance_mm=0.02):
 
 
 @sample(("name", "shape"), CASES, keep=6)
-def test_outline_area_against_a_dense_union(name, shape):
+def test_the_outline_area_agrees_with_a_dense_union(name, shape):
     target = target_mark(name, shape)
     marks = marks_of(PASSES[name], brush_of(shape), 5e-4)
     rings = marks.passes[0].outline_mm
@@ -185,7 +185,7 @@ def holes_of(region):
     return [h for part in shapely.get_parts(region) for h in part.interiors]
 
 
-def test_outline_at_the_default_tolerance():
+def test_the_outline_is_exact_at_the_default_tolerance():
     """At the default tolerance, no edge of the outline is more than 0.02 mm off.
 
     Chords of rows are up to 0.02 mm off the curve.
@@ -197,7 +197,7 @@ def test_outline_at_the_default_tolerance():
         assert target.difference(region.buffer(0.021)).area < 1e-6, (name, shape)
 
 
-def test_outline_area_on_random_passes():
+def test_the_outline_area_of_random_passes_agrees_with_a_dense_union():
     rng = np.random.default_rng(4)
     for shape in ("round", "crescent"):
         poses = random_poses(rng, 6)
@@ -210,7 +210,7 @@ def test_outline_area_on_random_passes():
     [c for c in CASES if c[0] in ("straight", "corner", "circle", "two dabs", "crossing")],
     keep=4,
 )
-def test_coverage_against_rings_and_union(name, shape):
+def test_coverage_agrees_with_rings_and_union(name, shape):
     brush, target = brush_of(shape), target_mark(name, shape)
     marks = marks_of(PASSES[name], brush, 2e-4)
     left, bottom, right, top = core.painted_bounds(marks.passes[0], brush)
@@ -241,7 +241,7 @@ def test_coverage_against_rings_and_union(name, shape):
     assert abs(np.mean(found - exact)) < 0.02  # neither widened nor narrowed
 
 
-def test_coverage_of_a_window_inside_the_mark():
+def test_coverage_of_a_window_equals_that_part_of_the_whole():
     brush = brush_of("round")
     marks = marks_of(PASSES["corner"], brush)
     whole = core.coverage(marks, brush, (-2.0, -6.0, 30.0, 36.0), 10.0)
@@ -250,7 +250,7 @@ def test_coverage_of_a_window_inside_the_mark():
     assert core.coverage(marks, brush, (500.0, 500.0, 5.0, 5.0), 10.0).max() == 0
 
 
-def test_union_over_passes():
+def test_the_mark_of_two_passes_is_their_union():
     """The mark of two crossing passes is their union.
 
     Each pass keeps its own outline.
@@ -294,7 +294,7 @@ def test_rows_are_parallel_and_span_the_poses():
 
 
 @pytest.mark.parametrize("shape", BRUSHES)
-def test_footprint_blending(shape):
+def test_footprints_are_blended_between_depths(shape):
     dragged, pressed = BRUSHES[shape]
     table = brush_of(shape).footprints
     for depth in (0.0, 0.4, 1.0, 1.99, 2.0, 3.7, 5.0, 8.5, 10.0, 12.0):
@@ -303,7 +303,7 @@ def test_footprint_blending(shape):
             assert core.footprint_at(table, depth, pull) == pytest.approx(target, abs=1e-12)
 
 
-def test_nothing_painted_is_nothing():
+def test_a_pass_at_depth_zero_paints_nothing():
     brush = brush_of("round")
     marks = marks_of([[0, 0, 0], [0, 0, 0], [0, 0, 0]], brush)
     assert core.area(marks.outline_mm) == 0

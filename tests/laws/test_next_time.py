@@ -149,7 +149,7 @@ def apart(painted, target):
 
 
 @sample("seed", [1, 2], keep=1)
-def test_each_round_comes_nearer(tmp_path, capsys, seed):
+def test_each_round_of_corrections_reduces_the_error(tmp_path, capsys, seed):
     studio = Studio(tmp_path, seed)
     plan = studio.plan()
     target = studio.rings(plan)
@@ -165,7 +165,7 @@ def test_each_round_comes_nearer(tmp_path, capsys, seed):
     assert all(after_two[name] < before[name] for name in before)
 
 
-def test_corrections_are_those_of_this_job(tmp_path, capsys):
+def test_corrections_of_another_job_are_refused(tmp_path, capsys):
     studio = Studio(tmp_path, 3)
     found = studio.compared(studio.photographed(studio.plan()))
     drawing = tmp_path / "five.svg"
@@ -253,7 +253,7 @@ def test_corrections_are_read_once(tmp_path, capsys):
     assert status == 0 and is_reported(reported, "stroke-farther", "bar"), reported
 
 
-def test_a_corrected_plan_holds_its_corrections_and_the_plan_before(tmp_path, capsys):
+def test_a_corrected_plan_contains_its_corrections_and_the_original_plan(tmp_path, capsys):
     """A corrected plan holds its corrections and the original plan.
 
     A second correction moves its strokes no further. compare treats the plan like the drawing with these
@@ -347,7 +347,7 @@ def longer_lag(folder):
     return folder / "longer.json"
 
 
-def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
+def test_a_new_brush_and_corrections_do_not_correct_an_error_twice(tmp_path, capsys):
     """A new brush and corrections in one round do not correct an error twice.
 
     The photograph is compared again with the new brush, by the painted plan.
@@ -375,7 +375,7 @@ def test_a_new_brush_and_corrections_in_one_round(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(("planned", "status"), [("0" * 64, 0), (BRUSH.sha256, 1)])
-def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planned, status):
+def test_the_plan_for_another_brush_may_start_elsewhere(tmp_path, capsys, planned, status):
     studio = Studio(tmp_path, 9)
     x, y, _ = studio.plan().passes[0].poses_mm[0]
     row = {"start_mm": [x + 2.0, y], "middle_mm": [30.0, 40.0], "shift_mm": [0.1, 0.2], "turn_deg": 0.1}
@@ -387,7 +387,7 @@ def test_the_plan_for_another_brush_may_begin_elsewhere(tmp_path, capsys, planne
     assert found == status and (status == 0 or is_reported(reported, "corrections-of-another-job")), reported
 
 
-def test_two_strokes_show_no_corrections(tmp_path, capsys):
+def test_two_strokes_determine_no_corrections(tmp_path, capsys):
     """Two strokes show no corrections.
 
     Their places cannot be separated from the place of the sheet.
@@ -422,7 +422,7 @@ def stretched(tmp_path_factory):
     return studio, studio.rings(plan), found, corrected_cell
 
 
-def test_a_corrected_cell_and_corrections_in_one_round(stretched):
+def test_a_corrected_cell_and_corrections_work_together(stretched):
     """A corrected cell and corrections work in one round.
 
     With the corrected cell, strokes move only by the errors that the cell leaves. Each file alone is right
@@ -470,7 +470,7 @@ def test_corrections_of_another_cell_are_refused(stretched, capsys):
 
 
 @pytest.mark.parametrize("by_mm", [-0.4, 0.3])
-def test_a_width_is_corrected_where_it_is(tmp_path, by_mm):
+def test_a_width_is_corrected_where_it_is_wrong(tmp_path, by_mm):
     """A width is corrected where it is wrong.
 
     shapely moves each edge away from the middle. The middle line and the ends stay.
@@ -551,7 +551,7 @@ def measured_between(folder, least_mm, deepest_mm):
     return folder / "measured.json"
 
 
-def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
+def test_start_and_end_errors_of_strokes_are_reported(tmp_path, capsys):
     """The places where strokes begin and end are reported.
 
     Strokes begin 1.5 mm late, end 1 mm late, or end 2 mm early at the place of the sheet.
@@ -583,7 +583,7 @@ def test_where_strokes_begin_and_end_is_reported(tmp_path, capsys):
 
 
 @pytest.mark.thorough
-def test_a_stroke_that_ran_dry_moves_no_other(tmp_path, capsys):
+def test_a_stroke_that_ran_dry_does_not_move_others(tmp_path, capsys):
     """A stroke that runs out of paint moves no other stroke.
 
     If half of a stroke has no paint, the sheet's place comes from the other strokes.

@@ -67,7 +67,7 @@ def strangers():
     return out
 
 
-def test_intervals_outside_of_the_family_hold_the_truth(strangers):
+def test_intervals_outside_the_model_family_contain_the_truth(strangers):
     """Intervals outside of the family hold the truth of 36 values of four brushes.
 
     Intervals of laws that may not depart from the family hold about 10.
@@ -76,7 +76,7 @@ def test_intervals_outside_of_the_family_hold_the_truth(strangers):
     assert len(missed) <= 7, missed
 
 
-def test_a_brush_that_marks_hardly_separate_from_the_family():
+def test_a_brush_hardly_distinct_from_the_family_has_correct_intervals():
     """A brush that marks hardly separate from the family has right intervals.
 
     Its law has a hook near the touch, where another form looks like paper of another height. Laws once kept
@@ -86,7 +86,7 @@ def test_a_brush_that_marks_hardly_separate_from_the_family():
     assert held(found).sum() >= 8, found
 
 
-def test_a_height_that_marks_hardly_determine_is_in_all_intervals():
+def test_a_poorly_determined_height_widens_all_intervals():
     """A height that marks hardly determine widens all intervals.
 
     Powers of depth look nearly equal on paper 0.17 mm lower. Departures were once expected to be as small as
@@ -109,7 +109,7 @@ def chart_ways(brush):
 
 
 @pytest.mark.thorough
-def test_widths_that_rise_as_roots_from_the_touch_on():
+def test_widths_that_rise_as_square_roots_have_correct_intervals():
     """Widths that rise as roots from the touch have right intervals on two charts.
 
     With five numbers of a half width and departures that are smooth at the touch, intervals held 12 of 18
@@ -125,7 +125,7 @@ def test_widths_that_rise_as_roots_from_the_touch_on():
 
 
 @pytest.mark.thorough
-def test_round_6_paints_its_own_chart():
+def test_round_6_is_recovered_from_its_own_chart():
     """round-6 comes back from its own chart without noise on its edges.
 
     The lag was once off by nine half-intervals, and the paper by six.

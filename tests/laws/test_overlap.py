@@ -95,7 +95,7 @@ def check_figures(strokes, compensation, brush_name="round-6"):
 
 
 @pytest.mark.thorough
-def test_overlap_of_the_demo_drawing():
+def test_overlap_of_the_demo_drawing_agrees_with_the_report():
     import brushsvg
 
     strokes, _ = brushsvg.strokes(brushsvg.read_drawing(EXAMPLES / "vincent.svg"))
@@ -124,6 +124,6 @@ def random_stroke(rng, name):
 
 
 @pytest.mark.parametrize(("seed", "compensation"), [(0, "closed"), (1, "none"), (2, "closed")])
-def test_overlap_of_random_strokes(seed, compensation):
+def test_overlap_of_random_strokes_agrees_with_the_report(seed, compensation):
     rng = np.random.default_rng(seed)
     check_figures([random_stroke(rng, f"s{k}") for k in range(3)], compensation)

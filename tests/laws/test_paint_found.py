@@ -47,7 +47,7 @@ def sheet(seed, narrows_per_m, mixed=False):
 
 
 @sample(("seed", "rate", "mixed"), [(1, 0.5, False), (6, 0.8, True)], keep=1)
-def test_the_rate_and_the_freshly_dipped_brush_come_back(seed, rate, mixed):
+def test_the_decay_rate_and_the_freshly_dipped_brush_are_recovered(seed, rate, mixed):
     brush, reported = sheet(seed, rate, mixed)
     made = calibrate(reported, "b", paint=True)
     paint = made.brush.paint
@@ -104,7 +104,7 @@ def rate_of(made):
 
 
 @sample(("seed", "rate"), [(0, 0.7), (3, 0.25), (3, 0.0)], keep=1)
-def test_a_chart_for_one_load_shows_laws_and_paint_at_once(seed, rate):
+def test_a_chart_for_one_load_gives_laws_and_paint(seed, rate):
     brush, reported, made = chart_sheet(seed, lambda way, _: np.exp(-rate * way / 1000))
     found, half = rate_of(made)
     assert reported.explained_by_depth < 0.3
@@ -135,7 +135,7 @@ def test_paint_that_runs_out_by_another_law_is_reported():
 
 
 @pytest.mark.thorough
-def test_paint_that_does_not_run_out_is_not_said_to():
+def test_constant_paint_is_not_reported_as_running_out():
     _, reported = sheet(8, 0.0)
     made = calibrate(reported, "b", paint=True)
     paint = made.brush.paint
@@ -143,7 +143,7 @@ def test_paint_that_does_not_run_out_is_not_said_to():
 
 
 @pytest.mark.thorough
-def test_marks_that_seem_to_widen_a_little_are_marks_that_do_not_narrow():
+def test_slightly_widening_marks_count_as_constant():
     """Marks that seem to widen a little do not narrow.
 
     On a chart, early and late strokes of the largest depth have different shapes. For this brush, they
@@ -158,7 +158,7 @@ def test_marks_that_seem_to_widen_a_little_are_marks_that_do_not_narrow():
     assert abs(made.brush.half_width(deepest) - brush.law("half_width")(deepest)) < band
 
 
-def test_the_command_writes_it(tmp_path, capsys):
+def test_the_command_writes_the_paint_to_the_brush(tmp_path, capsys):
     _, reported = sheet(6, 0.8, True)
     path, out = tmp_path / "m.json", tmp_path / "b.json"
     path.write_text(json.dumps({"format": "brushsvg/measurements", "version": 1, **reported}))
@@ -246,7 +246,7 @@ def test_marks_that_end_dry_show_how_long_a_load_lasts(share):
 
 
 @pytest.mark.thorough
-def test_a_load_that_lasts_is_said_to():
+def test_a_load_that_lasts_is_reported():
     reported, ends = run_dry(1e6)
     made = calibrate(reported, "b", paint=True)
     assert made.dry is None and made.brush.paint.lasts_mm is None

@@ -115,7 +115,7 @@ def test_wider_paint_and_a_missing_stroke_are_reported(job, capsys):
 
 
 @sample("by_mm", [-0.5, 0.8, 2.0], keep=1)
-def test_however_much_wider_it_is(job, capsys, by_mm):
+def test_wider_paint_is_reported_for_any_width(job, capsys, by_mm):
     folder, page, _, painted = job
     wide = {
         name: [np.array(Polygon(ring).buffer(by_mm).exterior.coords)[::-1] for ring in rings]
@@ -127,7 +127,7 @@ def test_however_much_wider_it_is(job, capsys, by_mm):
     assert [row["wider_mm"] for row in rows] == pytest.approx([by_mm, by_mm], abs=0.05)
 
 
-def test_what_only_turns_leaves_nothing_of_the_strokes_places(job, capsys):
+def test_a_pure_rotation_leaves_no_displacement_of_strokes(job, capsys):
     folder, page, rings, _ = job
     (folder / "rot.jpg").write_bytes(shown(page, {name: list(map(turned, each)) for name, each in rings.items()}))
     found = json.loads(compare(folder, capsys, "rot.jpg", "--json")[1].out)
@@ -136,7 +136,7 @@ def test_what_only_turns_leaves_nothing_of_the_strokes_places(job, capsys):
     assert found["overlap_sheet_placed"] == pytest.approx(found["overlap_strokes_placed"], abs=0.003)
 
 
-def test_another_place_of_one_stroke_is_not_a_missing_one(job, capsys):
+def test_a_displaced_stroke_is_not_reported_as_missing(job, capsys):
     folder, page, rings, _ = job
     moved = dict(rings) | {"line": [ring + np.array([0.0, 3.5]) for ring in rings["line"]]}
     (folder / "moved.jpg").write_bytes(shown(page, moved))
@@ -145,7 +145,7 @@ def test_another_place_of_one_stroke_is_not_a_missing_one(job, capsys):
     assert status == 0 and reported.err == "" and row["shift_mm"] == pytest.approx([0, 3.5], abs=0.05)
 
 
-def test_paint_of_a_paler_colour_is_paint(job, capsys):
+def test_paler_paint_counts_as_paint(job, capsys):
     folder, page, rings, _ = job
     sheet = photograph.page(page.printed)
     for name, each in rings.items():
@@ -177,7 +177,7 @@ def test_a_blot_is_reported(job, capsys):
     assert all(row["found"] for row in found["strokes"])
 
 
-def test_scripts_can_ask_for_an_overlap(job, capsys):
+def test_compare_fails_below_the_requested_overlap(job, capsys):
     folder = job[0]
     assert compare(folder, capsys, "photo.jpg", "--at-least", "0.2")[0] == 0
     words = ("compare", folder / "photo.jpg", folder / "four.svg", "--at-least", "0.99")
@@ -185,7 +185,7 @@ def test_scripts_can_ask_for_an_overlap(job, capsys):
     assert status == 1 and is_reported(reported, "overlap-low 0.99"), reported
 
 
-def test_other_pictures_are_refused(job, capsys):
+def test_pictures_that_do_not_show_the_job_are_refused(job, capsys):
     folder, page, _, painted = job
     (folder / "bare.jpg").write_bytes(shown(page, {}))
     line = affinity.rotate(Polygon(painted["line"][0]), 75, origin=(35, 30))
@@ -259,7 +259,7 @@ def test_half_a_sheet_is_refused(job, capsys, half):
     assert status == 1 and reported.code == "photo-cropped" and not found, reported
 
 
-def test_another_plan_on_this_page_is_refused(job, capsys):
+def test_another_plan_on_the_same_page_is_refused(job, capsys):
     folder, page, rings, _ = job
     names = list(rings)
     middles = {name: np.array(centre(each)) for name, each in rings.items()}
@@ -276,7 +276,7 @@ def test_another_plan_on_this_page_is_refused(job, capsys):
         assert status == 1 and reported.code == "photo-of-another-job" and not found, (kind, reported)
 
 
-def test_paint_that_is_unlike_a_mark_corrects_it_not(job, capsys):
+def test_paint_unlike_its_mark_gives_no_correction(job, capsys):
     """A comb where a line should be: its paint could be that of anything."""
     folder, page, _, painted = job
     line = Polygon(painted["line"][0])
@@ -333,7 +333,7 @@ def test_python_reports_what_the_command_shows(job, capsys, tmp_path):
     assert [(each.where, each.code) for each in notices if each.code == "mark-missing"] == [("bow", "mark-missing")]
 
 
-def test_what_cannot_be_compared_from_python_is_one_error(job, tmp_path):
+def test_invalid_comparisons_from_python_raise_one_error(job, tmp_path):
     folder = job[0]
     drawing, photo = folder / "four.svg", str(folder / "photo.jpg")
     (tmp_path / "other.svg").write_text(DRAWING.replace("M16 58 L70 54", "M16 50 L70 44"))

@@ -66,7 +66,7 @@ def calibrated(seed, **faults):
 
 
 @pytest.mark.parametrize("seed", [3, 4])
-def test_the_brush_comes_back_with_honest_intervals(seed):
+def test_the_brush_is_recovered_with_correct_intervals(seed):
     # From seed 4 the fit once found footprints without a front, and a lag 12 % off.
     brush, painted, made = calibrated(seed)
     found, first, z = made.brush, 0, []
@@ -92,7 +92,7 @@ def test_the_brush_comes_back_with_honest_intervals(seed):
 
 
 @sample("seed", [2, 5], keep=1)
-def test_a_round_tail_is_seen_in_the_marks(seed):
+def test_a_round_tail_is_recovered_from_the_marks(seed):
     """A round tail shows in the marks.
 
     Read as a pointed tail, it left lag or width off by more than two standard deviations.
@@ -121,7 +121,7 @@ def test_a_sheet_scanned_at_another_scale_is_refused():
     assert re.search(r" (2\.[5-9]|3\.[0-5])\d \+- \d.\d\d %", caught.value.sentence)
 
 
-def test_displacements_come_back():
+def test_displacements_are_recovered():
     _, painted, made = calibrated(3)
     found = np.array([residual.displacement_mm for residual in made.fit.marks])
     off = found - np.array(painted.displacements)
@@ -129,7 +129,7 @@ def test_displacements_come_back():
     assert np.sqrt(np.mean(off**2)) < 0.15 < np.sqrt(np.mean(np.square(painted.displacements)))
 
 
-def test_more_displacement_than_expected_is_said():
+def test_larger_displacements_than_expected_are_reported():
     _, strokes, painted = sheet(3, displacement=2.5)
     reported = report(calibrate_marks(read_painted(*as_file(strokes, painted), None), "b")).text(True)
     assert re.search(r'2\.\d mm.* 1 mm .*\{"displacement_mm": 3\}', reported)
@@ -156,7 +156,7 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
         (found(turn=0.11), r' 6.3 degrees.* 1.1 degrees.*\{"turn_deg": 7\}'),
     ],
 )
-def test_what_is_far_beyond_what_was_expected_is_said(made, said):
+def test_results_far_beyond_expectation_are_reported(made, said):
     assert re.search(said, "".join(mark_report._unexpected(made)))
     assert bool(said) == bool(mark_report._unexpected(made))
 
@@ -174,7 +174,7 @@ def test_a_photograph_has_flags_and_no_measurement_file(made, flag):
     assert re.search(flag, said) and 'expected"' not in said
 
 
-def test_marks_unlike_their_predictions_are_said(monkeypatch):
+def test_marks_unlike_their_predictions_are_reported(monkeypatch):
     _, _, made = calibrated(3)
     assert "[0.5, 1]" not in report(made).text(True)
     monkeypatch.setattr(mark_report, "overlaps", lambda _: (0.3, 0.36))
@@ -214,7 +214,7 @@ def test_blots_and_gaps_are_masked():
     assert made.fit.left_aside > 0.003
 
 
-def test_depths_that_nobody_painted_are_refused():
+def test_depths_that_were_not_painted_are_refused():
     _, strokes, painted = sheet(3)
     done = read_painted(*as_file(strokes, painted), None)
     with refused("depth-not-measured", "depth_range_mm") as caught:
@@ -222,7 +222,7 @@ def test_depths_that_nobody_painted_are_refused():
     assert re.search(r' 4\.51\d* mm.* "depth_range_mm": \[0, 4\.51', caught.value.sentence)
 
 
-def test_a_law_that_is_left_open_is_refused_with_its_number():
+def test_an_undetermined_law_is_refused_with_its_value():
     laws = core.MarkLaws([2.0, 1.0, 0.0, 0.0], [0.0, 0.4], [0.0, 0.5, 0.0], 1.8, 1.0)
 
     def open_by(share):
@@ -257,7 +257,7 @@ STILL = {"displacement": 0.0, "placement": 0.0, "turn": 0.0}
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_an_uncertain_edge_is_as_far_off_as_it_was_moved(seed):
+def test_an_uncertain_edge_has_the_distance_it_was_moved(seed):
     # Narrow brushes once had edges 0.01 mm too far outside, and ways out of the mark were 5 mm long.
     brush, _, clean = sheet(seed, noise=1e-9, **STILL)
     straight = drawn_towards(brush, clean).marks[0]
@@ -269,7 +269,7 @@ def test_an_uncertain_edge_is_as_far_off_as_it_was_moved(seed):
         np.testing.assert_allclose(np.abs(mark.distance_mm), moved, atol=0.1)
 
 
-def test_a_height_just_below_0_is_not_surer_than_the_paper_above_allows():
+def test_a_height_just_below_0_has_a_realistic_interval():
     """A height just below 0 is as uncertain as the paper above allows.
 
     Landings on a slope from height 0 move with lower paper. They do not move with higher paper.
@@ -314,7 +314,7 @@ def test_ends_hardly_wider_than_the_noise_are_masked(noise):
     assert fit.slim == pytest.approx(np.mean(widths < least), rel=0.1)
 
 
-def test_without_noise_the_brush_comes_back_as_it_is():
+def test_a_sheet_without_noise_recovers_the_exact_brush():
     # The paper once came out 0.012 mm too high, and the brush 0.01 mm too narrow.
     brush, strokes, painted = sheet(11, noise=1e-3)
     fit = calibrate_marks(read_painted(*as_file(strokes, painted), None), "b").fit
@@ -324,7 +324,7 @@ def test_without_noise_the_brush_comes_back_as_it_is():
 
 
 @pytest.mark.parametrize("seed", [3, 5])
-def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
+def test_a_foreign_ring_does_not_shorten_other_intervals(seed):
     """A foreign ring does not make the intervals of the rest shorter.
 
     Its points once counted in the noise, which made intervals 9 % too short. It also changed the lag of brush
@@ -346,14 +346,14 @@ def test_a_foreign_ring_does_not_make_the_rest_surer(seed):
     np.testing.assert_allclose(framed.fit.laws.lag, alone.fit.laws.lag, atol=0.05)
 
 
-def test_points_never_count_as_more_than_there_are():
+def test_the_effective_number_of_points_is_at_most_their_number():
     _, _, made = calibrated(3, noise=0.0, displacement=0.0, height=0.0, placement=0.0, turn=0.0)
     assert made.fit.noise_mm == pytest.approx(0.05), "the least that is believed"
     assert made.fit.effective_samples <= made.fit.samples
     assert intervals(made).min() > 0.015
 
 
-def test_paper_that_is_millimetres_higher_than_it_was_taught():
+def test_paper_millimetres_higher_than_taught_is_found():
     """Paper that is millimetres higher than taught is found.
 
     The fit once stopped at a limit of 2 mm.
@@ -372,7 +372,7 @@ def test_paper_that_is_millimetres_higher_than_it_was_taught():
     assert lag == pytest.approx([brush.law("lag")(depth) for depth in DEPTHS[1:] * brush.deepest], rel=0.05)
 
 
-def test_what_to_expect_is_what_comes():
+def test_predicted_intervals_agree_with_fitted_intervals():
     """The intervals predicted before painting agree with the intervals of the fit."""
     _brush, strokes, _ = sheet(3)
     _, _, made = calibrated(3)
@@ -386,7 +386,7 @@ def test_what_to_expect_is_what_comes():
         assert np.all(np.abs(np.log(reported[at] / came[at])) < np.log(1.7))
 
 
-def test_laws_that_are_known_add_their_information():
+def test_known_laws_add_their_information():
     """Known laws add their information.
 
     Inverse covariances add up. The sum is exact if edges err independently and laws keep to their numbers.

@@ -75,7 +75,7 @@ def desk(tmp_path_factory):
     return folder
 
 
-def test_python_gives_the_brush_of_the_command(desk, tmp_path, capsys):
+def test_python_and_the_command_give_the_same_brush(desk, tmp_path, capsys):
     photo, printed_chart, out = desk / "photo.jpg", desk / "chart.json", tmp_path / "own.json"
     assert main(["calibrate", str(photo), "--chart", str(printed_chart), "-o", str(out), "--quiet"]) == 0
     made = brushsvg.calibrate(photo, "own", chart=printed_chart)
@@ -84,7 +84,7 @@ def test_python_gives_the_brush_of_the_command(desk, tmp_path, capsys):
     assert made.picture().startswith(b"\x89PNG")
 
 
-def test_one_photograph_gives_the_brush_back(desk, capsys):
+def test_one_photograph_recovers_the_brush(desk, capsys):
     files = [str(desk / name) for name in ("photo.jpg", "chart.json", "own.json", "read.png")]
     assert (
         main(
@@ -130,7 +130,7 @@ def calibrating(folder):
     ]
 
 
-def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
+def test_a_chart_on_bulging_paper_gives_the_brush_or_a_warning(tmp_path, capsys):
     """Bulging paper gives the brush or a warning.
 
     With a bulge of 0.4 mm the brush comes back. With 0.8 mm the markers hardly show the bulge, and the
@@ -153,7 +153,7 @@ def test_a_chart_on_paper_that_bulges(tmp_path, capsys):
 
 
 @pytest.mark.thorough
-def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, capsys):
+def test_a_known_height_is_kept_and_outlines_give_the_lag(desk, capsys):
     """A known height is kept, and outlines give the lag.
 
     Without the height, the fit finds it within 0.03 mm. The outlines then count as measured. They are the
@@ -185,7 +185,7 @@ def test_a_height_that_is_known_is_kept_and_the_lag_found_by_outlines(desk, caps
     assert all((desk / name).stat().st_size > 10_000 for name in ("lag.png", "over.png"))
 
 
-def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
+def test_a_lag_from_outlines_needs_measured_outlines(desk, capsys):
     words = [
         "calibrate",
         "--force",
@@ -200,7 +200,7 @@ def test_a_lag_by_outlines_needs_outlines_that_were_measured(desk, capsys):
     assert not (desk / "none.json").exists()
 
 
-def test_marks_that_are_covered_or_elsewhere_are_named_and_left_out(tmp_path, capsys):
+def test_covered_or_displaced_marks_are_named_and_left_out(tmp_path, capsys):
     """Marks that are covered or displaced are named and left out.
 
     The fit masks their points. It once gave the brush without reporting them.
@@ -241,7 +241,7 @@ def fitted(count, astray):
     return SimpleNamespace(marks=rows, noise_mm=0.05)
 
 
-def test_a_mark_is_held_against_the_others_alone():
+def test_a_mark_is_compared_only_with_the_other_marks():
     fit = fitted(24, {3: np.array([1.9, 0.0]), 9: np.array([0.0, -9.0])})
     found = find_strays(list("abcdefghijklmnopqrstuvwx"), fit)
     assert [stray.mark for stray in found] == ["d", "j"] and all(stray.is_displaced for stray in found)
@@ -253,7 +253,7 @@ def test_a_mark_is_held_against_the_others_alone():
     assert not find_strays(list("abcd"), fitted(4, {0: np.array([5.0, 0.0])})), "four do not single out one"
 
 
-def test_many_marks_astray_are_refused():
+def test_many_outlying_marks_are_refused():
     some = [SimpleNamespace(mark=SimpleNamespace(stroke=f"arc-{k}")) for k in range(6)]
     painted = SimpleNamespace(marks=[None] * 25)
     refuse_many(tuple(some[:5]), painted)
@@ -264,7 +264,7 @@ def test_many_marks_astray_are_refused():
         refuse_many(tuple(some), painted, SheetScale((0.04, 0.002), (0.04, 0.002), (0.04, 0.0015), 44))
 
 
-def test_the_table_round_paper_that_is_smaller_than_the_print_is_no_mark(tmp_path, capsys):
+def test_the_table_around_small_paper_is_not_a_mark(tmp_path, capsys):
     """The table around paper that is smaller than the print is not a mark.
 
     A page printed at 103 % ends within the span of its markers. The table was once read as the mark of arc-4.

@@ -224,7 +224,7 @@ def in_paper_frame(moves, cell, name, z_offset):
 
 @sample("name", LANGUAGES, keep=4)
 @given(seed=st.integers(0, 2**32 - 1))
-def test_all_that_is_written_is_safe(name, seed):
+def test_all_random_programs_are_safe(name, seed):
     rng = np.random.default_rng(seed)
     cell, brush = random_cell(rng, name), make_brush(name="made")
     brush.max_speed_mm_s = float(rng.uniform(3, 40))
@@ -263,7 +263,7 @@ def test_all_that_is_written_is_safe(name, seed):
         last = point
 
 
-def test_every_language_is_tried():
+def test_every_language_is_tested():
     # A user's own post may write anything. A pen draws no plan of this kind: see test_hpgl and
     # test_marlin_servo.
     posts = set(POSTS) - {"robodk", "hpgl", "marlin-servo"}
@@ -271,7 +271,7 @@ def test_every_language_is_tried():
 
 
 @pytest.mark.parametrize("seed", range(15))
-def test_programs_for_machines_that_go_elsewhere_are_allowed_and_come_back(seed):
+def test_programs_for_inexact_machines_pass_check_and_are_read_back(seed):
     rng = np.random.default_rng(seed + 71)
     name = list(LANGUAGES)[seed % len(LANGUAGES)]
     cell, brush = random_cell(rng, name), make_brush(name="made")

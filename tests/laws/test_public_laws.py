@@ -22,7 +22,7 @@ FIGURE_3 = np.array(  # s, alpha, p, tip, beta; r = 3, b = 1, from 90 degrees
 )
 
 
-def test_figure_3_all_at_once():
+def test_figure_3_is_reproduced_with_arrays():
     s, alpha, beta = FIGURE_3[:, 0], FIGURE_3[:, 1], FIGURE_3[:, 6]
     tcp = np.column_stack([s, 0 * s])
     found = laws.alpha_after(np.pi / 2, s, 3.0)
@@ -32,7 +32,7 @@ def test_figure_3_all_at_once():
     assert laws.tip_direction(np.pi / 2, found, s, 3.0, 1.0) == pytest.approx(beta, abs=1e-8)
 
 
-def test_theorem_1_is_its_differential_equation():
+def test_theorem_1_solves_its_differential_equation():
     lag = profile(*LAGS["round"])
     rng = np.random.default_rng(1)
     alpha0, s = rng.uniform(-3, 3, 12), rng.uniform(0.1, 40, 12)
@@ -51,7 +51,7 @@ def test_theorem_1_is_its_differential_equation():
     assert laws.alpha_on_ramp(1.2, 20.0, lag, 2.0, 8.0) == pytest.approx(0.160941370, abs=1e-9)
 
 
-def test_arrays_broadcast_and_constant_depth_is_a_ramp_too():
+def test_arrays_broadcast_and_constant_depth_equals_a_ramp():
     alpha0, s, lag = (
         np.linspace(-1.5, 1.5, 5)[:, None, None],
         np.linspace(0, 30, 4)[:, None],
@@ -64,7 +64,7 @@ def test_arrays_broadcast_and_constant_depth_is_a_ramp_too():
     assert laws.alpha_after(1.0, [0.0, 1.0], 0.0) == pytest.approx([1.0, 0.0])  # a rigid pen
 
 
-def test_the_loose_rule_against_an_integration_with_events():
+def test_the_loose_rule_agrees_with_an_integration_with_events():
     lag, s = 7.0, np.linspace(0, 40, 41)
     start = np.array([[-200.0, 0, 0], [-190, 0, -2], [0, 0, -2]])
     for turn in (-2.9, -1.7, 1.2, 1.9, 2.6):
@@ -78,12 +78,12 @@ def test_the_loose_rule_against_an_integration_with_events():
         assert followed.heading_rad[2:] == pytest.approx(heading, abs=1e-8)
 
 
-def test_before_the_first_motion_the_heading_is_the_first_there_is():
+def test_the_heading_before_the_first_motion_is_the_first_heading():
     found = laws.follow([(0, 0), (0, 0), (0, 5)], 2.0, 4.0)
     assert found.heading_rad == pytest.approx([np.pi / 2] * 3)
 
 
-def test_lag_and_tip_gap_together_reach_no_farther_than_a_contact():
+def test_lag_and_tip_gap_together_are_limited_like_a_contact():
     """Each may be half of what contact_offset takes, so that their sum is one."""
     laws.tip_offset(0.5, FARTHEST_MM / 2, FARTHEST_MM / 2)
     for lengths in ((0.6 * FARTHEST_MM, 1.0), (1.0, 0.6 * FARTHEST_MM)):
@@ -92,7 +92,7 @@ def test_lag_and_tip_gap_together_reach_no_farther_than_a_contact():
 
 
 @pytest.mark.parametrize("name", LAGS)
-def test_a_whole_way_against_an_integration_with_events(name):
+def test_a_whole_path_agrees_with_an_integration_with_events(name):
     rng = np.random.default_rng(2)
     for _ in range(2):
         poses = random_poses(rng, 7)
@@ -127,7 +127,7 @@ def test_theorem_2_is_the_displacement_of_the_tip():
     assert 1 / np.tan(beta) == pytest.approx(along / across, rel=1e-10)  # (11) as it is printed
 
 
-def test_theorems_3_and_4_give_back_lag_and_tip_gap():
+def test_theorems_3_and_4_recover_lag_and_tip_gap():
     lag, gap = np.array([[3.0, 9.3], [13.0, 0.8]]), np.array([[1.0, 3.6], [5.2, 0.1]])
     alpha0 = np.array([[1.5, 1.2], [0.9, np.pi / 2]])
     s = np.linspace(0.2, 1.2, 5) * lag[..., None]
@@ -141,7 +141,7 @@ def test_theorems_3_and_4_give_back_lag_and_tip_gap():
     assert np.isnan(laws.from_angles(1.5, s[0, 0], alpha[0, 0]).tip_gap_mm)
 
 
-def test_a_law_is_fitted_as_numpy_fits_it():
+def test_fit_law_agrees_with_numpy():
     rng = np.random.default_rng(6)
     depth = np.arange(1, 11.0)
     value = 3 + 0.9 * depth + rng.normal(0, 0.5, 10)
@@ -153,7 +153,7 @@ def test_a_law_is_fitted_as_numpy_fits_it():
 
 
 @pytest.mark.parametrize("end", ["shear_free", "third_derivative"])
-def test_lemma_1_in_general(end):
+def test_lemma_1_holds_in_general(end):
     z = np.linspace(0, 1, 201)
     of_article = laws.bristle(lambda x: np.exp(1 - x), lambda x: np.exp(1 - x), end)
     assert of_article(z) == pytest.approx(laws.bristle_of_article(z, end), abs=1e-12)
@@ -214,13 +214,13 @@ def test_the_printed_condition_does_not_make_every_bristle_unique():
         (lambda: laws.bristle_of_article(0.5, "free"), "choice-unknown"),
     ],
 )
-def test_what_no_brush_has_is_refused(call, code):
+def test_impossible_arguments_are_refused(call, code):
     with pytest.raises(brushsvg.Error) as refused:
         call()
     assert refused.value.code == code
 
 
-def test_what_was_followed_cannot_be_written_to():
+def test_results_of_follow_are_read_only():
     found = laws.follow([[0, 0], [9, 0.0]], [0, 3], brushsvg.find_brush("round-6").lag)
     with pytest.raises(ValueError, match="read-only"):
         found.contact_mm[0] = 0

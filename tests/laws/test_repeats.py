@@ -65,7 +65,7 @@ def painted(sheets):
     ], displaced
 
 
-def test_the_spread_and_the_hysteresis_come_back(sheets, painted, capsys):
+def test_spread_and_hysteresis_are_recovered(sheets, painted, capsys):
     photos, displaced = painted
     out = sheets.folder / "spread.json"
     picture = sheets.folder / "spread.png"
@@ -89,7 +89,7 @@ def test_the_spread_and_the_hysteresis_come_back(sheets, painted, capsys):
     assert sum(each["count"] for each in found["histogram"]) == 24
 
 
-def test_copies_on_one_sheet_are_sheets_enough(sheets, painted, capsys):
+def test_copies_on_one_sheet_are_sufficient(sheets, painted, capsys):
     photos, displaced = painted
     assert main(sheets.words(photos[:1])) == 0
     found = json.loads(capsys.readouterr().out)
@@ -100,7 +100,7 @@ def test_copies_on_one_sheet_are_sheets_enough(sheets, painted, capsys):
     )
 
 
-def test_the_next_calibration_takes_the_spread(sheets, painted, tmp_path, capsys):
+def test_the_next_calibration_uses_the_spread(sheets, painted, tmp_path, capsys):
     photos, _ = painted
     out = sheets.folder / "again.json"
     assert main(sheets.words(photos, "-o", str(out))) == 0

@@ -142,7 +142,7 @@ def test_three_markers_are_enough():
     ids=["blue", "shadow", "red", "yellow", "pale grey"],
     keep=2,
 )
-def test_outlines_are_where_paint_ends(camera, colour, most_mm):
+def test_outlines_follow_the_edge_of_the_paint(camera, colour, most_mm):
     marks = painted_marks()
     found = read(photograph.exposed(painted_sheet(marks.values(), colour), camera))
     assert not found.marks.missing and not found.marks.joined
@@ -169,7 +169,7 @@ def test_paint_that_is_lighter_than_the_paper_is_read():
 
 
 @pytest.mark.parametrize("is_lighter", [False, True], ids=["dark paint", "light paint"])
-def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
+def test_a_soft_shadow_over_few_narrow_marks_is_not_read_as_paint(is_lighter):
     """A soft shadow over a few narrow marks is not read as paint.
 
     Most pixels that differ from the rest of the sheet are then shadow.
@@ -187,7 +187,7 @@ def test_a_soft_shadow_over_few_narrow_marks_is_not_taken_for_paint(is_lighter):
     assert all((paint[110:340, round(middle * fine)] > 0.7).all() for middle in middles)
 
 
-def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
+def test_narrow_marks_of_a_blurred_picture_keep_their_width():
     """Narrow marks of a blurred picture have their painted width.
 
     Blur also weakens the middle of a narrow mark. The edge at half of this weaker value was once 0.05 mm
@@ -204,7 +204,7 @@ def test_narrow_marks_of_a_blurred_picture_are_as_wide_as_they_were_painted():
         assert abs(off_mm(found.marks.outlines_mm[stroke], marks[stroke])[0]) < 0.02, stroke
 
 
-def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
+def test_a_displaced_mark_stays_whole_and_touching_marks_are_split():
     marks = dict(painted_marks())
     boxes = {stroke.id: shapely.box(*stroke.box_mm) for stroke in a5().strokes}
     marks["straight-4"] = [ring + np.array([1.0, -4.5]) for ring in marks["straight-4"]]
@@ -225,7 +225,7 @@ def test_a_mark_that_strays_stays_whole_and_two_that_touch_are_cut():
         assert overlap > 0.85, (each, overlap)
 
 
-def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
+def test_a_mark_displaced_into_the_next_box_stays_whole():
     """A mark that is displaced into the next box stays whole.
 
     A tool that leans does this. A quarter of each mark is in the box of the next one.
@@ -246,7 +246,7 @@ def test_a_mark_that_is_displaced_into_the_next_room_stays_whole():
 
 
 @pytest.mark.parametrize("lean", [(-0.6, 0.5), (0.0, 0.8)])
-def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
+def test_marks_of_a_strongly_leaning_tool_belong_to_their_strokes(lean):
     """Marks of a strongly leaning tool belong to their own strokes.
 
     They are so far displaced that they are in the boxes of others. No mark is lost.
@@ -260,7 +260,7 @@ def test_marks_of_a_tool_that_leans_much_are_those_of_their_strokes(lean):
         assert _core.overlap(found.outlines_mm[name], rings) > 0.85, name
 
 
-def test_splashes_and_labels_are_no_marks_and_a_broken_stroke_is_one():
+def test_splashes_and_labels_are_not_marks_and_a_broken_stroke_is_one_mark():
     marks = dict(painted_marks())
     whole = shape(marks["straight-4"])
     left, bottom, right, top = whole.bounds
@@ -301,7 +301,7 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
 
 
 @pytest.mark.thorough
-def test_other_formats_and_cameras_held_on_their_side_read_the_same():
+def test_other_formats_and_rotated_cameras_give_the_same_marks():
     there = marks_of(read(small()))
     side = np.ascontiguousarray(small().swapaxes(0, 1)[:, ::-1])  # turned clockwise
     held = photograph.with_turn(photograph.encoded(side), 8)
@@ -327,14 +327,14 @@ def test_other_formats_and_cameras_held_on_their_side_read_the_same():
         (b"\x00\x00\x00\x18ftypheic" + b"\x00" * 50, "photo-format HEIC JPEG"),
     ],
 )
-def test_what_is_no_picture_is_refused(data, said):
+def test_files_that_are_not_pictures_are_refused(data, said):
     with refused(said):
         read_chart_photos(a5(), [("", data)])
 
 
 @pytest.mark.parametrize("depth", [np.uint8, np.uint16])
 @pytest.mark.parametrize("suffix", [".png", ".tif"])
-def test_what_is_seen_through_is_on_white(suffix, depth):
+def test_transparent_pixels_are_read_as_white(suffix, depth):
     """Transparent pixels are read as white.
 
     The black colour below transparent pixels was once read as paint.
@@ -378,7 +378,7 @@ FILES = [
     ("suffix", "options", "harm"),
     [(*file, harm) for file in FILES for harm in DAMAGE] + [(".webp", [cv2.IMWRITE_WEBP_QUALITY, 90], "cut")],
 )
-def test_a_picture_damaged_in_its_middle_is_refused_and_nothing_else_is_said(capfd, suffix, options, harm):
+def test_a_picture_damaged_in_the_middle_is_refused_with_one_message(capfd, suffix, options, harm):
     pixels = cv2.GaussianBlur(np.random.default_rng(2).integers(0, 256, (300, 400, 3), np.uint8), None, 2)
     data = cv2.imencode(suffix, pixels, options)[1].tobytes()
     assert read_photo(data).shape == pixels.shape
@@ -388,14 +388,14 @@ def test_a_picture_damaged_in_its_middle_is_refused_and_nothing_else_is_said(cap
     assert capfd.readouterr() == ("", "heard again\n")
 
 
-def test_bytes_that_a_camera_leaves_before_the_end_are_no_damage(capfd):
+def test_padding_bytes_before_the_end_are_not_damage(capfd):
     whole = cv2.imencode(".jpg", np.full((90, 90, 3), 200, np.uint8))[1].tobytes()
     assert whole[-2:] == b"\xff\xd9"
     assert np.array_equal(read_photo(whole[:-2] + b"\0\1\2" + whole[-2:]), read_photo(whole))
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_picture_is_read_by_a_process_without_standard_error(tmp_path):
+def test_a_picture_is_read_without_standard_error(tmp_path):
     path = tmp_path / "p.jpg"
     path.write_bytes(cv2.imencode(".jpg", np.full((90, 80, 3), 200, np.uint8))[1])
     code = (
@@ -454,7 +454,7 @@ def only(count):
     ],
     ids=["no marker", "two markers", "doubled", "mirrored", "small", "blurred"],
 )
-def test_pictures_that_cannot_be_measured_in(spoil, said, numbers):
+def test_unusable_pictures_are_refused(spoil, said, numbers):
     with refused(said) as caught:
         read(spoil(small().copy()))
     assert re.search(numbers, caught.value.sentence), caught.value
@@ -473,7 +473,7 @@ def test_paper_that_is_not_flat_is_refused():
     assert re.search(r" 0\.\d+ mm \(rms\)", caught.value.sentence)
 
 
-def test_a_chart_of_before_with_four_markers_is_read():
+def test_a_chart_of_an_earlier_version_with_four_markers_is_read():
     content = json.loads(write_chart(a5()))
     content = {key: value for key, value in content.items() if key not in ("id", "bar", "labels")}
     content["markers"] = [row | {"id": k} for k, row in enumerate(content["markers"][:4])]
@@ -620,7 +620,7 @@ def view_of(pixels):
 
 
 @sample("pair", PAIRS, keep=4)
-def test_markers_that_paint_covers_in_part_are_left_out(pair):
+def test_markers_partly_covered_by_paint_are_left_out(pair):
     """Markers that paint covers in part are left out.
 
     Two covered markers once had the page refused as not flat.
@@ -640,7 +640,7 @@ def bulging():
 
 
 @sample("pair", PAIRS, keep=3)
-def test_paper_that_bulges_is_not_flat_with_any_markers_left_out(pair):
+def test_bulging_paper_is_not_flat_without_any_subset_of_markers(pair):
     camera, pixels = bulging()
     with refused("photo-not-flat"):
         view_of(painted_over(pixels.copy(), pair, camera))
@@ -649,7 +649,7 @@ def test_paper_that_bulges_is_not_flat_with_any_markers_left_out(pair):
 # The commands ---------------------------------------------------------------------------------------
 
 
-def test_wrong_usage(tmp_path, capsys):
+def test_wrong_usage_is_refused(tmp_path, capsys):
     out = str(tmp_path / "out.json")
     for words, said in (
         (["calibrate", "--force", "a.jpg", "-o", out], "--chart"),
@@ -673,7 +673,7 @@ def test_wrong_usage(tmp_path, capsys):
         assert said in capsys.readouterr().err, words
 
 
-def test_refusals_name_the_file(tmp_path, capsys):
+def test_refusals_name_the_photograph(tmp_path, capsys):
     photo, file, out = tmp_path / "photo.png", tmp_path / "chart.json", tmp_path / "own.json"
     photo.write_bytes(cv2.imencode(".png", np.full((300, 300, 3), 200, np.uint8))[1].tobytes())
     file.write_text("{")

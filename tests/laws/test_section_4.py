@@ -86,7 +86,7 @@ def test_a_turn_to_either_side_reads_the_same(turned):
     assert (turn.lag_mm, turn.turning_mm) == pytest.approx((lag(6.0), lag(6.0) - e), abs=0.02)
 
 
-def test_a_line_says_how_sure_it_is():
+def test_a_centre_line_has_an_uncertainty():
     rng, exact = np.random.default_rng(3), np.array(middle(8.0))
     read = [read_turn(exact + rng.normal(0, 0.05, exact.shape)) for _ in range(60)]
     off = np.array([(turn.lag_mm - lag(8.0), turn.turning_mm - lag(8.0) + widest(8.0) - GAP * 8) for turn in read])
@@ -94,7 +94,7 @@ def test_a_line_says_how_sure_it_is():
     assert off.std(axis=0) == pytest.approx(np.median(reported, axis=0), rel=0.4)
 
 
-def test_a_line_read_from_about_the_right_lengths_scatters_as_its_points_say():
+def test_a_line_with_nearly_correct_lengths_scatters_like_its_points():
     """A line read with nearly right lengths scatters as its points show.
 
     The lever is short (0.9 mm at a lag of 12.2 mm). Without known lengths, r - e scatters 1.5 times as much.
@@ -150,7 +150,7 @@ def test_skeleton_and_turning_point_are_found_in_a_picture(picture, turned, towa
     assert turn.rmse_mm < 0.1
 
 
-def test_pictures_stand_next_to_their_file(picture, tmp_path):
+def test_picture_paths_are_relative_to_their_file(picture, tmp_path):
     (tmp_path / "six.png").write_bytes(picture)
     seen = {
         "depth_mm": 6,
@@ -215,7 +215,7 @@ def whole(rng, n=10):
     }
 
 
-def test_in_one_fit_all_that_was_measured_counts():
+def test_one_fit_uses_all_measurements():
     """In one fit, all measurements count.
 
     Measured sums improve laws that were also measured alone. The intervals still contain the truth.
@@ -240,7 +240,7 @@ def test_in_one_fit_all_that_was_measured_counts():
 
 
 @pytest.mark.parametrize("absolute", [False, True])
-def test_one_fit_survives_an_outlier_by_its_norm_and_names_it(absolute):
+def test_one_fit_resists_an_outlier_and_names_it(absolute):
     rows = whole(np.random.default_rng(8))
     rows["side_view"][6]["value_mm"] += 12.0
     made = calibrate(from_dict(**rows), "b", absolute=absolute)
@@ -249,7 +249,7 @@ def test_one_fit_survives_an_outlier_by_its_norm_and_names_it(absolute):
     assert off < (0.8 if absolute else 2.5)
 
 
-def test_a_dict_is_a_file(tmp_path):
+def test_a_dict_is_read_like_a_file(tmp_path):
     rows = {"depth_range_mm": [0, 10], "name": "mine"} | FOOTPRINTS | {"lag": values(DEPTHS, lag(DEPTHS))}
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     reported = brushsvg.calibrate(rows | {"lag": [{"depth_mm": np.float64(d), "value_mm": lag(d)} for d in DEPTHS]})
@@ -291,12 +291,12 @@ TURNED = np.array(LINE["points_mm"])
         ),
     ],
 )
-def test_what_cannot_be_read_is_refused_with_its_place(kind, row, said, where):
+def test_unreadable_rows_are_refused_with_their_position(kind, row, said, where):
     rows = {kind: [row, *(lines([4.0, 8.0]) if kind == "centre_line" else [])]}
     with refused(said, ".".join(filter(None, [f"{kind}[0]", where]))):
         calibrate(from_dict(**rows, **FOOTPRINTS), "b")
 
 
-def test_a_table_takes_no_lines():
+def test_a_table_cannot_contain_centre_lines():
     with refused("measurement-kind", "line 2"):
         read_measurements(b"kind,depth_mm,value_mm\ncentre_line,3,4\n", ".csv")

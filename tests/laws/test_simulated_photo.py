@@ -50,12 +50,12 @@ def shown(drawing, capsys, toml, *flags):
     return json.loads(capsys.readouterr().out)
 
 
-def test_a_studio_in_which_nothing_is_wrong_paints_what_was_predicted(drawing, capsys):
+def test_a_studio_without_faults_paints_the_prediction(drawing, capsys):
     found = shown(drawing, capsys, "")
     assert found["overlap_predicted"] > 0.98 and found["faults"]["mend_first"] is None
 
 
-def test_each_key_does_what_it_says(drawing, capsys):
+def test_each_studio_key_has_its_documented_effect(drawing, capsys):
     found = shown(drawing, capsys, "[sheet]\nshift_mm = [1.5, -1.0]\nturn_deg = 0.6\n")
     assert found["sheet"]["turn_deg"] == pytest.approx(0.6, abs=0.05)
     middle = np.array(found["sheet"]["middle_mm"]) - [60, 40]
@@ -72,7 +72,7 @@ def test_each_key_does_what_it_says(drawing, capsys):
     assert main(words) == 1, "which cannot be pressed as deep as the plan presses it"
 
 
-def test_the_same_seed_is_the_same_photograph_and_its_studio_is_reported(drawing, capsys):
+def test_the_same_seed_gives_the_same_photograph_and_reported_studio(drawing, capsys):
     folder = drawing.parent
     for name, seed in (("a", 7), ("b", 7), ("c", 8)):
         assert main(["simulate-photo", str(drawing), "-o", str(folder / f"{name}.jpg"), "--seed", str(seed)]) == 0
@@ -108,7 +108,7 @@ def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys,
     assert status == 1 and is_reported(said, "depth-out-of-range 11.000 machine.height_mm")
 
 
-def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
+def test_letters_of_the_page_end_at_their_layout_positions(monkeypatch):
     """Letters of the page end where its layout puts them.
 
     Bold letters are wider than once measured, and the title of an A5 chart ran into a marker.
@@ -133,7 +133,7 @@ def test_letters_of_the_page_end_where_its_layout_has_them(monkeypatch):
             assert not beyond.any(), (label.text, texels)
 
 
-def test_it_says_that_it_is_simulated(drawing):
+def test_the_picture_is_labelled_as_simulated(drawing):
     """A strip shows that the picture is simulated, white on dark red, edge to edge."""
     folder = drawing.parent
     assert main(["simulate-photo", str(drawing), "-o", str(folder / "p.jpg"), "--quiet"]) == 0
@@ -157,7 +157,7 @@ def test_it_says_that_it_is_simulated(drawing):
         ("[machine\n", "not-toml"),
     ],
 )
-def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
+def test_impossible_studios_are_refused(drawing, capsys, toml, code):
     folder = drawing.parent
     (folder / "studio.toml").write_text(HEAD + toml)
     big = DRAWING.replace('stroke-width="3"', 'stroke-width="7"')
@@ -169,7 +169,7 @@ def test_what_it_cannot_do_is_refused(drawing, capsys, toml, code):
 
 
 @pytest.mark.thorough
-def test_the_plan_of_a_chart_is_calibrated_by_what_its_refusal_says(tmp_path, capsys):
+def test_the_advice_for_the_plan_of_a_chart_calibrates_it(tmp_path, capsys):
     """The advice in the refusal calibrates the plan of a chart.
 
     simulate-photo prints the page of a job around the chart's plan. Its markers are not those of chart.json.
@@ -199,7 +199,7 @@ def letters(tmp_path_factory):
 
 
 @pytest.mark.thorough
-def test_where_no_stroke_is_alone_a_chart_is_advised(letters, drawing, capsys):
+def test_a_chart_is_suggested_if_no_stroke_is_alone(letters, drawing, capsys):
     """If no stroke is alone, a chart is advised.
 
     compare never advises a step that would be refused: no brush can be learnt from this photograph.
@@ -218,7 +218,7 @@ def test_where_no_stroke_is_alone_a_chart_is_advised(letters, drawing, capsys):
     assert placed > as_painted and "calibrate --chart" not in text
 
 
-def test_strokes_without_repeats_are_named(letters, capsys):
+def test_strokes_without_repeats_are_reported(letters, capsys):
     words = ("compare", letters / "3.jpg", letters / "4.jpg", EXAMPLE, "--sheets")
     status, text, _ = in_json(capsys, *words, "--json")
     found = json.loads(text)
@@ -230,7 +230,7 @@ def test_strokes_without_repeats_are_named(letters, capsys):
     assert len(last) == 1 and gives(last[0], str(len(unseen)))
 
 
-def test_a_photograph_that_is_given_twice_is_refused(letters, capsys):
+def test_a_photograph_given_twice_is_refused(letters, capsys):
     copy = letters / "copy.jpg"
     copy.write_bytes((letters / "3.jpg").read_bytes())
     for photos in ((letters / "3.jpg", letters / "3.jpg"), (letters / "3.jpg", letters / "4.jpg", copy)):
@@ -272,6 +272,6 @@ def test_a_chart_is_photographed_as_its_own_page(tmp_path, capsys):
     assert status == 1 and is_reported([each for _, each in reported], "format-unknown '--chart FILE'"), reported
 
 
-def test_a_plan_that_is_not_there_is_reported(tmp_path, capsys):
+def test_a_missing_plan_is_reported(tmp_path, capsys):
     status, _, reported = in_json(capsys, "simulate-photo", tmp_path / "none.json", "-o", tmp_path / "x.jpg")
     assert status == 1 and is_reported(reported, "file-unreadable"), reported

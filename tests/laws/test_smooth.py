@@ -99,7 +99,7 @@ def corners_beyond(few, dense):
 
 
 @sample("name", DRAWN, keep=2)
-def test_the_painted_edge_has_no_corner_that_the_dense_plan_lacks(name):
+def test_the_painted_edge_has_only_corners_of_the_dense_plan(name):
     few, dense = plan_of(DRAWN[name], 0.05), plan_of(DRAWN[name], 0.005, few_poses=False)
     pairs = zip(simulated(few), simulated(dense), strict=True)
     assert [corners_beyond(*pair) for pair in pairs] == [0] * len(DRAWN[name])

@@ -71,7 +71,7 @@ WAYS = [  # tips, depths, lean
 
 @pytest.mark.parametrize("name", LAGS)
 @pytest.mark.parametrize("way", range(len(WAYS)))
-def test_the_contact_trails_the_place_where_the_axis_meets_the_paper(way, name):
+def test_the_contact_trails_the_point_where_the_axis_meets_the_paper(way, name):
     tips, depths, lean = (np.array(part, float) for part in WAYS[way])
     axes = unit_axes(lean)
     contact, _, _ = stepped(axes_on_paper(tips, depths, axes), depths, law(name))
@@ -141,7 +141,7 @@ def oracle_mark(tips, depths, lean, brush, dragged):
         [[0.0, 0.0], [0.3, 0.3], [-0.4, 0.3]],
     ],
 )
-def test_the_mark_is_what_sections_of_the_leaning_brush_sweep(lean):
+def test_the_mark_is_the_sweep_of_the_tilted_sections(lean):
     dragged = [(float(d), oracle.section_6_outline(float(WIDEST(d)), 0.42 * d, 33)) for d in range(1, 11)]
     brush, lean = make_brush(footprints=dragged), np.array(lean, float)
     tips, depths = np.array([[0, 0], [15, 2], [45, 20.0]]), np.array([0.0, 6.0, 6.0])
@@ -166,7 +166,7 @@ def test_the_widest_point_is_stretched_with_the_mark():
     assert core.widest_points(one, brush)[at] - one.contact_mm[at] == pytest.approx([away * longer, 0], abs=1e-3)
 
 
-def test_set_down_on_the_spot_the_patch_is_under_the_axis_and_the_tip_stays():
+def test_landing_in_place_puts_the_patch_under_the_axis():
     brush, tips, lean = make_brush(), np.array([[0, 0], [40, 9.0]]), np.array([[0.4, 0.1], [-0.2, 0.5]])
     axes = unit_axes(lean)
     short = simulated(tips, [5.0, 7.0], axes, brush).passes[0]
@@ -180,7 +180,7 @@ def test_set_down_on_the_spot_the_patch_is_under_the_axis_and_the_tip_stays():
 
 @pytest.mark.parametrize("depths", [[3.0, 5.0, 4.0], [0.0, 5.0, 0.0], [5.0, 0.0, 5.0], [3.0, 5.0, 5.0]])
 @pytest.mark.parametrize("spot", [False, True])
-def test_leaning_by_nothing_to_speak_of_is_standing_upright(depths, spot):
+def test_a_negligible_tilt_equals_an_upright_brush(depths, spot):
     brush, tips = make_brush(), np.array([[0, 0], [0.0 if spot else 20, 0], [40, 15.0]])
     if depths[-1] == 0.0 and spot:
         tips[2] = tips[1]  # the third pose makes a dab

@@ -156,7 +156,7 @@ def test_a_picture_that_was_saved_too_small_is_refused():
 
 
 @pytest.mark.parametrize("kind", REPORTED)
-def test_what_can_be_read_in_part_is_reported(kind):
+def test_partly_readable_pictures_are_reported(kind):
     make, code = REPORTED[kind]
     found = read_chart_photos(a5(), [("", photograph.encoded(make()))])
     reported = {notice.code for notice in remarks(found)}
@@ -167,7 +167,7 @@ def test_what_can_be_read_in_part_is_reported(kind):
             assert off_mm(found.marks.outlines_mm[stroke], rings)[1] < 0.15, stroke
 
 
-def test_something_over_the_edge_of_one_marker_does_not_bend_the_sheet():
+def test_an_object_over_one_marker_does_not_make_the_sheet_bulge():
     """An object over the edge of one marker does not bend the sheet.
 
     It was once reported as paper that is not flat.
@@ -182,7 +182,7 @@ def test_something_over_the_edge_of_one_marker_does_not_bend_the_sheet():
 
 
 @pytest.mark.parametrize("deg", [8, 30])
-def test_white_round_a_picture_that_was_turned_is_no_light_of_the_page(deg):
+def test_white_around_a_rotated_picture_does_not_affect_the_lighting(deg):
     """White around a turned picture does not count as light of the page.
 
     Programs fill the corners with white, which was once reported as overexposed.
@@ -205,7 +205,7 @@ def test_white_round_a_picture_that_was_turned_is_no_light_of_the_page(deg):
     ],
     keep=1,
 )
-def test_a_picture_that_was_cut_on_one_side_is_not_paper_that_bulges(cut, sag_mm, code):
+def test_a_cropped_picture_is_not_reported_as_bulging_paper(cut, sag_mm, code):
     """A picture that was cut on one side is not reported as bulging paper.
 
     All markers are still on it, but the middle of the lens is not in the picture's middle.
