@@ -81,7 +81,7 @@ def test_a_bad_drawing_is_refused_by_every_command(desk, case):
 
 
 @pytest.mark.parametrize("case", ["NaN", "1e30", "beyond all numbers"])
-def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
+def test_damaged_geometry_is_drawn_up_to_the_damage_on_request(desk, case):
     (desk / "x.svg").write_text(DRAWINGS[case][0])
     (desk / "whole.svg").write_text(path("M20 40 L60 40"))
     brushsvg("convert", "whole.svg", "-o", "whole.json", cwd=desk, status=0)
@@ -97,14 +97,14 @@ def test_damaged_geometry_is_drawn_up_to_there_on_request(desk, case):
         assert brushsvg(*json_reported, *words, cwd=desk, status=0, **bounded()).reported == [(file, reported)]
 
 
-def test_what_is_off_the_sheet_may_be_looked_at(desk):
+def test_marks_off_the_sheet_can_be_previewed(desk):
     (desk / "x.svg").write_text(DRAWINGS["off the sheet"][0])
     for words in (("preview", "x.svg", "-o", "x.svg.png", "--quiet"), ("preview", "x.svg", "--json")):
         done = brushsvg("--messages", "json", *words, cwd=desk, status=0)
         assert len(done.err) == 1 and is_reported(done.reported, "mark-off-sheet left", "p")
 
 
-def test_a_directory_is_no_drawing(desk):
+def test_a_directory_is_refused_as_a_drawing(desk):
     (desk / "x.svg").mkdir()
     (desk / "x.json").mkdir()
     for words in (
@@ -146,7 +146,7 @@ def test_a_bad_brush_is_refused_by_every_command(desk, case):
     assert refusal(desk, "brush", "show", "mine.json") == (file, reported)
 
 
-def test_an_unknown_brush_is_refused_with_those_there_are(desk):
+def test_an_unknown_brush_is_refused_with_the_known_brushes(desk):
     file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--brush", "round-7")
     assert file == "round-7" and agrees(reported, "brush-unknown round-7 rigid round-6")
     assert refusal(desk, "brush", "show", "round-7") == (file, reported)
@@ -209,7 +209,7 @@ def test_a_bad_plan_is_refused(desk, case):
 
 
 @pytest.mark.parametrize("content", ["", "moo", '{"format": "brushsvg/plan", "ver', "[" * 100_000, "\xff\0"])
-def test_what_is_no_plan_at_all_is_refused(desk, content):
+def test_a_file_that_is_not_a_plan_is_refused(desk, content):
     (desk / "x.json").write_text(content, encoding="latin-1")
     reported = refused(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
     assert reported.startswith("x.json: ")

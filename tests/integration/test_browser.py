@@ -126,13 +126,13 @@ def until(marks, number: int, pose: float):
     return _core.read_marks(json.dumps(cut))
 
 
-def test_at_the_start_there_is_no_paint(page, browser):
+def test_the_first_frame_has_no_paint(page, browser):
     image, said = browser.shown(page, "t=0&bare")
     assert said == []
     assert painted(image).max() < 0.02
 
 
-def test_at_the_end_the_paint_is_the_prediction(page, browser, played):
+def test_the_last_frame_equals_the_prediction(page, browser, played):
     work, marks, rows = played
     image, said = browser.shown(page, f"t={rows.time_s[-1]:.3f}&bare")
     assert said == []
@@ -140,7 +140,7 @@ def test_at_the_end_the_paint_is_the_prediction(page, browser, played):
 
 
 @pytest.mark.parametrize("number, share", [(0, 0.5), (3, 0.9), (6, 0.7)])
-def test_in_between_there_is_what_has_been_painted_so_far(page, browser, played, number, share):
+def test_a_middle_frame_shows_the_paint_so_far(page, browser, played, number, share):
     work, marks, rows = played
     poses_mm = work.plan.passes[number].poses_mm
     pose = int(share * len(poses_mm))
@@ -157,7 +157,7 @@ def test_in_between_there_is_what_has_been_painted_so_far(page, browser, played,
 
 
 @pytest.mark.parametrize("notch", [0.0, 0.4], ids=["convex", "notched"])
-def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch):
+def test_the_footprint_is_swept_between_distant_rows(tmp_path, browser, notch):
     """Between rows that are far apart, the page sweeps the footprint.
 
     A straight line has few rows. The region that a notched footprint sweeps is not a hull.
@@ -188,7 +188,7 @@ def test_between_rows_far_apart_the_footprint_is_swept(tmp_path, browser, notch)
     assert 0.2 < painted(half).sum() / painted(image).sum() < 0.8
 
 
-def test_target_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
+def test_target_mark_and_path_are_shown_on_a_narrow_screen(page, browser):
     with_all, said = browser.shown(page, "t=31.3", (500, 800))
     bare, _ = browser.shown(page, "t=31.3&bare", (500, 800))
     assert said == []
@@ -199,7 +199,7 @@ def test_target_mark_and_path_are_shown_and_fit_a_telephone(page, browser):
         assert counts[0] > counts[1] + least
 
 
-def test_words_show_the_stroke_and_the_time(page, browser):
+def test_the_text_shows_the_stroke_and_the_time(page, browser):
     text = browser.text(page, "t=31.3")
     assert '<h1 id="title">Vincent</h1>' in text
     assert re.search(r'<b id="what">stroke \d+ of 13: ', text)
@@ -221,7 +221,7 @@ setTimeout(() => { press(" "); document.body.append("reported " + JSON.stringify
 </script></body>"""
 
 
-def test_keys_move_and_play(page, browser, played):
+def test_keys_control_position_and_playback(page, browser, played):
     _, _, rows = played
     keyed = page.with_name("keyed.html")
     keyed.write_text(page.read_text().replace("<head>", f"<head>{FRAMES}").replace("</body>", KEYS))
@@ -237,7 +237,7 @@ def test_keys_move_and_play(page, browser, played):
     assert [word.split(":")[0] for word in words] == [first] * 3 + [second, first, last] + [first] * 3
 
 
-def test_a_hostile_title_stays_a_title(tmp_path, browser):
+def test_a_hostile_title_is_shown_as_text(tmp_path, browser):
     title = "</script><script>document.body.id='taken'</script>"
     escaped = title.replace("<", "&lt;")
     (tmp_path / "a.svg").write_text(SOUND.replace("A line", escaped))
@@ -258,7 +258,7 @@ def test_a_job_of_hours_has_a_clock_with_hours(tmp_path, browser):
     assert re.search(r'<output id="clock">0:12:34\.2 / [1-9]:[0-5]\d:[0-5]\d\.\d<', text)
 
 
-def test_names_of_stations_stay_on_a_narrow_page(tmp_path, browser):
+def test_names_of_stations_fit_a_narrow_page(tmp_path, browser):
     """Names of stations are visible on a narrow page.
 
     They were once cut at its edge, and hidden by the next vessel.

@@ -68,7 +68,7 @@ MASKED = {
 }
 
 
-def test_masks_of_white_and_black_shapes_are_what_chromium_shows(tmp_path):
+def test_masks_of_white_and_black_shapes_agree_with_chromium(tmp_path):
     chance, drawings = random.Random(7), {}
     for name, shape in CLIPS.items():
         around = chance.choice([*MASKED])
@@ -95,7 +95,7 @@ def pairs(tmp_path_factory):
     return {each: (text, seen) for (each, text), seen in zip(drawings.items(), dark, strict=True)}
 
 
-def test_clipped_drawings_are_what_chromium_shows(pairs):
+def test_clipped_drawings_agree_with_chromium(pairs):
     """Lines are cut at their middle: where one runs along the edge of a clip path, half of its width is too much or
     missing."""
     alike = {}

@@ -205,7 +205,7 @@ MADE = {
 
 
 @sample("block", to_run(), ids=lambda block: f"{block.page}:{block.line}", keep=8)
-def test_a_block_of_commands_can_be_typed_as_it_stands(block, tmp_path):
+def test_a_block_of_commands_on_a_page_runs(block, tmp_path):
     (tmp_path / "desk").mkdir()
     desk = Desk(tmp_path / "desk")
     if block.kind == "shell":

@@ -41,13 +41,13 @@ def test_every_page_is_built_and_can_be_searched(site):
     assert '<script src="http' not in (site / "index.html").read_text(encoding="utf-8")
 
 
-def test_every_public_name_has_its_place(site):
+def test_every_public_name_is_on_a_page(site):
     page = (site / "reference" / "python.html").read_text(encoding="utf-8")
     names = [f"brushsvg.{name}" for name in brushsvg.__all__ if name[0] != "_"]
     assert [name for name in names if f'id="{name}"' not in page and f'id="module-{name}"' not in page] == []
 
 
-def test_every_command_and_cell_has_its_place(site):
+def test_every_command_and_cell_is_on_a_page(site):
     commands = (site / "reference" / "commands.html").read_text(encoding="utf-8")
     (below,) = (a for a in command_parser()._actions if isinstance(a, argparse._SubParsersAction))
     assert [name for name in below.choices if f"usage: brushsvg {name} " not in commands] == []

@@ -56,7 +56,7 @@ def off(draw):
 
 
 @sample("table", dxf_features.TABLES, keep=5)
-def test_what_is_not_painted_as_shown_is_reported(table):
+def test_differences_from_the_rendered_dxf_are_reported(table):
     silent, stale = {}, []
     for name, draw in dxf_features.TABLES[table].items():
         share, reported = off(draw)
@@ -69,7 +69,7 @@ def test_what_is_not_painted_as_shown_is_reported(table):
     assert (silent, stale) == ({}, [])
 
 
-def test_every_exception_is_a_feature():
+def test_every_exception_names_an_existing_feature():
     assert {*dxf_features.OWN, *dxf_features.NAMED} <= FEATURES.keys()
 
 
@@ -84,7 +84,7 @@ TAMPERED = {
 
 
 @pytest.mark.parametrize("change", TAMPERED)
-def test_the_comparison_sees_another_drawing(change):
+def test_the_comparison_detects_another_drawing(change):
     begin, end, attributes, differs = TAMPERED[change]
     sound = written(lambda d, m: dxf_features.line(m, (10, 10), (70, 30)))
     other = written(lambda d, m: (dxf_features.line_types(d), dxf_features.line(m, begin, end, **attributes)))

@@ -24,7 +24,7 @@ def limited(kind: int, size: int):
 
 # NumPy's own libraries crash where they are loaded with some 400 to 550 MB, before anything of ours runs
 @pytest.mark.parametrize(("room_mb", "is_enough"), [(150, False), (300, False), (700, True), (1000, True)])
-def test_too_little_memory_is_a_sentence(desk, room_mb, is_enough):
+def test_too_little_memory_is_one_error_message(desk, room_mb, is_enough):
     words = "convert", "line.svg", "-o", "out.ngc", "--picture", "out.png", "--report", "out.txt"
     done = brushsvg(
         "--messages",
@@ -56,7 +56,7 @@ def test_too_little_memory_is_a_sentence(desk, room_mb, is_enough):
     ],
     ids=lambda env: " ".join(f"{key}={value}" for key, value in env.items()),
 )
-def test_programs_are_the_same_everywhere(desk, env):
+def test_programs_do_not_depend_on_the_environment(desk, env):
     brushsvg("convert", "line.svg", "-o", "here.ngc", cwd=desk, status=0)
     brushsvg("convert", "line.svg", "-o", "there.ngc", cwd=desk, status=0, env=env)
     assert (desk / "there.ngc").read_bytes() == (desk / "here.ngc").read_bytes()
@@ -76,7 +76,7 @@ def test_programs_are_the_same_everywhere(desk, env):
         "n" * 200,
     ],
 )
-def test_any_name_that_a_file_may_have(desk, name):
+def test_any_valid_file_name_is_accepted(desk, name):
     drawing, program = desk / f"{name}.svg", desk / f"{name}.ngc"
     drawing.write_text(SOUND)
     brushsvg("convert", drawing, "-o", program, cwd=desk, status=0)
@@ -86,7 +86,7 @@ def test_any_name_that_a_file_may_have(desk, name):
 
 
 @pytest.mark.parametrize("stream", [0, 1, 2])
-def test_a_stream_that_is_closed_loses_no_program(desk, stream):
+def test_a_closed_stream_does_not_prevent_the_program(desk, stream):
     done = subprocess.run(
         [COMMAND, "convert", "line.svg", "-o", "out.ngc"],
         cwd=desk,
@@ -119,7 +119,7 @@ MOST_S, MOST_MB = 30, 1500
 
 @pytest.mark.parametrize("suffix", READ)
 @pytest.mark.parametrize("size", [0, 2 << 30], ids=["empty", "2 GB"])
-def test_files_with_nothing_and_with_far_too_much(desk, suffix, size):
+def test_empty_and_huge_files_are_refused(desk, suffix, size):
     """A file with a hole: 2 GB of zeros that take no room on the disk."""
     file = desk / f"x.{suffix}"
     file.touch()
@@ -142,7 +142,7 @@ def large(desk) -> str:
     return "large.svg"
 
 
-def test_killed_at_any_instant_all_files_are_old_or_all_are_new(desk):
+def test_a_killed_process_leaves_all_files_old_or_all_new(desk):
     words = [COMMAND, "convert", large(desk), "-o", "out.ngc", "--picture", "out.png", "--force"]
     subprocess.run(words, cwd=desk, check=True, capture_output=True)
     new = {name: (desk / name).read_bytes() for name in ("out.ngc", "out.png")}
@@ -162,7 +162,7 @@ def test_killed_at_any_instant_all_files_are_old_or_all_are_new(desk):
     brushsvg("convert", "large.svg", "-o", "out.ngc", "--force", cwd=desk, status=0)
 
 
-def test_two_processes_with_one_output_leave_one_of_both(desk):
+def test_two_processes_with_one_output_leave_one_complete_file(desk):
     (desk / "other.svg").write_text(SOUND.replace("M20 40", "M25 42"))
     target = []
     for name in ("line", "other"):
@@ -183,7 +183,7 @@ def test_two_processes_with_one_output_leave_one_of_both(desk):
     assert {each.suffix for each in desk.iterdir()} == {".svg", ".ngc"}, "nothing else is left"
 
 
-def test_an_output_that_is_a_folder(desk):
+def test_an_output_that_is_a_folder_is_refused(desk):
     (desk / "out.ngc").mkdir()
     _, notice = refusal(desk, "convert", "line.svg", "-o", "out.ngc")
     assert notice.code == "file-unwritable"

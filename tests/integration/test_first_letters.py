@@ -53,7 +53,7 @@ def first_advance_mm(word: str, font: bytes) -> float:
 
 
 @pytest.mark.parametrize("word", ARABIC)
-def test_arabic_words_begin_with_the_first_letter_and_dots_come_last(fonts, word):
+def test_arabic_words_start_with_the_first_letter_and_end_with_dots(fonts, word):
     font = fonts("noto-naskh-arabic", "arabic")
     lines = painted(word, font)
     every = np.vstack(lines)
@@ -65,7 +65,7 @@ def test_arabic_words_begin_with_the_first_letter_and_dots_come_last(fonts, word
 
 
 @pytest.mark.parametrize("word", DEVANAGARI)
-def test_devanagari_words_begin_with_the_first_letter_and_the_headline_comes_last(fonts, word):
+def test_devanagari_words_start_with_the_first_letter_and_end_with_the_headline(fonts, word):
     font = fonts("noto-sans-devanagari", "devanagari")
     lines = painted(word, font)
     assert lines[0][:, 0].mean() < np.vstack(lines)[:, 0].min() + TOLERANCE * first_advance_mm(word, font)

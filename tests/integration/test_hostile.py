@@ -185,7 +185,7 @@ def bounded():
 
 
 @sample("name", [*CASES, *OUTLINES], keep=10)
-def test_read_or_refused_within_bounds(name, tmp_path):
+def test_hostile_drawings_are_read_or_refused_within_bounds(name, tmp_path):
     body, status, said = {**CASES, **OUTLINES}[name]
     (tmp_path / "hostile.svg").write_text(f"{HEAD}{body()}</svg>")
     words = ("--messages", "json", "preview", "hostile.svg", "-o", "seen.svg", "--show", "strokes")

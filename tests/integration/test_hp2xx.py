@@ -64,7 +64,7 @@ def drawn(program, folder) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("what", ["word", "page"])
-def test_hp2xx_draws_what_was_planned(what, tmp_path):
+def test_hp2xx_draws_the_plan(what, tmp_path):
     source = tmp_path / ("word.svg" if what == "word" else "page.json")
     source.write_text(WORD if what == "word" else json.dumps(page()))
     pen = ("--brush", "rigid", "--cell", "hpgl-plotter")

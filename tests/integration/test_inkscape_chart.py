@@ -22,7 +22,7 @@ def markers_mm(path, select=None):
 
 
 @pytest.mark.parametrize("view_box", ["0 0 120 60", "0 0 480 240"])
-def test_its_page_is_next_to_the_documents(plugin, tmp_path, view_box):
+def test_the_chart_page_is_next_to_the_document_page(plugin, tmp_path, view_box):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND.replace('viewBox="0 0 120 60"', f'viewBox="{view_box}"'))
     once = plugin.effect("chart", drawing, tmp_path / "once.svg")
@@ -46,7 +46,7 @@ def test_its_page_is_next_to_the_documents(plugin, tmp_path, view_box):
     assert (tmp_path / "twice.ngc").read_bytes() == (tmp_path / "drawing.ngc").read_bytes()
 
 
-def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin, tmp_path):
+def test_program_and_chart_file_equal_the_command_line_output(plugin, tmp_path):
     drawing, saved = tmp_path / "drawing.svg", tmp_path / "my sheet \u00fc.ngc"
     drawing.write_text(SOUND.replace("<svg ", '<svg data-brushsvg-cell="grbl-3axis" '))
     done = plugin.script("chart", drawing, f"--output={saved}", "--strokes=few")
@@ -64,7 +64,7 @@ def test_the_program_and_what_it_is_read_by_are_those_of_the_command_line(plugin
         ("nowhere/sheet.ngc", "cannot be written"),
     ],
 )
-def test_what_cannot_be_saved_is_reported(plugin, tmp_path, name, reported):
+def test_an_unwritable_chart_file_is_reported(plugin, tmp_path, name, reported):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
     done = plugin.script("chart", drawing, f"--output={tmp_path / name}")

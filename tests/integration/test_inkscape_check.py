@@ -33,7 +33,7 @@ def ends_mm(path, select):
 
 
 @pytest.mark.parametrize("own", ["", 'transform="translate(4,3) rotate(3)"'])
-def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
+def test_unpaintable_elements_are_marked_in_place(plugin, tmp_path, own):
     out, layer = checked(plugin, tmp_path, f"{OPEN}<g {own}>{BODY}</g></svg>")
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6", "1", "1")
     texts = [" ".join(text.itertext()) for text in layer.iter(f"{SVG}text")]
@@ -47,7 +47,7 @@ def test_what_cannot_be_painted_is_marked_in_place(plugin, tmp_path, own):
         assert np.abs(marked - drawn).max() < 0.01
 
 
-def test_letters_that_the_document_has_refused_are_marked_in_place(plugin, tmp_path):
+def test_letters_refused_by_document_settings_are_marked_in_place(plugin, tmp_path):
     fat = OPEN.replace("<svg ", '<svg data-brushsvg-wide="refuse" ') + '<path id="fat" d="M20 20h60v14h-60z"/>'
     _, layer = checked(plugin, tmp_path, f'{fat}<path id="thin" d="M20 45h60v4h-60z"/></svg>')
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6", "1", "0")
@@ -55,7 +55,7 @@ def test_letters_that_the_document_has_refused_are_marked_in_place(plugin, tmp_p
     assert gives(text, "14 mm")
 
 
-def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
+def test_the_check_layer_is_replaced_and_originals_are_unchanged(plugin, tmp_path):
     out, layer = checked(plugin, tmp_path, BODY)
     again, layer_again = checked(plugin, tmp_path, out.read_text().partition("?>")[2].strip(), "again")
     assert len(layer) == len(layer_again)
@@ -67,20 +67,20 @@ def test_it_replaces_its_layer_and_touches_nothing_else(plugin, tmp_path):
         assert [node.attrib for node in originals] == [node.attrib for node in expected]
 
 
-def test_what_no_program_would_be_written_for_cannot_be_painted(plugin, tmp_path):
+def test_elements_that_prevent_a_program_are_marked_as_unpaintable(plugin, tmp_path):
     _, layer = checked(plugin, tmp_path, '<path id="off" d="M 1,30 H 60" stroke="#000" fill="none" stroke-width="5"/>')
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6", "0")
     assert gives(" ".join(layer.itertext()), "left")
     assert [path.get("style").split("stroke:")[1][:7] for path in layer.iter(f"{SVG}path")] == ["#d4351c"]
 
 
-def test_nothing_to_say(plugin, tmp_path):
+def test_a_drawing_without_problems_has_an_empty_check_layer(plugin, tmp_path):
     _, layer = checked(plugin, tmp_path, SOUND)
     assert gives(layer.get(f"{INKSCAPE}label"), "round-6")
     assert len(layer) == 0
 
 
-def test_nothing_that_can_be_painted(plugin, tmp_path):
+def test_a_drawing_without_paintable_elements_is_marked(plugin, tmp_path):
     body = "".join(f'<path id="p{k}" d="M20 30 H90" stroke="#000" stroke-width="{30 + k}"/>' for k in range(5))
     _, layer = checked(plugin, tmp_path, body)
     assert len(list(layer.iter(f"{SVG}path"))) == 5
@@ -96,7 +96,7 @@ def test_odd_ids_and_texts_are_marked(plugin, tmp_path):
     assert len(list(layer.iter(f"{SVG}text"))) == 2
 
 
-def test_what_the_copies_of_an_element_say_alike_is_said_once(plugin, tmp_path):
+def test_equal_warnings_of_copies_are_reported_once(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     copied = '<text id="word" x="10" y="10">a</text><use xlink:href="#word" y="20"/></svg>'
     head = SOUND.replace("<svg ", '<svg xmlns:xlink="http://www.w3.org/1999/xlink" ')

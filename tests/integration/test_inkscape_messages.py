@@ -30,16 +30,14 @@ TOO_WIDE = path("M20 30 H90", width="30")
         (TOO_WIDE, "select-clear", "ngc", b"brushsvg refuses:\np: width 30.000 mm is outside"),
     ],
 )
-def test_in_batches_inkscape_ends_and_what_it_would_show_is_on_stderr(
-    plugin, tmp_path, drawing, action, suffix, reported
-):
+def test_batch_runs_end_and_write_messages_to_stderr(plugin, tmp_path, drawing, action, suffix, reported):
     """A dialog would stay until the time is up."""
     source = tmp_path / "drawing.svg"
     source.write_text(drawing)
     assert reported in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
 
 
-def test_without_a_display_warnings_are_on_stderr_too(plugin, tmp_path):
+def test_warnings_are_on_stderr_without_a_display(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(SOUND.replace("</svg>", f"{IMAGE}</svg>"))
     done = plugin.save(source, tmp_path / "out.ngc")
@@ -79,7 +77,7 @@ def in_dialogs(monkeypatch):
 
 
 @pytest.mark.parametrize("code", ADVICE)
-def test_advice_is_worded_for_who_has_dialogs(plugin, tmp_path, in_dialogs, code):
+def test_advice_is_worded_for_users_of_dialogs(plugin, tmp_path, in_dialogs, code):
     script, text, *words = ADVICE[code]
     source = tmp_path / "drawing.svg"
     source.write_text(text)
@@ -109,13 +107,13 @@ def test_no_flag_is_shown_in_a_dialog(monkeypatch, sentence, advice, shown):
     assert in_dialogs(notice) == shown
 
 
-def test_damage_is_to_be_corrected_for_any_code(plugin, tmp_path):
+def test_damaged_paths_get_advice_to_repair_them(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(path("M20 30 H90 V"))
     assert b"; repair or delete it, or draw it again" in plugin.script("save", source).stderr
 
 
-def test_a_cell_is_advised_with_its_name(plugin, tmp_path):
+def test_a_suggested_cell_is_named(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(document('data-brushsvg-cell="linuxcnc-3axis"'))
     done = plugin.script("save", source, "--format=script")
@@ -124,11 +122,11 @@ def test_a_cell_is_advised_with_its_name(plugin, tmp_path):
     assert "ur5e" in named[1].split(" or ")
 
 
-def test_all_advice_is_tried(in_dialogs):
+def test_all_advice_is_tested(in_dialogs):
     assert set(ADVICE) == set(in_dialogs)
 
 
-def test_files_of_ours_that_nobody_knows_are_not_named(plugin, tmp_path):
+def test_temporary_files_are_not_named_in_messages(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(document('data-brushsvg-brush="rigid"'))
     assert plugin.script("chart", source).stderr.startswith(b"brushsvg refuses:\nbrush: brush rigid is a pen")

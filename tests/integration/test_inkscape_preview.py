@@ -88,7 +88,7 @@ def assert_alike(shown, predicted):
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_marks_are_where_predict_puts_them_and_originals_stay(plugin, tmp_path, head):
+def test_marks_agree_with_preview_and_originals_stay(plugin, tmp_path, head):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing(head))
     shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
@@ -96,7 +96,7 @@ def test_marks_are_where_predict_puts_them_and_originals_stay(plugin, tmp_path, 
     assert elements(shown.read_text()) == elements(source.read_text())
 
 
-def test_its_layer_is_locked_named_and_replaced(plugin, tmp_path):
+def test_the_preview_layer_is_locked_named_and_replaced(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm"))
     once = plugin.effect("preview", source, tmp_path / "once.svg")
@@ -115,7 +115,7 @@ def test_its_layer_is_locked_named_and_replaced(plugin, tmp_path):
     assert_alike(rings_mm(twice, tmp_path), rings_mm(once, tmp_path))
 
 
-def test_the_layer_is_not_painted(plugin, tmp_path):
+def test_the_preview_layer_is_not_painted(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm"))
     plugin.effect("preview", source, tmp_path / "shown.svg")
@@ -125,14 +125,14 @@ def test_the_layer_is_not_painted(plugin, tmp_path):
 
 
 @pytest.mark.parametrize(("select", "css"), [("bar", "#bar"), ("layer1", "#layer1"), ("wave,sharp", "#wave, #sharp")])
-def test_a_selection_alone_is_shown(plugin, tmp_path, select, css):
+def test_only_the_selection_is_shown(plugin, tmp_path, select, css):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("in"))
     shown = plugin.effect("preview", source, tmp_path / "shown-in.svg", select=select)
     assert_alike(rings_mm(shown, tmp_path), predicted_mm(tmp_path, "--select", css))
 
 
-def test_a_letter_that_was_converted_stands_for_its_strokes(plugin, tmp_path):
+def test_a_converted_letter_selects_its_strokes(plugin, tmp_path):
     """It stays selected, hidden, when its strokes are there."""
     source, strokes = tmp_path / "drawing.svg", tmp_path / "strokes.svg"
     source.write_text(SOUND.replace("</svg>", '<path id="i" d="M 95,10 h 3 v 40 h -3 z"/></svg>'))
@@ -144,7 +144,7 @@ def test_a_letter_that_was_converted_stands_for_its_strokes(plugin, tmp_path):
     assert again.stderr.startswith(b"There is no filled shape")
 
 
-def test_our_own_layer_is_not_what_is_selected(plugin, tmp_path):
+def test_a_selected_preview_layer_is_ignored(plugin, tmp_path):
     source, shown = tmp_path / "drawing.svg", tmp_path / "shown.svg"
     source.write_text(SOUND)
     shown.write_bytes(plugin.script("preview", source).stdout)
@@ -152,7 +152,7 @@ def test_our_own_layer_is_not_what_is_selected(plugin, tmp_path):
     assert again.stdout == shown.read_bytes(), again.stderr
 
 
-def test_of_refined_marks_those_are_red_that_are_elsewhere(plugin, tmp_path):
+def test_displaced_refined_marks_are_red(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm").replace("110,93 22,95", "110,91 22,92"))  # so sharp that refining wins nothing
     plugin.set(preview__compensation="refined")
@@ -168,7 +168,7 @@ def test_of_refined_marks_those_are_red_that_are_elsewhere(plugin, tmp_path):
     assert red == [False, False, True, False], "the one that turns too sharply, which refinement left as it was"
 
 
-def test_what_the_dialog_says_wins(plugin, tmp_path):
+def test_dialog_settings_override_the_document(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(drawing("mm"))
     plugin.set(preview__brush="rigid", preview__compensation="none")
@@ -187,7 +187,7 @@ def test_odd_ids_can_be_selected(plugin, tmp_path):
     assert b"1 stroke," in done.stdout
 
 
-def test_what_is_somebodys_own_stays_though_it_has_the_name_of_our_layer(plugin, tmp_path):
+def test_a_user_element_with_the_id_of_the_preview_layer_is_kept(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(SOUND.replace('id="line"', 'id="brushsvg-preview"'))
     shown = ET.fromstring(plugin.script("preview", source).stdout)
@@ -197,14 +197,14 @@ def test_what_is_somebodys_own_stays_though_it_has_the_name_of_our_layer(plugin,
     ]
 
 
-def test_a_page_whose_ratio_says_nothing(plugin, tmp_path):
+def test_an_empty_aspect_ratio_of_a_page_is_ignored(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(SOUND.replace("<svg ", '<svg preserveAspectRatio=" " '))
     done = plugin.script("preview", source)
     assert done.returncode == 0, done.stderr
 
 
-def test_too_many_to_be_reported_are_refused_in_a_sentence(plugin, tmp_path):
+def test_too_many_selected_ids_are_refused_in_a_sentence(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(SOUND)
     reported = sentence(plugin.script("preview", source, *[f"--id=path{k}" for k in range(8000)]))
@@ -214,7 +214,7 @@ def test_too_many_to_be_reported_are_refused_in_a_sentence(plugin, tmp_path):
 
 
 @pytest.mark.parametrize("path", ["M 2,40 H 60", "M 10,40 H 60 L 70"])
-def test_the_label_says_that_saving_will_be_refused(plugin, tmp_path, path):
+def test_the_layer_label_announces_that_saving_will_be_refused(plugin, tmp_path, path):
     """Paint over the edge of the sheet; damaged path data."""
     source, saved = tmp_path / "drawing.svg", tmp_path / "saved.ngc"
     source.write_text(
@@ -228,7 +228,7 @@ def test_the_label_says_that_saving_will_be_refused(plugin, tmp_path, path):
 
 
 @pytest.mark.parametrize("kind", ["PAINTED", "MISSED"])
-def test_marks_are_seen_on_ink_of_any_colour(kind, monkeypatch):
+def test_marks_are_visible_on_ink_of_any_colour(kind, monkeypatch):
     """A mark differs from the ink and the paper below it by at least a fifth of a channel's range."""
     monkeypatch.syspath_prepend(SOURCE)
     import brushsvg_preview as shown
@@ -240,7 +240,7 @@ def test_marks_are_seen_on_ink_of_any_colour(kind, monkeypatch):
             assert np.linalg.norm(shown.OPACITY * (colour - under)) >= 0.2 * 255, (ink, under)
 
 
-def test_black_ink_is_seen_below_blue_and_blue_ink_below_orange(plugin, tmp_path):
+def test_marks_have_a_colour_different_from_the_ink(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     strokes = "".join(
         f'<path d="M10,{y} H90" style="fill:none;stroke:{ink};stroke-width:4"/>'

@@ -20,7 +20,7 @@ def drawing(tmp_path):
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_a_missing_program_is_reported_with_the_way_to_install_it(tmp_path, drawing, script):
+def test_a_missing_program_is_reported_with_the_install_command(tmp_path, drawing, script):
     reported = sentence(Plugin(tmp_path, command=None).script(script, drawing))
     assert reported.splitlines()[0].endswith(":  pipx install brushsvg")
 
@@ -44,25 +44,25 @@ def programs(tmp_path, text):
     ],
 )
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_another_program_is_reported(plugin, tmp_path, drawing, script, does, reported):
+def test_a_program_other_than_brushsvg_is_reported(plugin, tmp_path, drawing, script, does, reported):
     other = programs(tmp_path, does)
     said = sentence(plugin.script(script, drawing, f"--executable={other}"))
     assert reported in said if reported else said.startswith(f"{other} ") and said.count("\n") == 1
 
 
-def test_one_that_is_chosen_but_is_not_there_is_reported(plugin, tmp_path, drawing):
+def test_a_chosen_program_that_does_not_exist_is_reported(plugin, tmp_path, drawing):
     reported = sentence(plugin.script("save", drawing, f"--executable={tmp_path / 'nothing'}"))
     assert reported.startswith(f"{tmp_path / 'nothing'} ")
 
 
-def test_the_place_noted_when_it_was_installed_is_used(tmp_path, drawing):
+def test_the_path_recorded_at_installation_is_used(tmp_path, drawing):
     alone = Plugin(tmp_path, command=None)
     (alone.installed / "brushsvg-executable.txt").write_text(f"{COMMAND}\n")
     assert alone.script("save", drawing).stdout.endswith(b"M2\n")
 
 
 @pytest.mark.parametrize("path", ["", None])
-def test_it_is_found_in_the_usual_places_without_a_path(tmp_path, drawing, path):
+def test_the_program_is_found_in_usual_folders_without_path_variable(tmp_path, drawing, path):
     """As where a desktop starts Inkscape."""
     alone = Plugin(tmp_path, command=None)
     alone.env.pop("PATH")
@@ -85,7 +85,7 @@ def test_it_is_found_in_the_usual_places_without_a_path(tmp_path, drawing, path)
         ("UV_TOOL_DIR", "brushsvg/bin"),
     ],
 )
-def test_it_is_found_where_pipx_and_uv_keep_it(tmp_path, drawing, variable, folder):
+def test_the_program_is_found_in_pipx_and_uv_folders(tmp_path, drawing, variable, folder):
     alone = Plugin(tmp_path, command=None)
     alone.env |= {variable: str(tmp_path / "own")} if variable else {}
     place = tmp_path / ("own" if variable else "") / folder
@@ -95,7 +95,7 @@ def test_it_is_found_where_pipx_and_uv_keep_it(tmp_path, drawing, variable, fold
 
 
 @pytest.mark.parametrize(("variable", "name"), [("FLATPAK_ID", "a Flatpak"), ("SNAP", "a Snap")])
-def test_a_sandbox_is_named_with_a_way_round_it(tmp_path, drawing, variable, name):
+def test_a_sandbox_is_reported_with_a_workaround(tmp_path, drawing, variable, name):
     alone = Plugin(tmp_path, command=None)
     alone.env[variable] = "org.inkscape.Inkscape"
     reported = sentence(alone.script("save", drawing))
@@ -111,7 +111,7 @@ def test_the_settings_show_which_program_is_used(plugin, tmp_path, drawing):
 
 
 @pytest.mark.parametrize("typed", [[COMMAND], [sys.executable, "-m", "brushsvg"]])
-def test_inkscape_without_a_path_saves_with_the_one_that_installed_the_extension(tmp_path, drawing, typed):
+def test_inkscape_without_path_variable_uses_the_installing_program(tmp_path, drawing, typed):
     alone = Plugin(tmp_path, command=None)
     environment = {"HOME": str(tmp_path), "INKSCAPE_PROFILE_DIR": str(alone.profile), "PATH": ""}
     words = [*typed, "setup", "inkscape"]
@@ -121,7 +121,7 @@ def test_inkscape_without_a_path_saves_with_the_one_that_installed_the_extension
     assert (tmp_path / "saved.ngc").read_bytes().endswith(b"M2\n")
 
 
-def test_a_place_whose_name_is_no_text_is_noted_too(tmp_path, drawing):
+def test_a_path_that_is_not_unicode_is_recorded(tmp_path, drawing):
     odd = tmp_path / os.fsdecode(b"p\xff") / "brushsvg"
     odd.parent.mkdir()
     odd.symlink_to(COMMAND)
@@ -131,7 +131,7 @@ def test_a_place_whose_name_is_no_text_is_noted_too(tmp_path, drawing):
     assert alone.script("save", drawing).stdout.endswith(b"M2\n")
 
 
-def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
+def test_a_recorded_path_that_no_longer_exists_is_ignored(plugin, drawing):
     note = plugin.installed / "brushsvg-executable.txt"
     note.write_text("/nowhere/brushsvg\n")
     try:
@@ -141,7 +141,7 @@ def test_a_place_that_was_noted_and_is_gone_does_no_harm(plugin, drawing):
 
 
 @pytest.mark.parametrize("script", ["save", "preview", "strokes"])
-def test_a_disk_that_takes_nothing_is_reported(plugin, drawing, script):
+def test_a_full_disk_is_reported(plugin, drawing, script):
     # 4 bytes: the probe with which Python looks for a folder of temporary files still fits
     reported = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=4")))
     assert reported.endswith(": File too large.\n"), "the system's words, and no mistake of ours"

@@ -38,7 +38,7 @@ ENTRIES = {  # entry of the menu: extension, and how the command line writes the
 
 @pytest.mark.parametrize("name", DRAWINGS)
 @pytest.mark.parametrize("entry", ENTRIES)
-def test_the_same_bytes_as_the_command_line(plugin, tmp_path, name, entry):
+def test_saving_gives_the_bytes_of_the_command_line(plugin, tmp_path, name, entry):
     extension, (command, *flags) = ENTRIES[entry]
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved.{extension}"
     drawing.write_text(DRAWINGS[name])
@@ -87,7 +87,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     assert saved.read_bytes() == (tmp_path / f"typed{extension}").read_bytes()
 
 
-def test_entries_of_inkscapes_own_stay_what_an_extension_means(plugin, tmp_path):
+def test_file_types_of_inkscape_keep_their_extensions(plugin, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(SOUND)
     for extension, begin in (
@@ -98,7 +98,7 @@ def test_entries_of_inkscapes_own_stay_what_an_extension_means(plugin, tmp_path)
         assert (tmp_path / f"saved.{extension}").read_bytes().startswith(begin)
 
 
-def test_the_document_chooses_unless_the_dialog_does(plugin, tmp_path):
+def test_dialog_settings_override_document_settings(plugin, tmp_path):
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(DRAWINGS["settings"])
     for words, brush in (
@@ -136,7 +136,7 @@ for file in sys.argv[2:]:
 """
 
 
-def test_a_job_of_several_programs_is_not_saved_as_its_first(plugin, tmp_path):
+def test_a_job_of_several_programs_is_refused(plugin, tmp_path):
     lines = "".join(
         f'<path d="M20 {y}Q40 {y - 9} 60 {y}T100 {y}T140 {y}T180 {y}" fill="none" stroke="#000" stroke-width="3"/>'
         for y in range(15, 290, 3)
@@ -150,7 +150,7 @@ def test_a_job_of_several_programs_is_not_saved_as_its_first(plugin, tmp_path):
     assert gives(reported, "several", "OUT.script")
 
 
-def test_the_descriptions_are_valid_by_inkscapes_own_schema(tmp_path):
+def test_extension_descriptions_are_valid_in_inkscapes_schema(tmp_path):
     files = sorted(map(str, SOURCE.glob("*.inx")))
     assert len(files) >= 9
     subprocess.run(["/usr/bin/python3", "-c", CHECK, SCHEMA, *files], check=True)
@@ -163,7 +163,7 @@ def options(file, parameter):
     return {option.get("value") for each in found for option in each} - {"document", "keep", "default"}
 
 
-def test_dialogs_offer_what_comes_along():
+def test_dialogs_offer_shipped_brushes_and_cells():
     for file in SOURCE.glob("*.inx"):
         assert options(file, "brush") in (set(), set(brush_names())), file
         assert options(file, "cell") <= set(cell_names()), file

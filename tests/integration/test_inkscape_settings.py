@@ -28,7 +28,7 @@ def stored(text) -> dict:
     return {key.removeprefix(prefix): value for key, value in attributes.items() if key.startswith(prefix)}
 
 
-def test_what_nobody_touches_stays_and_is_reported(plugin, drawing):
+def test_unchanged_settings_stay_and_are_reported(plugin, drawing):
     done = plugin.script("settings", drawing)
     assert stored(done.stdout) == STORED
     _, *settings, used = done.stderr.decode().splitlines()
@@ -76,11 +76,11 @@ def test_one_field_changes_one_setting(plugin, drawing, word, changed, reported)
         ("nan", ("nan mm", "[1e-05, 10] mm")),
     ],
 )
-def test_a_tolerance_that_is_none_is_reported(plugin, drawing, typed, reported):
+def test_an_invalid_tolerance_is_reported(plugin, drawing, typed, reported):
     assert gives(sentence(plugin.script("settings", drawing, f"--tolerance={typed}")), *reported)
 
 
-def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
+def test_the_dialog_shows_the_defaults_of_brushsvg(monkeypatch):
     monkeypatch.syspath_prepend(SOURCE)
     from brushsvg_settings import OWN
 
@@ -100,7 +100,7 @@ def test_the_dialog_names_what_brushsvg_chooses_itself(monkeypatch):
     assert gives(dialog, "0.05 mm")
 
 
-def test_the_command_line_uses_what_inkscape_stored(plugin, tmp_path):
+def test_the_command_line_uses_settings_stored_by_inkscape(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
     source.write_text(SOUND)
     chosen = {"brush": "rigid", "compensation": "none", "cell": "ur5e", "wide": "refuse", "tolerance": "0.2"}

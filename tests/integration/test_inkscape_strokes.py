@@ -70,7 +70,7 @@ def overlap(a: np.ndarray, b: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_inkscape_draws_and_we_paint_the_strokes_as_the_letters_were(plugin, inkscape, tmp_path, head):
+def test_converted_strokes_look_and_paint_like_their_letters(plugin, inkscape, tmp_path, head):
     source = tmp_path / "letters.svg"
     source.write_text(drawing(head))
     done = converted(plugin, source)
@@ -108,7 +108,7 @@ def assert_painted_alike(letters: Path, strokes: Path) -> None:
         assert np.abs(a.max(axis=0) - b.max(axis=0)).max() < most_mm, plan["stroke"]
 
 
-def test_letters_that_are_sheared_are_painted_alike(plugin, inkscape, tmp_path):
+def test_sheared_letters_are_converted_correctly(plugin, inkscape, tmp_path):
     source, out = tmp_path / "letters.svg", tmp_path / "strokes.svg"
     source.write_text(drawing("mm").replace("scale(0.9)", "skewX(20)"))
     out.write_bytes(plugin.script("strokes", source, "--id=turned").stdout)
@@ -124,7 +124,7 @@ def attributes(text: str) -> dict:
     }
 
 
-def test_letters_stay_hidden_next_to_their_strokes_and_all_else_as_it_was(plugin, tmp_path):
+def test_letters_stay_hidden_next_to_their_strokes_and_other_elements_unchanged(plugin, tmp_path):
     source = tmp_path / "letters.svg"
     source.write_text(drawing("mm"))
     done = converted(plugin, source)
@@ -140,7 +140,7 @@ def test_letters_stay_hidden_next_to_their_strokes_and_all_else_as_it_was(plugin
     assert len(names) == len(set(names))
 
 
-def test_a_selection_alone_is_converted(plugin, tmp_path):
+def test_only_the_selection_is_converted(plugin, tmp_path):
     source = tmp_path / "letters.svg"
     source.write_text(drawing("mm"))
     done = converted(plugin, source, "glyph-2-S")
@@ -148,7 +148,7 @@ def test_a_selection_alone_is_converted(plugin, tmp_path):
     assert 'id="glyph-2-S-strokes"' in text and 'id="glyph-1-o-strokes"' not in text
 
 
-def test_widths_can_be_edited(plugin, inkscape, tmp_path):
+def test_edited_widths_are_read_back(plugin, inkscape, tmp_path):
     """A PowerStroke that Inkscape has moved is read back as the moved stroke."""
     source = tmp_path / "letters.svg"
     source.write_text(f"{OPEN}{letters('S', 30)}</svg>")
@@ -173,7 +173,7 @@ def test_widths_can_be_edited(plugin, inkscape, tmp_path):
         (f'{OPEN}<text id="word" x="20" y="20"> </text></svg>', "nothing to paint"),
     ],
 )
-def test_what_cannot_be_converted_is_reported(plugin, tmp_path, body, reported):
+def test_elements_that_cannot_be_converted_are_reported(plugin, tmp_path, body, reported):
     source = tmp_path / "drawing.svg"
     source.write_text(body)
     done = plugin.script("strokes", source)
@@ -181,7 +181,7 @@ def test_what_cannot_be_converted_is_reported(plugin, tmp_path, body, reported):
     assert reported in done.stderr.decode() and "Traceback" not in done.stderr.decode()
 
 
-def test_copies_and_drawings_within_the_drawing(plugin, inkscape, tmp_path):
+def test_copies_and_nested_drawings_are_converted(plugin, inkscape, tmp_path):
     inner = f'<svg id="inner" x="70" y="2" width="60" height="60" viewBox="10 0 80 80">{letters("S")}</svg>'
     copy = '<use id="copy" xlink:href="#glyph-1-S" transform="translate(-10,5) scale(0.7)"/>'
     source = tmp_path / "drawing.svg"
@@ -212,7 +212,7 @@ def test_converted_again_next_to_text_lines_stay_lines(plugin, tmp_path):
     assert not [name for name in ours if f"{name}-strokes" in names]
 
 
-def test_what_a_selected_letter_is_copied_to_stays(plugin, tmp_path):
+def test_copies_of_a_selected_letter_are_unchanged(plugin, tmp_path):
     source = tmp_path / "letters.svg"
     copies = '<g id="both">' + letters("o").replace('id="', 'id="copied-') + '<path id="bar" d="M5 90h60v4h-60z"/></g>'
     name = re.search('id="(copied-[^"]*)"', copies)[1]

@@ -56,13 +56,13 @@ def painted(file: Path) -> list[float]:
     return boxes
 
 
-def test_text_stays_as_it_was(plugin, drawing):
+def test_original_text_is_unchanged(plugin, drawing):
     before = ET.parse(drawing).getroot()
     after = ET.fromstring(plugin.script("strokes", drawing).stdout)
     assert text_of(after) == text_of(before)
 
 
-def test_without_inkscape_the_sentence_says_how_to_make_paths(plugin, drawing):
+def test_missing_inkscape_is_reported_with_how_to_make_paths(plugin, drawing):
     plugin.env["INKSCAPE_COMMAND"] = "nowhere"
     try:
         done = plugin.script("strokes", drawing)
@@ -72,7 +72,7 @@ def test_without_inkscape_the_sentence_says_how_to_make_paths(plugin, drawing):
     assert b"word: text is not read; turn it into paths with Path > Object to Path" in done.stderr
 
 
-def test_inkscape_is_not_started_for_the_texts_of_our_own_layers(plugin, tmp_path):
+def test_inkscape_is_not_started_for_text_in_brushsvg_layers(plugin, tmp_path):
     source, started = tmp_path / "drawing.svg", tmp_path / "started"
     other = tmp_path / "inkscape"
     other.write_text(f"#!/bin/sh\ntouch {started}\n")

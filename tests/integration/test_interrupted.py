@@ -54,7 +54,7 @@ def read_until(terminal, word, timeout_s=60):
 
 
 @pytest.mark.parametrize("stage", [b"reading", b"compensated", b"simulated", b"outlined"])
-def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
+def test_ctrl_c_stops_at_once_and_leaves_no_files(desk, long_drawing, stage):
     (desk / "long.svg").write_text(long_drawing)
     before = listing(desk)
     words = [
@@ -86,7 +86,7 @@ def test_ctrl_c_stops_at_once_and_leaves_nothing(desk, long_drawing, stage):
     assert listing(desk) == before
 
 
-def test_progress_is_reported_to_a_terminal_only(desk):
+def test_progress_is_shown_only_in_a_terminal(desk):
     process, terminal = started_at_terminal(desk, "convert", "sound.svg", "-o", "out.ngc")
     assert b"compensated" in read_until(terminal, b"\0 never")
     assert process.wait(timeout=30) == 0
@@ -96,7 +96,7 @@ def test_progress_is_reported_to_a_terminal_only(desk):
 
 
 @pytest.mark.parametrize("module", ["argparse", "brushsvg.cli.commands", "numpy", "brushsvg._core"])
-def test_ctrl_c_while_starting_up(desk, module):
+def test_ctrl_c_during_start_up_stops_without_traceback(desk, module):
     """Before there is any progress to see: while what the command needs is being loaded."""
     code = (
         "import os, signal, sys\n"

@@ -138,7 +138,7 @@ def test_a_page_of_1000_strokes_is_krl(errors_of, tmp_path):
 
 
 @pytest.mark.parametrize(("old", "new"), BROKEN, ids=[f"{old.strip()}" for old, _ in BROKEN])
-def test_what_is_no_krl_is_refused(errors_of, old, new):
+def test_the_grammar_refuses_invalid_krl(errors_of, old, new):
     text = GOLDEN.read_text()
     assert old in text
     assert errors_of(text.replace(old, new, 1))

@@ -33,7 +33,7 @@ def fonts(npm):
 
 
 @pytest.mark.thorough  # all of them, or chance decides: minutes
-def test_what_is_painted_is_read_as_what_was_drawn(fonts):
+def test_painted_text_is_read_as_well_as_drawn_text(fonts):
     texts_drawn = texts_painted = count = 0
     with ProcessPoolExecutor(2) as pool:
         for font in fonts:

@@ -67,13 +67,13 @@ def test_an_outline_of_one_stroke_is_one_stroke(found):
     assert single >= 0.95  # 0.967
 
 
-def test_a_disc_swept_along_it_paints_the_outline(found):
+def test_a_disc_swept_along_a_stroke_paints_the_outline(found):
     overlaps = [_core.overlap(swept(made), shape) for made, shape, _ in found if len(made) == 1]
     print(f"overlap: mean {np.mean(overlaps):.4f}, 5th percentile {np.percentile(overlaps, 5):.3f}")
     assert np.mean(overlaps) >= 0.96  # 0.969
 
 
-def test_it_runs_the_way_one_writes(found):
+def test_strokes_run_in_the_direction_of_writing(found):
     agree = []
     for made, _, middle in found:
         if len(made) == 1:
@@ -121,7 +121,7 @@ def test_letters_are_covered(lettering, kind):
     assert np.mean(list(shares.values())) >= 0.95
 
 
-def test_capitals_of_a_sans_have_the_strokes_one_writes(lettering):
+def test_sans_serif_capitals_have_the_strokes_of_handwriting(lettering):
     font = lettering.font("sans")
     counts = {text: len(strokes(letter(font, text))[0]) for text in string.ascii_uppercase}
     odd = {text: count for text, count in counts.items() if count not in STROKES_OF[text]}
@@ -154,7 +154,7 @@ def compared(designs, brush) -> dict[str, float]:
     }
 
 
-def test_characters_painted(characters):
+def test_characters_are_painted_well(characters):
     brush, sheet = find_brush("round-6"), (CHARACTER_MM, CHARACTER_MM)
     designs = [
         Design(sheet, tuple(outline(f"s{k}", d) for k, d in enumerate(each["strokes"])))
@@ -172,7 +172,7 @@ TEXT = "ABEGKMQRSaegkmnrst"
 
 
 @pytest.mark.parametrize(("kind", "em_mm"), [("sans", 100.0), ("script", 60.0)])
-def test_fonts_painted(lettering, kind, em_mm):
+def test_fonts_are_painted_well(lettering, kind, em_mm):
     """Fonts are painted well.
 
     At 100 mm, the script has strokes of 14 mm, but round-6 paints at most 8.4 mm: see the next test.
@@ -188,7 +188,7 @@ LIMBS = "AEFRTVdefghijklmnrtuyz147"
 
 
 @pytest.mark.parametrize(("kind", "weight", "em_mm"), [("serif", 700, 55.0), ("script", 400, 60.0)])
-def test_no_limb_is_lost(lettering, kind, weight, em_mm):
+def test_all_limbs_of_letters_are_painted(lettering, kind, weight, em_mm):
     """No limb of a letter is lost.
 
     A lost limb is a connected piece of more than 3 % of the letter that neither paint nor a disc of any
@@ -211,7 +211,7 @@ def test_no_limb_is_lost(lettering, kind, weight, em_mm):
     assert lost == []
 
 
-def test_strokes_wider_than_the_brush_painted_in_passes(lettering):
+def test_strokes_wider_than_the_brush_are_painted_in_passes(lettering):
     """Strokes wider than the brush are painted in several sweeps.
 
     As for drawings, the search paints the sides of strokes and their corners.

@@ -193,18 +193,18 @@ def made(way, converted):
     return converted(source, *flags)
 
 
-def test_points_are_the_plans(made, tmp_path):
+def test_program_points_equal_the_plan(made, tmp_path):
     check_points(*interpreted(made / "program.ngc", tmp_path), passes_in(made))
 
 
-def test_the_stand_alone_interpreter_agrees(made, tmp_path):
+def test_the_stand_alone_interpreter_agrees_with_the_plan(made, tmp_path):
     before, sections = canonical(made / "program.ngc", tmp_path)
     check_points(before, sections, passes_in(made))
     check_rapids(before, sections)
 
 
 @pytest.mark.parametrize("way", ["robot", "constant lag"])
-def test_axes_with_backlash_go_where_others_go(way, drawing, tmp_path):
+def test_axes_with_backlash_follow_the_same_path(way, drawing, tmp_path):
     """Axes with backlash paint where other axes paint.
 
     The places come from the stand-alone interpreter, and the judge's axes run them.
@@ -238,7 +238,7 @@ def legs_of(events):
     return legs
 
 
-def test_rapids_keep_off_the_paper(made, tmp_path):
+def test_rapid_moves_stay_above_the_paper(made, tmp_path):
     check_rapids(*interpreted(made / "program.ngc", tmp_path))
 
 
@@ -281,7 +281,7 @@ def round_to(start, end, centre, turns):
     return np.column_stack([x, y, np.full(len(angle), end[2])]).tolist()
 
 
-def test_the_marks_are_the_plans(way, made, tmp_path):
+def test_simulated_marks_equal_the_planned_marks(way, made, tmp_path):
     brush = find_brush(BRUSHES.get(way, "round-6"))
     _, sections = interpreted(made / "program.ngc", tmp_path)
     planned = simulated([planned_pass(each) for each in passes_in(made)], brush)
@@ -305,7 +305,7 @@ def planned_pass(each):
     return _core.Pass("s", np.array(rows), 20.0)
 
 
-def test_text_is_plain(made):
+def test_program_text_is_plain_ascii(made):
     data = (made / "program.ngc").read_bytes()
     assert data.isascii()
     for line in data.decode("ascii").splitlines():
@@ -315,7 +315,7 @@ def test_text_is_plain(made):
         assert not re.search(r"-0\.0*(?!\d)", code), line
 
 
-def test_names_in_a_drawing_are_not_orders(tmp_path):
+def test_names_in_a_drawing_cannot_become_commands(tmp_path):
     """Names in a drawing cannot become commands.
 
     LinuxCNC acts on some comments. A bracket or line end could end the comment of a name.
@@ -419,7 +419,7 @@ TAMPERED = {
 
 
 @pytest.mark.parametrize("change", TAMPERED)
-def test_the_checks_see_a_wrong_program(change, converted, tmp_path):
+def test_the_checks_detect_a_wrong_program(change, converted, tmp_path):
     """The checks find a wrong program that LinuxCNC accepts."""
     folder = program_for(change, converted)
     edit, check = TAMPERED[change]

@@ -48,7 +48,7 @@ def distances(points, path):
     return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
 
 
-def test_linuxcnc_goes_round_corners_as_it_is_reckoned_with(tmp_path):
+def test_linuxcnc_cuts_corners_as_predicted(tmp_path):
     cell = find_cell("linuxcnc-3axis")
     cell = replace(cell, blending=replace(cell.blending, tolerance_mm=TOLERANCE_MM))
     way = way_with_corners()

@@ -57,7 +57,7 @@ def test_check_separates_dangerous_from_harmless(dialect, tmp_path, capsys):
 
 
 @sample("dialect", [name for name in CELLS if name not in LIKE_GRBL], keep=3)
-def test_the_judge_separates_them(dialect, tmp_path):
+def test_the_judge_separates_dangerous_and_harmless_damage(dialect, tmp_path):
     """The judge separates dangerous and harmless damage of every kind.
 
     Otherwise the table above would mean nothing.
@@ -95,7 +95,7 @@ def test_a_retract_of_a_hundred_metres_is_judged_without_millions_of_samples(tmp
     assert most < 1e3
 
 
-def test_what_shifts_the_next_program_is_not_harmless(tmp_path):
+def test_a_setting_that_shifts_the_next_program_is_not_harmless(tmp_path):
     """A setting that shifts the next program is not harmless.
 
     G54 may be a different system from the active one. G92 stays after the program, and so does G91 if no M2
@@ -138,7 +138,7 @@ def rs274(text, folder):
 
 
 @pytest.mark.parametrize("name", EVEN_FOR_RS274)
-def test_the_judge_reads_as_linuxcnc_does(name, tmp_path):
+def test_the_judge_agrees_with_linuxcnc(name, tmp_path):
     """The judge and LinuxCNC agree on moves and refusals, also for damaged programs."""
     whole = made(name, "linuxcnc", tmp_path).whole
     compared = 0

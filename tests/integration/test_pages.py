@@ -36,7 +36,7 @@ def page(down_mm):
 
 
 @sample("dialect", CELLS, keep=4)
-def test_a_page_of_a_thousand_strokes_is_run_through_all_its_places(dialect):
+def test_a_page_of_a_thousand_strokes_passes_all_planned_positions(dialect):
     name, suffix = CELLS[dialect]
     cell = find_cell(name)
     room = Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg)

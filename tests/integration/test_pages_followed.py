@@ -51,7 +51,7 @@ def follow(desk: Desk, line: str) -> None:
 
 
 @pytest.mark.parametrize("page", FOLLOWED, ids=name_of)
-def test_blocks_of_a_page_are_of_kinds_that_are_followed(page):
+def test_code_blocks_of_a_page_have_executable_kinds(page):
     kinds = {block.kind for block in blocks(page)}
     assert kinds <= {*FILES, *TYPED, "python", "cpp", "cmake"}
 

@@ -111,7 +111,7 @@ def turns(lines, place) -> int:
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_as_inkscape_shows_its_own_file(name, saved):
+def test_path_effects_agree_with_inkscapes_rendering(name, saved):
     data, theirs = saved[name]
     design = read_svg(data)
     ours = painted(design)

@@ -28,7 +28,7 @@ def found():
     return [outcome(case, *case.taken()) for case in cases]
 
 
-def test_places_on_flat_sheets_are_found_and_none_is_refused(found):
+def test_flat_sheets_are_measured_and_accepted(found):
     flat = [each for each in found if not each["bulging"]]
     assert len(flat) == 10
     for each in flat:
@@ -36,14 +36,14 @@ def test_places_on_flat_sheets_are_found_and_none_is_refused(found):
         assert each.get("geometry", 0.0) < FLAT_MM, each
 
 
-def test_bulging_sheets_are_refused_or_their_places_found(found):
+def test_bulging_sheets_are_refused_or_measured(found):
     bulging = [each for each in found if each["bulging"]]
     assert len(bulging) == 2
     for each in bulging:
         assert each.get("refused") == "photo-not-flat" or each["geometry"] < BULGING_MM, each
 
 
-def test_brushes_of_the_family_are_found(found):
+def test_brushes_of_the_model_family_are_recovered(found):
     """Of those outside of it no figure is promised."""
     inside = [each for each in found if each["inside"] and "values" in each and not each["bulging"]]
     assert len(inside) >= 5

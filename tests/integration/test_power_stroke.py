@@ -43,7 +43,7 @@ def polygon_of_stroke(stroke):
 
 
 @pytest.mark.parametrize("kind", ["Linear", "CubicBezierJohan", "CentripetalCatmullRom"])
-def test_as_inkscape_draws_it(kind, inkscape, tmp_path):
+def test_power_strokes_agree_with_inkscapes_outline(kind, inkscape, tmp_path):
     source, saved = tmp_path / "source.svg", tmp_path / "saved.svg"
     source.write_text(SOURCE.format(kind=kind, line=LINE))
     # an effect is drawn again only when its path changes

@@ -28,7 +28,7 @@ WERE_WRONG_OF_EBB = (1000261, 1000459)  # with --dialect ebb
 
 
 @pytest.mark.parametrize("first", range(0, CASES, PART))
-def test_what_is_written_holds_what_it_must(first, tmp_path, capsys):
+def test_written_programs_have_the_required_properties(first, tmp_path, capsys):
     with quick_check() as check:
         cases = [one(n, tmp_path / str(n), tmp_path, check) for n in range(first, first + PART)]
     assert [case for case in cases if case.wrong] == []
@@ -39,6 +39,6 @@ def test_what_is_written_holds_what_it_must(first, tmp_path, capsys):
     ("number", "dialects"),
     [*((each, ()) for each in WERE_WRONG), *((each, ("ebb",)) for each in WERE_WRONG_OF_EBB)],
 )
-def test_what_was_wrong_once_is_not_again(number, dialects, tmp_path, capsys):
+def test_earlier_failures_stay_fixed(number, dialects, tmp_path, capsys):
     with quick_check() as check:
         assert one(number, tmp_path / str(number), tmp_path, check, dialects).wrong == ()

@@ -133,13 +133,13 @@ def reported(tmp_path_factory, npm):
     return found
 
 
-def test_all_that_is_shown_is_checked():
+def test_all_shown_code_is_checked():
     kinds = [name.split()[0] for name in shown()]
     assert {"README", "python"} <= {name.split()[-1] for name in shown()}
     assert [kinds.count(kind) for kind in ("figure", "example", "notebook")] == [18, 13, 3]
 
 
-def test_what_is_shown_has_no_error_of_types(reported):
+def test_shown_code_has_no_type_errors(reported):
     assert {name: said for name, said in reported.items() if said and not name.startswith("planted")} == {}
 
 

@@ -11,7 +11,7 @@ FIRST = 100
 
 
 @sample("dialect", CELLS, keep=5)
-def test_all_that_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
+def test_random_programs_keep_the_limits_and_pass_check(dialect, tmp_path):
     jobs = 20 if dialect in FEWER else JOBS
     with quick_check() as check:
         all_ = [tried(dialect, number, tmp_path / str(number), check) for number in range(FIRST, FIRST + jobs)]
@@ -21,7 +21,7 @@ def test_all_that_is_written_keeps_the_limits_and_is_allowed(dialect, tmp_path):
 
 
 @pytest.mark.parametrize("dialect, number", [("jaka", 5031), ("grbl", 5064)])
-def test_circles_of_a_brush_that_trails_far_are_lines_on_paper_that_leans(dialect, number, tmp_path):
+def test_circles_of_a_large_lag_become_lines_on_tilted_paper(dialect, number, tmp_path):
     with quick_check() as check:
         job = tried(dialect, number, tmp_path, check)
     assert not (job.refused or job.wrong or job.denied), job

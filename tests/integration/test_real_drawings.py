@@ -33,7 +33,7 @@ def ids_in_order(drawing):
     return [node.get("id") for node in ET.parse(drawing).getroot().iter() if node.tag in DRAWN]
 
 
-def test_the_plan_holds_every_stroke_in_order(source, drawing, converted):
+def test_the_plan_contains_every_stroke_in_order(source, drawing, converted):
     plan = json.loads((converted(source) / "plan.json").read_text(encoding="utf-8"))
     assert (plan["format"], plan["version"], plan["brush"]) == ("brushsvg/plan", 1, "round-6")
     assert plan["sheet_mm"] == pytest.approx(SHEETS_MM[source], abs=1e-4)
@@ -74,7 +74,7 @@ def test_strokes_are_painted_in_the_direction_they_were_drawn(source, drawing, c
     assert seen == {"robot": 2, "inkscape": 2, "inkscape-plain": 2}.get(source, len(plan["passes"]))
 
 
-def test_compensation_is_what_makes_the_difference(source, reported):
+def test_compensation_improves_the_figures(source, reported):
     least, gain = OVERLAP.get(source, (0.96, 0.3))
     closed = reported(source, "--compensation", "closed")
     none = reported(source, "--compensation", "none")
@@ -90,7 +90,7 @@ def test_compensation_is_what_makes_the_difference(source, reported):
         assert with_it["overlap"] > without["overlap"]
 
 
-def test_the_report_counts_what_the_plan_holds(source, converted, reported):
+def test_the_report_agrees_with_the_plan(source, converted, reported):
     passes = json.loads((converted(source) / "plan.json").read_text(encoding="utf-8"))["passes"]
     found = reported(source, "--compensation", "closed")
     assert [row["stroke"] for row in found["strokes"]] == [each["stroke"] for each in passes]
@@ -103,7 +103,7 @@ def test_the_report_counts_what_the_plan_holds(source, converted, reported):
     assert painting_s < found["time_s"] < 3 * painting_s + 5 * len(passes)
 
 
-def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path):
+def test_warnings_are_only_about_omitted_parts(source, drawing, converted, tmp_path):
     """Warnings are only about parts that are left out.
 
     These are numbers next to the strokes of a character, and depths at which the brush was not measured.
@@ -123,7 +123,7 @@ def test_only_what_is_left_out_is_warned_of(source, drawing, converted, tmp_path
     assert f"(warnings: {count})" in program
 
 
-def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp_path):
+def test_the_prediction_is_written_in_three_formats(source, drawing, converted, tmp_path):
     for name in ("marks.png", "marks.svg", "marks.json"):
         brushsvg("preview", drawing(source), "-o", name, cwd=tmp_path, status=0)
     passes = json.loads((converted(source) / "plan.json").read_text(encoding="utf-8"))["passes"]
@@ -150,7 +150,7 @@ def test_the_prediction_is_written_in_three_ways(source, drawing, converted, tmp
 
 
 @pytest.mark.parametrize("compensation", ["closed", "none"])
-def test_overlap_as_inkscape_sees_the_drawing(source, compensation, drawing, reported, inkscape, tmp_path):
+def test_the_overlap_agrees_with_inkscapes_rendering(source, compensation, drawing, reported, inkscape, tmp_path):
     """The overlap agrees with Inkscape's rendering of the drawing.
 
     Inkscape renders the target, and OpenCV fills marks.json. No code of ours is in between.
@@ -184,7 +184,7 @@ def area_mm2(rings):
     return total
 
 
-def test_layers_and_colours_come_through_inkscape(converted):
+def test_layers_and_colours_survive_saving_in_inkscape(converted):
     for source, layers in (
         ("inkscape", ["Letters", "Shapes & more"]),
         ("inkscape-plain", ["layer1", "layer2"]),
@@ -200,7 +200,7 @@ def test_layers_and_colours_come_through_inkscape(converted):
         }
 
 
-def test_both_ways_inkscape_saves_give_the_same_plan(converted):
+def test_plain_and_inkscape_svg_give_the_same_plan(converted):
     plans = [
         json.loads((converted(name) / "plan.json").read_text(encoding="utf-8"))
         for name in ("inkscape", "inkscape-plain")

@@ -12,7 +12,7 @@ from small_drawings import gains
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_never_worse_by_the_report(seed):
+def test_refined_plans_are_never_worse_in_the_report(seed):
     won = gains(200, seed, find_brush("round-6"))
     print(f"{len(won)} strokes, {won.mean():.4f} won on average, nothing for {(won == 0).mean():.0%}")
     assert won.min() >= 0.0

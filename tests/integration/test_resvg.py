@@ -138,7 +138,7 @@ def evenly(line: np.ndarray, count: int = 200) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
-def test_as_resvg_reads_it(name, pages, tmp_path):
+def test_generated_drawings_agree_with_resvg(name, pages, tmp_path):
     drawing = DRAWINGS[name]
     assert differences(read(drawing, tmp_path), pages[name], is_round=name in ROUND) == []
 
@@ -169,7 +169,7 @@ def resaved(resvg, inkscape, tmp_path_factory):
     [[], ["--export-plain-svg"], ["--actions=select-all:all;object-to-path;select-clear"]],
     ids=["Inkscape SVG", "plain SVG", "paths"],
 )
-def test_as_resvg_reads_what_inkscape_saved(words, resaved, tmp_path):
+def test_drawings_saved_by_inkscape_agree_with_resvg(words, resaved, tmp_path):
     saved, pages = resaved(*words)
     assert all(text != DRAWINGS[name] for name, text in saved.items())
     found = {
@@ -178,7 +178,7 @@ def test_as_resvg_reads_what_inkscape_saved(words, resaved, tmp_path):
     assert {name: sentences for name, sentences in found.items() if sentences} == {}
 
 
-def test_real_drawings_as_resvg_reads_them(source, drawing, resvg, tmp_path):
+def test_real_drawings_agree_with_resvg(source, drawing, resvg, tmp_path):
     """Real drawings are read as resvg reads them.
 
     Their radii are up to 76 px, where resvg's own quarters of circles are 0.0205 px off.
@@ -212,7 +212,7 @@ DASHED = {
 
 
 @pytest.mark.parametrize("name", DASHED)
-def test_dashes_are_where_the_pattern_puts_them(name, resvg, tmp_path):
+def test_dashes_follow_their_pattern(name, resvg, tmp_path):
     """Dashes are where the pattern puts them.
 
     Each dash is a piece of the line that resvg draws. The test computes the cuts itself.
@@ -262,7 +262,7 @@ TAMPERED = {
 
 
 @pytest.mark.parametrize("change", TAMPERED)
-def test_the_comparison_sees_a_wrong_reading(change, resvg, tmp_path):
+def test_the_comparison_detects_a_wrong_reading(change, resvg, tmp_path):
     before, after, sentence = TAMPERED[change]
     assert before in SOUND
     page = resvg.pages({"": SOUND})[""]
@@ -270,7 +270,7 @@ def test_the_comparison_sees_a_wrong_reading(change, resvg, tmp_path):
     assert any(sentence in each for each in found), found
 
 
-def test_the_comparison_sees_another_order(resvg, tmp_path):
+def test_the_comparison_detects_another_order(resvg, tmp_path):
     first, second = re.findall("<path[^>]*>", SOUND)
     turned = SOUND.replace(first + second, second + first)
     assert turned != SOUND

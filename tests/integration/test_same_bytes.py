@@ -53,7 +53,7 @@ def test_the_same_drawing_gives_the_same_bytes(desk, usual):
     assert elsewhere(desk, SOUND) == usual
 
 
-def test_nor_does_a_file_name_stand_in_for_a_title(desk):
+def test_a_missing_title_is_not_replaced_by_the_file_name(desk):
     text = SOUND.replace("<title>A line</title>", "")
     (desk / "sound.svg").write_text(text)
     assert elsewhere(desk, text) == everything(desk)
@@ -71,11 +71,11 @@ def german(tmp_path_factory):
     return {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "LOCPATH": str(folder)}
 
 
-def test_a_decimal_comma_changes_nothing(desk, german, usual):
+def test_a_locale_with_decimal_comma_changes_nothing(desk, german, usual):
     assert everything(desk, env=german) == usual
 
 
-def test_nor_in_a_program_that_has_set_its_locale(desk, german, usual):
+def test_a_locale_set_by_the_calling_program_changes_nothing(desk, german, usual):
     """As a window toolkit does at its start: then C and C++ would write and read commas."""
     code = (
         "import locale, sys; locale.setlocale(locale.LC_ALL, ''); "

@@ -39,7 +39,7 @@ def pictures(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", svg_shown.TABLES)
-def test_what_is_not_painted_as_shown_is_reported(name, pictures):
+def test_differences_from_the_rendered_svg_are_reported(name, pictures):
     table = svg_shown.TABLES[name]
     silent = {}
     for drawing, text in table.items():
@@ -50,7 +50,7 @@ def test_what_is_not_painted_as_shown_is_reported(name, pictures):
     assert silent == {}
 
 
-def test_what_is_plain_is_painted_as_shown_without_a_word(pictures):
+def test_plain_drawings_agree_with_chromium_without_notices(pictures):
     found = {}
     for name in svg_shown.PLAIN:
         theirs = pictures[DRAWINGS[name]]
@@ -61,7 +61,7 @@ def test_what_is_plain_is_painted_as_shown_without_a_word(pictures):
 
 
 @pytest.mark.parametrize("change", TAMPERED)
-def test_the_comparison_sees_another_picture(change, pictures):
+def test_the_comparison_detects_another_picture(change, pictures):
     ours, _ = shown.painted(SOUND)
     assert ours.shape == pictures[SOUND].shape and np.ptp(ours) == 1
     assert (shown.difference(pictures[tampered(change)], ours) > LEAST) == TAMPERED[change][2]

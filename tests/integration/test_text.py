@@ -24,7 +24,7 @@ SINGLE_LINES = sorted(path.stem for path in LINES.glob("*.svg"))
 SIZE_MM, WIDTH_MM = 25, 1.5
 
 
-def test_the_fonts_are_there():
+def test_the_required_fonts_exist():
     assert {"EMSTech", "EMSAllure", "HersheySans1", "HersheyScript1"} <= set(SINGLE_LINES)
     assert DEJAVU.exists()
 
@@ -48,7 +48,7 @@ def points_of(d):
 
 
 @pytest.mark.parametrize("name", SINGLE_LINES)
-def test_single_lines_come_back_as_they_are_in_the_font(name, tmp_path):
+def test_single_line_letters_are_read_back_unchanged(name, tmp_path):
     document, notices = text_svg("Robot", (LINES / f"{name}.svg").read_bytes(), size_mm=SIZE_MM, width_mm=WIDTH_MM)
     assert notices == []
     (tmp_path / "robot.svg").write_text(document, encoding="utf-8")
@@ -81,7 +81,7 @@ def nearest(points, among):
 
 
 @pytest.mark.parametrize("name", SINGLE_LINES)
-def test_every_glyph_of_a_font_can_be_set(name):
+def test_every_glyph_of_a_font_can_be_drawn(name):
     characters = [each for each in font_glyphs(name) if each.strip()]
     text = "\n".join("".join(characters[k : k + 20]) for k in range(0, len(characters), 20))
     document, notices = text_svg(text, (LINES / f"{name}.svg").read_bytes())
@@ -100,7 +100,7 @@ def outlines(text, **options):
     return document, ET.fromstring(document.encode()).findall(SVG + "path")
 
 
-def test_kerning_is_harfbuzz_s():
+def test_kerning_agrees_with_harfbuzz():
     font = uharfbuzz.Font(uharfbuzz.Face(DEJAVU.read_bytes()))
     buffer = uharfbuzz.Buffer()
     buffer.add_str("AV")
@@ -140,7 +140,7 @@ def bounds(character):
 
 
 @pytest.mark.parametrize("character", ["R", "o", "S", "\u00e5", "&", "\u03a9", "\u0416"])
-def test_outlines_have_the_extents_that_fonttools_finds(character):
+def test_outline_extents_agree_with_fonttools(character):
     document, (path,) = outlines(character, size_mm=100)
     left, bottom, right, top = (value * 100 / 2048 for value in bounds(character))
     sheet = [float(side) for side in ET.fromstring(document.encode()).get("viewBox").split()[2:]]
@@ -148,7 +148,7 @@ def test_outlines_have_the_extents_that_fonttools_finds(character):
     assert numbers(path).min() > 19
 
 
-def test_outlines_look_as_inkscape_sets_them(inkscape, tmp_path):
+def test_outlines_agree_with_inkscapes_text(inkscape, tmp_path):
     """Inkscape's own text in the same font, laid on ours by the corner of the ink."""
     document, _ = outlines("Robot AVfi", size_mm=40)
     sheet = ET.fromstring(document.encode()).get("viewBox").split()[2:]

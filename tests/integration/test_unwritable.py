@@ -12,7 +12,7 @@ from command import COMMAND, SOUND, brushsvg, listing, refusal, refused
 from diagnostics import agrees
 
 
-def test_output_into_a_directory_that_is_not_there(desk):
+def test_output_into_a_missing_directory_is_refused(desk):
     file, reported = refusal(desk, "convert", "sound.svg", "-o", "no/where/out.ngc")
     assert file == "no/where/out.ngc" and agrees(reported, "file-unwritable")
     file, reported = refusal(desk, "convert", "sound.svg", "-o", "out.ngc", "--picture", "no/where/out.png")
@@ -40,7 +40,7 @@ def as_nobody():
     shutil.rmtree(folder)
 
 
-def test_without_the_right_to_write_or_read(as_nobody):
+def test_missing_permissions_are_refused(as_nobody):
     folder, settings = as_nobody
     (folder / "sound.svg").write_text(SOUND)
     (folder / "secret.svg").write_text(SOUND)
@@ -64,7 +64,7 @@ def test_without_the_right_to_write_or_read(as_nobody):
 
 
 @pytest.mark.parametrize("out", ["out.ngc", "old.ngc", "out.json", "link.ngc"])
-def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
+def test_a_file_over_the_size_limit_is_removed(desk, out):
     """As a full disk or a quota would stop it, without one."""
     (desk / "link.ngc").symlink_to("old.ngc")
 
@@ -75,7 +75,7 @@ def test_a_file_that_grows_too_large_leaves_nothing(desk, out):
     assert file == out and agrees(reported, "file-unwritable")
 
 
-def test_standard_output_that_is_closed_or_full(desk):
+def test_closed_or_full_standard_output_is_reported(desk):
     for output in ("&-", "/dev/full"):
         before = ["sh", "-c", f'exec "$@" >{output}', "sh"]
         for words in (("preview", "sound.svg"), ("brush", "list")):
@@ -114,7 +114,7 @@ def full_disk(desk):
         ["-o", "out.ngc", "--picture", "out.png", "--report", "full/out.json"],
     ],
 )
-def test_a_full_disk_leaves_nothing(desk, full_disk, words):
+def test_a_full_disk_leaves_no_files(desk, full_disk, words):
     before = listing(desk)
     words = ("--messages", "json", "convert", "sound.svg", *words, "--force")
     done = brushsvg(*words, cwd=desk, before=full_disk, status=1)

@@ -84,11 +84,11 @@ PAGES = [
 
 
 @pytest.mark.parametrize("words", USAGE)
-def test_wrong_usage(desk, words):
+def test_wrong_usage_is_refused(desk, words):
     assert "--help" in refused(desk, *words.split(), status=2)
 
 
-def test_what_is_not_there_yet_is_wrong_usage(desk):
+def test_planned_features_are_refused_as_wrong_usage(desk):
     for flag in LATER["flags"]:
         refused(desk, "convert", "sound.svg", "-o", "out.ngc", flag, "5", status=2)
     for command in LATER["commands"]:
@@ -97,7 +97,7 @@ def test_what_is_not_there_yet_is_wrong_usage(desk):
         refused(desk, "convert", "sound.svg", "-o", f"out{suffix}", status=2)
 
 
-def test_help_names_what_there_is_and_nothing_else(desk):
+def test_help_lists_only_existing_features(desk):
     pages = {tuple(page): brushsvg(*page, "--help", cwd=desk, status=0).out for page in PAGES}
     with_pages = (("chart",), ("convert",))  # which may be PDFs
     text = "\n".join(page for words, page in pages.items() if words not in with_pages)

@@ -61,7 +61,7 @@ def desk(tmp_path):
     return tmp_path
 
 
-def test_brush_shows_the_marks_that_predict_shows(vpype, desk):
+def test_brush_shows_the_marks_of_preview(vpype, desk):
     vpype("read", "x.svg", "brush", "--brush", "round-6", "write", "marks.svg", cwd=desk)
     brushsvg("preview", "x.svg", "-o", "predicted.svg", cwd=desk, status=0)
 
@@ -77,7 +77,7 @@ def test_brush_shows_the_marks_that_predict_shows(vpype, desk):
     assert np.abs(corners.max(axis=0) - expected.max(axis=0)).max() < 0.1
 
 
-def test_refined_strokes_are_those_of_the_command_line(vpype, desk):
+def test_refined_strokes_equal_the_command_line_output(vpype, desk):
     """Of straight lines, since vpype flattens curves, begun as points: refined marks differ most there."""
     pointed = ("--start", "pointed")
     words = ("--compensation", "refined", *pointed)
@@ -137,12 +137,12 @@ def test_brushwrite_paints_each_layer_with_its_own_width(vpype, desk):
         ),
     ],
 )
-def test_what_cannot_be_painted_is_reported_in_a_sentence(vpype, desk, words, reported):
+def test_unpaintable_layers_are_refused_in_a_sentence(vpype, desk, words, reported):
     assert reported in vpype(*words, cwd=desk, status=1)
     assert not list(desk.glob("o.*"))
 
 
-def test_without_a_page_there_is_a_margin(vpype, desk):
+def test_a_drawing_without_page_gets_a_margin(vpype, desk):
     vpype("line", "0", "0", "5cm", "3cm", "penwidth", "3mm", "brushwrite", "o.json", cwd=desk)
     assert json.loads((desk / "o.json").read_text())["sheet_mm"] == pytest.approx([90, 70], abs=0.01)
 
@@ -158,7 +158,7 @@ def zigzag(chance):
     return np.round(points, 1)
 
 
-def test_programs_are_those_of_convert_byte_for_byte(vpype, desk):
+def test_programs_equal_the_bytes_of_convert(vpype, desk):
     """Straight lines in px with the names that the plugin gives: vpype flattens curves, drops names and has its own
     length of a millimetre, which is 0.5 ppm off."""
     chance = np.random.default_rng(7)
