@@ -45,7 +45,7 @@ def test_every_photographed_brush_paints_every_drawing(desk, capsys, brush, draw
 
 @pytest.mark.parametrize("brush", ["from-depth-0", "liner-1", "rigid"])
 @pytest.mark.parametrize("drawing", ["shape", "line", "dots"])
-def test_every_brush_is_reported_on_and_its_program_checked(desk, capsys, brush, drawing):
+def test_every_brush_gives_a_report_and_a_checked_program(desk, capsys, brush, drawing):
     at = drawing_file(desk, drawing)
     status, _, reported = in_json(capsys, "preview", at, "--brush", brush_file(desk, brush))
     assert status == 0, reported

@@ -162,7 +162,7 @@ def test_each_triple_of_brush_drawing_and_command_works(desk, tmp_path, capsys, 
 
 
 @pytest.mark.parametrize(("brushes", "drawings", "cells"), MACHINES)
-def test_the_rows_cover_each_pair(brushes, drawings, cells):
+def test_the_test_rows_cover_each_pair(brushes, drawings, cells):
     factors = [brushes, drawings, cells, [each.__name__ for each in COMMANDS]]
     rows = [row for row in ROWS if row[2] in cells]
     for a, b in itertools.combinations(range(4), 2):

@@ -129,7 +129,7 @@ CHECKED = (
 
 
 @sample("options", rows(OPTIONS), keep=4, ids=title)
-def test_batch_writes_what_convert_does_with_each_pair_of_options(desk, capsys, options):
+def test_batch_and_convert_agree_for_each_pair_of_options(desk, capsys, options):
     suffix = {"ur5e": ".script", "grbl-servo": ".nc"}.get(options["--cell"], ".ngc")
     run(capsys, "convert", "d.svg", "-o", f"one{suffix}", *words_of(options))
     run(capsys, "batch", "d.svg", "-o", "many", "--jobs", 1, *words_of(options))

@@ -90,7 +90,7 @@ def paint_three_sheets(desk: Desk) -> list[float]:
 
 
 @pytest.mark.parametrize("machine", ["", MACHINE], ids=["plain cell", "cell with a machine"])
-def test_three_sheets_without_a_chart(desk, machine):
+def test_three_sheets_calibrate_a_brush_without_a_chart(desk, machine):
     desk.run("brush new -o mine-1.json --lag-at 1=5 --lag-at 4=8 --lag-at 8=11 --width-at 3=2.4 --width-at 8=5.8")
     desk.run("cell new -o cell-1.toml")
     cell = desk.at / "cell-1.toml"
@@ -99,7 +99,7 @@ def test_three_sheets_without_a_chart(desk, machine):
     assert second > first + 0.03 and third > second - 0.02, (first, second, third)
 
 
-def test_a_sheet_planned_for_another_brush_teaches_with_a_warning(desk, capsys):
+def test_a_sheet_planned_for_another_brush_calibrates_with_a_warning(desk, capsys):
     """A sheet planned for another brush teaches with a warning.
 
     The default brush painted the sheet. A brush that is typed later learns from it.

@@ -55,20 +55,20 @@ def goes_the_whole_way(user, name: str) -> None:
 
 
 @sample("name", FAMILIES["three axes"], keep=1)
-def test_three_axes(user_with_chart, name):
+def test_three_axis_cells_complete_the_workflow(user_with_chart, name):
     goes_the_whole_way(user_with_chart, name)
 
 
 @sample("name", FAMILIES["servo"], keep=1)
-def test_servos(user_with_chart, name):
+def test_servo_cells_complete_the_workflow(user_with_chart, name):
     goes_the_whole_way(user_with_chart, name)
 
 
 @sample("name", FAMILIES["arm"], keep=1)
-def test_arms(user_with_chart, name):
+def test_arm_cells_complete_the_workflow(user_with_chart, name):
     goes_the_whole_way(user_with_chart, name)
 
 
 @sample("name", FAMILIES["pen"], keep=1)
-def test_pens(user_with_chart, name):
+def test_pen_cells_complete_the_workflow(user_with_chart, name):
     goes_the_whole_way(user_with_chart, name)
