@@ -26,7 +26,7 @@ TEST_CASE("the article's printed coefficients make the lag negative and are refu
     CHECK(agrees(refusal(brush), "law-negative", "lag", {"-5.200", "10.00"}));
 }
 
-TEST_CASE("lag zero in part is refused, at depth 0 alone it is not") {
+TEST_CASE("a lag that is zero is refused, except at depth 0 alone") {
     Brush brush = shipped("round-6");
     brush.lag.coefficients = {-3.0, 1.0};
     brush.lag.floor = 0.0;
@@ -35,7 +35,7 @@ TEST_CASE("lag zero in part is refused, at depth 0 alone it is not") {
     CHECK(!refusal(brush));
 }
 
-TEST_CASE("numbers that no brush has are refused with their range") {
+TEST_CASE("impossible numbers are refused with their range") {
     const auto changed = [](auto&& change, const char* name = "round-6") {
         Brush brush = shipped(name);
         change(brush);
@@ -59,7 +59,7 @@ TEST_CASE("numbers that no brush has are refused with their range") {
     CHECK(!changed([](Brush& b) { b.kind = ""; }));
 }
 
-TEST_CASE("a covariance that nothing can have is refused") {
+TEST_CASE("an impossible covariance is refused") {
     Brush brush = shipped("round-6");
     std::size_t n = 0;
     for (const Profile* law : {&brush.lag, &brush.tip_gap, &brush.tip_to_widest, &brush.half_width})
@@ -87,7 +87,7 @@ TEST_CASE("a covariance that nothing can have is refused") {
     CHECK(agrees(changed([](Matrix& c) { c.assign(1, {1.0}); }), "covariance-invalid", "covariance"));
 }
 
-TEST_CASE("laws and outlines must agree to half a millimetre, and shapes must be rings") {
+TEST_CASE("laws and outlines must agree to 0.5 mm, and shapes must be rings") {
     Brush brush = shipped("round-6");
     brush.half_width.coefficients[1] = 0.30;
     CHECK(agrees(refusal(brush), "footprint-against-law", "footprints.dragged[4]", {"0.5"}));
@@ -105,7 +105,7 @@ TEST_CASE("laws and outlines must agree to half a millimetre, and shapes must be
     CHECK(agrees(refusal(brush), "width-falls", "half_width"));
 }
 
-TEST_CASE("width to depth and back, and the refusal names the reachable range") {
+TEST_CASE("width and depth are inverse, and a refusal names the reachable range") {
     const Brush brush = shipped("round-6");
     for (double h : {0.1, 0.42, 2.0, 4.2})
         CHECK(brush.half_width(brush.depth_for_half_width(h, "")) == doctest::Approx(h));
@@ -116,7 +116,7 @@ TEST_CASE("width to depth and back, and the refusal names the reachable range") 
     CHECK(shipped("rigid").depth_for_half_width(7.0, "") == shipped("rigid").paint_depth_mm);
 }
 
-TEST_CASE("a brush with a width at depth 0 presses for its thinnest line") {
+TEST_CASE("a brush with a width at depth 0 is pressed for its thinnest line") {
     const Brush liner = shipped("liner-1");  // 1 mm wide at depth 0
     double before = 0.0;
     for (double h : {0.5, 0.52, 0.55, 0.6, 1.0}) {
@@ -135,14 +135,14 @@ TEST_CASE("a brush with a width at depth 0 presses for its thinnest line") {
     CHECK(shipped("round-6").depth_for_half_width(1e-3, "") == doctest::Approx(1e-3 / 0.42));  // least width: 0
 }
 
-TEST_CASE("a steeper half-width law with a floor inverts too") {
+TEST_CASE("a steep half-width law with a floor can be inverted") {
     Brush brush = shipped("round-6");
     brush.half_width.coefficients = {0.0, 0.2, 0.022};
     const double d = brush.depth_for_half_width(1.5, "");
     CHECK(brush.half_width(d) == doctest::Approx(1.5));
 }
 
-TEST_CASE("what is odd about a brush is remarked, with its numbers") {
+TEST_CASE("unusual values of a brush are reported with their numbers") {
     const auto says = [](const Brush& brush, const char* code, const char* where,
                          const std::vector<std::string>& parts = {}) {
         for (const Warning& w : remarks(brush)) {

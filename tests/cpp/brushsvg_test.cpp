@@ -190,7 +190,7 @@ Named<Rings> many_rings() {
 
 }  // namespace
 
-TEST_CASE("any brush with a sound stroke, pass and marks") {
+TEST_CASE("any brush with a valid stroke, pass and marks gives a result or Error") {
     const Stroke stroke = strokes()[1].second;
     const Pass pass = passes()[1].second;
     const PassMarks mark = marks()[0].second;
@@ -222,7 +222,7 @@ TEST_CASE("any brush with a sound stroke, pass and marks") {
     }
 }
 
-TEST_CASE("any stroke with a sound brush") {
+TEST_CASE("any stroke with a valid brush gives a result or Error") {
     const Brush brush = shipped("round-6"), pen = shipped("rigid");
     const PassMarks mark = marks()[0].second;
     for (const auto& [name, stroke] : strokes()) {
@@ -249,7 +249,7 @@ TEST_CASE("any stroke with a sound brush") {
     }
 }
 
-TEST_CASE("any pass with a sound brush") {
+TEST_CASE("any pass with a valid brush gives a result or Error") {
     const Brush brush = shipped("round-6"), pen = shipped("rigid");
     const Stroke stroke = strokes()[1].second;
     for (const auto& [name, pass] : passes()) {
@@ -266,7 +266,7 @@ TEST_CASE("any pass with a sound brush") {
     }
 }
 
-TEST_CASE("any marks with a sound brush") {
+TEST_CASE("any marks with a valid brush give a result or Error") {
     const Brush brush = shipped("round-6");
     const Stroke stroke = strokes()[1].second;
     for (const auto& [name, mark] : marks()) {
@@ -283,7 +283,7 @@ TEST_CASE("any marks with a sound brush") {
     }
 }
 
-TEST_CASE("any rings") {
+TEST_CASE("any rings give a result or Error") {
     for (const auto& [name, rings] : many_rings()) {
         CAPTURE(name);
         const Rings& r = rings;
@@ -311,7 +311,7 @@ TEST_CASE("any rings") {
     }
 }
 
-TEST_CASE("any number where one is requested") {
+TEST_CASE("any number as an argument gives a result or Error") {
     const Brush brush = shipped("round-6");
     const Stroke stroke = strokes()[1].second;
     const Pass pass = passes()[1].second;
@@ -363,7 +363,7 @@ TEST_CASE("any number where one is requested") {
     ends([&] { common_area(MarkOverlap{{0, 0, 1, 1}, 1.0, Coverage::Zero(9, 9), Coverage::Zero(3, 3)}); });
 }
 
-TEST_CASE("a footprint no brush has is refused when the file is checked") {
+TEST_CASE("an impossible footprint is refused when the file is checked") {
     Brush brush = shipped("round-6");
     brush.footprints.dragged.back().outline_mm(4, 0) = 5.5e9;
     brush.depth_range_mm[1] = 5.0;  // the last outline is beyond this depth and was not checked before

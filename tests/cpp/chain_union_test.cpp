@@ -10,7 +10,7 @@
 
 using namespace brushsvg;
 
-TEST_CASE("neighbours that meet become one, with any shared edges and corners") {
+TEST_CASE("touching neighbours become one ring, with any shared edges and corners") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     std::size_t before = 0, after = 0;
@@ -52,7 +52,7 @@ TEST_CASE("neighbours that meet become one, with any shared edges and corners") 
     CHECK(with_holes > 20);
 }
 
-TEST_CASE("rings that enclose a hole, are apart or reach too far do not become one") {
+TEST_CASE("rings that enclose a hole, are apart or reach too far are not joined") {
     const auto count = [](const Rings& rings) { return united_in_chain(rings, 1e5).value().size(); };
     const auto area_of = [](const Rings& rings) { return area(united_in_chain(rings, 1e5).value()); };
     const Ring all = box(0, 0, 4, 4);

@@ -29,9 +29,9 @@ void work_for(int rounds) {
 
 }  // namespace
 
-TEST_CASE("without anybody who asks, work goes on") { CHECK_NOTHROW(work_for(100)); }
+TEST_CASE("work continues if no cancellation question is set") { CHECK_NOTHROW(work_for(100)); }
 
-TEST_CASE("what runs is given up on request, and not before") {
+TEST_CASE("work is cancelled on request, and not before") {
     int asked = 0;
     {
         const CancelWhen third([&] { return ++asked == 3; });
@@ -42,12 +42,12 @@ TEST_CASE("what runs is given up on request, and not before") {
     CHECK_NOTHROW(work_for(1));
 }
 
-TEST_CASE("what the question throws is what the work throws") {
+TEST_CASE("an exception of the cancellation question ends the work") {
     const CancelWhen fails([]() -> bool { throw std::logic_error("no"); });
     CHECK_THROWS_AS(work_for(100000), std::logic_error);
 }
 
-TEST_CASE("the innermost question counts, then the one before it") {
+TEST_CASE("the innermost cancellation question is used, then the one before it") {
     const CancelWhen outer([] { return true; });
     {
         const CancelWhen inner([] { return false; });
@@ -56,7 +56,7 @@ TEST_CASE("the innermost question counts, then the one before it") {
     CHECK_THROWS_AS(work_for(100000), Cancelled);
 }
 
-TEST_CASE("threads that work for this one end with it, and only this one is polled") {
+TEST_CASE("worker threads end with the main thread, and only the main thread is polled") {
     const auto here = std::this_thread::get_id();
     int asked = 0;
     const CancelWhen second([&] {
@@ -66,7 +66,7 @@ TEST_CASE("threads that work for this one end with it, and only this one is poll
     CHECK_THROWS_AS(on_all_processors(0, 64, [](std::size_t) { work_for(100000); }), Cancelled);
 }
 
-TEST_CASE("a stroke is given up inside of itself") {
+TEST_CASE("the work on a single stroke can be cancelled") {
     // a wave of 20 m, which needs seconds of work
     std::vector<Eigen::Vector2d> points;
     for (int i = 0; i < 20000; ++i) points.emplace_back(0.7 * i, (i % 2) * 0.7 + 100.0);
@@ -77,7 +77,7 @@ TEST_CASE("a stroke is given up inside of itself") {
     CHECK_THROWS_AS(compensate(stroke, brush), Cancelled);
 }
 
-TEST_CASE("work without checkpoints is given up from outside, and ends at its next checkpoint") {
+TEST_CASE("work without checkpoints can be cancelled from outside, and ends at its next checkpoint") {
     std::atomic<bool> goes_on{true}, ended{false};
     const auto here = std::this_thread::get_id();
     int asked = 0;
@@ -104,7 +104,7 @@ TEST_CASE("work without checkpoints is given up from outside, and ends at its ne
     CHECK_THROWS_AS(asking_meanwhile([]() -> int { throw std::logic_error("no"); }), std::logic_error);
 }
 
-TEST_CASE("unions of large rings, and a large shape's axis, are given up") {
+TEST_CASE("unions of large rings and the axis of a large shape can be cancelled") {
     Rings rings(2, Ring(40000, 2));
     for (Eigen::Index i = 0; i < 40000; ++i) {
         const double turn = 2.0 * M_PI * double(i) / 40000.0, radius = 80.0 + 0.01 * double((i * 7919) % 13);

@@ -33,7 +33,7 @@ double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
 
 }  // namespace
 
-TEST_CASE("turns up to 90 degrees are exact, beyond them what remains is what geometry says") {
+TEST_CASE("turns up to 90 degrees are exact, and larger ones have the geometric error") {
     const Brush brush = shipped("round-6");
     const double e = brush.lever_to_widest(4.0);
     for (double degrees : {0.0, 30.0, 60.0, 89.9, 120.0, 150.0, 180.0}) {
@@ -93,7 +93,7 @@ TEST_CASE("a turn in place is one arc about the resting contact, with the same m
     CHECK(compensate(bend, brush, {Compensation::none}).pass.arcs.empty());
 }
 
-TEST_CASE("tapers across the depth where the lever changes its sign, and a 0.5 mm line") {
+TEST_CASE("tapers across the depth at which the lever changes its sign, and a 0.5 mm line, are exact") {
     const Brush brush = shipped("round-6");
     Cubics wave(2, 8);
     wave << 20, 40, 40, 75, 50, 70, 60, 45, 60, 45, 70, 20, 90, 15, 110, 40;
@@ -105,7 +105,7 @@ TEST_CASE("tapers across the depth where the lever changes its sign, and a 0.5 m
     }
 }
 
-TEST_CASE("P comes back: on a straight line it runs e behind the middle") {
+TEST_CASE("on a straight line, P runs e behind the middle") {
     const Brush brush = shipped("round-6");
     const Stroke s = stroke_of(polyline({V(20, 20), V(80, 20)}), {{0.0, brush.half_width(4.0)}});
     const Pass pass = compensate(s, brush, {Compensation::closed, 1e-5}).pass;
@@ -113,7 +113,7 @@ TEST_CASE("P comes back: on a straight line it runs e behind the middle") {
     for (std::size_t i = 0; i < m.pose.size(); ++i) CHECK(std::abs(m.contact_mm(i, 1) - 20.0) < 1e-6);
 }
 
-TEST_CASE("the mark begins at the tip, half a width before the path, and ends at the footprint's front") {
+TEST_CASE("the mark starts at the tip, half a width before the path, and ends at the footprint's front") {
     const Brush brush = shipped("round-6");
     const double h = brush.half_width(5.0);
     const Stroke s = stroke_of(polyline({V(30, 20), V(90, 20)}), {{0.0, h}});
@@ -126,7 +126,7 @@ TEST_CASE("the mark begins at the tip, half a width before the path, and ends at
     CHECK(std::abs(box[3] - (20.0 + h)) < 0.02);
 }
 
-TEST_CASE("compensation beats none and the best constant lag on a curved stroke") {
+TEST_CASE("compensation is better than none and than the best constant lag on a curved stroke") {
     const Brush brush = shipped("round-6");
     Cubics wave(2, 8);
     wave << 20, 40, 30, 75, 50, 70, 60, 45, 60, 45, 70, 20, 90, 15, 100, 40;
@@ -142,7 +142,7 @@ TEST_CASE("compensation beats none and the best constant lag on a curved stroke"
     CHECK(closed > 0.9);
 }
 
-TEST_CASE("none and constant are what they say") {
+TEST_CASE("without compensation the TCP follows the line, and a constant lag runs ahead of it") {
     const Brush brush = shipped("round-6");
     const Stroke s = stroke_of(polyline({V(20, 20), V(60, 20), V(60, 50)}), {{0.0, brush.half_width(4.0)}});
     const Poses none = compensate(s, brush, {Compensation::none}).pass.poses_mm;
@@ -159,7 +159,7 @@ TEST_CASE("none and constant are what they say") {
         CHECK((constant.row(i).head<2>() - Eigen::RowVector2d(60, 20)).norm() == doctest::Approx(r0));
 }
 
-TEST_CASE("a dot and a mark shorter than a footprint are one landing") {
+TEST_CASE("a dot or a mark shorter than a footprint is one landing") {
     const Brush brush = shipped("round-6");
     const Stroke dot = stroke_of(polyline({V(50, 50), V(50, 50)}), {{0.0, 2.0}});
     const CompensatedPass c = compensate(dot, brush, {});
@@ -192,7 +192,7 @@ TEST_CASE("a brush whose lag grows as fast as its depth is pressed before it run
     CHECK((m.contact_mm.row(first) - m.contact_mm.row(0)).norm() < 1e-9);  // the contact rests during the landing
 }
 
-TEST_CASE("a straight line takes a landing, one move and a lift without a move of its own for coming inside") {
+TEST_CASE("a straight line needs only a landing, one move and a lift") {
     const Brush brush = shipped("round-6");
     const Poses poses = compensate(stroke_of(polyline({V(20, 20), V(60, 20)}), {{0.0, 1.5}}), brush).pass.poses_mm;
     CHECK(poses.rows() <= 6);
@@ -200,7 +200,7 @@ TEST_CASE("a straight line takes a landing, one move and a lift without a move o
     CHECK(poses(3, 0) < poses(2, 0));
 }
 
-TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest during landing and lift") {
+TEST_CASE("random smooth strokes are within tolerance, and the contact rests during landing and lift") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -234,7 +234,7 @@ TEST_CASE("random smooth strokes: closed form within tolerance, contact at rest 
     }
 }
 
-TEST_CASE("a line of very many short cubics is followed as one of few") {
+TEST_CASE("a line of very many short cubics is followed like one of few") {
     const Brush brush = shipped("round-6");
     const auto bow = [&](int n) {
         std::vector<V> points;
@@ -246,7 +246,7 @@ TEST_CASE("a line of very many short cubics is followed as one of few") {
     CHECK(bow(15000).largest_mm < 0.05);
 }
 
-TEST_CASE("a round beginning turns over where its patch rests") {
+TEST_CASE("a round start turns over while its patch rests") {
     const Brush brush = shipped("round-6");
     const double h = brush.half_width(4.0);
     const Stroke s = stroke_of(polyline({V(30, 20), V(70, 20)}), {{0.0, h}});
@@ -272,7 +272,7 @@ TEST_CASE("a round beginning turns over where its patch rests") {
     CHECK(compensate(line, pen, options).pass.poses_mm == compensate(line, pen).pass.poses_mm);
 }
 
-TEST_CASE("what the brush cannot paint is refused, what it was not measured for is warned of once") {
+TEST_CASE("unpaintable strokes are refused, and unmeasured depths cause one warning") {
     const Brush brush = shipped("round-6");
     const Cubics line = polyline({V(20, 20), V(60, 20)});
     CHECK_THROWS_AS(compensate(stroke_of(line, {{0.0, 5.0}}), brush, {}), Error);
@@ -295,7 +295,7 @@ std::pair<CompensatedPass, double> dot_of_half_width(double half_width_mm, Termi
 
 }  // namespace
 
-TEST_CASE("a dot that is turned on the spot is warned of by its own depth, not by that of a line as wide") {
+TEST_CASE("the warning about a dot uses the depth of its turn, not the depth of an equally wide line") {
     int less = 0;
     for (const Terminal start : {Terminal::round, Terminal::automatic, Terminal::pointed})
         for (double half_mm = 0.3; half_mm <= 4.2; half_mm += 0.02) {
@@ -319,7 +319,7 @@ Stroke hook() {
 
 }  // namespace
 
-TEST_CASE("steps round a cusp come to an end, at any requested fineness") {
+TEST_CASE("steps around a cusp terminate at any tolerance") {
     const Stroke stroke = hook();
     const Brush brush = shipped("round-6");
     const Line line(stroke, brush);
@@ -343,13 +343,13 @@ TEST_CASE("steps round a cusp come to an end, at any requested fineness") {
     }
 }
 
-TEST_CASE("a hook has a plan of ordinary size") {
+TEST_CASE("a hook has a plan of normal size") {
     const CompensatedPass found = compensate(hook(), shipped("round-6"));
     CHECK(found.pass.poses_mm.rows() < 200);
     CHECK(found.tracking_error.largest_mm < 0.1);
 }
 
-TEST_CASE("an error is reported as it is measured, of plans that were made for a finer tolerance too") {
+TEST_CASE("the reported error is the measured one, also for plans made with a finer tolerance") {
     Cubics curled(3, 8);
     curled << 43.75, 41.75, 26.5, 40.5, 45.5, 22.75, 36.75, 50.25,  //
         36.75, 50.25, 33, 36.75, 26, 50.25, 30.75, 56.25,           //

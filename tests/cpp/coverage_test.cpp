@@ -47,7 +47,7 @@ Brush crescent_brush() {
 
 }  // namespace
 
-TEST_CASE("a box: exact coverage of edge pixels") {
+TEST_CASE("the coverage of a box is exact in edge pixels") {
     Ring r(4, 2);
     r << 1.25, 1.0, 3.5, 1.0, 3.5, 2.0, 1.25, 2.0;
     const Coverage c = coverage({r}, Window{0, 0, 5, 4}, 1.0);
@@ -70,7 +70,7 @@ TEST_CASE("coverage and rings agree on the painted area, convex or not") {
     }
 }
 
-TEST_CASE("a window cuts, it does not shift") {
+TEST_CASE("a window cuts off the mark without moving it") {
     const Brush brush = shipped("round-6");
     const Marks marks = marks_of(brush, 0.02);
     const Coverage all = coverage(marks, brush, Window{0, 0, 80, 70}, 4.0);
@@ -78,7 +78,7 @@ TEST_CASE("a window cuts, it does not shift") {
     CHECK((all.block(160, 120, 80, 80) - part).cwiseAbs().maxCoeff() < 1e-4f);
 }
 
-TEST_CASE("bounds hold every ring") {
+TEST_CASE("bounds contain every ring") {
     const Brush brush = shipped("round-6");
     const Marks marks = marks_of(brush, 0.02);
     const auto [left, bottom, right, top] = painted_bounds(marks.passes[0], brush);
@@ -94,12 +94,12 @@ TEST_CASE("bounds hold every ring") {
     CHECK(right == doctest::Approx(farthest).epsilon(1e-5));
 }
 
-TEST_CASE("a picture that cannot be made is refused") {
+TEST_CASE("an impossible picture size is refused") {
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 0, 10}, 20.0), Error);
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 1e6, 1e6}, 20.0), Error);
 }
 
-TEST_CASE("coverage of convex pieces that overlap is that of their union") {
+TEST_CASE("the coverage of overlapping convex pieces is the coverage of their union") {
     Ring a(4, 2), b(4, 2);
     a << 1, 1, 5, 1, 5, 3, 1, 3;
     b << 3, 1, 8, 1, 8, 3, 3, 3;  // shares two edges with the first
@@ -109,7 +109,7 @@ TEST_CASE("coverage of convex pieces that overlap is that of their union") {
     CHECK((found - coverage(unite({a, b}), window, 1.7)).cwiseAbs().maxCoeff() < 0.13);
 }
 
-TEST_CASE("a picture of a part of the paper is made of what is there, to the last bit as in the whole") {
+TEST_CASE("a picture of a part of the paper equals that part of the whole, to the last bit") {
     for (const Brush& brush : {shipped("round-6"), crescent_brush()}) {
         const Marks all = marks_of(brush, 0.1);
         const auto rows = [](const Marks& marks) { return marks.passes[0].pose.size(); };

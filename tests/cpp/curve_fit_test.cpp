@@ -41,7 +41,7 @@ TEST_CASE("a straight line with an even taper is one cubic and two widths") {
     CHECK(fitted.half_width[1].half_width_mm == doctest::Approx(3.0 - 0.05 * 49));
 }
 
-TEST_CASE("half a circle within its tolerance, with more cubics for less") {
+TEST_CASE("half a circle is fitted within its tolerance, with more cubics for a finer one") {
     const FittedLine coarse = fit_curve(arc(20.0, kPi, 200), 0.2, false);
     const FittedLine fine = fit_curve(arc(20.0, kPi, 200), 0.005, false);
     CHECK(farthest(coarse, 20.0) < 0.2);
@@ -50,7 +50,7 @@ TEST_CASE("half a circle within its tolerance, with more cubics for less") {
     CHECK(fine.middle_mm.rows() > coarse.middle_mm.rows());
 }
 
-TEST_CASE("no cubic runs back along a line that runs on with some noise") {
+TEST_CASE("no cubic runs backwards along a noisy straight line") {
     std::mt19937 noise(1);
     for (int trial = 0; trial < 300; ++trial) {
         WideLine line(60, 3);
@@ -65,7 +65,7 @@ TEST_CASE("no cubic runs back along a line that runs on with some noise") {
     }
 }
 
-TEST_CASE("cubics meet with one tangent, round the seam of a closed line too") {
+TEST_CASE("cubics meet with one tangent, also at the seam of a closed line") {
     const FittedLine ring = fit_curve(arc(20.0, 2.0 * kPi, 400), 0.02, true);
     const Eigen::Index n = ring.middle_mm.rows();
     CHECK(n > 1);
@@ -76,7 +76,7 @@ TEST_CASE("cubics meet with one tangent, round the seam of a closed line too") {
     }
 }
 
-TEST_CASE("noise below the tolerance costs few cubics") {
+TEST_CASE("noise below the tolerance adds few cubics") {
     WideLine line(200, 3);
     for (int i = 0; i < 200; ++i) line.row(i) << 0.25 * i, (i % 2 ? 0.01 : -0.01), 2.0 + (i % 3 ? 0.01 : -0.01);
     const FittedLine fitted = fit_curve(line, 0.06, false);
@@ -84,7 +84,7 @@ TEST_CASE("noise below the tolerance costs few cubics") {
     CHECK(fitted.half_width.size() == 2);
 }
 
-TEST_CASE("a point, repeated points and a reversal end") {
+TEST_CASE("fits of a point, repeated points and a reversal terminate") {
     WideLine point(3, 3);
     point << 1, 2, 0.5, 1, 2, 0.5, 1, 2, 0.5;
     const FittedLine dab = fit_curve(point, 0.1, false);
@@ -98,7 +98,7 @@ TEST_CASE("a point, repeated points and a reversal end") {
     CHECK(there_and_back.middle_mm.rows() <= 20);
 }
 
-TEST_CASE("a stroke along points passes all of them, corners too") {
+TEST_CASE("a stroke along points passes all of them, including corners") {
     WideLine points(60, 3);  // half a circle, a corner, and a straight line
     for (int i = 0; i < 50; ++i)
         points.row(i) << 20.0 * std::cos(kPi * i / 49.0), 20.0 * std::sin(kPi * i / 49.0), 1.0 + 0.02 * i;

@@ -34,7 +34,7 @@ TEST_CASE("convex outlines turn once, however many corners they have") {
     CHECK(excess_turning({}, {}) == 0.0);
 }
 
-TEST_CASE("a thorn turns there and back, a wave does so each time, and what is finer than a tenth does not count") {
+TEST_CASE("a thorn turns there and back, each wave as well, and details finer than 0.1 do not count") {
     const Rings square{corners({{0, 0}, {10, 0}, {10, 10}, {0, 10}})};
     const Rings thorn{corners({{0, 0}, {10, 0}, {10, 10}, {5.5, 10}, {5, 12}, {4.5, 10}, {0, 10}})};
     const double beside = std::atan2(2.0, 0.5), peak = 3.14159265358979324 - 2.0 * beside;

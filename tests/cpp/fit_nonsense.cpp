@@ -77,7 +77,7 @@ void each_is_refused(const std::vector<std::pair<std::string, std::function<void
 
 }  // namespace
 
-TEST_CASE("fit_law refuses what is no measurement") {
+TEST_CASE("fit_law refuses invalid measurements") {
     std::vector<std::pair<std::string, std::function<void(Values&)>>> changes{
         {"nothing", [](Values& v) { v.depth = v.value = {}; }},
         {"nothing, smoothed", [](Values& v) { v.depth = v.value = {}, v.shape.smoothing = 1.0; }},
@@ -106,7 +106,7 @@ TEST_CASE("fit_law refuses what is no measurement") {
         });
 }
 
-TEST_CASE("a law with a floor through a hundred thousand depths takes no memory to speak of") {
+TEST_CASE("a law with a floor through a hundred thousand depths needs little memory") {
     Values v;
     v.shape.floor = 0.0;
     v.depth.clear();
@@ -119,7 +119,7 @@ TEST_CASE("a law with a floor through a hundred thousand depths takes no memory 
     CHECK(found.law(5.0) == doctest::Approx(4.0));
 }
 
-TEST_CASE("from_angles refuses what is no drag") {
+TEST_CASE("from_angles refuses invalid drags") {
     std::vector<std::pair<std::string, std::function<void(Drag&)>>> changes{
         {"nothing", [](Drag& d) { d.series.s_mm = d.series.alpha = d.series.beta = {}; }},
         {"fewer angles", [](Drag& d) { d.series.alpha.pop_back(); }},
@@ -141,7 +141,7 @@ TEST_CASE("from_angles refuses what is no drag") {
         });
 }
 
-TEST_CASE("fit_marks refuses what is no sheet") {
+TEST_CASE("fit_marks refuses invalid sheets") {
     std::vector<std::pair<std::string, std::function<void(Sheet&)>>> changes{
         {"no mark", [](Sheet& s) { s.marks = {}; }},
         {"no pose", [](Sheet& s) { s.marks[1].poses_mm.resize(0, 3); }},
@@ -179,7 +179,7 @@ TEST_CASE("fit_marks refuses what is no sheet") {
     });
 }
 
-TEST_CASE("fits are given up on request, and leave nothing behind") {
+TEST_CASE("fits can be cancelled, and leave no state behind") {
     Sheet sheet;
     sheet.options.spacing_mm = 0.2;
     const MarkLaws start{{4.0, 0.5}, {0.0, 0.5}, {0.0, 0.4}};

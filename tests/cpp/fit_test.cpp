@@ -9,7 +9,7 @@
 using namespace brushsvg;
 using namespace brushsvg::fit;
 
-TEST_CASE("exact data give the law that made them") {
+TEST_CASE("exact data give back their law") {
     const std::vector<double> law{3.1, 0.86, 0.31, -0.05, 0.0021};
     std::vector<double> depth, value;
     for (int i = 0; i < 40; ++i) {
@@ -37,7 +37,7 @@ TEST_CASE("a range of depths too short for its powers is refused") {
     CHECK_THROWS_AS(fit_law({1, 2, 3, 4, 5}, {1, 1, 2, 1, 3}, shape), Error);
 }
 
-TEST_CASE("a line through zero, by hand") {
+TEST_CASE("a line through zero agrees with a manual calculation") {
     LawShape shape;
     shape.through_zero = true;
     const LawFit fit = fit_law({1, 2, 3}, {1, 1, 2}, shape);  // sum d v / sum d^2 = 9 / 14
@@ -48,7 +48,7 @@ TEST_CASE("a line through zero, by hand") {
     CHECK(fit.law.half_interval_95[1] == doctest::Approx(4.30265 * std::sqrt(squares / 28.0)).epsilon(1e-5));
 }
 
-TEST_CASE("values are weighted by their scatter, in any unit, by hand") {
+TEST_CASE("values are weighted by their scatter in any unit, as calculated manually") {
     LawShape shape;
     shape.through_zero = true;
     for (const double unit : {1.0, 1e-3}) {  // sum d v / s^2 over sum d^2 / s^2
@@ -62,7 +62,7 @@ TEST_CASE("values are weighted by their scatter, in any unit, by hand") {
     CHECK_THROWS_AS(fit_law({1, 2, 4}, {1, 1, 6}, shape, {1, 2, 0}), Error);
 }
 
-TEST_CASE("one depth says nothing of a slope") {
+TEST_CASE("one depth does not determine a slope") {
     LawShape shape;
     const auto told = refusal([&] { fit_law({3, 3, 3}, {1, 2, 3}, shape); });
     REQUIRE(agrees(told, "depths-too-few", "", {"1", "2"}));

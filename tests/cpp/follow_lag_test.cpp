@@ -33,7 +33,7 @@ LagLaw<double> law_of(const Brush& brush) {
 
 }  // namespace
 
-TEST_CASE("the brush itself, followed along its marks, is where the simulator has it at every row") {
+TEST_CASE("following the brush's own lag along its marks gives the simulated rows") {
     const Brush brush = shipped("round-6");
     const Pass pass = pass_with_arc();
     const PassMarks marks = simulate(pass, brush, 0.02, true, true);
@@ -47,7 +47,7 @@ TEST_CASE("the brush itself, followed along its marks, is where the simulator ha
     }
 }
 
-TEST_CASE("another lag, followed along these marks, is where its own simulation has it at the poses") {
+TEST_CASE("following another lag along these marks gives its own simulation at the poses") {
     const Brush brush = shipped("round-6");
     Brush other = brush;
     for (double& c : other.lag.coefficients) c *= 1.2;
@@ -66,7 +66,7 @@ TEST_CASE("another lag, followed along these marks, is where its own simulation 
     CHECK(compared >= 9);
 }
 
-TEST_CASE("marks that are not those of the pass") {
+TEST_CASE("marks that do not match their pass are refused") {
     const Brush brush = shipped("round-6");
     Pass pass = pass_with_arc();
     PassMarks marks = simulate(pass, brush, 0.02, true, true);

@@ -21,7 +21,7 @@ Ring box(double left, double bottom, double right, double top) {
 
 }  // namespace
 
-TEST_CASE("a picture's rings are those it was drawn from, but for half a pixel at corners") {
+TEST_CASE("the rings of a picture are the drawn rings, except for half a pixel at corners") {
     const Rings found = back({box(0.0, 5.0, 6.0, 9.0)});
     REQUIRE(found.size() == 1);
     CHECK(signed_area(found[0]) == doctest::Approx(24.0).epsilon(0.01));  // positive: counter-clockwise
@@ -29,7 +29,7 @@ TEST_CASE("a picture's rings are those it was drawn from, but for half a pixel a
     CHECK(found[0].col(1).maxCoeff() == doctest::Approx(9.0).epsilon(1e-6));
 }
 
-TEST_CASE("holes run clockwise, and what leaves the window ends at its edge") {
+TEST_CASE("holes run clockwise, and rings that leave the window end at its edge") {
     Ring hole = box(1.0, 6.0, 3.0, 8.0).colwise().reverse();
     Rings found = back({box(-9.0, 5.0, 6.0, 9.0), hole});
     REQUIRE(found.size() == 2);
@@ -39,7 +39,7 @@ TEST_CASE("holes run clockwise, and what leaves the window ends at its edge") {
     CHECK(found[1].col(0).minCoeff() == doctest::Approx(-5.0).epsilon(0.01));
 }
 
-TEST_CASE("pixels that touch at a corner are apart, and nothing has no rings") {
+TEST_CASE("pixels that touch at a corner are separate, and an empty picture has no rings") {
     Coverage picture = Coverage::Zero(4, 4);
     picture(1, 1) = picture(2, 2) = 1.0f;
     CHECK(half_painted(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 2);

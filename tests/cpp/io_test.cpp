@@ -73,7 +73,7 @@ struct Fault {
 
 }  // namespace
 
-TEST_CASE("brush.json: every key arrives where it belongs") {
+TEST_CASE("brush.json: every key is read into its field") {
     const Brush brush = io::read_brush(kBrush);
     CHECK(brush.name == "flat");
     CHECK(brush.depth_range_mm[1] == 4.0);
@@ -123,7 +123,7 @@ TEST_CASE("brush.json: optional keys have the header's defaults") {
     CHECK_FALSE(brush.paint.has_value());
 }
 
-TEST_CASE("brush.json: unknown keys of every level and every double come back, the same bytes each time") {
+TEST_CASE("brush.json: unknown keys of every level and every double are written back with equal bytes") {
     Brush brush = io::read_brush(kBrush);
     brush.lag.coefficients = {1.0 / 3.0, 5e-324, -1.7976931348623157e308, -0.0, 0.1 + 0.2};
     brush.lag.half_interval_95 = {};
@@ -154,7 +154,7 @@ TEST_CASE("brush.json: unknown keys of every level and every double come back, t
     }
 }
 
-TEST_CASE("brush.json: each fault is named with its key") {
+TEST_CASE("brush.json: each error is reported with its key") {
     const Fault faults[] = {
         {"\"brushsvg/brush\"", "\"brushsvg/plan\"", "format", "format-unknown", {"brushsvg/plan"}},
         {"\"brushsvg/brush\"", "7", "format", "wrong-type", {"7"}},
@@ -208,7 +208,7 @@ TEST_CASE("brush.json: every truncation is refused") {
     }
 }
 
-TEST_CASE("brush.json: what cannot be read back is not written") {
+TEST_CASE("brush.json: values that cannot be read back are not written") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
     const auto refused = [](auto change) {
@@ -229,7 +229,7 @@ TEST_CASE("brush.json: what cannot be read back is not written") {
     CHECK(refused([&](Brush& b) { b.footprints.dragged.clear(); }) == "footprints.dragged");
 }
 
-TEST_CASE("plan.json: every key arrives and is written back") {
+TEST_CASE("plan.json: every key is read and written back") {
     const Plan plan = io::read_plan(kPlan);
     CHECK(plan.brush == "flat");
     CHECK(plan.brush_sha256.empty());
@@ -274,7 +274,7 @@ TEST_CASE("plan.json: every key arrives and is written back") {
 )");
 }
 
-TEST_CASE("plan.json: each fault is named with its key") {
+TEST_CASE("plan.json: each error is reported with its key") {
     const Fault faults[] = {
         {"[3.5, 2, -1]", "[3.5, 2, 1.5]", "passes[0].poses_mm[1]", "above-paper", {"1", "a", "1.5"}},
         {"[3.5, 2, -1]", "[3.5, 2, 1e-300]", "passes[0].poses_mm[1]", "above-paper", {"0"}},
@@ -316,7 +316,7 @@ TEST_CASE("plan.json: each fault is named with its key") {
     CHECK((*high.range())[1] == 0.0);
 }
 
-TEST_CASE("plan.json: arcs arrive and are written back, after what else stands in the pass") {
+TEST_CASE("plan.json: arcs are read, and written back as the last key of the pass") {
     const Plan plan = io::read_plan(kArcs);
     const std::vector<Arc>& arcs = plan.passes[0].arcs;
     REQUIRE(arcs.size() == 2);
@@ -334,7 +334,7 @@ TEST_CASE("plan.json: arcs arrive and are written back, after what else stands i
     CHECK(io::write_plan(io::read_plan(none)).find("arcs") == std::string::npos);
 }
 
-TEST_CASE("plan.json: an arc that is none is refused with its number") {
+TEST_CASE("plan.json: an invalid arc is refused with its number") {
     const char *first = "[1, 3, 15, 10, 1]", *second = "[3, 4, 12, 11, -1]", *one = "passes[0].arcs[0]",
                *two = "passes[0].arcs[1]";
     const Fault faults[] = {
@@ -369,7 +369,7 @@ TEST_CASE("plan.json: an arc that is none is refused with its number") {
     CHECK(refusal_of([&] { io::write_plan(plan); }).where() == "passes[0].arcs[1]");
 }
 
-TEST_CASE("plan.json: a z of 0 or below is fine anywhere, at the ends too") {
+TEST_CASE("plan.json: a z of 0 or below is accepted anywhere, including the ends") {
     CHECK(io::read_plan(replaced(kPlan, "[1, 2, 0]", "[1, 2, -3]")).passes[0].poses_mm(0, 2) == -3.0);
     CHECK(io::read_plan(replaced(kPlan, "[3.5, 2, -1]", "[3.5, 2, -0.0]")).passes[0].poses_mm(1, 2) == 0.0);
 }
@@ -385,7 +385,7 @@ TEST_CASE("plan.json: numbers are plain decimals rounded to 1e-7") {
     CHECK(io::write_plan(io::read_plan(written)) == written);
 }
 
-TEST_CASE("plan.json: what cannot be read back is not written") {
+TEST_CASE("plan.json: values that cannot be read back are not written") {
     const auto refused = [](auto change) {
         Plan plan = io::read_plan(kPlan);
         change(plan);
@@ -407,7 +407,7 @@ TEST_CASE("plan.json: what cannot be read back is not written") {
     CHECK(refused([&](Plan& p) { p.sheet_mm = {0.0, 10.0}; }) == "sheet_mm");
 }
 
-TEST_CASE("plan.json: long passes break into lines and come back whole") {
+TEST_CASE("plan.json: long passes are broken into lines and read back completely") {
     Plan plan = io::read_plan(kPlan);
     Poses& poses = plan.passes[0].poses_mm;
     poses.resize(20000, 3);
@@ -427,7 +427,7 @@ TEST_CASE("plan.json: long passes break into lines and come back whole") {
     CHECK((again.passes[0].poses_mm - poses).cwiseAbs().maxCoeff() <= 0.5e-7 + 1e-12);
 }
 
-TEST_CASE("marks.json: rows and rings arrive and are written back") {
+TEST_CASE("marks.json: rows and rings are read and written back") {
     const Marks marks = io::read_marks(kMarks);
     REQUIRE(marks.passes.size() == 1);
     const PassMarks& pass = marks.passes[0];
@@ -462,7 +462,7 @@ TEST_CASE("marks.json: rows and rings arrive and are written back") {
 )");
 }
 
-TEST_CASE("marks.json: each fault is named with its key") {
+TEST_CASE("marks.json: each error is reported with its key") {
     const Fault faults[] = {
         {"[0, 0.5, 1]", "[0, 0.5]", "passes[0].contact_mm", "sizes-differ", {"a", "3", "2"}},
         {"[0, 0.25, -3]", "[0]", "passes[0].heading_rad", "sizes-differ", {"a", "1", "3"}},
@@ -488,7 +488,7 @@ TEST_CASE("marks.json: each fault is named with its key") {
     CHECK(refusal_of([&] { io::write_marks(marks); }).where() == "heading_rad");
 }
 
-TEST_CASE("any reader: not an object, not UTF-8, nested without end") {
+TEST_CASE("any reader refuses text that is not an object, not UTF-8, or nested too deeply") {
     CHECK(agrees(refusal([] { io::read_marks("[]"); }), "wrong-type", ""));
     CHECK(agrees(refusal([] { io::read_plan("{\"format\": \"\xff\"}"); }), "not-json", "format"));
     const std::string deep = "{\"a\": " + std::string(500000, '[') + std::string(500000, ']') + "}";

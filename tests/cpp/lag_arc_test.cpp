@@ -53,7 +53,7 @@ std::vector<std::pair<double, bool>> phases(const LagLaw<double>& law, const Arc
 
 }  // namespace
 
-TEST_CASE("the TCP's place on an arc: from the chord and back, at every radius and turn") {
+TEST_CASE("the TCP's place on an arc and its chord are inverse at every radius and turn") {
     for (double radius : {0.1, 3.0, 1e3, 1e6})
         for (double turn : {1e-9, 0.01, -0.2, 1.0, -3.0, 3.14}) {
             const ArcMove<double> arc = arc_of({3, 4}, 0.7, radius, turn);
@@ -69,7 +69,7 @@ TEST_CASE("the TCP's place on an arc: from the chord and back, at every radius a
         }
 }
 
-TEST_CASE("a loose brush whose lever is drawn out already pulls tight no earlier than the arc begins") {
+TEST_CASE("a loose brush with its lever drawn out becomes taut no earlier than the arc starts") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> angle(-kPi, kPi), length(1.0, 20.0), place(-200.0, 200.0);
     const LagLaw<double> law = law_of({8.0});
@@ -97,7 +97,7 @@ TEST_CASE("an arc of the TCP: the printed value, straight ahead, and where it se
     CHECK(std::abs(drag_arc(0.2, 0.25, 4.0, 3.0) - drag_arc(0.2, 0.25 - 1e-9, 4.0, 3.0)) < 1e-7);
 }
 
-TEST_CASE("taut along an arc: the same value by way of contact and heading, both ways round") {
+TEST_CASE("taut along an arc: contact and heading give the same value in both directions") {
     const auto law = law_of({8.0});
     for (double side : {1.0, -1.0}) {
         const auto arc = arc_of({5, -3}, 2.0, 40.0, side * 60.0 / 40);
@@ -218,7 +218,7 @@ TEST_CASE("from touch-down the first arc sets the heading, and pulls the lever o
     CHECK(state.contact == V(0, 0));
 }
 
-TEST_CASE("no lag: a rigid pen, and a lag that vanishes at depth 0") {
+TEST_CASE("arcs without lag: a rigid pen, and a lag that vanishes at depth 0") {
     for (const auto& law : {law_of({0.0}), law_of({0.0, 0.8})}) {
         auto state = touch_down<double>({0, 0});
         ArcMove<double> arc = arc_of({0, 0}, 0.5, 3.0, -2.0);

@@ -46,11 +46,11 @@ std::string code_of(const std::function<void(Plan&, Brush&, posts::FlatCell&)>& 
 
 }  // namespace
 
-TEST_CASE("the golden program, which Python is held against, too") {
+TEST_CASE("the program equals the golden file that Python is compared with") {
     CHECK(posts::linuxcnc(golden_plan(), round6()) == file(std::string(GOLDEN_DIR) + "/flat_machine.ngc"));
 }
 
-TEST_CASE("a machine of other numbers and a name of its own") {
+TEST_CASE("a machine with other numbers and another name is written") {
     Plan plan = golden_plan();
     Brush brush = round6();
     plan.brush = brush.name = "B\xC3\xBCrste u\xCC\x88\xC3\xB8";
@@ -69,7 +69,7 @@ TEST_CASE("a machine of other numbers and a name of its own") {
                           "d\xC5\xBA)") == file(std::string(GOLDEN_DIR) + "/flat_bench.ngc"));
 }
 
-TEST_CASE("what would lead a machine astray is refused") {
+TEST_CASE("values that would misguide a machine are refused") {
     using posts::FlatCell;
     const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
     CHECK(code_of([](Plan&, Brush&, FlatCell&) {}) == "");
@@ -100,7 +100,7 @@ TEST_CASE("what would lead a machine astray is refused") {
         CHECK(code_of([=](Plan& plan, Brush&, FlatCell&) { plan.passes[2].speed_mm_s = speed; }) == "out-of-range");
 }
 
-TEST_CASE("a circle must be inside of the sheet's margin where it is run, and nowhere else") {
+TEST_CASE("only the part of a circle that is run must be inside the margin of the sheet") {
     const double c = 20.0 * std::cos(1.0), s = 20.0 * std::sin(1.0);
     const auto plan_of = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
         Plan plan;
@@ -131,7 +131,7 @@ TEST_CASE("the slowest speed is a millionth of a millimetre in a second") {
     CHECK(at(0.5e-6) == "out-of-range");
 }
 
-TEST_CASE("a long comment is cut, and what no machine reads in it is replaced") {
+TEST_CASE("a long comment is cut, and its unreadable characters are replaced") {
     Plan plan = golden_plan();
     plan.passes[0].stroke = StrokeId(std::string(150, 'a'));
     plan.passes[1].stroke = StrokeId(
@@ -143,7 +143,7 @@ TEST_CASE("a long comment is cut, and what no machine reads in it is replaced") 
     CHECK(text.find("(stroke 2 of 3: b??c)\n") != std::string::npos);
 }
 
-TEST_CASE("a comment stays one") {
+TEST_CASE("a comment cannot become a command") {
     Plan plan = golden_plan();
     plan.passes[0].stroke = StrokeId("a) M2\n(\xC3\xA9");
     const std::string text = posts::linuxcnc(plan, round6());

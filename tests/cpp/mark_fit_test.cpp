@@ -21,7 +21,7 @@
 using namespace brushsvg;
 using namespace brushsvg::fit;
 
-TEST_CASE("the nearest place on a drop's edge is that of its densely sampled outline") {
+TEST_CASE("the nearest point on a drop's edge agrees with its densely sampled outline") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> where(-6.0, 10.0);
     for (const Drop& drop : {Drop{3.6, 2.0, 2.0}, Drop{3.6, 2.0, 1.2}, Drop{1.5, 1.0, 1.6}, Drop{0.6, 2.0, 3.0},
@@ -69,7 +69,7 @@ TEST_CASE("the nearest place on a drop's edge is that of its densely sampled out
     }
 }
 
-TEST_CASE("along a straight stroke the edge is straight, however narrow, and a side stays its own where sides cross") {
+TEST_CASE("along a straight stroke of any width the edge is straight, and crossing sides stay separate") {
     Poses poses(2, 3);
     poses << 0, 0, -1, 40, 0, -1;
     for (const double half : {0.03, 0.1, 0.4, 1.5, 4.0}) {
@@ -96,7 +96,7 @@ TEST_CASE("along a straight stroke the edge is straight, however narrow, and a s
     }
 }
 
-TEST_CASE("points without a say are as if they were not there") {
+TEST_CASE("points without weight have no effect") {
     Poses along(2, 3), up(3, 3);
     along << 0, 0, -1, 40, 0, -2;
     up << 60, 0, -1, 60, 30, -2, 75, 30, -2;
@@ -135,7 +135,7 @@ TEST_CASE("specks alone are refused") {
                  "mark-empty", ""));
 }
 
-TEST_CASE("derivatives of edge distances are those of small steps, events and landings included") {
+TEST_CASE("derivatives of edge distances agree with small steps, including events and landings") {
     Poses poses(6, 3);
     poses << 0, 0, 0, 8, 0, -4, 25, 2, -5, 26, 20, -3, 22, 6, -6, 10, 8, -2;
     PaintedMark mark{"s", poses, {}};
@@ -175,7 +175,7 @@ TEST_CASE("derivatives of edge distances are those of small steps, events and la
     CHECK(wrong <= 0.02 * double(at.size() * (x.size() + 2)));
 }
 
-TEST_CASE("where the TCP passes the resting patch the mark's edge moves no faster than the lag grows") {
+TEST_CASE("the mark's edge moves no faster than the lag grows where the TCP passes the resting patch") {
     Poses poses(3, 3);  // the closer the TCP passes, the more suddenly the footprint turns
     poses << 0, 0, -6, 0, 28, -6, 1, 4, -6;
     MarkLaws laws;
@@ -231,7 +231,7 @@ TEST_CASE("an arc is followed on its circle, not on its chords") {
     CHECK(agrees(refusal(beyond), "arc-invalid", "s", {"0", "9"}));
 }
 
-TEST_CASE("laws with footprints that no brush has predict nothing: their instants would be a million") {
+TEST_CASE("laws with impossible footprints predict nothing, because they would need a million instants") {
     Poses poses(3, 3);
     poses << 0, 0, -3, 30, 0, -6, 30, 25, -6;
     Ring ring(4, 2);
@@ -245,7 +245,7 @@ TEST_CASE("laws with footprints that no brush has predict nothing: their instant
     }
 }
 
-TEST_CASE("marks that no brush paints are refused, and one of them is named") {
+TEST_CASE("impossible marks are refused, and one of them is named") {
     Poses poses(4, 3);
     poses << 0, 0, 0, 12, 0, -3, 30, 0, -3, 30, 25, -3;
     const auto star = [](int points) {
@@ -296,7 +296,7 @@ TEST_CASE("marks that no brush paints are refused, and one of them is named") {
     });
 }
 
-TEST_CASE("a brush to start from that paints no mark is refused as such") {
+TEST_CASE("a starting brush that paints no mark is refused") {
     Poses poses(2, 3);
     poses << 0, 0, -3, 30, 0, -3;
     Ring ring(4, 2);
@@ -311,7 +311,7 @@ TEST_CASE("a brush to start from that paints no mark is refused as such") {
     }
 }
 
-TEST_CASE("what cannot be fitted is refused") {
+TEST_CASE("data that cannot be fitted are refused") {
     CHECK_THROWS_AS(fit_marks({}, std::nullopt, {}), Error);
     Poses poses(2, 3);
     poses << 0, 0, -3, 30, 0, -3;
@@ -328,7 +328,7 @@ TEST_CASE("what cannot be fitted is refused") {
     CHECK_THROWS_AS(fit_marks({{"s", poses, {ring}}}, std::nullopt, options), Error);
 }
 
-TEST_CASE("an axis that turns stands still for its whole backlash, and not for longer") {
+TEST_CASE("a reversing axis stands still for exactly its backlash") {
     Poses poses(6, 3);
     poses << 0.0, 5.0, 0.0, 10.0, 5.0, -1.0, 9.9, 5.0, -1.0, 9.7, 5.0, -1.0, 9.5, 5.0, -1.0, 5.0, 5.0, 0.0;
     const FieldBox box;

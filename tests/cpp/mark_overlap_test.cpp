@@ -11,7 +11,7 @@
 using namespace brushsvg;
 using V = Eigen::Vector2d;
 
-TEST_CASE("pixels count what rings measure") {
+TEST_CASE("counted pixels agree with the area of rings") {
     const Brush brush = shipped("round-6");
     const Stroke line = stroke_of(polyline({V(20, 20), V(50, 28), V(50, 50)}), {{0.0, 0.4}, {1.0, 3.0}});
     Stroke shape = line;
@@ -57,7 +57,7 @@ TEST_CASE("a large sheet is counted tile by tile") {
     CHECK(touching(strokes) == std::vector<std::vector<std::size_t>>{{0, 1, 3}});
 }
 
-TEST_CASE("an empty target and no paint overlap; hairlines and huge sheets have pixels") {
+TEST_CASE("an empty target without paint has full overlap, and hairlines and huge sheets have pixels") {
     const Brush brush = shipped("round-6");
     CHECK(common_area(mark_overlap({}, {}, brush)).overlap() == 1.0);
     const Stroke thin = stroke_of(polyline({V(0, 0), V(3, 0)}), {{0.0, 0.01}});

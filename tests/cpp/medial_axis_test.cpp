@@ -49,7 +49,7 @@ double distance_to(const Rings& rings, const Eigen::Vector2d& p) {
 
 }  // namespace
 
-TEST_CASE("a limb that is thin next to what it leaves stays, a corner does not") {
+TEST_CASE("a limb that is thin next to its stem is kept, and a corner is not") {
     const Rings t = unite({box(0, 0, 8, 40), box(8, 30, 3, 2)});
     CHECK(medial_axis(t, kNoCorners).branches.size() == 2);  // the stem, above and below the limb
     CHECK(medial_axis(t, kNoCorners, 0.1).branches.size() == 3);
@@ -67,12 +67,12 @@ TEST_CASE("a bar is one line that stops half a width before its ends") {
     CHECK(area(axis.branches[0].part) == doctest::Approx(80.0));
 }
 
-TEST_CASE("corners stay when they are requested: a right angle adds 1 - pi/4 of the disc's square") {
+TEST_CASE("corners are kept on request: a right angle adds 1 - pi/4 of the disc's square") {
     CHECK(medial_axis({box(0, 0, 20, 4)}, 0.21).branches.size() == 5);
     CHECK(medial_axis({box(0, 0, 20, 4)}, 0.22).branches.size() == 1);
 }
 
-TEST_CASE("every point is as far from the outline as it says, parabolas too") {
+TEST_CASE("every point has its stated distance from the outline, also on parabolas") {
     Ring l(6, 2);
     l << 0, 0, 30, 0, 30, 5, 7, 6, 6, 40, 0, 40;
     const MedialAxis axis = medial_axis({l}, 0.0);
@@ -104,7 +104,7 @@ TEST_CASE("a ring is one closed branch, a disc a node without any") {
     CHECK(disc.nodes[0].radius_mm == doctest::Approx(3.0).epsilon(0.01));
 }
 
-TEST_CASE("the parts of all branches are the shape, with crossings, holes and a spur in a loop") {
+TEST_CASE("the parts of all branches add up to the shape, with crossings, holes and a spur in a loop") {
     const Rings cross = unite({box(0, 13, 30, 4), box(13, 0, 4, 30)});
     const Rings loops = unite({box(0, 0, 40, 3), box(0, 10, 40, 3), box(0, 20, 40, 3), box(0, 0, 3, 23),
                                box(37, 0, 3, 23), box(15, 13, 2, 4)});
@@ -119,7 +119,7 @@ TEST_CASE("the parts of all branches are the shape, with crossings, holes and a 
     }
 }
 
-TEST_CASE("squares that touch in corners, as in markers and pixel letters, have parts that are the shape") {
+TEST_CASE("the parts of squares that touch at corners add up to the shape, as in markers and pixel letters") {
     std::mt19937 random(1);
     for (int trial = 0; trial < 60; ++trial) {
         Rings squares;
@@ -139,7 +139,7 @@ TEST_CASE("squares that touch in corners, as in markers and pixel letters, have 
     }
 }
 
-TEST_CASE("nothing, slivers and rings beyond the table") {
+TEST_CASE("empty shapes, slivers and rings beyond the table have no axis or are refused") {
     CHECK(medial_axis({}, kNoCorners).nodes.empty());
     Ring sliver(3, 2);
     sliver << 0, 0, 50, 0, 50, 1e-5;

@@ -35,7 +35,7 @@ double height_at(const Marks& marks, const Brush& brush, double x, double y) {
 
 }  // namespace
 
-TEST_CASE("a mark narrows by the way since the dip, from pass to pass until paint is fetched") {
+TEST_CASE("a mark narrows with the distance since the dip, over all passes until paint is fetched") {
     const Brush brush = shipped("round-6");
     const Paint paint = paint_of(1.5);
     Plan plan;
@@ -59,7 +59,7 @@ TEST_CASE("a mark narrows by the way since the dip, from pass to pass until pain
     CHECK(height_at(marks, brush, 150.0, 0.0) == doctest::Approx(wide).epsilon(0.004));
 }
 
-TEST_CASE("dips that cannot be are refused") {
+TEST_CASE("impossible dips are refused") {
     const Brush brush = shipped("round-6");
     Plan plan;
     plan.passes = {line_at(0.0, 4.0)};

@@ -13,7 +13,7 @@ TEST_CASE("the more detail, the less a stroke costs") {
     CHECK(fine < ObjectiveWeights().stroke);
 }
 
-TEST_CASE("another word is refused") {
+TEST_CASE("an unknown detail setting is refused") {
     try {
         detail_named("high");
         FAIL("taken");

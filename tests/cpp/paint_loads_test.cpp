@@ -58,7 +58,7 @@ TEST_CASE("no gap shows where a stroke was interrupted") {
     }
 }
 
-TEST_CASE("parts are no longer than the paint lasts, named and complete") {
+TEST_CASE("loads are no longer than the paint lasts, and are named and complete") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);
     const std::vector<Pass> parts = interrupted(whole, brush, {15.0, 40.0, 5.0});
@@ -77,7 +77,7 @@ TEST_CASE("parts are no longer than the paint lasts, named and complete") {
     CHECK(parts.back().poses_mm.bottomRows<1>() == whole.poses_mm.bottomRows<1>());
 }
 
-TEST_CASE("a paint that lasts leaves the pass as it is") {
+TEST_CASE("a paint that lasts leaves the pass unchanged") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);
     const std::vector<Pass> parts = interrupted(whole, brush, {1000.0, 1000.0, 5.0});
@@ -86,7 +86,7 @@ TEST_CASE("a paint that lasts leaves the pass as it is") {
     CHECK(parts[0].load == 0);
 }
 
-TEST_CASE("a straight line has places to stop at between its few poses") {
+TEST_CASE("a straight line has possible stops between its few poses") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "line";
@@ -111,7 +111,7 @@ TEST_CASE("a straight line has places to stop at between its few poses") {
     }
 }
 
-TEST_CASE("arcs stay whole in the part that holds them") {
+TEST_CASE("arcs stay whole in their load") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "v";
@@ -133,7 +133,7 @@ TEST_CASE("arcs stay whole in the part that holds them") {
     }
 }
 
-TEST_CASE("a long bend is cut inside of its arcs") {
+TEST_CASE("a long bend is cut inside its arcs") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "o";
@@ -158,7 +158,7 @@ TEST_CASE("a long bend is cut inside of its arcs") {
     CHECK(overlap(painted(parts, brush), painted({whole}, brush)) > 0.99);
 }
 
-TEST_CASE("a paint that does not get on is refused") {
+TEST_CASE("impossible lengths of paint are refused") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);
     CHECK_THROWS_AS(interrupted(whole, brush, {10.0, 8.0, 5.0}), Error);
@@ -166,7 +166,7 @@ TEST_CASE("a paint that does not get on is refused") {
     CHECK_THROWS_AS(interrupted(whole, brush, {10.0, std::nan(""), 5.0}), Error);
 }
 
-TEST_CASE("a stroke is fetched paint for a thousand times at most") {
+TEST_CASE("a stroke of more than a thousand loads is refused") {
     const Brush brush = shipped("round-6");
     Pass line;
     line.poses_mm.resize(2, 3);

@@ -19,7 +19,7 @@ Paint paint_of(double narrows_per_m) {
 
 }  // namespace
 
-TEST_CASE("two ways take what one as long takes, and the way to a share is the way that takes it") {
+TEST_CASE("two paths use as much paint as one of their joint length, and the path to a share is its inverse") {
     const Paint paint = paint_of(0.7);
     CHECK(paint.width_share(0.0) == 1.0);
     CHECK(paint.width_share(1000.0) == doctest::Approx(std::exp(-0.7)));
@@ -28,7 +28,7 @@ TEST_CASE("two ways take what one as long takes, and the way to a share is the w
     CHECK(std::isinf(paint_of(0.0).way_to_share_mm(0.95)));
 }
 
-TEST_CASE("paint that none can be is refused by its key") {
+TEST_CASE("impossible paint is refused with its key") {
     const auto changed = [](auto&& change) {
         Brush brush = shipped("round-6");
         brush.paint = paint_of(0.4);

@@ -27,7 +27,7 @@ Pass on_circle(double radius, const std::vector<double>& angles, int direction, 
 
 }  // namespace
 
-TEST_CASE("an arc of any radius in the range, several times round if need be, passes; rounded to three decimals too") {
+TEST_CASE("an arc of any radius in the range and with several turns is accepted, also rounded to three decimals") {
     for (double radius : {0.11, 1.0, 9.0, 1000.0, 9e5})
         for (int direction : {1, -1}) {
             std::vector<double> angles;
@@ -38,7 +38,7 @@ TEST_CASE("an arc of any radius in the range, several times round if need be, pa
         }
 }
 
-TEST_CASE("up to half a turn between neighbours, not more, and never back") {
+TEST_CASE("neighbours on an arc are at most half a turn apart, and never in reverse") {
     CHECK_NOTHROW(check_arc(on_circle(9.0, {0.0, 0.999 * kPi}, 1), 0, ""));
     CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, kPi}, 1), 0, ""), Error);
     CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, 1.001 * kPi}, 1), 0, ""), Error);
@@ -46,7 +46,7 @@ TEST_CASE("up to half a turn between neighbours, not more, and never back") {
     CHECK_THROWS_AS(check_arc(on_circle(9.0, {0.0, 1.0, 1.0}, 1), 0, ""), Error);
 }
 
-TEST_CASE("not finite is refused like anything off the circle") {
+TEST_CASE("poses that are not finite or not on the circle are refused") {
     for (double bad : {double(NAN), double(INFINITY)}) {
         Pass pass = on_circle(9.0, {0.0, 1.0, 2.0}, 1);
         pass.arcs[0].centre_mm.x() = bad;

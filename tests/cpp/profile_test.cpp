@@ -8,7 +8,7 @@
 
 using namespace brushsvg;
 
-TEST_CASE("a floor takes over where the polynomial falls below it, and the pieces meet there") {
+TEST_CASE("a floor replaces the polynomial below it, and the pieces meet there") {
     Profile w;
     w.coefficients = {-2.35, 2.75, -0.42, 0.024};
     w.floor = 0.0;
@@ -44,7 +44,7 @@ TEST_CASE("a law of a brush refuses depths that the brush cannot have") {
         }
 }
 
-TEST_CASE("difference of laws is split where either changes") {
+TEST_CASE("the difference of two laws is split where either changes") {
     Profile w, b;
     w.coefficients = {-2.35, 2.75, -0.42, 0.024};
     w.floor = 0.0;

@@ -74,7 +74,7 @@ PatchPath path_of(const Stroke& stroke, const Brush& brush, int controls) {
 
 }  // namespace
 
-TEST_CASE("a patch's way without changes is that of the closed form") {
+TEST_CASE("the path of the patch without changes equals the closed form") {
     const Brush brush = shipped("round-6");
     for (const Stroke& s : {line(), taper(), corner(), curve()}) {
         const PatchPath path = path_of(s, brush, 8);
@@ -90,7 +90,7 @@ TEST_CASE("a patch's way without changes is that of the closed form") {
     }
 }
 
-TEST_CASE("slopes of way and edge are those of differences") {
+TEST_CASE("derivatives of path and edge agree with differences") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(5);
     const Stroke s = curve();
@@ -142,7 +142,7 @@ TEST_CASE("slopes of way and edge are those of differences") {
     }
 }
 
-TEST_CASE("squares of slopes add up as those of the whole table of slopes, at both ends of what depths may be") {
+TEST_CASE("sums of squared derivatives agree with the whole table, at both limits of the depth") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(9);
     for (const Stroke& s : {line(), corner(), curve()}) {
@@ -168,7 +168,7 @@ TEST_CASE("squares of slopes add up as those of the whole table of slopes, at bo
     }
 }
 
-TEST_CASE("what is nearest is so of all edges, whichever are left out") {
+TEST_CASE("the nearest edge is found among all edges, with any of them left out") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(10);
     std::uniform_real_distribution<double> place(10.0, 60.0);
@@ -200,7 +200,7 @@ TEST_CASE("what is nearest is so of all edges, whichever are left out") {
     }
 }
 
-TEST_CASE("for any unknowns the brush does what the way says") {
+TEST_CASE("for any unknowns the brush follows the computed path") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(6);
     for (const Stroke& s : {line(), taper(), corner(), hook(), curve()}) {
@@ -249,7 +249,7 @@ TEST_CASE("a line, a taper, a corner, a hook, a curve and a blunt head are paint
     }
 }
 
-TEST_CASE("never worse, and within the brush's depths, on random strokes; turned and mirrored as well") {
+TEST_CASE("refined plans are never worse and within the brush's depths on random strokes, also rotated and mirrored") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(7);
     std::uniform_real_distribution<double> place(10.0, 70.0), half(0.5, 3.5);
@@ -274,7 +274,7 @@ TEST_CASE("the same stroke gives the same plan, to the last bit") {
     CHECK(refine(curve(), brush).plan.pass.poses_mm == refine(curve(), brush).plan.pass.poses_mm);
 }
 
-TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left as they are") {
+TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left unchanged") {
     const Brush brush = shipped("round-6");
     Stroke ring = stroke_of(polyline({V(30, 30), V(60, 30), V(60, 60), V(30, 60), V(30, 30)}), {{0.0, 1.5}});
     ring.closed = true;
@@ -291,7 +291,7 @@ TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left a
     CHECK(refine(line(), pen).plan.pass.poses_mm == compensate(line(), pen).pass.poses_mm);
 }
 
-TEST_CASE("no paint and no tool leaves the sheet for it") {
+TEST_CASE("refined plans keep paint and tool on the sheet") {
     const Brush brush = shipped("round-6");
     // the target mark's end is on the edge of the sheet; the closed form begins 0.9 mm inside of it
     const Stroke s = stroke_of(polyline({V(1.7, 20), V(40, 20)}), {{0.0, 1.7}});

@@ -36,7 +36,7 @@ TEST_CASE("a frame has an outer ring counter-clockwise and a hole clockwise, bot
     for (const Ring& ring : frame) CHECK((ring.row(0) - ring.row(ring.rows() - 1)).norm() > 0.5);
 }
 
-TEST_CASE("holes survive a union with what does not cover them, and are filled by what does") {
+TEST_CASE("a union keeps holes unless another shape covers them") {
     Ring hole = box(3, 3, 4, 4);
     hole = hole.colwise().reverse().eval();
     const Rings frame{box(0, 0, 10, 10), hole};
@@ -45,7 +45,7 @@ TEST_CASE("holes survive a union with what does not cover them, and are filled b
     CHECK(overlap(frame, {box(0, 0, 10, 10)}) == doctest::Approx(0.84));
 }
 
-TEST_CASE("clockwise rings are holes in nothing: they are refused, not lost") {
+TEST_CASE("clockwise rings are refused, except in fill") {
     const Ring square = box(0, 0, 4, 4), turned = square.colwise().reverse();
     CHECK(area({turned}) == doctest::Approx(-16.0));
     CHECK(agrees(refusal([&] { overlap({turned}, {turned}); }), "outline-clockwise", ""));
@@ -56,7 +56,7 @@ TEST_CASE("clockwise rings are holes in nothing: they are refused, not lost") {
     CHECK(unite({square, turned}).empty());  // the hole is as large as the shape
 }
 
-TEST_CASE("a box held against a large shape with holes has what is in it, at any place") {
+TEST_CASE("the intersection of a box with a large shape with holes is correct at any place") {
     // A folded comb with many corners. Its teeth reach past the box on all sides, and it has a hole larger than the
     // box.
     Rings shape;
@@ -81,14 +81,14 @@ TEST_CASE("a box held against a large shape with holes has what is in it, at any
     }
 }
 
-TEST_CASE("many shapes far from the origin") {
+TEST_CASE("many shapes far from the origin are united") {
     Rings boxes;
     for (int i = 0; i < 300; ++i) boxes.push_back(box(5000 + 0.3 * i, 5000 + 0.1 * i, 1, 1));
     // a staircase: one box and 299 steps of 1 - 0.7 * 0.9 each
     CHECK(area(unite(boxes)) == doctest::Approx(1.0 + 299 * (1.0 - 0.7 * 0.9)).epsilon(1e-4));
 }
 
-TEST_CASE("convex hull") {
+TEST_CASE("the convex hull of a square with points inside is the square") {
     Ring points(6, 2);
     points << 0, 0, 2, 0, 2, 2, 0, 2, 1, 1, 1, 0;
     const Ring hull = convex_hull(points);
@@ -132,7 +132,7 @@ Swept swept(const Rings& chain) {
 
 }  // namespace
 
-TEST_CASE("pieces between shapes cover what their hulls cover, with few corners where the shape moves on") {
+TEST_CASE("pieces between shapes cover the hulls, with few corners where the shape moves on") {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     for (int trial = 0; trial < 60; ++trial) {
@@ -164,7 +164,7 @@ TEST_CASE("pieces between shapes cover what their hulls cover, with few corners 
     CHECK(area(unite(pieces_between({leaf(0, 0, 0, 0), leaf(0, 0, 0, 0)}))) == doctest::Approx(0.0));
 }
 
-TEST_CASE("outlines fill as the rule says, whichever way they turn and however they cross") {
+TEST_CASE("outlines are filled by the rule for any direction and any crossings") {
     const Ring outer = box(0, 0, 10, 10), inner = box(3, 3, 4, 4);
     const Ring turned = inner.colwise().reverse();
     CHECK(area(fill({outer, inner}, FillRule::nonzero)) == doctest::Approx(100.0));
@@ -179,7 +179,7 @@ TEST_CASE("outlines fill as the rule says, whichever way they turn and however t
     CHECK(fill({}, FillRule::nonzero).empty());
 }
 
-TEST_CASE("an odd number of contours is filled, however many") {
+TEST_CASE("any odd number of contours is filled") {
     Rings same, nested;
     double rings_area = 0.0;
     for (int n = 1; n <= 41; ++n) {
@@ -197,7 +197,7 @@ TEST_CASE("an odd number of contours is filled, however many") {
     CHECK_THROWS_AS(fill({star}, FillRule::evenodd), Error);
 }
 
-TEST_CASE("outlines that cross themselves: both lobes of an eight, the heart of a star by its rule") {
+TEST_CASE("outlines that cross themselves fill both lobes of an eight, and the middle of a star by its rule") {
     Ring eight(4, 2);
     eight << 0, 0, 10, 10, 10, 0, 0, 10;
     CHECK(area(fill({eight}, FillRule::nonzero)) == doctest::Approx(50.0));

@@ -4,7 +4,7 @@
 
 using namespace brushsvg;
 
-TEST_CASE("signed area of a triangle, either way round and far from the origin") {
+TEST_CASE("the signed area of a triangle is correct in both directions and far from the origin") {
     Ring r(3, 2);
     r << 0, 0, 4, 0, 0, 3;
     CHECK(signed_area(r) == doctest::Approx(6.0));
@@ -15,7 +15,7 @@ TEST_CASE("signed area of a triangle, either way round and far from the origin")
     CHECK(signed_area(Ring(0, 2)) == 0.0);
 }
 
-TEST_CASE("the length around a triangle, and none around no point or one") {
+TEST_CASE("the length around a triangle is its perimeter, and 0 for no point or one") {
     Ring r(3, 2);
     r << 0, 0, 4, 0, 0, 3;
     CHECK(length_around(r) == doctest::Approx(12.0));

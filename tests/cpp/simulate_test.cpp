@@ -39,7 +39,7 @@ TEST_CASE("rows are parallel, ascend, and run from the first pose to the last") 
     for (int k = 0; k < 6; ++k) CHECK(std::count(m.pose.begin(), m.pose.end(), double(k)) >= 1);
 }
 
-TEST_CASE("rows before the first motion take the first heading there is, 0 if none") {
+TEST_CASE("rows before the first motion have the first heading, or 0 if there is none") {
     const Brush brush = shipped("round-6");
     PassMarks m = simulate(pass_of({{0, 0, 0}, {0, 0, -4}, {0, 20, -4}, {0, 20, 0}}), brush);
     CHECK(m.heading_rad.front() == doctest::Approx(1.5707963267948966));
@@ -48,7 +48,7 @@ TEST_CASE("rows before the first motion take the first heading there is, 0 if no
     for (double p : m.pull) CHECK(p == 0.0);
 }
 
-TEST_CASE("a pass that begins or ends below the surface is set down and lifted on the spot") {
+TEST_CASE("a pass that starts or ends below the surface is set down and lifted in place") {
     const Brush brush = shipped("round-6");
     const PassMarks with = simulate(pass_of({{0, 0, 0}, {0, 0, -4}, {30, 0, -4}, {30, 0, 0}}), brush);
     const PassMarks without = simulate(pass_of({{0, 0, -4}, {30, 0, -4}}), brush);
@@ -74,14 +74,14 @@ TEST_CASE("moves are split where z crosses 0") {
     CHECK(m.pose[landed] == doctest::Approx(0.4));
 }
 
-TEST_CASE("too deep or not finite is refused with the pose, the depth and the range") {
+TEST_CASE("poses too deep or not finite are refused with the pose, the depth and the range") {
     const Brush brush = shipped("round-6");
     CHECK(agrees(refusal([&] { simulate(pass_of({{0, 0, 0}, {9, 0, -12}}), brush); }), "depth-out-of-range", "s",
                  {"12.000", "1", "[0.0, 10.0]", "round-6"}));
     CHECK_THROWS_AS(simulate(pass_of({{0, 0, 0}, {NAN, 0, -1}}), brush), Error);
 }
 
-TEST_CASE("a pass that is above the paper from end to end is refused, a way above it is not") {
+TEST_CASE("a pass entirely above the paper is refused, and a part above it is not") {
     try {
         simulate(pass_of({{0, 0, 5}, {20, 0, 5}, {40, 0, 5}}), shipped("round-6"));
         FAIL("it is taken for a stroke");
@@ -101,7 +101,7 @@ TEST_CASE("a pass that is above the paper from end to end is refused, a way abov
     CHECK_NOTHROW(simulate(pass_of({{0, 0, 0}, {20, 0, 0}}), shipped("round-6")));  // some brushes paint at depth 0
 }
 
-TEST_CASE("each pose has its row, also where a pass ends on the paper") {
+TEST_CASE("each pose has a row, also if a pass ends on the paper") {
     const PassMarks m = simulate(pass_of({{0, 0, -3}, {30, 0, -5}, {60, 0, -5}}), shipped("round-6"));
     const std::vector<std::size_t> rows = pose_rows(m);
     REQUIRE(rows.size() == 3);
@@ -177,7 +177,7 @@ TEST_CASE("a pen turns at a corner at once, and heads for its first move from th
     CHECK(std::count(m.pose.begin(), m.pose.end(), 3.0) == 1);
 }
 
-TEST_CASE("an empty pass and a pass of one pose") {
+TEST_CASE("an empty pass and a pass of one pose are simulated") {
     const Brush brush = shipped("round-6");
     CHECK(simulate(pass_of({}), brush).pose.empty());
     const PassMarks one = simulate(pass_of({{5, 5, -2}}), brush);
@@ -185,7 +185,7 @@ TEST_CASE("an empty pass and a pass of one pose") {
     CHECK(one.contact_mm(0, 0) == 5.0);
 }
 
-TEST_CASE("half way between rows the footprint is where the rows' straight line says, to the tolerance") {
+TEST_CASE("between rows, the footprint is on the straight line within the tolerance") {
     const Brush brush = shipped("round-6");
     const Pass pass = pass_of({{0, 0, 0}, {8, 0, -5}, {30, 0, -5}, {20, 25, -3}, {-10, -5, -6}, {-10, -5, 0}});
     const double coarse_tolerance = 0.1;

@@ -9,7 +9,7 @@
 
 using namespace brushsvg;
 
-TEST_CASE("rings in sight of a point become one, with any shared edges and corners") {
+TEST_CASE("rings visible from one point become one ring, with any shared edges and corners") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     std::size_t before = 0, after = 0;
@@ -43,7 +43,7 @@ TEST_CASE("rings in sight of a point become one, with any shared edges and corne
     CHECK(after < 0.65 * double(before));
 }
 
-TEST_CASE("what sees no common point stays, and so do holes and what they are in") {
+TEST_CASE("rings without a common visible point, and holes with their rings, stay unchanged") {
     Ring box(4, 2), far(4, 2);
     box << 0, 0, 4, 0, 4, 4, 0, 4;
     far = box.array() + 10.0;

@@ -6,7 +6,7 @@
 
 using brushsvg::StrokeId;
 
-TEST_CASE("a name says what separates a stroke from others, and no more") {
+TEST_CASE("a name has only the parts that distinguish a stroke from others") {
     CHECK(StrokeId("a").name() == "a");
     CHECK(StrokeId("a", 2).name() == "a/2");
     CHECK(StrokeId("a", 2, 3).name() == "a/2#3");
@@ -16,7 +16,7 @@ TEST_CASE("a name says what separates a stroke from others, and no more") {
     CHECK(told == "a/1");
 }
 
-TEST_CASE("a name that looks like a part is an element's all the same") {
+TEST_CASE("a name that looks like a part still belongs to an element") {
     const StrokeId id = "icon/1";
     CHECK(id.element == "icon/1");
     CHECK(id.part == 0);

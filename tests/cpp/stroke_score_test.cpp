@@ -29,7 +29,7 @@ MiddlePolyline line_of(const V& a, const V& b, double half) {
 
 }  // namespace
 
-TEST_CASE("width across a line, in any direction") {
+TEST_CASE("the width across a line is measured in any direction") {
     struct Case {
         Rings rings;
         double width;
@@ -57,7 +57,7 @@ TEST_CASE("width across a line, in any direction") {
         }
 }
 
-TEST_CASE("width error is the mean absolute difference, where the width can be measured") {
+TEST_CASE("the width error is the mean absolute difference where the width can be measured") {
     const MiddlePolyline line = line_of(V(0, 0), V(40, 0), 2.0);
     const Rings wanted{box(-2, -2, 42, 2)};
     Ring half_right(6, 2);
@@ -75,7 +75,7 @@ TEST_CASE("width error is the mean absolute difference, where the width can be m
     CHECK_FALSE(width_error_mm(laid({box(2, 2, 4, 4)}, {box(2, 2, 4, 4)}), dab));
 }
 
-TEST_CASE("the worst place, missing or too much") {
+TEST_CASE("the worst place is found, for missing and for additional paint") {
     const Rings wanted{box(0, 0, 20, 4)};
     const WorstPlace missing = worst_place(laid(wanted, {box(0, 0, 18, 4), box(5, 4, 6, 5)}), 2.0);
     CHECK(missing.is_missing);

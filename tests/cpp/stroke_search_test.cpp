@@ -51,7 +51,7 @@ std::vector<Stroke> all_of(const SearchedShape& found) {
 
 }  // namespace
 
-TEST_CASE("a limb without a stroke gets one, and the mark is nearer to the shape for it") {
+TEST_CASE("a limb without a stroke gets one, and the mark fits the shape better") {
     const Brush brush = shipped("round-6");
     const Rings shape = unite({box(10, 10, 17, 50), box(17, 26, 34, 33)});
     const Stroke stem = straight({13.5, 46.5}, {13.5, 13.5}, 3.5);
@@ -76,7 +76,7 @@ TEST_CASE("a stroke that sticks out of its shape is moved back") {
     CHECK(!left_alone[0].changed[0]);
 }
 
-TEST_CASE("an added stroke has an outline, even of a pen that is hardly wider than a pixel of the search") {
+TEST_CASE("an added stroke has an outline, even for a pen hardly wider than a pixel of the search") {
     // this pen was found by the fuzzer
     const Brush pen = io::read_brush(R"({"format": "brushsvg/brush", "version": 1, "name": "fine", "kind": "pen",
         "depth_range_mm": [0, 2.313725490196078], "max_speed_mm_s": 25, "paint_depth_mm": 0.46274509803921565,
@@ -92,7 +92,7 @@ TEST_CASE("an added stroke has an outline, even of a pen that is hardly wider th
     for (const AddedStroke& each : found[0].added) CHECK(!each.mark_mm.empty());
 }
 
-TEST_CASE("the result is the same for shapes that are searched together and alone") {
+TEST_CASE("shapes searched together and alone have the same result") {
     const Brush brush = shipped("round-6");
     std::vector<PaintedShape> shapes;
     for (int k = 0; k < 6; ++k) {
@@ -111,7 +111,7 @@ TEST_CASE("the result is the same for shapes that are searched together and alon
     }
 }
 
-TEST_CASE("areas without paint are found, the largest first, from a share of the shape on") {
+TEST_CASE("unpainted areas above a share of the shape are found, the largest first") {
     const Brush brush = shipped("round-6");
     const Rings shape = unite({box(10, 10, 17, 50), box(17, 26, 34, 33), box(17, 40, 22, 44)});
     const Stroke stem = straight({13.5, 46.5}, {13.5, 13.5}, 3.5);

@@ -27,7 +27,7 @@ Stroke quarter(double radius) {
 
 }  // namespace
 
-TEST_CASE("points, tangents and lengths of a quarter circle") {
+TEST_CASE("points, tangents and lengths of a quarter circle are exact") {
     const Stroke s = quarter(10.0);
     CHECK((point_at(s.middle_mm, {0, 0.5}) - 10.0 * V(std::sqrt(0.5), std::sqrt(0.5))).norm() < 1e-9);
     CHECK((tangent_at(s.middle_mm, {0, 0.0}) - V(0, 1)).norm() < 1e-12);
@@ -36,7 +36,7 @@ TEST_CASE("points, tangents and lengths of a quarter circle") {
           doctest::Approx(arc_length(s.middle_mm, 0, 0.0, 1.0)).epsilon(1e-9));
 }
 
-TEST_CASE("the parameter at a length is where the length is, and never before it") {
+TEST_CASE("the parameter at a length reaches that length, and never less") {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> any(0.0, 1.0);
     for (int trial = 0; trial < 300; ++trial) {
@@ -64,7 +64,7 @@ TEST_CASE("a tangent where the handle has no length is the limit from inside") {
     CHECK(tangent_at(c, {0, 0.5}).norm() == 0.0);
 }
 
-TEST_CASE("flatten keeps to its tolerance and carries length and width") {
+TEST_CASE("flatten stays within its tolerance and keeps length and width") {
     const Stroke s = quarter(10.0);
     for (double tolerance : {0.1, 1e-3}) {
         const MiddlePolyline line = flatten(s, tolerance);

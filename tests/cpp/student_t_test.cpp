@@ -8,7 +8,7 @@
 using brushsvg::as_normal;
 using brushsvg::deviations_of_95;
 
-TEST_CASE("half of a 95 % interval, as tables print it") {
+TEST_CASE("half of a 95 % interval agrees with printed tables") {
     CHECK(deviations_of_95(1.0) == doctest::Approx(12.706).epsilon(1e-4));
     CHECK(deviations_of_95(2.0) == doctest::Approx(4.303).epsilon(1e-4));
     CHECK(deviations_of_95(10.0) == doctest::Approx(2.228).epsilon(1e-4));
@@ -16,7 +16,7 @@ TEST_CASE("half of a 95 % interval, as tables print it") {
     CHECK(deviations_of_95({}) == doctest::Approx(1.959963985));
 }
 
-TEST_CASE("a value of t as unlikely as a normal one") {
+TEST_CASE("a value of t is converted to an equally unlikely normal value") {
     CHECK(as_normal(12.7062047, 1.0) == doctest::Approx(1.959963985));
     CHECK(as_normal(-2.228138852, 10.0) == doctest::Approx(1.959963985));
     CHECK(as_normal(0.0, 3.0) == doctest::Approx(0.0));

@@ -49,7 +49,7 @@ TEST_CASE("pieces of the target mark cover it, as convex rings") {
     CHECK(overlap(unite(pieces), wanted_outline(s)) == doctest::Approx(1.0));
 }
 
-TEST_CASE("pieces near a window are those of all that meet it, and few more") {
+TEST_CASE("pieces near a window include all that meet it, and few more") {
     Stroke curved = stroke_of(polyline({V(20, 20), V(55, 50)}), {{0.0, 0.4}, {0.5, 2.0}, {1.0, 3.0}});
     curved.middle_mm.resize(1, 8);
     curved.middle_mm << 20, 20, 60, 0, 0, 60, 55, 50;

@@ -50,7 +50,7 @@ double deepest(const Pass& pass) { return -pass.poses_mm.col(2).minCoeff(); }
 
 }  // namespace
 
-TEST_CASE("fewer poses leave the mark within the tolerance, its ends and its depth as they were") {
+TEST_CASE("fewer poses keep the mark within the tolerance, and its ends and depth unchanged") {
     const Brush brush = shipped("round-6");
     std::mt19937 random(7);
     long before = 0, after = 0;
@@ -76,7 +76,7 @@ TEST_CASE("fewer poses leave the mark within the tolerance, its ends and its dep
     CHECK(after < 0.55 * before);
 }
 
-TEST_CASE("a pass simplified twice stays near itself, and arcs, landings and lifts stay what they are") {
+TEST_CASE("a pass simplified twice stays close to itself, and keeps arcs, landings and lifts") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
@@ -100,7 +100,7 @@ TEST_CASE("a pass simplified twice stays near itself, and arcs, landings and lif
     CHECK(thin_out(thin, brush, 0.05).poses_mm.rows() <= thin.poses_mm.rows());
 }
 
-TEST_CASE("a pen keeps its corners, and comes back where it should, however few poses there are") {
+TEST_CASE("a pen keeps its corners and its reversals with few poses") {
     const Brush pen = shipped("rigid");
     const auto kept = [&](const std::vector<V>& line, const std::vector<V>& corners) {
         const Stroke stroke = stroke_of(polyline(line), {{0.0, 0.5}});
@@ -124,7 +124,7 @@ TEST_CASE("a pen keeps its corners, and comes back where it should, however few 
     CHECK(kept(spike, {V(39, 12)}));
 }
 
-TEST_CASE("tight bends and cusps keep no more poses than they need") {
+TEST_CASE("tight bends and cusps have no more poses than necessary") {
     const Brush brush = shipped("round-6");
     Cubics bends(3, 8);
     for (int k = 0; k < 3; ++k) {
@@ -136,7 +136,7 @@ TEST_CASE("tight bends and cusps keep no more poses than they need") {
     CHECK(compensate(stroke_of(cusps, {{0.0, 1.0}}), brush, {}).pass.poses_mm.rows() < 160);  // originally 189
 }
 
-TEST_CASE("nothing to simplify is no fault") {
+TEST_CASE("a pass that cannot be simplified is accepted") {
     const Brush brush = shipped("round-6"), pen = shipped("rigid");
     Pass pass;
     pass.stroke = "s";
@@ -153,7 +153,7 @@ TEST_CASE("nothing to simplify is no fault") {
         CHECK(std::abs(drawn.poses_mm.row(i).head<2>().norm() - 40.0) < 0.05);
 }
 
-TEST_CASE("edges of which nothing is known show nothing, for any paint there") {
+TEST_CASE("edges without a direction of motion show nothing") {
     // Where no move kept the edges' direction, the edges were uninitialised memory, so plans differed from run to run.
     alignas(Edges) volatile unsigned char memory[sizeof(Edges)];
     for (volatile unsigned char& byte : memory) byte = 0x3f;

@@ -13,7 +13,7 @@
 using namespace brushsvg;
 using V = Eigen::Vector2d;
 
-TEST_CASE("a pass next to its stroke misses by what is between them") {
+TEST_CASE("the tracking error of a pass next to its stroke is the distance between them") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
@@ -29,7 +29,7 @@ TEST_CASE("a pass next to its stroke misses by what is between them") {
     CHECK(tracking_error_of(pass, stroke, brush, 0.4).within_tolerance);
 }
 
-TEST_CASE("the mean is over the length and not over the rows") {
+TEST_CASE("the mean error is over the length and not over the rows") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
@@ -45,7 +45,7 @@ TEST_CASE("the mean is over the length and not over the rows") {
     CHECK(std::abs(fine.at_mm[0] - 60.0) < 5.0);  // the largest error is at the corner
 }
 
-TEST_CASE("a turned line is missed by the same mean, where a landing leaves the brush taut but for rounding") {
+TEST_CASE("a rotated line has the same mean error, if a landing leaves the brush taut except for rounding") {
     const Brush brush = shipped("round-6");
     const Stroke along_x = stroke_of(polyline({V(0, 0), V(80, 0)}), {{0.0, 2.5}});
     CompensateOptions options;
@@ -60,7 +60,7 @@ TEST_CASE("a turned line is missed by the same mean, where a landing leaves the 
     }
 }
 
-TEST_CASE("a pass that never pulls the brush tight misses nothing") {
+TEST_CASE("a pass that never pulls the brush taut has no tracking error") {
     const Brush brush = shipped("round-6");
     Stroke stroke;
     stroke.id = "s";
@@ -72,7 +72,7 @@ TEST_CASE("a pass that never pulls the brush tight misses nothing") {
     CHECK(tracking_error_of(pass, stroke, brush, 0.05).largest_mm == 0.0);
 }
 
-TEST_CASE("the distance to a polyline is that to its nearest piece, looked at one by one") {
+TEST_CASE("the distance to a polyline is the distance to its nearest piece") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> anywhere(-20.0, 20.0);
     for (const Eigen::Index n : {1, 2, 3, 16, 17, 18, 40, 700}) {
