@@ -9,8 +9,8 @@ from pathlib import Path
 SVG = "{http://www.w3.org/2000/svg}"
 KANJI_SCALE = 1.5
 
-# As a person would leave it: layers, live shapes and transforms, in mm. Inkscape turns its objects into
-# paths, moves things, and writes the rest in its own way.
+# A drawing as a user would save it: layers, live shapes and transforms, in mm. Inkscape turns its objects into
+# paths, moves elements, and writes the rest in its own style.
 SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" width="150mm" height="100mm" viewBox="0 0 150 100"
   xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
   xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd">
@@ -43,7 +43,7 @@ SOURCES = ("vincent", "robot", "kanji-eternity", "kanji-write", "inkscape", "ink
 
 
 class Inkscape:
-    """Inkscape without a display, in a profile of its own."""
+    """Run Inkscape without a display, in a separate profile."""
 
     def __init__(self, folder: Path):
         self.folder = folder
@@ -61,7 +61,7 @@ class Inkscape:
         return out
 
     def paint(self, drawing: Path, px_per_mm: float) -> Path:
-        """The page of a drawing as a PNG whose alpha says where its strokes are; texts are left out."""
+        """Return the page of a drawing as a PNG whose alpha shows its strokes, without texts."""
         root = ET.parse(drawing).getroot()
         for parent in list(root.iter()):
             for text in parent.findall(SVG + "text"):
@@ -85,7 +85,7 @@ def kanji_file(letter: str) -> Path:
 
 
 def enlarged_kanji(letter: str, out: Path) -> Path:
-    """The strokes of a character without their numbers, as brush writing of a hand's size."""
+    """Return the strokes of a character without their numbers, in the size of brush writing."""
     strokes = ET.parse(kanji_file(letter)).getroot().find(SVG + "g")
     side = 109 * KANJI_SCALE
     root = ET.Element(SVG + "svg", width=f"{side}mm", height=f"{side}mm", viewBox=f"0 0 {side} {side}")

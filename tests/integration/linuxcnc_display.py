@@ -1,6 +1,9 @@
 #!/usr/bin/python3
-"""In place of LinuxCNC's screen: the program next to the .ini is run once, and the commanded places are written
-down, a row for each millisecond. Started by LinuxCNC, see controller.py."""
+"""Replace LinuxCNC's screen: run a program once and record the commanded places.
+
+The program is next to the .ini. The record has a row for each millisecond. LinuxCNC starts this script, see
+controller.py.
+"""
 
 import subprocess
 import time

@@ -12,8 +12,7 @@ from drawings import SVG
 
 PACKAGE = "@resvg/resvg-js"
 PACKAGES = {PACKAGE: "2.6.2"}
-# A tree does not apply the viewBox of its root. So the drawing is read again as a nested svg, where resvg
-# places
+# A tree does not apply the viewBox of its root. So the drawing is read again as a nested svg, where resvg places
 # everything itself. Without fonts, resvg drops text, which we do not read either.
 SCRIPT = """
 const { Resvg } = require(process.argv[1]);

@@ -1,6 +1,6 @@
-"""Small drawings of what decides whether and how a shape is painted: conditions, CSS, paint.
+"""Small drawings of features that decide whether and how a shape is painted.
 
-Kept as svg_features.py keeps the others.
+These are conditions, CSS and paint. The tables have the form of svg_features.py.
 """
 
 from svg_features import page

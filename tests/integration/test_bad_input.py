@@ -1,4 +1,4 @@
-"""Drawings, brushes and plans with something wrong: one sentence, exit status 1, nothing written."""
+"""Invalid drawings, brushes and plans give one sentence and exit status 1, and no files."""
 
 import json
 import re
@@ -9,7 +9,7 @@ from command import LINE, OPEN, SOUND, brush_file, brushsvg, path, refusal, refu
 from diagnostics import agrees, is_reported
 from sampling import sample
 
-ROOM = 3 << 30  # bytes of address space: a bomb that goes off must not take the machine with it
+ROOM = 3 << 30  # bytes of address space, so that an entity bomb cannot fill the memory of the machine
 
 
 def bomb(levels=12):
@@ -75,7 +75,7 @@ def test_a_bad_drawing_is_refused_by_every_command(desk, case):
     assert file == "x.svg" and agrees(reported, said), reported
     line = ": ".join(part for part in (file, reported.where, reported.text) if part)
     assert refused(desk, "convert", "x.svg", "-o", "old.ngc", "--force", **bounded()) == line
-    if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # there one may look at the rest
+    if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # previews show the rest of the drawing
         assert refused(desk, "preview", "x.svg", "-o", "out.svg", **bounded()) == line
         assert refused(desk, "preview", "x.svg", **bounded()) == line
 
@@ -155,7 +155,7 @@ def test_an_unknown_brush_is_refused_with_the_known_brushes(desk):
 
 
 FAR = "geometry-out-of-range 1 line '[-1e6, 1e6] mm'"
-PLANS = {  # a change, and which key or stroke is reported how
+PLANS = {  # a change, and the key or stroke that is reported with its code
     "unknown version": (lambda plan: plan.update(version=3), "version", "version-unknown 3 2"),
     "another format": (
         lambda plan: plan.update(format="brushsvg/marks"),

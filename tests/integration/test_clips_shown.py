@@ -1,4 +1,4 @@
-"""Forty drawings with clip paths: what we read of them overlaps with what Chromium shows."""
+"""Forty drawings with clip paths are read as Chromium shows them."""
 
 import random
 
@@ -8,7 +8,7 @@ from shown import difference, painted, shown
 
 STAR = "M100 20L124 90L196 92L140 136L160 190L100 158L40 190L60 136L4 92L76 90Z"
 RING = "M100 20A80 80 0 1 1 99.9 20ZM100 60A40 40 0 1 1 99.9 60Z"
-# outlines of letters as drawing programs leave them of a text
+# outlines of letters, as drawing programs convert text
 LETTERS = "M20 40H50V130H90V160H20ZM120 40H150L190 160H158L150 135H122L116 160H86ZM128 108H146L137 78Z"
 CLIPS = {
     "circle": '<circle cx="100" cy="95" r="62"/>',

@@ -1,4 +1,4 @@
-"""`make docs`: all pages are built, offline, with nothing left to warn of; what stands in the code stands in them."""
+"""`make docs` builds all pages offline and without warnings, with every name of the code."""
 
 import argparse
 import subprocess

@@ -1,4 +1,4 @@
-"""What surrounds a command may fail at any moment: it ends in all of its files or none, one sentence and its status."""
+"""A failure of the environment leaves all files or none, one sentence and an exit status."""
 
 import os
 import resource
@@ -22,7 +22,7 @@ def limited(kind: int, size: int):
     return lambda: resource.setrlimit(kind, (size, size))
 
 
-# NumPy's own libraries crash where they are loaded with some 400 to 550 MB, before anything of ours runs
+# NumPy's own libraries crash on import with about 400 to 550 MB, before our code runs
 @pytest.mark.parametrize(("room_mb", "is_enough"), [(150, False), (300, False), (700, True), (1000, True)])
 def test_too_little_memory_is_one_error_message(desk, room_mb, is_enough):
     words = "convert", "line.svg", "-o", "out.ngc", "--picture", "out.png", "--report", "out.txt"
@@ -31,7 +31,7 @@ def test_too_little_memory_is_one_error_message(desk, room_mb, is_enough):
         "json",
         *words,
         cwd=desk,
-        env={"OPENBLAS_NUM_THREADS": "2"},  # more of them need more room
+        env={"OPENBLAS_NUM_THREADS": "2"},  # more threads need more memory
         preexec_fn=limited(resource.RLIMIT_AS, room_mb * MB),
     )
     assert done.status == (0 if is_enough else 1), done
@@ -120,7 +120,7 @@ MOST_S, MOST_MB = 30, 1500
 @pytest.mark.parametrize("suffix", READ)
 @pytest.mark.parametrize("size", [0, 2 << 30], ids=["empty", "2 GB"])
 def test_empty_and_huge_files_are_refused(desk, suffix, size):
-    """A file with a hole: 2 GB of zeros that take no room on the disk."""
+    """The huge file is sparse: 2 GB of zeros that use no space on the disk."""
     file = desk / f"x.{suffix}"
     file.touch()
     os.truncate(file, size)
@@ -133,7 +133,7 @@ def test_empty_and_huge_files_are_refused(desk, suffix, size):
 
 
 def large(desk) -> str:
-    """A drawing whose program takes about a second."""
+    """Return a drawing whose program needs about a second."""
     rows = "".join(
         f'<path d="M10 {y} C40 {y - 5} 60 {y + 5} 110 {y}" fill="none" stroke="#000" stroke-width="2"/>'
         for y in range(8, 54, 2)
@@ -157,7 +157,7 @@ def test_a_killed_process_leaves_all_files_old_or_all_new(desk):
         process.send_signal(signal.SIGKILL)
         process.wait()
         found = {name: (desk / name).read_bytes() for name in new}
-        # one file follows the other: between the two only a kill can fall
+        # the files are replaced one after the other; only a kill can happen between the two
         assert all(found[name] in (b"old", new[name]) for name in new), k
     brushsvg("convert", "large.svg", "-o", "out.ngc", "--force", cwd=desk, status=0)
 

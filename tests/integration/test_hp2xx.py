@@ -1,4 +1,4 @@
-"""HP-GL as hp2xx reads it: a word and a page of 1,000 strokes, held against the plan they were made of."""
+"""hp2xx reads our HP-GL as planned: a word and a page of 1,000 strokes."""
 
 import json
 import re
@@ -12,7 +12,7 @@ from judge.hpgl import UNIT_MM, run_hpgl
 
 pytestmark = pytest.mark.skipif(shutil.which("hp2xx") is None, reason="hp2xx is not installed")
 
-FIRST_MM = 0.05  # hp2xx shifts the beginning of each line by a hair
+FIRST_MM = 0.05  # hp2xx shifts the start of each line slightly
 WORD = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"><g fill="none" '
     'stroke="#000"><path id="h" d="M15 10V45M15 28C22 18 32 18 32 30V45"/><path id="a" d="M60 30A9 9 0 1 0 60 '
@@ -21,7 +21,7 @@ WORD = (
 
 
 def page() -> dict:
-    """1,000 waves side by side, set down and lifted on the spot."""
+    """Return 1,000 waves next to each other, set down and lifted in place."""
     t = np.linspace(0, 1, 20)
     passes = []
     for number in range(1000):
@@ -40,7 +40,7 @@ def page() -> dict:
 
 
 def drawn(program, folder) -> list[np.ndarray]:
-    """(n, 2) mm of each line that hp2xx draws, as it writes them back as HP-GL, from its own beginning on."""
+    """Return (n, 2) mm of each line that hp2xx draws and writes back as HP-GL."""
     done = subprocess.run(
         ["hp2xx", "-m", "hpgl", "-t", "-f", "out.plt", program.name],
         cwd=folder,
@@ -59,7 +59,7 @@ def drawn(program, folder) -> list[np.ndarray]:
         if word == "PD":
             strokes[-1].append(place)
         elif not strokes or np.abs(np.subtract(place, strokes[-1][-1])).max() > 1e-3:
-            strokes.append([place])  # else the line goes on, in another polygon
+            strokes.append([place])  # otherwise the line continues in another polygon
     return [UNIT_MM * np.array(stroke) for stroke in strokes if len(stroke) > 1]
 
 
@@ -81,7 +81,7 @@ def test_hp2xx_draws_the_plan(what, tmp_path):
         poses = np.array(a_pass["poses_mm"])
         assert np.abs(own[0] - poses[0, :2]).max() <= UNIT_MM / 2 + 1e-9
         assert np.abs(own[-1] - poses[-1, :2]).max() <= UNIT_MM / 2 + 1e-9
-        for place in own:  # on the plan's way, circles as chords within a hundredth
+        for place in own:  # on the plan's path; circles are chords within 0.01 mm
             assert _away(place, poses[:, :2]) < UNIT_MM / 2 * 2**0.5 + 0.3 * bool(a_pass.get("arcs"))
     if what == "word":
         assert brushsvg("check", "made.hpgl", source.name, cwd=tmp_path, status=0)

@@ -1,4 +1,4 @@
-"""Calibration sheet in the real Inkscape: its page next to the document's, its marks where brushsvg chart puts them."""
+"""The calibration sheet in the real Inkscape has the marks of `brushsvg chart`."""
 
 import xml.etree.ElementTree as ET
 
@@ -39,7 +39,9 @@ def test_the_chart_page_is_next_to_the_document_page(plugin, tmp_path, view_box)
         found = markers_mm(file, "#brushsvg-chart path")
         assert len(found) == len(expected) == 9  # eight markers and the bar
         for ours, theirs in zip(found, expected, strict=True):
-            moved = theirs + np.array([120 + GAP_MM, 60 - 297])  # both pages hang from one line; the paper's y runs up
+            moved = theirs + np.array(
+                [120 + GAP_MM, 60 - 297]
+            )  # both pages share their upper edge; the paper's y points up
             assert np.abs(ours - moved).max() < 0.01
     for name in ("drawing", "twice"):
         brushsvg("convert", f"{name}.svg", "-o", f"{name}.ngc", cwd=tmp_path, status=0)

@@ -1,4 +1,4 @@
-"""Brush check in the real Inkscape: what cannot be painted is marked where it is, with the reason."""
+"""Brush check in the real Inkscape marks unpaintable elements with the reason."""
 
 import re
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""Dialogs of the extension in the real Inkscape, on a screen that nobody sees."""
+"""Dialogs of the extension in the real Inkscape fit a small screen (virtual here)."""
 
 import re
 import subprocess
@@ -7,7 +7,7 @@ import time
 import pytest
 from plugin import SOURCE
 
-DIALOGS = {  # of Extensions > Brush; those of Save As have no longer texts
+DIALOGS = {  # dialogs of Extensions > Brush; the dialogs of Save As have no longer texts
     re.search(r"<id>(.*)</id>", text)[1]: re.search(r"<name>(.*)</name>", text)[1]
     for text in (path.read_text() for path in sorted(SOURCE.glob("*.inx")))
     if "<effect" in text

@@ -1,4 +1,4 @@
-"""Notices for Inkscape's user: in the words of dialogs, and without a dialog that nobody can close."""
+"""Notices in Inkscape use the words of its dialogs, and batch runs open no dialog."""
 
 import re
 
@@ -31,7 +31,7 @@ TOO_WIDE = path("M20 30 H90", width="30")
     ],
 )
 def test_batch_runs_end_and_write_messages_to_stderr(plugin, tmp_path, drawing, action, suffix, reported):
-    """A dialog would stay until the time is up."""
+    """An open dialog would block the run until its time limit."""
     source = tmp_path / "drawing.svg"
     source.write_text(drawing)
     assert reported in plugin.batch(source, tmp_path / f"out.{suffix}", action).stderr
@@ -49,7 +49,7 @@ def document(setting: str) -> str:
     return SOUND.replace("<svg ", f"<svg {setting} ")
 
 
-ADVICE = {  # by the code of the notice: a script of ours and a drawing that give it
+ADVICE = {  # by the code of the notice: the script and the drawing that cause it
     "background": (
         "save",
         SOUND.replace("<path", '<rect x="-1" y="-1" width="900" height="900" fill="#fff"/><path', 1),
@@ -84,7 +84,7 @@ def test_advice_is_worded_for_users_of_dialogs(plugin, tmp_path, in_dialogs, cod
     done = plugin.script(script, source, *words)
     reported = " ".join(
         re.sub("<[^>]*>", " ", (done.stdout + done.stderr).decode()).split()
-    )  # a check breaks its lines
+    )  # the check wraps its lines
     assert in_dialogs[code] in reported.replace("&gt;", ">")
     assert "--" not in reported.replace("brushsvg cell new --taught, in a terminal", ""), "a flag"
 

@@ -1,4 +1,7 @@
-"""Brush preview in the real Inkscape: marks where `brushsvg preview` puts them, originals untouched."""
+"""Brush preview in the real Inkscape shows the marks of `brushsvg preview`.
+
+Original elements stay unchanged.
+"""
 
 import re
 import xml.etree.ElementTree as ET
@@ -43,7 +46,7 @@ def drawing(head: str) -> str:
 
 
 def elements(text: str) -> dict:
-    """What may not change: path data, style, transform and parent of everything with an id of ours."""
+    """Return path data, style, transform and parent of all original elements, by id."""
     root = ET.fromstring(text)
     parents = {child: parent for parent in root.iter() for child in parent}
     return {
@@ -65,7 +68,7 @@ def preview(text: str):
 
 
 def rings_mm(path, tmp_path):
-    """Corners of the preview's marks on paper, (n, 2) per path, as our own reader places them."""
+    """Return the corners (n, 2) of the preview's marks on paper, by our own reader."""
     text = path.read_text().replace('data-brushsvg-skip="yes"', "")
     (tmp_path / "shown.svg").write_text(text)
     design = read_drawing(tmp_path / "shown.svg", ReadOptions(select="#brushsvg-preview"))
@@ -133,7 +136,7 @@ def test_only_the_selection_is_shown(plugin, tmp_path, select, css):
 
 
 def test_a_converted_letter_selects_its_strokes(plugin, tmp_path):
-    """It stays selected, hidden, when its strokes are there."""
+    """A converted letter is hidden but stays selected, next to its strokes."""
     source, strokes = tmp_path / "drawing.svg", tmp_path / "strokes.svg"
     source.write_text(SOUND.replace("</svg>", '<path id="i" d="M 95,10 h 3 v 40 h -3 z"/></svg>'))
     done = plugin.script("strokes", source, "--id=i")
@@ -154,7 +157,7 @@ def test_a_selected_preview_layer_is_ignored(plugin, tmp_path):
 
 def test_displaced_refined_marks_are_red(plugin, tmp_path):
     source = tmp_path / "drawing.svg"
-    source.write_text(drawing("mm").replace("110,93 22,95", "110,91 22,92"))  # so sharp that refining wins nothing
+    source.write_text(drawing("mm").replace("110,93 22,95", "110,91 22,92"))  # so sharp that refinement gains nothing
     plugin.set(preview__compensation="refined")
     try:
         shown = plugin.effect("preview", source, tmp_path / "shown-in.svg")
@@ -215,7 +218,7 @@ def test_too_many_selected_ids_are_refused_in_a_sentence(plugin, tmp_path):
 
 @pytest.mark.parametrize("path", ["M 2,40 H 60", "M 10,40 H 60 L 70"])
 def test_the_layer_label_announces_that_saving_will_be_refused(plugin, tmp_path, path):
-    """Paint over the edge of the sheet; damaged path data."""
+    """The cases are paint over the edge of the sheet, and damaged path data."""
     source, saved = tmp_path / "drawing.svg", tmp_path / "saved.ngc"
     source.write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" {HEADS["mm"]}>'
@@ -229,7 +232,7 @@ def test_the_layer_label_announces_that_saving_will_be_refused(plugin, tmp_path,
 
 @pytest.mark.parametrize("kind", ["PAINTED", "MISSED"])
 def test_marks_are_visible_on_ink_of_any_colour(kind, monkeypatch):
-    """A mark differs from the ink and the paper below it by at least a fifth of a channel's range."""
+    """A mark differs from ink and paper below it by at least a fifth of a channel."""
     monkeypatch.syspath_prepend(SOURCE)
     import brushsvg_preview as shown
 

@@ -1,4 +1,4 @@
-"""Which brushsvg the extension calls, and what it says where there is none or it is another one."""
+"""The extension finds brushsvg, and reports a missing or wrong program."""
 
 import os
 import stat
@@ -63,7 +63,7 @@ def test_the_path_recorded_at_installation_is_used(tmp_path, drawing):
 
 @pytest.mark.parametrize("path", ["", None])
 def test_the_program_is_found_in_usual_folders_without_path_variable(tmp_path, drawing, path):
-    """As where a desktop starts Inkscape."""
+    """A desktop starts Inkscape without the PATH of a shell."""
     alone = Plugin(tmp_path, command=None)
     alone.env.pop("PATH")
     alone.env |= {} if path is None else {"PATH": path}
@@ -142,6 +142,6 @@ def test_a_recorded_path_that_no_longer_exists_is_ignored(plugin, drawing):
 
 @pytest.mark.parametrize("script", ["save", "preview", "strokes"])
 def test_a_full_disk_is_reported(plugin, drawing, script):
-    # 4 bytes: the probe with which Python looks for a folder of temporary files still fits
+    # 4 bytes are enough for the probe with which Python searches a temporary folder
     reported = sentence(plugin.script(script, drawing, before=("/usr/bin/prlimit", "--fsize=4")))
     assert reported.endswith(": File too large.\n"), "the system's words, and no mistake of ours"

@@ -1,4 +1,4 @@
-"""Save as robot program from the real Inkscape: the same bytes as the command line writes, or a sentence."""
+"""Saving a robot program from Inkscape gives the bytes of the command line or a sentence."""
 
 import subprocess
 from xml.etree import ElementTree
@@ -27,7 +27,7 @@ DRAWINGS = {
 }
 
 
-ENTRIES = {  # entry of the menu: extension, and how the command line writes the same
+ENTRIES = {  # entry of the menu: extension, and the equivalent command line
     "gcode": ("ngc", ("convert",)),
     "plan": ("json", ("convert",)),
     "urscript": ("script", ("convert", "--cell", "ur5e")),
@@ -47,11 +47,11 @@ def test_saving_gives_the_bytes_of_the_command_line(plugin, tmp_path, name, entr
     assert saved.read_bytes() == (tmp_path / f"typed.{extension}").read_bytes()
 
 
-# an xArm 7's angles take half a minute to prepare, once for each home: its language is xArm 6's
+# an xArm 7 needs half a minute to prepare its angles in each home folder; its language is that of xArm 6
 @pytest.mark.parametrize("cell", [name for name in cell_names() if name != "xarm7"])
 def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
     extension = POSTS[find_cell(cell).language].extensions[0]
-    extension = ".plt" if extension == ".hpgl" else extension  # Inkscape's own exporter takes .hpgl
+    extension = ".plt" if extension == ".hpgl" else extension  # Inkscape's own exporter has .hpgl
     drawing, saved = tmp_path / "drawing.svg", tmp_path / f"saved{extension}"
     drawing.write_text(SOUND)
     entry = {
@@ -67,7 +67,7 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         ".ebb": "ebb",
         ".plt": "hpgl",
     }.get(extension, "gcode")
-    pen = {f"save.{entry}__brush": "rigid"} if find_cell(cell).pen else {}  # which has one depth
+    pen = {f"save.{entry}__brush": "rigid"} if find_cell(cell).pen else {}  # this machine has one depth
     plugin.set(**{f"save.{entry}__cell": cell}, **pen)
     try:
         plugin.save(drawing, saved)
@@ -172,7 +172,7 @@ def test_dialogs_offer_shipped_brushes_and_cells():
 
 def test_every_language_can_be_saved():
     saved = {file.read_text().split("<extension>")[1].split("<")[0] for file in SOURCE.glob("*save*.inx")}
-    posts = [post for name, post in POSTS.items() if name != "robodk"]  # which asks for a file of the user's own
+    posts = [post for name, post in POSTS.items() if name != "robodk"]  # this entry needs a file of the user
     endings = {post.extensions[0] for post in posts}
-    endings = endings - {".hpgl"} | {".plt"}  # Inkscape's own exporter takes .hpgl
+    endings = endings - {".hpgl"} | {".plt"}  # Inkscape's own exporter has .hpgl
     assert saved == endings | {".json", ".html"}

@@ -1,4 +1,4 @@
-"""Brush settings in the real Inkscape: what is touched is stored, the rest stays, and what is stored is reported."""
+"""Brush settings in Inkscape store changed fields, keep the others, and report all."""
 
 from xml.etree import ElementTree
 

@@ -1,4 +1,4 @@
-"""Convert to strokes of text in the real Inkscape, which draws its letters."""
+"""Convert to strokes of text in the real Inkscape, which draws the letters."""
 
 import json
 import re
@@ -30,7 +30,7 @@ def text_of(root):
 
 @pytest.mark.parametrize("select", ["", "word", "layer"])
 def test_text_becomes_the_strokes_of_its_letters(plugin, inkscape, drawing, select):
-    """Headless: no notice is left, which a dialog would wait for."""
+    """Without a display there must be no notice, because its dialog would block."""
     done = plugin.effect("strokes", drawing, drawing.with_name("strokes.svg"), select)
     root = ET.parse(done).getroot()
     parents = {child: parent for parent in root.iter() for child in parent}
@@ -47,7 +47,7 @@ def test_text_becomes_the_strokes_of_its_letters(plugin, inkscape, drawing, sele
 
 
 def painted(file: Path) -> list[float]:
-    """Boxes of the marks in mm, one after the other, of the text's letters and of the path."""
+    """Return the boxes of the marks in mm, for the letters of the text and the path."""
     brushsvg("preview", file, "-o", file.with_suffix(".json"), cwd=file.parent, status=0)
     boxes = []
     for each in json.loads(file.with_suffix(".json").read_text())["passes"]:

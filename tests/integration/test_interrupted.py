@@ -1,4 +1,4 @@
-"""Ctrl-C: at once, exit status 130, nothing written. And progress, which only a terminal shows."""
+"""Ctrl-C stops at once with status 130 and no files; only a terminal shows progress."""
 
 import os
 import pty
@@ -15,7 +15,7 @@ from diagnostics import gives
 
 @pytest.fixture(scope="session")
 def long_drawing():
-    """700 strokes: some seconds of work."""
+    """Return 700 strokes, which need some seconds of work."""
     wave = "c10 -20 25 -20 30 0s10 10 15 -5"
     paths = "".join(
         f'<path d="M{10 + 58 * column} {20 + 20 * row}{wave}" fill="none" stroke="#000" stroke-width="3"/>'
@@ -26,7 +26,7 @@ def long_drawing():
 
 
 def started_at_terminal(folder, *words):
-    """(process, the terminal's end) with stderr at a terminal, so that progress is shown."""
+    """Return a process whose stderr is a terminal, and the other end of the terminal."""
     terminal, its_end = pty.openpty()
     process = subprocess.Popen(
         [COMMAND, *words],
@@ -97,7 +97,7 @@ def test_progress_is_shown_only_in_a_terminal(desk):
 
 @pytest.mark.parametrize("module", ["argparse", "brushsvg.cli.commands", "numpy", "brushsvg._core"])
 def test_ctrl_c_during_start_up_stops_without_traceback(desk, module):
-    """Before there is any progress to see: while what the command needs is being loaded."""
+    """The signal arrives while modules are loaded, before any progress is shown."""
     code = (
         "import os, signal, sys\n"
         "from brushsvg.cli import main\n"

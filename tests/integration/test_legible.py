@@ -1,5 +1,8 @@
-"""A stranger reads what is painted: Tesseract, of words and glyphs in eight fonts. All of them: of a sample of 152
-three readings were the whole allowance, and it misreads as many by chance."""
+"""Tesseract reads painted words and glyphs in eight fonts.
+
+All readings are used. In a sample of 152, the limit was three readings, and Tesseract misreads as many by
+chance.
+"""
 
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -12,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from legible import GLYPHS, readings, words
 
 LESS = 0.02
-LESS_OF_ONE = 0.2  # of one font: the dots of Lobster are drops; more where an a was painted as an o
+LESS_OF_ONE = 0.2  # for one font: the dots of Lobster are drops; the number was larger when an a was painted as an o
 TRUETYPE = Path("/usr/share/fonts/truetype/dejavu")
 OPENTYPE = Path("/usr/share/fonts/opentype")
 FONTS = (
@@ -32,7 +35,7 @@ def fonts(npm):
     return [*files, Lettering(npm("lettering", PACKAGES)).font("brush")]
 
 
-@pytest.mark.thorough  # all of them, or chance decides: minutes
+@pytest.mark.thorough  # all texts are read, otherwise chance decides; this needs minutes
 def test_painted_text_is_read_as_well_as_drawn_text(fonts):
     texts_drawn = texts_painted = count = 0
     with ProcessPoolExecutor(2) as pool:

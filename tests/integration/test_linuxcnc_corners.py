@@ -1,4 +1,4 @@
-"""Corners as LinuxCNC's own planner cuts them, against those that brushsvg reckons with."""
+"""LinuxCNC's own planner cuts corners as brushsvg predicts."""
 
 from dataclasses import replace
 
@@ -13,13 +13,15 @@ from brushsvg.model.library import find_brush
 
 TURNS_DEG = (10, -45, 90, -120, 5, 60, -90, 150, -30, 20, 20, 20)
 TOLERANCE_MM = 0.04
-SMOOTH_DEG = 15.0  # corners that turn less are cut by a slower change of speed, and by less than they may
+SMOOTH_DEG = 15.0  # smaller turns are cut by a slower change of speed, and by less than allowed
 NEAR_MM = 5e-4
 
 
 def way_with_corners():
-    """(n, 3) lines of a few mm with corners of all kinds, sinking and rising a little; set down and lifted on the
-    spot, which are corners, too."""
+    """Return (n, 3) short lines with corners of all kinds and slightly changing depth.
+
+    The landing and the lift in place are corners as well.
+    """
     directions = np.radians(np.cumsum([0, *TURNS_DEG]))
     sinks = 0.08 * np.cos(np.arange(len(directions)))
     steps = 4.0 * np.column_stack([np.cos(directions), np.sin(directions), sinks])
@@ -28,7 +30,10 @@ def way_with_corners():
 
 
 def turn_and_circle(before, here, after, reach_mm):
-    """How far a corner turns [degrees], and (n, 3) the circle that touches both of its lines so far from it."""
+    """Return the turn of a corner [degrees], and (n, 3) the circle that rounds it.
+
+    The circle touches both lines at the given distance from the corner.
+    """
     along, out = here - before, after - here
     along, out = along / np.linalg.norm(along), out / np.linalg.norm(out)
     across = out - (along @ out) * along
@@ -41,7 +46,7 @@ def turn_and_circle(before, here, after, reach_mm):
 
 
 def distances(points, path):
-    """(n,) from points (n, 3) to a path (m, 3)."""
+    """Return the distances (n,) from points (n, 3) to a path (m, 3)."""
     starts, ways = path[:-1], np.diff(path, axis=0)
     along = np.einsum("nmk,mk->nm", points[:, None] - starts, ways) / (ways**2).sum(axis=1)
     nearest = starts + np.clip(along, 0, 1)[..., None] * ways
@@ -68,7 +73,7 @@ def test_linuxcnc_cuts_corners_as_predicted(tmp_path):
         cut = np.vstack([way[k - 1], circle, way[k + 1]])
         if turn_deg > SMOOTH_DEG:
             assert distances(around, cut).max() < NEAR_MM
-            # three points of that circle are simulated: their chords are a quarter of the cut off it
+            # three points of that circle are simulated; their chords deviate from it by a quarter of the cut
             assert distances(around, ours).max() < TOLERANCE_MM / 4
             assert distances(around, way).max() > 2 * TOLERANCE_MM * np.sin(np.radians(180 - turn_deg) / 2) / 3
             tried += 1

@@ -1,4 +1,4 @@
-"""A comma as the decimal mark of the user's language never reaches a program."""
+"""A decimal comma of the user's language never appears in a program."""
 
 import subprocess
 
@@ -8,7 +8,7 @@ from command import SOUND, brushsvg
 
 @pytest.fixture(scope="module")
 def german(tmp_path_factory):
-    """The environment of a German desktop."""
+    """Return the environment of a German desktop."""
     folder = tmp_path_factory.mktemp("locale")
     words = ["localedef", "-i", "de_DE", "-f", "UTF-8", folder / "de_DE.UTF-8"]
     subprocess.run(words, check=True, capture_output=True)

@@ -1,4 +1,7 @@
-"""A page of 1,000 strokes in every language: its judge runs it, and comes through all places of the plan."""
+"""A page of 1,000 strokes in every language passes all positions of the plan.
+
+The judge of each language runs the program.
+"""
 
 import json
 import tomllib
@@ -23,7 +26,10 @@ EXACT_MM = 1e-3
 
 
 def page(down_mm):
-    """Short waves side by side, pressed and lifted at their ends; of a pen, all at its height."""
+    """Return short waves next to each other, pressed and lifted at their ends.
+
+    The waves of a pen are all at its height.
+    """
     t, passes = np.linspace(0, 1, POSES), []
     for number in range(STROKES):
         x, y = 20 + 18 * (number % 20), 20 + 7 * (number // 20)
@@ -50,7 +56,7 @@ def test_a_page_of_a_thousand_strokes_passes_all_planned_positions(dialect):
     assert not run.refused and not run.acts and len(json.loads(_core.write_plan(plan))["passes"]) == STROKES
     ends = places.moved(job.back, np.array([leg.end for leg in run.legs]))
     target = np.vstack([a_pass.poses_mm for a_pass in plan.passes])
-    if cell.servo or cell.pen:  # heights go in steps, places in units
+    if cell.servo or cell.pen:  # heights change in steps, positions in units
         within_mm = unit_mm(cell) / 2 * 2**0.5 + 1e-6
         off = cKDTree(ends[:, :2]).query(target[:, :2])[0]
         deepest = ends[:, 2].min()

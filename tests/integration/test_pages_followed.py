@@ -1,7 +1,7 @@
-"""Pages of docs/start and docs/howto, followed from top to bottom in one folder, as a reader does it.
+"""Follow pages of docs/start and docs/howto from top to bottom in one folder.
 
-Commands are typed by a shell. A block of toml, csv, json, xml or text is a file: the last name in backticks before it
-is the name of the file. It is added to the file if it exists, else written. Python runs in
+A shell runs the commands. A block of toml, csv, json, xml or text is a file. The last name in backticks before
+it is the name of the file. The block is appended if the file exists, otherwise it is written. Python code runs in
 tests/python/test_doc_code.py.
 """
 
@@ -20,7 +20,7 @@ WRITES = re.compile(r"(?:-o|--picture|--marks-picture|--page|--chart|--report|--
 
 
 def file_of(page, block) -> str:
-    """The file that a block is the text of."""
+    """Return the file whose text is a block."""
     before = page.read_text(encoding="utf-8").splitlines()[: block.line - 1]
     return NAME.findall("\n".join(before))[-1]
 

@@ -1,5 +1,7 @@
-"""Twelve rendered photographs of charts that random brushes painted: what they give, and which are refused.
-benchmarks/photographs.py has any number of them, and shows how often intervals hold."""
+"""Twelve rendered photographs of charts by random brushes are measured or refused.
+
+benchmarks/photographs.py renders any number of photographs, and shows how often intervals contain the truth.
+"""
 
 import sys
 from pathlib import Path
@@ -12,13 +14,13 @@ from photographs import Case, outcome
 
 pytestmark = pytest.mark.thorough  # tests/laws/test_photo_to_brush.py reads a photograph on each landing
 COUNT, SEED, BRUSHES, SHEET = 12, 1, 40, (210.0, 297.0)
-FLAT_MM, BULGING_MM = 0.05, 0.15  # rms of places on the sheet
-OFF = 0.03  # of the lag, over the range
-HELD = 0.92  # of the 95 % intervals at least
+FLAT_MM, BULGING_MM = 0.05, 0.15  # rms error of places on the sheet
+OFF = 0.03  # error of the lag over the range
+HELD = 0.92  # smallest share of 95 % intervals that contain the truth
 
 
 def strokes_of(number: int) -> str | None:
-    """As many as the sheet has room for where the brush is to be found, few where places alone are."""
+    """Use many strokes if the brush is measured, and few if only places are."""
     return None if number % 2 == 0 and number < 10 else "few"
 
 
@@ -44,7 +46,7 @@ def test_bulging_sheets_are_refused_or_measured(found):
 
 
 def test_brushes_of_the_model_family_are_recovered(found):
-    """Of those outside of it no figure is promised."""
+    """Brushes outside the family have no promised accuracy."""
     inside = [each for each in found if each["inside"] and "values" in each and not each["bulging"]]
     assert len(inside) >= 5
     for each in inside:

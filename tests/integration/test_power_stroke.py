@@ -1,4 +1,4 @@
-"""PowerStroke as Inkscape itself draws it: the outline it leaves in d against our line and width."""
+"""Our line and width of a PowerStroke agree with the outline that Inkscape writes to d."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -46,7 +46,7 @@ def polygon_of_stroke(stroke):
 def test_power_strokes_agree_with_inkscapes_outline(kind, inkscape, tmp_path):
     source, saved = tmp_path / "source.svg", tmp_path / "saved.svg"
     source.write_text(SOURCE.format(kind=kind, line=LINE))
-    # an effect is drawn again only when its path changes
+    # Inkscape redraws an effect only when its path changes
     inkscape(f"--actions=select-by-id:p;transform-translate:5,0;export-filename:{saved};export-do", source)
     text = saved.read_text()
     (stroke,), _ = strokes(read_svg(text.encode()))
@@ -58,7 +58,7 @@ def test_power_strokes_agree_with_inkscapes_outline(kind, inkscape, tmp_path):
 
 @pytest.mark.parametrize("size_mm", [30.0, 37.3])
 def test_inkscape_draws_each_stroke_of_letters(size_mm, inkscape, tmp_path):
-    """Where its geometry library stumbles over a stroke, it leaves the line itself in d, which is not closed."""
+    """If Inkscape's geometry library fails, d is the line itself, which is not closed."""
     svg, _ = text_svg(LETTERS, FONT.read_bytes(), size_mm=size_mm, width_mm=None, sheet_mm=None)
     design = read_svg(svg.encode())
     source, saved = tmp_path / "source.svg", tmp_path / "saved.svg"

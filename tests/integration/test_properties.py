@@ -1,14 +1,15 @@
-"""Random drawings, brush files of every kind, cells and options: what must hold of each program (see judge.properties).
+"""Programs of random drawings, brushes, cells and options have all required properties.
 
-`benchmarks/properties.py` runs the same cases in larger numbers."""
+The properties are in judge.properties. `benchmarks/properties.py` runs the same cases in larger numbers.
+"""
 
 import pytest
 from judge.checked import quick_check
 from judge.properties import one
 
 CASES, PART = 300, 25
-# cases of benchmarks/properties.py that were wrong once: steep ways of servos, a short lift of a ROS 2 trajectory, a
-# plan refused for a way that its program does not take, and two faults of the judge
+# Cases of benchmarks/properties.py that once failed: steep paths of servos, a short lift of a ROS 2 trajectory, a
+# plan refused for a path that its program does not use, and two faults of the judge.
 WERE_WRONG = (
     200183,
     200741,

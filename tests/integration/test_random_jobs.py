@@ -1,4 +1,4 @@
-"""Random drawings on random machines: what is written breaks no limit anywhere, and `brushsvg check` takes it."""
+"""Programs for random drawings and machines keep all limits, and `brushsvg check` accepts them."""
 
 import pytest
 from judge.checked import quick_check

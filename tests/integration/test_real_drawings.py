@@ -23,8 +23,8 @@ SHEETS_MM = {
     "inkscape": (150, 100),
     "inkscape-plain": (150, 100),
 }
-# The smallest overlap with compensation, and the smallest gain over none. The small character is 0.8 mm wide where the
-# footprint is 3 mm long, so its ends weigh most; the large one is nearly all long straight strokes.
+# The smallest overlap with compensation, and the smallest gain over none. The small character is 0.8 mm wide and its
+# footprint 3 mm long, so its ends count most. The large character has mostly long straight strokes.
 OVERLAP = {"kanji-eternity": (0.93, 0.5), "kanji-write": (0.96, 0.15)}
 PIXELS_ACROSS = 2000
 
@@ -62,7 +62,7 @@ def test_strokes_are_painted_in_the_direction_they_were_drawn(source, drawing, c
         for node in page.iter(SVG + "path")
         if (found := re.match(r"[Mm]\s*(-?[\d.]+)[\s,]+(-?[\d.]+)", node.get("d")))
     }
-    moved = {"wave": (10, 5), "bar": None, "ring": None}  # what Inkscape's transforms do to the others
+    moved = {"wave": (10, 5), "bar": None, "ring": None}  # effect of Inkscape's transforms on the others
     seen = 0
     for each in plan["passes"]:
         shift = moved.get(each["stroke"], (0, 0))
@@ -99,7 +99,7 @@ def test_the_report_agrees_with_the_plan(source, converted, reported):
         length_mm = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
         assert row["poses"] == len(path)
         assert row["painted_mm"] == pytest.approx(length_mm, abs=0.01)
-    painting_s = found["total"]["painted_mm"] / 20  # no stroke is faster; dabs, travel and landing add time
+    painting_s = found["total"]["painted_mm"] / 20  # no stroke is faster, and dabs, travel and landing add time
     assert painting_s < found["time_s"] < 3 * painting_s + 5 * len(passes)
 
 
@@ -112,7 +112,7 @@ def test_warnings_are_only_about_omitted_parts(source, drawing, converted, tmp_p
     notices = brushsvg(*words, cwd=tmp_path, status=0).reported
     count = 0
     if source == "kanji-eternity":
-        (_, texts), (_, depths) = notices  # five of one kind, five of another, folded
+        (_, texts), (_, depths) = notices  # five notices of one code and five of another, summarized
         assert agrees(texts, "text-unread 'text 1' 4")
         strokes = ids_in_order(drawing(source))
         assert agrees(depths, f"depth-not-measured '{strokes[0]}' {len(strokes) - 1} 0.94")

@@ -1,4 +1,4 @@
-"""Refined plans of many small drawings, held against closed form by the report."""
+"""The report compares refined plans of many small drawings with the closed form."""
 
 import sys
 from pathlib import Path

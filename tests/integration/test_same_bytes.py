@@ -10,7 +10,7 @@ from command import SOUND, brushsvg
 
 
 def everything(folder, name="sound.svg", env=None, command=None):
-    """Bytes of all that can be made of a drawing."""
+    """Return the bytes of all outputs of a drawing."""
     run = command or partial(brushsvg, cwd=folder, env=env)
     made = {}
     for words in (
@@ -34,7 +34,7 @@ def everything(folder, name="sound.svg", env=None, command=None):
 
 @pytest.fixture(scope="module")
 def usual(tmp_path_factory):
-    """What is made of the sound drawing in an English-speaking place."""
+    """Return the outputs of the valid drawing with an English locale."""
     folder = tmp_path_factory.mktemp("usual")
     (folder / "sound.svg").write_text(SOUND)
     return everything(folder, env={"LC_ALL": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "1"})
@@ -61,7 +61,7 @@ def test_a_missing_title_is_not_replaced_by_the_file_name(desk):
 
 @pytest.fixture(scope="session")
 def german(tmp_path_factory):
-    """Environment of a place with a decimal comma."""
+    """Return an environment with a decimal comma."""
     folder = tmp_path_factory.mktemp("locale")
     compiled = subprocess.run(
         ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")], capture_output=True
@@ -76,7 +76,7 @@ def test_a_locale_with_decimal_comma_changes_nothing(desk, german, usual):
 
 
 def test_a_locale_set_by_the_calling_program_changes_nothing(desk, german, usual):
-    """As a window toolkit does at its start: then C and C++ would write and read commas."""
+    """A window toolkit sets the locale at its start; C and C++ would then use commas."""
     code = (
         "import locale, sys; locale.setlocale(locale.LC_ALL, ''); "
         "assert '%s' % locale.localeconv()['decimal_point'] == ','; "

@@ -1,4 +1,4 @@
-"""Text in real fonts: Inkscape's single lines, read back as a drawing; DejaVu's outlines, as others see them."""
+"""Text in real fonts: single lines of Inkscape's fonts, and outlines of DejaVu."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -30,7 +30,7 @@ def test_the_required_fonts_exist():
 
 
 def font_glyphs(name):
-    """d and advance of each character, as the file says it."""
+    """Return d and advance of each character from the file."""
     root = ET.parse(LINES / f"{name}.svg").getroot()
     found = {}
     for node in root.iter(SVG + "glyph"):
@@ -39,7 +39,7 @@ def font_glyphs(name):
 
 
 def points_of(d):
-    """Ends of the segments of d in absolute M, L and C, which is all these letters have."""
+    """Return the ends of the segments of d; these letters have only absolute M, L and C."""
     found = []
     for letter, numbers in re.findall("([MLCZ])([^MLCZ]*)", d):
         values = np.array(re.findall(r"-?[\d.]+", numbers), float).reshape(-1, 2)
@@ -64,7 +64,7 @@ def test_single_line_letters_are_read_back_unchanged(name, tmp_path):
         assert element.stroke_width_mm == pytest.approx(WIDTH_MM)
         assert len(element.subpaths) == d.count("M")
         ends = [np.vstack((each.cubics[:1, 0], each.cubics[:, 3])) for each in element.subpaths]
-        target = points_of(d) * SIZE_MM / 1000 + (pen_mm, 0)  # up is up on paper, too
+        target = points_of(d) * SIZE_MM / 1000 + (pen_mm, 0)  # y points up on paper, as in the font
         if first is None:
             first = ends[0][0] - target[0]
         assert np.abs(nearest(target + first, np.vstack(ends))).max() < 2e-4
@@ -72,7 +72,7 @@ def test_single_line_letters_are_read_back_unchanged(name, tmp_path):
         pen_mm += advance * SIZE_MM / 1000
     ink = np.vstack(ink)
     margin = 20 + WIDTH_MM / 2
-    assert ink.min(axis=0) == pytest.approx([margin, margin], abs=0.5)  # handles may be beyond the ink
+    assert ink.min(axis=0) == pytest.approx([margin, margin], abs=0.5)  # handles may be outside the ink
     assert ink.max(axis=0) == pytest.approx(np.array(design.sheet_mm) - margin, abs=0.5)
 
 
@@ -108,7 +108,7 @@ def test_kerning_agrees_with_harfbuzz():
     uharfbuzz.shape(font, buffer)
     advance = buffer.glyph_positions[0].x_advance
     plain = TTFont(DEJAVU)["hmtx"]["A"][0]
-    assert advance < plain  # DejaVu does kern this pair
+    assert advance < plain  # DejaVu kerns this pair
     left = {each: bounds(each)[0] for each in "AV"}
     _, (first, second) = outlines("AV", size_mm=100)
     apart = numbers(second)[:, 0].min() - numbers(first)[:, 0].min()
@@ -149,7 +149,7 @@ def test_outline_extents_agree_with_fonttools(character):
 
 
 def test_outlines_agree_with_inkscapes_text(inkscape, tmp_path):
-    """Inkscape's own text in the same font, laid on ours by the corner of the ink."""
+    """Inkscape's own text in the same font is aligned with ours at the corner of the ink."""
     document, _ = outlines("Robot AVfi", size_mm=40)
     sheet = ET.fromstring(document.encode()).get("viewBox").split()[2:]
     (tmp_path / "ours.svg").write_text(document, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Where nothing can be written, or not enough: one sentence, and all is as it was before."""
+"""If output cannot be written completely, there is one sentence and no file changes."""
 
 import os
 import resource
@@ -24,7 +24,7 @@ def test_output_into_a_missing_directory_is_refused(desk):
 
 @pytest.fixture
 def as_nobody():
-    """(a folder that others may enter, settings to run the command without root's rights)."""
+    """Return a folder open to all users, and settings to run a command without root."""
     folder = Path(tempfile.mkdtemp(prefix="brushsvg-"))
     folder.chmod(0o755)
     before = ()
@@ -65,7 +65,7 @@ def test_missing_permissions_are_refused(as_nobody):
 
 @pytest.mark.parametrize("out", ["out.ngc", "old.ngc", "out.json", "link.ngc"])
 def test_a_file_over_the_size_limit_is_removed(desk, out):
-    """As a full disk or a quota would stop it, without one."""
+    """A limit on file size acts like a full disk or a quota."""
     (desk / "link.ngc").symlink_to("old.ngc")
 
     def limit():
@@ -96,7 +96,7 @@ exit $status
 
 @pytest.fixture
 def full_disk(desk):
-    """Words to start the command with: desk/full is then a disk without a byte left, gone when it ends."""
+    """Return words before a command that make desk/full a full disk while it runs."""
     (desk / "full").mkdir()
     unshare = ["unshare", "-m"] if os.geteuid() == 0 else ["unshare", "-r", "-m"]
     before = [*unshare, "sh", "-c", FULL_DISK, "sh"]

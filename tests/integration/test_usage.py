@@ -1,4 +1,4 @@
-"""Wrong usage, and help that promises only what there is."""
+"""Wrong usage is refused, and help lists only existing features."""
 
 import re
 
@@ -47,7 +47,7 @@ USAGE = [
     "batch in -o x --format .txt",
     "brush wash round-6",
 ]
-# of package rules, but not there yet: neither understood nor promised
+# features of the package rules that do not exist yet: neither accepted nor in the help
 LATER = {
     "flags": ["--caps"],
     "commands": ["learn"],
@@ -99,7 +99,7 @@ def test_planned_features_are_refused_as_wrong_usage(desk):
 
 def test_help_lists_only_existing_features(desk):
     pages = {tuple(page): brushsvg(*page, "--help", cwd=desk, status=0).out for page in PAGES}
-    with_pages = (("chart",), ("convert",))  # which may be PDFs
+    with_pages = (("chart",), ("convert",))  # these outputs may be PDFs
     text = "\n".join(page for words, page in pages.items() if words not in with_pages)
     for absent in (*LATER["flags"], *LATER["formats"]):
         assert not re.search(rf"{re.escape(absent)}\b", text), absent
@@ -117,13 +117,15 @@ def test_help_lists_only_existing_features(desk):
     }
     for page, text in pages.items():
         for flag in set(re.findall(r"--[a-z-]+", text)) - {"--help", "--help-all"}:
-            done = brushsvg(*page, flag, cwd=desk)  # operands are missing: the flag must not be what is wrong
+            done = brushsvg(
+                *page, flag, cwd=desk
+            )  # operands are missing, and the flag must not be reported as the error
             assert "unrecognized arguments" not in " ".join(done.err), (page, flag)
-    # every extension that help names is one the command takes
+    # the command accepts every extension in its help
     values = {"IN": "sound.svg", "--brush": "round-6"}
     for suffix in re.findall(r"\.\w+\b", re.search(OUTPUT, pages[("convert",)])[0]):
         if suffix == ".robodk":
-            continue  # asks for a post processor of the user's own
+            continue  # needs a post processor of the user
         cell = {
             ".script": ("--cell", "ur5e"),
             ".jks": ("--cell", "jaka-zu3"),

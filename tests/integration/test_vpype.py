@@ -1,4 +1,7 @@
-"""The commands in a real vpype, in an environment of its own. Installing that is slow: -m "not slow" leaves it out."""
+"""The commands work in a real vpype, in a separate environment.
+
+Its installation is slow; -m "not slow" leaves these tests out.
+"""
 
 import json
 import os
@@ -26,7 +29,7 @@ DRAWING = f"""{OPEN.replace("<svg", '<svg xmlns:inkscape="http://www.inkscape.or
 
 @pytest.fixture(scope="session")
 def vpype(tmp_path_factory):
-    """A function that runs vpype; brushsvg is the one under test, found next to vpype's own packages."""
+    """Return a function that runs vpype with the tested brushsvg next to its packages."""
     folder = tmp_path_factory.mktemp("vpype")
     environment = folder / "env"
     python = environment / "bin" / "python"
@@ -78,7 +81,10 @@ def test_brush_shows_the_marks_of_preview(vpype, desk):
 
 
 def test_refined_strokes_equal_the_command_line_output(vpype, desk):
-    """Of straight lines, since vpype flattens curves, begun as points: refined marks differ most there."""
+    """The lines are straight, because vpype flattens curves, and start pointed.
+
+    Refined marks differ most at pointed starts.
+    """
     pointed = ("--start", "pointed")
     words = ("--compensation", "refined", *pointed)
     straight = re.sub('<path id="line".*?/>|<circle.*?/>', "", DRAWING).replace('width="3"', 'width="5"')
@@ -94,7 +100,7 @@ def test_refined_strokes_equal_the_command_line_output(vpype, desk):
         return marks.outline_mm
 
     typed = painted("typed.json")
-    assert _core.overlap(painted("out.json"), typed) > 0.995  # poses differ: paths were rounded on their way
+    assert _core.overlap(painted("out.json"), typed) > 0.995  # poses differ because vpype rounds paths
     assert _core.overlap(painted("closed.json"), typed) < 0.97
 
 
@@ -148,7 +154,10 @@ def test_a_drawing_without_page_gets_a_margin(vpype, desk):
 
 
 def zigzag(chance):
-    """Points (n, 2) of a line in px, each turn sharper than what the plugin takes for a flattened curve."""
+    """Return points (n, 2) of a line in px with only sharp turns.
+
+    The plugin would read smaller turns as a flattened curve.
+    """
     at, heading = chance.uniform((60, 60), (300, 160)), chance.uniform(0, 2 * np.pi)
     points = [at]
     for _ in range(int(chance.integers(1, 5))):
@@ -159,8 +168,10 @@ def zigzag(chance):
 
 
 def test_programs_equal_the_bytes_of_convert(vpype, desk):
-    """Straight lines in px with the names that the plugin gives: vpype flattens curves, drops names and has its own
-    length of a millimetre, which is 0.5 ppm off."""
+    """The lines are straight, in px, and have the names that the plugin gives.
+
+    vpype flattens curves, drops names, and its millimetre is 0.5 ppm off.
+    """
     chance = np.random.default_rng(7)
     for number in range(10):
         layers = []

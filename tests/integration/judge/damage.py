@@ -1,4 +1,4 @@
-"""Damage a sound program as a slip of an editor, a sender or a hand would.
+"""Damage a correct program as an editor, a sender or a typing error could.
 
 The same seed gives the same damage.
 """

@@ -2,12 +2,11 @@
 
 The interpreters cover everything that a damage could write.
 
-- LinuxCNC follows RS274/NGC of its manual: lines of 252 letters, G64 P, comments that act. - grbl 1.1 has its
-own list of commands, real-time letters anywhere and lines of 79 letters. A servo needs laser
+- LinuxCNC follows RS274/NGC of its manual: lines of 252 letters, G64 P, comments that act.
+- grbl 1.1 has its own list of commands, real-time letters anywhere and lines of 79 letters. A servo needs laser
   mode ($32=1).
-- FluidNC follows its wiki. It is like grbl, but has lines of 255 letters and comments that act. Both ends of
-a circle
-  must be equally far from its centre, to 0.005 mm.
+- FluidNC follows its wiki. It is like grbl, but has lines of 255 letters and comments that act. Both ends of a
+  circle must be equally far from its centre, to 0.005 mm.
 """
 
 from __future__ import annotations

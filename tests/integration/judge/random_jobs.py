@@ -162,9 +162,8 @@ def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
     Each machine runs a program of its own. While a machine takes up play, the brush stands in one place. It
     is in that place on both machines.
     """
-    # Half of the backlash is rounded. Both programs round the centre of a circle, and the start that the
-    # centre
-    # counts from. A servo splits a way with rounded ends. A rounded height displaces a tool that leans.
+    # Half of the backlash is rounded. Both programs round the centre of a circle, and the start that the centre counts
+    # from. A servo splits a way with rounded ends. A rounded height displaces a tool that leans.
     leans = np.abs(cell.machine.lean_mm_per_mm)
     units = 2.0 if has_circles else 1.5 if cell.servo else 1.0
     near_mm = unit_mm(cell) * (units * 2**0.5 + np.hypot(*leans)) + CHORDS_MM

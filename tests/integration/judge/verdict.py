@@ -628,8 +628,7 @@ def same_facts(one: tuple[dict, list], other: tuple[dict, list]) -> bool:
     return all(abs(a - b) < SAME_PLACE_MM for (_, a), (_, b) in zip(titles, others, strict=True))
 
 
-# A title may be displaced along the way by this much. Rounding adds up to less, and every move between
-# strokes is
+# A title may be displaced along the way by this much. Rounding adds up to less, and every move between strokes is
 # longer.
 SAME_PLACE_MM = 0.5
 
