@@ -8,11 +8,11 @@ import pytest
 from desk import BRUSHES, DRAWINGS, SLOW_BRUSHES, brush_file, drawing_file
 from diagnostics import in_json, is_reported
 
-# Brush and drawing: what is refused, and why no brush of this kind can do it.
+# Brush and drawing: the code of the refusal, and why this kind of brush cannot paint the drawing.
 REFUSED = {
-    ("like", "sliver"): "nothing-to-paint",  # a hundredth of its smallest mark
+    ("like", "sliver"): "nothing-to-paint",  # a hundredth of the smallest mark of the brush
     ("liner-1", "sliver"): "nothing-to-paint",
-    ("rigid", "plan"): "depth-out-of-range",  # the plan presses round-6 deeper than this pen gives way
+    ("rigid", "plan"): "depth-out-of-range",  # the plan presses round-6 deeper than this pen can go
 }
 
 

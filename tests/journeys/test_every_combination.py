@@ -35,7 +35,7 @@ FOR_PENS = ["rigid"]
 
 
 def program(cell: str) -> str:
-    """The file name of a program for a cell."""
+    """Return the file name of a program for a cell."""
     return f"out{POSTS[find_cell(cell).language].extensions[0]}"
 
 
@@ -141,7 +141,7 @@ def test_each_pair_of_brush_drawing_cell_and_command_works(
     tried(desk, tmp_path, capsys, record_property, brush, drawing, cell, command)
 
 
-# Every brush with every drawing and command, on one machine after the other; those of the rows above are left out.
+# Every brush with every drawing and command, with the machines in turn. Rows above are left out.
 TRIPLES = sorted(
     {
         (row[0], row[1], row[3])

@@ -68,7 +68,7 @@ def words_of(options: dict) -> list[str]:
     return words
 
 
-# Pairs of values that contradict each other, as `--help` says. To give both is wrong usage.
+# Pairs of values that contradict each other, as `--help` says. Both together are wrong usage.
 APART = [
     ("--per-colour", "--from-stroke"),
     ("--per-colour", "--colour"),
@@ -150,7 +150,7 @@ OF_COMPARE = {
     "--json": ["", True],
     "--margin-strokes": ["", "on"],
 }
-OF_PAINTED = {  # options for planning and comparing a photograph; one line is too little to compare
+OF_PAINTED = {  # options for planning and comparing a photograph; one line is not enough to compare
     name: OPTIONS[name]
     for name in (
         *(
@@ -206,7 +206,7 @@ OF_CALIBRATE = {
 
 @pytest.fixture(scope="module")
 def chart(tmp_path_factory):
-    """A painted and photographed chart."""
+    """Return a painted and photographed chart."""
     folder = tmp_path_factory.mktemp("chart")
     photograph(folder / "chart", "--sheet", "a5")
     return folder

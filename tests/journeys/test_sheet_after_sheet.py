@@ -1,7 +1,7 @@
 """A typed brush improves over three sheets without a chart.
 
-Each sheet is compared, and the brush learns from it, with any plan. The next brush, corrections and cell fit
-together.
+Each sheet is compared, and the brush is calibrated with it, with any plan. The next brush, corrections and cell
+fit together.
 """
 
 from __future__ import annotations
@@ -100,9 +100,9 @@ def test_three_sheets_calibrate_a_brush_without_a_chart(desk, machine):
 
 
 def test_a_sheet_planned_for_another_brush_calibrates_with_a_warning(desk, capsys):
-    """A sheet planned for another brush teaches with a warning.
+    """A sheet planned for another brush calibrates a brush, with a warning.
 
-    The default brush painted the sheet. A brush that is typed later learns from it.
+    The default brush painted the sheet. A brush that is typed later is calibrated with it.
     """
     desk.run("convert word.svg -o plan.json --page page.svg")
     desk.run("simulate-photo plan.json -o photo.jpg --studio studio.toml")

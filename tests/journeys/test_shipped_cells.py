@@ -1,6 +1,7 @@
-"""Every shipped cell goes the whole way: a brush from a chart, a program, a painted page, a corrected second program.
+"""Every shipped cell completes the workflow.
 
-Its machine moves 0.4 % too far, so there is something to find and to correct.
+The steps are a brush from a chart, a program, a painted page and a corrected second program. The machine moves
+0.4 % too far, so that there is an error to find and to correct.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def goes_the_whole_way(user, name: str) -> None:
     user.saves("word.svg", WORD)
     user.saves("studio.toml", f"{STUDIO}[machine]\nscale = [{TOO_FAR}, {TOO_FAR}]\n")
     brush, width = "brush.json", ""
-    if name in FAMILIES["pen"]:  # it draws at one depth only
+    if name in FAMILIES["pen"]:  # this machine draws at one depth only
         brush, width = "rigid", "--width 1"
     else:
         user.types(f"calibrate chart.jpg --chart chart.json --machine lean,axes,tilt,backlash --cell {name} -o {brush}")

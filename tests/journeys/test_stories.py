@@ -1,6 +1,6 @@
 """Five people reach their goal with the public commands. Read each story from top to bottom.
 
-Nobody paints here: `simulate-photo` is the robot and the camera, and a studio file says what is wrong with them.
+`simulate-photo` replaces the robot and the camera, and a studio file lists their faults.
 """
 
 from __future__ import annotations
@@ -34,21 +34,21 @@ def overlap(user, comparison: str) -> float:
 
 
 def test_an_artist_paints_a_logo(user):
-    """With a ruler, a brush, and a machine that a friend set up."""
+    """The artist has a ruler, a brush, and a machine that a friend set up."""
     user.saves("logo.svg", LOGO)
 
-    # The ruler says how the brush marks at three depths.
+    # The ruler gives the width of the marks at three depths.
     measured = "--lag-at 2=4.5 --width-at 2=1.5 --lag-at 5=7 --width-at 5=3.5 --lag-at 8=9 --width-at 8=5"
     user.types(f"brush new -o mine.json {measured}")
     assert gives(user.types("brush show mine.json"), "2", "8")
 
-    # What did the program understand of the logo, and what will it look like?
+    # See how brushsvg reads the logo, and how the result will look.
     user.types("preview logo.svg -o understood.png --show strokes")
     user.types("convert logo.svg -o logo.ngc --brush mine.json --picture preview.png")
     report = json.loads(user.types("preview logo.svg --brush mine.json --json"))
     assert {"ring", "swash"} <= {each["stroke"] for each in report["strokes"]}
 
-    # Nothing hits anything, and the friend's machine goes round the paper once in the air.
+    # The machine cannot collide, and follows the border of the paper once in the air.
     user.types("check logo.ngc logo.svg --brush mine.json")
     user.types("setup border logo.svg -o border.ngc --brush mine.json")
     for name in ("understood.png", "preview.png", "border.ngc"):
@@ -56,7 +56,7 @@ def test_an_artist_paints_a_logo(user):
 
 
 def test_a_servo_plotter_paints_three_colours(user):
-    """One program a colour, with time to wash the brush in between."""
+    """There is one program per colour, so that the brush can be washed in between."""
     user.saves("colours.svg", COLOURS)
     user.types("cell new -o plotter.toml --like grbl-servo")
     user.types(
@@ -70,7 +70,7 @@ def test_a_servo_plotter_paints_three_colours(user):
         program = user.reads(f"{colour}.gcode")
         assert gives(program, stroke) and "M3" in program
 
-    # The plotter moves 0.5 % too far. The page with all colours shows it, so the second page is corrected.
+    # The plotter moves 0.5 % too far. The page with all colours shows this error, and the second page is corrected.
     user.saves("studio.toml", f"{STUDIO}[machine]\nscale = [1.005, 1.005]\n")
     user.types(f"simulate-photo colours.svg -o page.jpg {job} --studio studio.toml")
     user.types(f"compare page.jpg colours.svg {job} -o page.json --corrected-cell corrected.toml")
@@ -78,7 +78,7 @@ def test_a_servo_plotter_paints_three_colours(user):
     user.types(f"convert colours.svg -o second.gcode {corrected}")
     user.types(f"check second.gcode colours.svg {corrected}")
 
-    # The paper turned out 0.3 mm higher than it was thought to be.
+    # The paper is 0.3 mm higher than expected.
     user.types(f"convert colours.svg -o higher.gcode {job} --layer red --z-offset 0.3")
     assert user.reads("higher.gcode") != user.reads("red.gcode")
 
@@ -113,7 +113,7 @@ def test_three_axes_go_from_a_chart_to_a_corrected_second_sheet(user_with_chart)
 
 
 def test_a_ur5e_learns_its_brush_from_a_job(user):
-    """The brush trails 15 % more than the file that comes along says."""
+    """The lag of the brush is 15 % larger than in the shipped file."""
     user.saves("word.svg", WORD)
     user.saves("studio.toml", f"{STUDIO}[brush]\nlag = 1.15\n")
 
@@ -123,14 +123,14 @@ def test_a_ur5e_learns_its_brush_from_a_job(user):
     user.types("cell check arm.toml")
     user.types("setup first-run arm.toml -o first.script")
 
-    # A first job with the brush as it comes along.
+    # A first job with the shipped brush.
     job = "--brush round-6 --cell arm.toml"
     user.types(f"convert word.svg -o word.json {job} --page page.svg")
     user.types(f"convert word.svg -o word.script {job}")
     user.types(f"check word.script word.svg {job}")
     user.types("simulate-photo word.json -o job.jpg --cell arm.toml --studio studio.toml")
 
-    # The photograph teaches the brush.
+    # The photograph calibrates the brush.
     user.types("calibrate job.jpg --plan word.json --prior round-6 -o learned.json")
     before, after = brushsvg.find_brush("round-6"), brushsvg.find_brush(user.folder / "learned.json")
     assert after.lag(3.0) / before.lag(3.0) == pytest.approx(1.15, abs=0.05)
@@ -142,7 +142,7 @@ def test_a_ur5e_learns_its_brush_from_a_job(user):
 
 
 def test_a_researcher_works_in_python(user):
-    """From a table of measurements to figures of a plan that two compensations made."""
+    """The researcher turns a table of measurements into figures of two compensations."""
     table = [
         "kind,depth_mm,value_mm",
         *(f"lag,{d},{3 + 0.8 * d}\nwidth,{d},{0.7 * d}" for d in (1, 2, 3, 4, 6, 8)),

@@ -9,14 +9,14 @@ STUDIO = 'format = "brushsvg/studio"\nversion = 1\n[camera]\nlong_side_px = 1500
 
 
 class User:
-    """Somebody who types commands in a folder. `capsys` collects what they print."""
+    """A user who types commands in a folder. `capsys` collects their output."""
 
     def __init__(self, folder: Path, capsys, monkeypatch):
         self.folder, self._capsys = folder, capsys
         monkeypatch.chdir(folder)
 
     def types(self, command: str) -> str:
-        """Type `brushsvg COMMAND`, which must succeed; return what it printed."""
+        """Type `brushsvg COMMAND`, which must succeed, and return its output."""
         status = main(shlex.split(command))
         printed = self._capsys.readouterr()
         assert status == 0, f"brushsvg {command}\n{printed.err}"

@@ -1,4 +1,4 @@
-"""Arcs in plans: against the differential equation with events, chords, printed values, and their symmetries."""
+"""Arcs in plans agree with the differential equation, chords, printed values and symmetries."""
 
 import itertools
 
@@ -18,7 +18,10 @@ BRUSH = make_brush()
 
 
 class Chain:
-    """A run-up of 2 lags along +x, then moves (corner before it [rad], radius or None, turn [rad] or length)."""
+    """Return a pass with a run-up of 2 lags along +x, then moves.
+
+    A move is (corner before it [rad], radius or None, turn [rad] or length).
+    """
 
     def __init__(self, moves, depth=DEPTH, lag=LAG, steps=1, turned=0.0, shift=(0.0, 0.0)):
         self.moves, self.shift, heading = moves, np.asarray(shift, float), turned
@@ -33,7 +36,7 @@ class Chain:
                 self._arc(at, heading, radius, amount, depth, steps)
                 heading += amount
             at = np.array(self.poses[-1][:2])
-        self.heading = turned  # of the settled brush before the first move
+        self.heading = turned  # position of the settled brush before the first move
         self.start = start + 2 * lag * oracle.unit(turned)
 
     def _line(self, at, heading, length, depth):
@@ -68,7 +71,7 @@ class Chain:
 
 
 def contacts(rows):
-    """Contact at every pose (the first row there)."""
+    """Return the contact at every pose, from its first row."""
     whole = np.flatnonzero(rows.pose == np.round(rows.pose))
     _, first = np.unique(rows.pose[whole], return_index=True)
     return rows.contact_mm[whole[first]]
@@ -107,7 +110,7 @@ def test_arcs_agree_with_solve_ivp_with_events(moves):
     ],
 )
 def test_the_brush_goes_loose_and_taut_on_arcs(moves, states):
-    """Cases that the random chains are made of."""
+    """These cases are the elements of the random chains."""
     rows = Chain(moves).rows()
     taut = rows.taut[(rows.pose > 2) & (rows.pose < rows.pose[-1])]
     assert " ".join("taut" if key else "loose" for key, _ in itertools.groupby(taut)) == states
@@ -135,7 +138,7 @@ def test_mirroring_the_sheet_mirrors_the_mark(moves):
 
 @given(st.lists(arc, min_size=1, max_size=3))
 def test_an_arc_is_the_limit_of_its_chords(moves):
-    """Not of first order only: the error falls by four, or is that of rounding, when chords are halved."""
+    """If chords are halved, the error falls by a factor of four, or is a rounding error."""
     exact = contacts(Chain(moves).rows())[-1]
     off = []
     for steps in (40, 160):
@@ -148,7 +151,7 @@ def test_an_arc_is_the_limit_of_its_chords(moves):
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("off_mm", [0.0, 1e-9, -1e-9, 1e-4, -1e-4, 1e-3])
 def test_a_turn_in_place_keeps_the_contact(side, off_mm):
-    """q round a circle of radius r about p: a neutral balance, which rounding of the radius must not tip."""
+    """q moves on a circle of radius r about p; rounding of the radius must not move p."""
     chain = Chain([(side * np.pi / 2, LAG + off_mm, side * 3.1)], steps=8)
     found = contacts(chain.rows())
     resting = chain.start - LAG * oracle.unit(chain.heading)
@@ -156,7 +159,7 @@ def test_a_turn_in_place_keeps_the_contact(side, off_mm):
 
 
 def test_an_arc_has_the_documented_check_value():
-    """k = 1/40, r = 8, psi0 = 0.7, s = 60."""
+    """The check value is for k = 1/40, r = 8, psi0 = 0.7, s = 60."""
     chain = Chain([(-0.7, 40.0, 1.5)], lag=8.0)
     rows = chain.rows(make_brush([8.0]))
     last = np.flatnonzero(rows.pose == 3)[0]

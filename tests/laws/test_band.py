@@ -1,4 +1,7 @@
-"""Uncertainty on paper against Monte Carlo: brushes drawn from the covariance paint the same plan."""
+"""The uncertainty on paper agrees with Monte Carlo.
+
+Brushes drawn from the covariance paint the same plan.
+"""
 
 import numpy as np
 import pytest
@@ -18,13 +21,16 @@ DRAWN = 400
 
 
 def sure_of(brush, law):
-    """Half a 95 % interval in standard deviations."""
+    """Return half of a 95 % interval in standard deviations."""
     return _core.deviations_of_95(getattr(brush, law).degrees_of_freedom)
 
 
 @pytest.fixture(scope="module")
 def brush():
-    """round-6 measured at ten depths, two values each, the tip gap from sums: laws that depend on each other."""
+    """Return round-6 measured at ten depths, with two values each.
+
+    The tip gap comes from sums, so the laws depend on each other.
+    """
     rng, truth = np.random.default_rng(8), find_brush("round-6")
     depths = np.repeat(np.arange(1, 11.0), 2)
 
@@ -68,7 +74,7 @@ def drawn(brush, coefficients):
 
 
 def seen(brush, trace, pose):
-    """Middle and tip of the mark (n, 2) and its half width (n,) at poses."""
+    """Return middle and tip of the mark (n, 2) and its half width (n,) at poses."""
     depth, heading = np.asarray(trace.depth_mm), np.asarray(trace.heading_rad)
     u = np.column_stack([np.cos(heading), np.sin(heading)])
     tip = trace.contact_mm - np.array([brush.tip_gap(d) for d in depth])[:, None] * u
@@ -93,7 +99,7 @@ def test_the_band_agrees_with_monte_carlo(brush, painted):
         pose = np.asarray(trace.pose)
         found = np.array([seen(b, run.passes[k], pose) for b, run in zip(brushes, runs, strict=True)])
         middle = _core.widest_points(trace, brush)[taut]
-        step = np.gradient(middle, axis=0) if len(taut) > 1 else np.zeros((1, 2))  # of a dab
+        step = np.gradient(middle, axis=0) if len(taut) > 1 else np.zeros((1, 2))  # the rows of a dab
         length = np.hypot(*step.T)
         heading = np.asarray(trace.heading_rad)[taut]
         u = np.column_stack([np.cos(heading), np.sin(heading)])
@@ -110,7 +116,7 @@ def test_the_band_agrees_with_monte_carlo(brush, painted):
 
 
 def test_the_band_contains_95_percent_of_the_edges(brush, painted):
-    """Along a stroke some 95 % of the edges of brushes drawn from the covariance are in it."""
+    """The band contains about 95 % of the edges of brushes drawn from the covariance."""
     work, marks, brushes = painted
     band = uncertainty.band(work.plan, brush, marks)
     k = next(k for k, a_pass in enumerate(work.plan.passes) if a_pass.stroke == "n-arch")
@@ -122,7 +128,7 @@ def test_the_band_contains_95_percent_of_the_edges(brush, painted):
     for each in brushes[:60]:
         own = _core.Marks()
         own.passes = [_core.simulate(work.plan, each).passes[k]]
-        _core.trace_outlines(own, each)  # its outlines are those of the brush that was measured
+        _core.trace_outlines(own, each)  # its outlines are from the measured brush
         edge = shapely.LineString(own.passes[0].outline_mm[0])
         shares.append(edge.intersection(region).length / edge.length)
     assert 0.9 < np.mean(shares) < 0.995

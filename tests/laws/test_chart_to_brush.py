@@ -1,5 +1,7 @@
-"""From the chart to a brush: the chart of round-6 painted by another brush, on a sheet that is elsewhere, each mark
-displaced, edges uneven; the outlines give that other brush back."""
+"""The outlines of a painted chart give back the brush.
+
+Another brush paints the chart of round-6 on a displaced sheet. Each mark is displaced, and edges are uneven.
+"""
 
 import json
 
@@ -25,7 +27,7 @@ def truth():
 
 
 def uneven(ring, rng):
-    """Edge noise that forgets itself over 1 mm along the outline, along its normals."""
+    """Return edge noise along the normals, with a correlation length of 1 mm."""
     closed = np.vstack([ring, ring[:1]])
     along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
     at = np.arange(0, along[-1], 0.25)
@@ -79,7 +81,7 @@ def test_intervals_agree_with_the_prediction_before_painting(painted):
 
 
 def test_intervals_include_a_common_shift_of_edges():
-    """A picture shows all paint 0.04 mm wider than it is: no mark separates that from a wider brush."""
+    """A picture shows all paint 0.04 mm too wide, which looks exactly like a wider brush."""
     made = chart(find_brush("round-6"), (148.0, 210.0), "few")
     marks = _core.simulate(made.plan, truth())
     _core.trace_outlines(marks, truth())

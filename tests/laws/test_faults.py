@@ -102,7 +102,7 @@ def test_each_fault_is_named_and_measured(job, cause, capsys):
 
 @sample("number", [104, 105], keep=1)
 def test_all_faults_together_are_within_their_intervals(job, number, capsys):
-    """Faults of brush, paper and machine together: height of the paper, lag and width look much alike."""
+    """Brush, paper and machine have faults; paper height, lag and width look similar."""
     _, plan = job
     rng = np.random.default_rng([24, number])
     fault_values = studio.random_faults(rng, NAMES, plan.sheet_mm)
@@ -129,6 +129,6 @@ def test_few_strokes_give_no_cause(job, capsys, tmp_path):
     (tmp_path / "few.svg").write_text(few)
     words = ["simulate-photo", str(tmp_path / "few.svg"), "-o", str(tmp_path / "few.jpg"), "--quiet"]
     assert main(words) == 0
-    capsys.readouterr()  # what its studio was
+    capsys.readouterr()  # drop the printed studio
     status, out, _ = in_json(capsys, "compare", tmp_path / "few.jpg", tmp_path / "few.svg", "--json")
     assert status == 0 and json.loads(out)["faults"] is None

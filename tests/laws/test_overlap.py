@@ -1,4 +1,7 @@
-"""The report's overlap, recomputed from the plan's and the brush's files alone: slow stepping, shapely, no _core."""
+"""The overlap of the report agrees with a computation without _core.
+
+It uses only the files of plan and brush, slow stepping and shapely.
+"""
 
 import itertools
 import json
@@ -12,9 +15,11 @@ import shapely
 core = pytest.importorskip("brushsvg._core")
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-STEP_MM = 0.04  # a lift begins where the patch is about to slip: twice as much lets it, by 0.006 of a dot's overlap
-PARTS = 6  # of a move at least: where it turns, the patch is not let go by one step
-OUTLINE_EVERY = 6  # a hull of neighbours 0.24 mm apart leaves 1e-3 mm out on the tightest bends
+# A lift starts where the patch is about to slip. With twice this step it slips, which changes the overlap of a dot by
+# 0.006.
+STEP_MM = 0.04
+PARTS = 6  # smallest number of steps of a move, so that one step does not release the patch at a turn
+OUTLINE_EVERY = 6  # hulls of neighbours 0.24 mm apart miss 1e-3 mm on the tightest bends
 
 
 def law_of(value):
@@ -22,7 +27,7 @@ def law_of(value):
 
 
 def stepped(plan, brush):
-    """Shapely region that each pass of a plan.json paints with a brush.json."""
+    """Return the shapely region that each pass of a plan.json paints with a brush.json."""
     law, gap = law_of(brush["lag"]), law_of(brush["tip_gap"])
     tables = [
         [(shape["depth_mm"], np.array(shape["outline_mm"])) for shape in brush["footprints"].get(kind, [])]
@@ -38,7 +43,7 @@ def stepped(plan, brush):
         reach = np.hypot(*lever.T)
         heading = np.arctan2(lever[:, 1], lever[:, 0])
         known = np.flatnonzero(reach > 1e-9)
-        if len(known):  # else it is pressed straight down, and the heading is 0
+        if len(known):  # otherwise the brush is pressed straight down, and the heading is 0
             heading = heading[known[np.clip(np.searchsorted(known, np.arange(len(poses))), 0, len(known) - 1)]]
         outlines = []
         for k in sorted({*range(0, len(poses), OUTLINE_EVERY), len(poses) - 1}):
@@ -51,7 +56,7 @@ def stepped(plan, brush):
 
 
 def target_region(stroke):
-    """Union of the discs along the middle line: hulls of neighbours."""
+    """Return the union of the discs along the middle line, from hulls of neighbours."""
     if stroke.wanted_mm:
         return shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in stroke.wanted_mm])
     t = np.linspace(0, 1, 81)
@@ -103,7 +108,7 @@ def test_overlap_of_the_demo_drawing_agrees_with_the_report():
 
 
 def random_stroke(rng, name):
-    """A chain of cubics, smooth or with corners, with a width that changes."""
+    """Return a chain of cubics, smooth or with corners, with a changing width."""
     count = int(rng.integers(1, 4))
     points, heading, cubics = rng.uniform(60, 240, 2), rng.uniform(-np.pi, np.pi), []
     for _ in range(count):

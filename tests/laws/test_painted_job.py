@@ -1,4 +1,7 @@
-"""A painted job in a rendered photograph: where each mark is comes back, and other pictures are refused."""
+"""The marks of a painted job are found in a rendered photograph.
+
+Other pictures are refused.
+"""
 
 import copy
 import json
@@ -41,7 +44,7 @@ def turned(points):
 
 @pytest.fixture(scope="module")
 def job(tmp_path_factory):
-    """Folder, page, and of each stroke its predicted rings and where they were painted."""
+    """Return folder, page, and the predicted and painted rings of each stroke."""
     folder = tmp_path_factory.mktemp("job")
     (folder / "four.svg").write_text(DRAWING)
     work = prepare(folder / "four.svg")
@@ -66,7 +69,7 @@ def shown(page, painted, camera=CAMERA):
 
 
 def centre(rings):
-    """Of strokes without holes, by shapely."""
+    """Return the overlap of strokes without holes, by shapely."""
     return unary_union([Polygon(ring) for ring in rings]).centroid.coords[0]
 
 
@@ -220,7 +223,7 @@ def with_a_thing(page, painted, ring):
 
 
 def seen(job, capsys, photo):
-    """Status, what was reported, and by stroke whether it was found and is corrected."""
+    """Return status, messages, and for each stroke whether it is found and corrected."""
     folder, out = job[0], job[0] / "bad.json"
     out.unlink(missing_ok=True)
     status, _, reported = in_json(capsys, "compare", "--force", folder / photo, folder / "four.svg", "-o", out)
@@ -277,7 +280,7 @@ def test_another_plan_on_the_same_page_is_refused(job, capsys):
 
 
 def test_paint_unlike_its_mark_gives_no_correction(job, capsys):
-    """A comb where a line should be: its paint could be that of anything."""
+    """There is a comb instead of a line, so its paint may belong to anything."""
     folder, page, _, painted = job
     line = Polygon(painted["line"][0])
     teeth = [Polygon([(x, 9), (x + 5, 9), (x + 5, 20), (x, 20)]) for x in (18, 32, 46, 60)]

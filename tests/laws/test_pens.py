@@ -1,4 +1,7 @@
-"""A pen's mark is the tool's path as wide as the nib, corners and ways back included. Shapely is the judge."""
+"""The mark of a pen is its path with the width of the nib, by shapely.
+
+This includes corners and reversals.
+"""
 
 import functools
 
@@ -50,6 +53,6 @@ def test_a_pen_paints_all_of_its_line(compensation, name, line):
     marks = core.simulate(plan, brush)
     core.trace_outlines(marks, brush)
     rings = [shapely.Polygon(ring) for ring in marks.passes[0].outline_mm]
-    predicted = functools.reduce(shapely.symmetric_difference, rings)  # of holes and what is round them
+    predicted = functools.reduce(shapely.symmetric_difference, rings)  # areas of holes and of their rings
     assert share(predicted, painted) > 0.98
     assert report.measure(report.PaintedPlan(plan, marks, brush, [stroke]))[1].overlap > 0.95

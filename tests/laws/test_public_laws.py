@@ -1,4 +1,4 @@
-"""brushsvg.laws against the article's check values, scipy's integration and each other."""
+"""brushsvg.laws agrees with the article's check values and scipy's integration."""
 
 import numpy as np
 import oracle
@@ -84,7 +84,7 @@ def test_the_heading_before_the_first_motion_is_the_first_heading():
 
 
 def test_lag_and_tip_gap_together_are_limited_like_a_contact():
-    """Each may be half of what contact_offset takes, so that their sum is one."""
+    """Each may be half of the limit of contact_offset, so that their sum is within it."""
     laws.tip_offset(0.5, FARTHEST_MM / 2, FARTHEST_MM / 2)
     for lengths in ((0.6 * FARTHEST_MM, 1.0), (1.0, 0.6 * FARTHEST_MM)):
         with refused(f"out-of-range {FARTHEST_MM / 2:g}"):
@@ -100,7 +100,7 @@ def test_a_whole_path_agrees_with_an_integration_with_events(name):
         found = laws.follow(poses[:, :2], -poses[:, 2], profile(*LAGS[name]))
         exact = np.array([reference.at(k)[0] for k in range(len(poses))])
         assert found.contact_mm == pytest.approx(exact, abs=2e-9)
-        for k in range(1, len(poses)):  # taken up again from any place, if the patch is known
+        for k in range(1, len(poses)):  # the path can continue from any place if the patch is known
             if found.taut[k - 1] and poses[k - 1, 2] < 0:
                 again = laws.follow(
                     poses[k - 1 : k + 1, :2],
@@ -124,7 +124,7 @@ def test_theorem_2_is_the_displacement_of_the_tip():
     across = (lag + gap) / lag * quad(lambda x: np.sin(2 * laws.alpha_after(1.2, x, lag)) / 2, 0, 20)[0]
     along = 20 - (lag + gap) / lag * quad(lambda x: np.sin(laws.alpha_after(1.2, x, lag)) ** 2, 0, 20)[0]
     beta = laws.tip_direction(1.2, laws.alpha_after(1.2, 20.0, lag), 20.0, lag, gap)
-    assert 1 / np.tan(beta) == pytest.approx(along / across, rel=1e-10)  # (11) as it is printed
+    assert 1 / np.tan(beta) == pytest.approx(along / across, rel=1e-10)  # (11) as printed
 
 
 def test_theorems_3_and_4_recover_lag_and_tip_gap():

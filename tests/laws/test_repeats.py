@@ -1,4 +1,4 @@
-"""How well a studio repeats: displacements of the strokes of rendered sheets come back as their spread."""
+"""The repeatability of a studio is recovered from rendered sheets."""
 
 import json
 
@@ -21,7 +21,7 @@ LINES = "".join(
     for k, (x, y) in enumerate([(20, 20), (100, 20), (60, 20), (100, 50), (20, 50), (60, 50), (20, 75), (60, 75)])
 )
 CAMERA = Camera(size_px=(1400, 950), fill=0.95)
-TO_THE_RIGHT = ("s1", "s3", "s5", "s7")  # of where the stroke before ended
+TO_THE_RIGHT = ("s1", "s3", "s5", "s7")  # effect of the end of the previous stroke
 PLAY = 0.4
 
 
@@ -55,7 +55,7 @@ def sheets(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def painted(sheets):
-    """Photographs of three sheets, and where each stroke was on them next to the place of the sheet."""
+    """Return photographs of three sheets, and the displacement of each stroke on its sheet."""
     rng = np.random.default_rng(4)
     always = {name: np.array([PLAY / 2 if name in TO_THE_RIGHT else -PLAY / 2, 0.0]) for name in sheets.rings}
     displaced = [{name: always[name] + rng.normal(0, 0.15, 2) for name in sheets.rings} for _ in range(3)]
@@ -74,7 +74,7 @@ def test_spread_and_hysteresis_are_recovered(sheets, painted, capsys):
     assert shown.shape[0] > 1000 and len(np.unique(shown[: len(shown) // 2].reshape(-1, 3), axis=0)) > 100
     found = json.loads(out.read_text())
     at = np.array([[each[name] for name in sheets.rings] for each in displaced])
-    at -= at.mean(axis=1, keepdims=True)  # which is the place of the sheet
+    at -= at.mean(axis=1, keepdims=True)  # this is the place of the sheet
     off = at - at.mean(axis=0)
     truth = np.sqrt(np.square(off).sum() / (2 * 7 * 2 - 2))  # a turn of each sheet in addition
     assert found["displacement_mm"] == pytest.approx(truth, rel=0.12)

@@ -134,7 +134,7 @@ def test_letters_of_the_page_end_at_their_layout_positions(monkeypatch):
 
 
 def test_the_picture_is_labelled_as_simulated(drawing):
-    """A strip shows that the picture is simulated, white on dark red, edge to edge."""
+    """A strip from edge to edge, white on dark red, says that the picture is simulated."""
     folder = drawing.parent
     assert main(["simulate-photo", str(drawing), "-o", str(folder / "p.jpg"), "--quiet"]) == 0
     strip = cv2.imread(str(folder / "p.jpg"))[-30:].astype(int)

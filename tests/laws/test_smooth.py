@@ -1,6 +1,7 @@
-"""Fewer poses leave the painted edge as smooth as many: no corner that the mark of the dense plan lacks.
+"""With few poses, the painted edge is as smooth as with many.
 
-The edges are both ends of the widest section along the simulated way; what is measured on them is plain geometry.
+It has no corner that the mark of the dense plan lacks. The edges are both ends of the widest section along the
+simulated path, and the test measures them by plain geometry.
 """
 
 import itertools
@@ -18,9 +19,9 @@ brushsvg = pytest.importorskip("brushsvg")
 ROUND = brushsvg.find_brush("round-6")
 SHEET_MM = (400.0, 400.0)
 CORNER_RAD = np.radians(8)
-WINDOW_MM, STEP_MM = 0.25, 0.05  # a corner is what turns within two windows
-SAME_MM = 0.6  # corners of both marks that are so near are one
-SHOWS_MM = 0.05  # from the outline of the mark; an inner edge that turns back is painted over
+WINDOW_MM, STEP_MM = 0.25, 0.05  # a corner is a turn within two windows
+SAME_MM = 0.6  # corners of both marks within this distance count as one
+SHOWS_MM = 0.05  # distance from the outline of the mark; an inner edge that turns back is covered by paint
 VINCENT = Path(__file__).parents[2] / "examples" / "vincent.svg"
 
 
@@ -58,7 +59,7 @@ def simulated(plan):
 
 
 def edges(marks):
-    """Where both ends of the widest section pass while the brush is taut."""
+    """Return the paths of both ends of the widest section while the brush is taut."""
     taut = np.flatnonzero(marks.taut)
     if not len(taut):
         return []
@@ -70,7 +71,7 @@ def edges(marks):
 
 
 def turning(edge):
-    """Places along an edge, and by how much it turns there."""
+    """Return places along an edge, and the turn at each."""
     line = shapely.LineString(edge)
     at = np.arange(WINDOW_MM, line.length - WINDOW_MM, STEP_MM)
     before, here, after = (
@@ -81,7 +82,7 @@ def turning(edge):
 
 
 def corners_beyond(few, dense):
-    """Corners of a mark's visible edge that are sharper by 8 degrees than anything of the other's nearby."""
+    """Return corners of a visible edge at least 8 degrees sharper than the other mark's."""
     shape = shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in few.outline_mm])
     count = 0
     for ours, theirs in zip(edges(few), edges(dense), strict=True):
