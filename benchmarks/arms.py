@@ -1,6 +1,8 @@
-"""All joint angles for random places of each arm that comes along, held against EAIK's: see tests/python/arm_judge.py.
+"""Compare all joint angles for random places of each shipped arm with EAIK.
 
-python benchmarks/arms.py [PLACES [CELL ...]]     # five minutes for 10,000 of an xArm, where Newton's method judges
+    python benchmarks/arms.py [PLACES [CELL ...]]
+
+10,000 places of an xArm need five minutes, because Newton's method judges them. See tests/python/arm_judge.py.
 """
 
 from __future__ import annotations

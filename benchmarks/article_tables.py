@@ -17,12 +17,9 @@ from brushsvg import Error, _core, find_brush
 
 polyval = np.polynomial.polynomial.polyval
 SQUARES, ABSOLUTE = _core.Norm.squares, _core.Norm.absolute
-# The article gives neither the number of fitted values nor the accuracy of its angles. Its intervals show the
-# number:
-# 17 values of r at these depths give (0.9, 1.4, 0.6, 0.10, 0.0050), and 10 values of b give the 0.11 of the
-# canvas and
-# the 0.14 of the angles. The RMSE of its angles show the accuracy: 7 degrees give the RMSE of both r and b if
-# a first
+# The article gives neither the number of fitted values nor the accuracy of its angles. Its intervals show the number:
+# 17 values of r at these depths give (0.9, 1.4, 0.6, 0.10, 0.0050), and 10 values of b give the 0.11 of the canvas and
+# the 0.14 of the angles. The RMSE of its angles show the accuracy: 7 degrees give the RMSE of both r and b if a first
 # angle above 95 degrees is read again.
 DEPTHS = np.arange(1, 11.0)
 CANVASES = np.array([*range(11), *range(0, 11, 2)], float)

@@ -1,7 +1,9 @@
-"""Memory that each input format takes: the peak of a process and the size of the file, the table of
-docs/reference/formats.md.
+"""Measure the memory that each input format needs, for the table of docs/reference/formats.md.
 
-input_memory.py [--mb 8]: files of about so many MB, made as dense as the format allows.
+    input_memory.py [--mb 8]
+
+The table has the peak of a process and the size of the file. --mb is the approximate size of the files, which are
+as dense as their format allows.
 """
 
 from __future__ import annotations
@@ -51,7 +53,7 @@ def plan(size: int) -> bytes:
 def photo(size: int) -> bytes:
     import cv2
 
-    side = int((size * 3) ** 0.5)  # a photograph of paint takes about a third of a byte for each pixel
+    side = int((size * 3) ** 0.5)  # a photograph of paint needs about a third of a byte per pixel
     page = np.full((side, side, 3), 240, np.uint8)
     page[::7, ::5] = 60
     return cv2.imencode(".jpg", page)[1].tobytes()
@@ -82,7 +84,7 @@ FORMATS = {
 
 
 def peak_mb(code: str) -> float:
-    """Of a process that runs it."""
+    """Return the peak memory of a process that runs this code."""
     last = "import resource; print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)"
     done = subprocess.run(
         [

@@ -1,4 +1,4 @@
-"""How often 95 % intervals hold the truth, for each measurement of the article.
+"""Count how often 95 % intervals contain the truth, for each measurement of the article.
 
     intervals.py [--count 200] [--marks 20] [--seed 1] [--kinds "angles; widths"]
 
@@ -23,7 +23,7 @@ from brushsvg.model.confidence import half_interval_mm
 
 BRUSH = brushsvg.find_brush("round-6")
 LAG, GAP, HALF = BRUSH.lag, BRUSH.tip_gap, BRUSH.half_width
-WIDEST = laws.Profile([-2.35, 2.75, -0.42, 0.024], floor=0)  # as it is measured, before it is drawn
+WIDEST = laws.Profile([-2.35, 2.75, -0.42, 0.024], floor=0)  # as measured, before it is drawn
 TRUTH = {"lag": LAG, "tip_gap": GAP, "tip_to_widest": WIDEST, "half_width": HALF}
 DEPTHS = np.arange(1.0, 11.0)
 ANGLE_DEG, LINE_MM, FOOTPRINT_MM, VIDEO_MM, LENGTH_MM = 1.0, 0.2, 0.3, 0.5, 0.5  # noise

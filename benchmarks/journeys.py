@@ -1,11 +1,11 @@
-"""Which journeys work: a line for each group of tests, from single cases to whole stories.
+"""Show which journeys work: a line for each group of tests, from cases to whole stories.
 
     journeys.py [--only WORDS] [--processes 2]
 
-A case is a small file or command that once went wrong. A line says how many tests ran, how many failed, and which
-refusals were accepted for their physical reason. Ends with status 1 if a test failed. Three things take longer and have
-commands of their own: how well brushes are learned from sheet to sheet (sheets.py), how well intervals hold
-(intervals.py), and how letters are painted with a photographed brush (letters.py).
+A case is a small file or command that once failed. A line shows how many tests ran, how many failed, and which
+refusals were accepted for their physical reason. The exit status is 1 if a test failed. Three longer measurements have
+separate commands: the calibration of brushes from sheet to sheet (sheets.py), the coverage of intervals
+(intervals.py), and letters painted with a photographed brush (letters.py).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = ("-m", "thorough or not thorough")
-# what a line says, and what pytest runs for it
+# the title of a line, and the tests that pytest runs for it
 GROUPS = {
     "brushes that begin with no width paint filled letters": ["tests/python/test_unreached.py"],
     "thin lines and slivers of a liner": ["tests/python/test_reach.py"],
@@ -68,7 +68,7 @@ GROUPS = {
 
 
 def run(words: list[str], processes: int) -> tuple[int, int, Counter]:
-    """How many tests ran and failed, and the codes of refusals that a test accepted."""
+    """Return how many tests ran and failed, and the codes of accepted refusals."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "junit.xml")
         pytest = [sys.executable, "-m", "pytest", "-q", "-n", str(processes), f"--junit-xml={report}"]

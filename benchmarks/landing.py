@@ -7,10 +7,9 @@ odd numbers are scored. The patch lands at d = (along, across) from the place un
 the left. It stays there until the lag law drags it on: the pass begins with a pose at that place. d is
 limited to the lag, because a patch is never further away. The frames of d:
 
-    paper     x and y of the sheet before    the heading of the patch at the end of the previous stroke of the
-    file, as the fitted brush paints it.
-              This is the direction in which the stroke left the bristles. The first stroke lands under the
-              tool.
+    paper     x and y of the sheet
+    before    the heading of the patch at the end of the previous stroke of the file, as the fitted brush paints it.
+              This is the direction in which the stroke left the bristles. The first stroke lands under the tool.
     stroke    the first motion of this stroke
 
 The laws stay fixed. d is one of 49 (0, 1, 2 and 4 mm either way). For each d, also for 0, one displacement of

@@ -3,18 +3,18 @@
 The program paints each of the 62 letters and digits of a font, or of --glyphs, alone. It compares each mark
 with the shape of its glyph.
 
-  lost      connected pieces of the shape without a stroke, such as limbs. Neither paint nor a disc of any
-  stroke's
+  lost      connected pieces of the shape without a stroke, such as limbs. Neither paint nor a disc of any stroke's
             width reaches them. They are larger than 3 % of the shape and wide enough for the brush.
-  bare      pieces like these that paint alone does not reach. These include blunt ends where a mark begins
-  pointed. glyphs    the number of glyphs that lose a piece, and at the end their names silent    the number
-  of these glyphs without a notice that names the place overlap   common area over joint area of mark and
-  shape, the mean over the glyphs and the smallest notices   the number of all notices thorns    corners of
-  the mark above 20 degrees that stick out of the shape by more than 0.3 mm notches   unpainted parts of the
-  shape, deeper in it than 0.15 mm, in mm2 per glyph: wedges at crotches, waves
+  bare      pieces like these that paint alone does not reach. These include blunt ends where a mark begins pointed.
+  glyphs    the number of glyphs that lose a piece, and at the end their names
+  silent    the number of these glyphs without a notice that names the place
+  overlap   common area over joint area of mark and shape, the mean over the glyphs and the smallest
+  notices   the number of all notices
+  thorns    corners of the mark above 20 degrees that stick out of the shape by more than 0.3 mm
+  notches   unpainted parts of the shape, deeper in it than 0.15 mm, in mm2 per glyph: wedges at crotches, waves
             next to stems, blunt corners
-  bulges    paint that is more than 0.15 mm outside of the shape turning   how much more the mark's outline
-  turns than the shape's, in full turns per glyph. Rings below 0.01 mm2 are
+  bulges    paint that is more than 0.15 mm outside of the shape
+  turning   how much more the mark's outline turns than the shape's, in full turns per glyph. Rings below 0.01 mm2 are
             pinholes and do not count.
   torn      glyphs whose mark has more pieces than their shape
   closed    painted counters that are wider than the brush's finest line

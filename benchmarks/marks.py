@@ -1,9 +1,10 @@
-"""Predicted mark of a 200 mm stroke, footprint 14 x 10 mm, at 20 px/mm on 4000 x 4000 pixels: our coverage
-next to the article's loop (rotate and put down a footprint's picture for every dab) and the floor (filling the
-touched area).
+"""Time the predicted mark of a 200 mm stroke, and measure the error of its edge.
 
-Edge error: along the normal of a dense shapely union's outline, the distance between that outline and the
-edge that the coverage shows, mean of its absolute value over all points of the outline.
+The footprint is 14 x 10 mm, at 20 px/mm on 4000 x 4000 pixels. Our coverage is compared with the article's loop,
+which rotates and places a footprint's picture for every dab. The floor is the time to fill the touched area.
+
+The edge error is the mean distance between the outline of a dense shapely union and the edge in the coverage, along
+the normals of the outline.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ DABS = 2000
 
 
 def teardrop(length: float, width: float) -> np.ndarray:
-    """A footprint: straight flanks from the tip, half an ellipse in front. Counter-clockwise from the tip."""
+    """Return a footprint with straight flanks from the tip and half an ellipse in front.
+
+    It runs counter-clockwise from the tip.
+    """
     widest, h = 0.62 * length, width / 2
     angle = np.linspace(-math.pi / 2, math.pi / 2, 64)
     front = np.column_stack([widest + (length - widest) * np.cos(angle), h * np.sin(angle)])
@@ -45,7 +49,7 @@ def brush_14_by_10():
 
 
 def stroke_200_mm():
-    """A wave of 200 mm, pressed to 10 mm after a run-up: 0.5 mm moves."""
+    """Return a wave of 200 mm in moves of 0.5 mm, pressed to 10 mm after a run-up."""
     x = np.linspace(0.0, 150.0, 4000)
     y = 100.0 + 26.0 * np.sin(x / 150.0 * 2.3 * math.pi)
     s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
@@ -56,7 +60,7 @@ def stroke_200_mm():
 
 
 def dab_loop(marks, outline: np.ndarray, px_per_mm: float, dabs: int) -> np.ndarray:
-    """The article's way: turn the footprint's picture to each heading, keep the darker pixel, on a window."""
+    """Paint as the article does: turn the footprint's picture and keep the darker pixels."""
     canvas = np.zeros((CANVAS_MM * PX_PER_MM,) * 2, np.uint8)
     sharp = 8
     w, h = 14 * PX_PER_MM + 8, 10 * PX_PER_MM + 8
@@ -79,7 +83,7 @@ def dab_loop(marks, outline: np.ndarray, px_per_mm: float, dabs: int) -> np.ndar
         left, top = int(tx) - size, int(ty) - size
         c, s = scale * math.cos(theta), scale * math.sin(theta)
         matrix = np.array([[c, s, 0.0], [-s, c, 0.0]])
-        # pixel centres stand at whole numbers for warpAffine, the tip at a point of the plane
+        # warpAffine has pixel centres at whole numbers, and the tip is at a point of the plane
         matrix[:, 2] = [tx - left - 0.5, ty - top - 0.5] - matrix[:, :2] @ (tip - 0.5)
         dab = cv2.warpAffine(picture, matrix, (2 * size, 2 * size), flags=cv2.INTER_LINEAR)
         x0, y0 = max(left, 0), max(top, 0)
@@ -90,7 +94,7 @@ def dab_loop(marks, outline: np.ndarray, px_per_mm: float, dabs: int) -> np.ndar
 
 
 def truth(brush, a_pass, outline: np.ndarray):
-    """Union of footprints placed so densely that its scallops are below a thousandth of a pixel."""
+    """Return the union of footprints so dense that scallops are below 0.001 px."""
     marks = _core.simulate(_core.Plan("14x10", "", (200, 200), [a_pass]), brush, 2e-6).passes[0]
     depth, c, s = marks.depth_mm / 10.0, np.cos(marks.heading_rad), np.sin(marks.heading_rad)
     tips = marks.contact_mm - 0.6 * marks.depth_mm[:, None] * np.column_stack([c, s])
@@ -103,7 +107,7 @@ def truth(brush, a_pass, outline: np.ndarray):
 
 
 def edge_error_px(coverage: np.ndarray, shape, px_per_mm: float) -> float:
-    """Mean distance [px] of the edge seen in the coverage from the true outline."""
+    """Return the mean distance [px] of the edge in the coverage from the true outline."""
     ring = shape.exterior
     at = np.arange(0.0, ring.length, 1.0 / px_per_mm)
     points = shapely.get_coordinates(shapely.line_interpolate_point(ring, at))
@@ -118,7 +122,7 @@ def edge_error_px(coverage: np.ndarray, shape, px_per_mm: float) -> float:
     y = (CANVAS_MM - points[:, None, 1]) * px_per_mm - outward[:, None, 1] * reach - 0.5
     inside = cv2.remap(coverage, x.astype(np.float32), y.astype(np.float32), cv2.INTER_LINEAR).sum(axis=1) * 0.05
     error = np.abs(inside - 4.0)
-    # at the tip and where edges meet in a corner the normal crosses another edge: no distance to speak of
+    # at the tip and at corners, the normal crosses another edge, so there is no valid distance
     return float(error[error < 1.5].mean())
 
 

@@ -1,5 +1,8 @@
-"""Memory of `--compensation refined` over many short strokes, as the process's peak: one call per hundred strokes whose
-plans are dropped, which must stay flat, then one call for all of them, which grows by the plan it returns."""
+"""Measure the peak memory of `--compensation refined` over many short strokes.
+
+The first part makes one call per hundred strokes and drops the plans, so memory must stay constant. The second part
+makes one call for all strokes, which grows by the returned plan.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ LOOKS = 10
 
 
 def strokes(count: int, seed: int) -> list:
-    """Bent lines of 5 to 20 mm."""
+    """Return bent lines of 5 to 20 mm."""
     random = np.random.default_rng(seed)
     made = []
     for k in range(count):

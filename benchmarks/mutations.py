@@ -1,6 +1,8 @@
-"""A thousand damaged programs for every dialect and job, judged and checked: the table of docs/evidence/trust.md.
+"""Judge and check a thousand damaged programs for every dialect and job.
 
-python benchmarks/mutations.py [COUNT of each job [DIALECT ...]]
+    python benchmarks/mutations.py [COUNT of each job [DIALECT ...]]
+
+The result is the table of docs/evidence/trust.md.
 """
 
 import sys

@@ -1,8 +1,9 @@
-"""Milliseconds of processor time per glyph to find the strokes of filled letters, by stage, next to scikit-image's
-medial axis of the same glyphs drawn at 20 px/mm, which ends where our second stage does: with pixels of a middle line,
-not with strokes.
+"""Time the search for strokes of filled letters, in ms of processor time per glyph and stage.
 
-Needs a font (TrueType, OpenType or WOFF) and, for the peer, `pip install scikit-image`.
+The peer is scikit-image's medial axis of the same glyphs, drawn at 20 px/mm. It ends after our second stage, with
+pixels of a middle line instead of strokes.
+
+The program needs a font (TrueType, OpenType or WOFF) and, for the peer, `pip install scikit-image`.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ SCRIPT = "latin"
 
 
 def glyphs(font: bytes, count: int, size_mm: float) -> list:
-    """Filled elements, letter after letter, over and over."""
+    """Return filled elements, one per letter, in repeated order."""
     document, _ = text_svg(LETTERS, font, size_mm=size_mm)
     elements = read_svg(document.encode()).elements
     return [elements[k % len(elements)] for k in range(count)]

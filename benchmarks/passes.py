@@ -1,20 +1,21 @@
-"""How clean the edges of wide shapes are that are filled in passes (`--wide passes`): 47 shapes, the mark of each held
-against it.
+"""Measure the edges of 47 wide shapes that are filled in passes (`--wide passes`).
 
-  passes    lines that fill it
-  poses     of its plan
+Each mark is compared with its shape. The columns are:
+
+  passes    number of lines that fill the shape
+  poses     number of poses of the plan
   overlap   common area over joint area of mark and shape
-  notch     how far paint stays inside of the shape's edge at most, 3 mm from its corners on [mm]
+  notch     largest gap between the shape's edge and the paint, at least 3 mm from its corners [mm]
   inner     the same, within 3 mm of corners that point inwards
   outer     the same, within 3 mm of corners that point outwards
-  bulge     how far paint sticks out at most [mm]
-  gap       width of the widest blank piece amid paint [mm]
+  bulge     largest distance of paint outside the shape [mm]
+  gap       width of the widest blank piece within the paint [mm]
   thorns    corners of the mark beyond 20 degrees that stick out of the shape by more than 0.3 mm
-  s         to prepare: read, fill and plan
+  s         seconds to read, fill and plan
 
 Letters are drawn with fonts of Debian's packages fonts-dejavu-core, fonts-dejavu-extra, fonts-ebgaramond, fonts-lobster
-and fonts-kaushanscript, so large that an l's stem is --times as wide as the brush paints. NAME, as printed, does some
-of them; --pictures draws each: paint blue, what is bare red, what sticks out black.
+and fonts-kaushanscript. They are so large that the stem of an l is --times as wide as the brush paints. NAME selects
+shapes by their printed names. --pictures draws each shape: paint is blue, bare parts are red, overspill is black.
 """
 
 from __future__ import annotations
@@ -183,7 +184,7 @@ def fill(name: str, brush_name: str, times: float, pictures: Path | None) -> Fil
 
 
 def _corners(shape) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Those that point inwards, and those that point outwards."""
+    """Return corners that point inwards, and corners that point outwards."""
     found: tuple[list, list] = [], []
     for ring in _all_rings(shapely.orient_polygons(shape)):
         points = np.array(ring.simplify(0.02).coords)[:-1]

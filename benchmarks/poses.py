@@ -1,9 +1,11 @@
-"""Poses per stroke for a mark whose middle stays within 0.05 mm of the line: sampling every 0.5 mm, simplifying the
-tool's path (Douglas and Peucker in x, y, z, with the largest tolerance whose mark is as exact as ours, its middle and
-its edges), and ours.
+"""Count the poses per stroke for a mark whose middle is within 0.05 mm of the line.
 
-Seed and counts are printed; `--count N` curves and strokes of characters, these only where `--lettering FOLDER` names
-the folder where npm puts, or has put, them.
+Three methods are compared: sampling every 0.5 mm, simplification of the tool's path, and ours. The simplification is
+that of Douglas and Peucker in x, y and z. It has the largest tolerance whose mark is as exact as ours, in its middle
+and its edges.
+
+The program prints seed and counts. `--count N` sets the number of curves, and of strokes of characters. Characters
+need `--lettering FOLDER`, the folder into which npm fetches them.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ SHEET_MM = (400.0, 400.0)
 
 
 def simplified(poses: np.ndarray, tolerance_mm: float) -> np.ndarray:
-    """Douglas and Peucker: the farthest pose stays where one is further off the chord than the tolerance."""
+    """Simplify by Douglas and Peucker: keep the farthest pose beyond the tolerance."""
     stays = np.zeros(len(poses), bool)
     stays[[0, -1]] = True
     todo = [(0, len(poses) - 1)]
@@ -49,7 +51,7 @@ def simplified(poses: np.ndarray, tolerance_mm: float) -> np.ndarray:
 
 
 def errors_mm(a_pass, stroke, brush) -> tuple[float, float]:
-    """How far a mark's middle is off the line at most, and how far its half width while the brush is taut."""
+    """Return the largest errors of a mark's middle, and of its half width while taut."""
     line = _core.flatten(stroke, 0.002)
     at = np.linspace(0.0, line[-1, 2], max(2, int(line[-1, 2] / LOOK_MM)))
     line = np.column_stack([np.interp(at, line[:, 2], line[:, k]) for k in (0, 1, 3)])
@@ -74,14 +76,14 @@ def plan_of(a_pass, brush):
 
 
 def by_simplifying(stroke, brush, ours) -> int:
-    """Poses that Douglas and Peucker need for a mark whose middle and edges are as near as those of our plan."""
+    """Return the number of poses of Douglas and Peucker for a mark as exact as ours."""
     plan = _core.compensate([stroke], brush, SHEET_MM, "closed", 0.005, few_poses=False).plan
     fine = np.asarray(plan.passes[0].poses_mm)
     (marks,) = _core.simulate(plan, brush, for_outlines=False).passes
     taut = np.array(marks.pose)[np.array(marks.taut, bool)]
     if not len(taut):
         return len(fine)
-    first, last = int(np.ceil(taut[0])), int(taut[-1])  # landing and lift stay as they are, ours and theirs
+    first, last = int(np.ceil(taut[0])), int(taut[-1])  # landing and lift are equal in both
     limits = np.maximum(errors_mm(ours, stroke, brush), errors_mm(plan.passes[0], stroke, brush))
     low, high, fewest = 0.0, 1.0, len(fine)
     for _ in range(14):
@@ -100,7 +102,7 @@ def length_mm(poses) -> float:
 
 
 def curves(count: int, random) -> list:
-    """Chains of cubics as long as the strokes of letters, smooth and with corners, at widths that change."""
+    """Return chains of cubics like strokes of letters, with changing widths."""
     strokes = []
     for k in range(count):
         at, heading, cubics = np.array([200.0, 200.0]), random.uniform(-np.pi, np.pi), []

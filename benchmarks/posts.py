@@ -1,6 +1,8 @@
-"""Programs of a page of 1,000 strokes in every language; and what 10 million poses cost in memory.
+"""Time programs of a page of 1,000 strokes in every language.
 
-python benchmarks/posts.py
+    python benchmarks/posts.py
+
+The program also measures the memory that 10 million poses need.
 """
 
 import json
@@ -24,7 +26,10 @@ POSES = 150
 
 
 def plan_of(strokes: int, poses: int, sheet_mm=(400.0, 400.0), down_mm: float | None = None):
-    """Waves side by side, pressed and lifted at their ends; for a pen, all at the height that it is let down to."""
+    """Return waves next to each other, pressed and lifted at their ends.
+
+    The waves of a pen are all at its lower height.
+    """
     t = np.linspace(0, 1, poses)
     passes = []
     for number in range(strokes):
@@ -38,19 +43,19 @@ def plan_of(strokes: int, poses: int, sheet_mm=(400.0, 400.0), down_mm: float | 
 
 
 def tried_with(name: str) -> tuple:
-    """Its brush, and what a plan for it needs in addition."""
+    """Return the brush of a cell, and the additional options of its plan."""
     pen = find_cell(name).pen
     return find_brush("rigid" if pen else "round-6"), {"down_mm": pen.down_mm} if pen else {}
 
 
 def roomy(name: str):
-    """The cell with room for the page, where its example paper is; its arm, if any, is not followed."""
+    """Return the cell with space for the page at its example paper, without its arm."""
     cell = find_cell(name)
     return replace(cell, workspace=Workspace(cell.workspace.margin_mm, cell.workspace.tilt_limit_deg), arm=None)
 
 
 def write(name: str, plan, brush) -> int:
-    """Bytes of the program, which is thrown away piece by piece."""
+    """Return the number of bytes of the program, without keeping it."""
     suffix = POSTS[find_cell(name).language].extensions[0]
     return sum(len(piece) for piece in writer.encode(suffix, plan, brush, "page", (), roomy(name)))
 
@@ -60,10 +65,10 @@ def peak_mb() -> float:
 
 
 def child(name: str, strokes: int) -> None:
-    """Memory beyond the plan's arrays, in a process of its own."""
+    """Return the memory in addition to the plan's arrays, in a separate process."""
     brush, own = tried_with(name)
-    write(name, plan_of(10, POSES, **own), brush)  # what is loaded for any program
-    plan = plan_of(10 * strokes, 990, **own)  # no program of TP has more points
+    write(name, plan_of(10, POSES, **own), brush)  # modules that every program needs
+    plan = plan_of(10 * strokes, 990, **own)  # a TP program has no more points
     before = peak_mb()
     begin = time.perf_counter()
     size = write(name, plan, brush)

@@ -1,7 +1,7 @@
-"""Milliseconds to read a drawing of 1,000 elements as Inkscape writes it, by stage, next to two other readers of SVG
-and the floor (expat parsing the XML); then the command as a process, with the heavy modules that it loads.
+"""Time the reading of a drawing of 1,000 elements as Inkscape writes it, by stage.
 
-Every round starts cold: what the reader remembers of values seen before is forgotten.
+Two other readers of SVG are compared, and the floor is expat, which parses the XML. Then the command runs as a
+process, and the large modules that it loads are listed. Every round starts cold, without cached values of the reader.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ SHEET = """
 
 
 def drawing() -> str:
-    """Five layers, each with turned groups of paths, some basic shapes and some copies, on A3."""
+    """Return an A3 drawing of five layers with rotated groups of paths, shapes and copies."""
     random = np.random.default_rng(1)
     layers = "".join(_layer(random, number) for number in range(1, LAYERS + 1))
     return (
@@ -94,7 +94,7 @@ def cold_ms(work, rounds: int) -> float:
 
 
 def styles(root) -> None:
-    """The rules, and the style of every element from its parent's."""
+    """Compute the rules, and the style of every element from its parent."""
     rules = style_sheets.StyleSheets(root)
     waiting = [(root, cascade.INITIAL)]
     while waiting:
@@ -135,7 +135,7 @@ def process_s(command: list, rounds: int) -> float:
 
 
 def loaded(code: str) -> str:
-    """The heavy modules that a piece of Python loads."""
+    """Return the large modules that Python code loads."""
     code = f"import sys\n{code}\nprint(*[name for name in {HEAVY.split()} if name in sys.modules], file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     return done.stderr.splitlines()[-1] or "none of them"

@@ -6,9 +6,8 @@ A set is a file NAME.npz of FOLDER. --sets selects sets; otherwise all sets are 
 `intensity` (strokes, rows, columns), where pixels above 70 are paint, and `z_range_m`. In addition it has one
 of:
 
-- `ctrl` (strokes, 4, 3 or more), control points of a cubic with x, y [m] and depth [shares of z_range_m],
-with `poses`
-  (the number of places of the robot, otherwise 10), `x_range`, `y_range` [m] and `grid_m`.
+- `ctrl` (strokes, 4, 3 or more), control points of a cubic with x, y [m] and depth [shares of z_range_m], with
+  `poses` (the number of places of the robot, otherwise 10), `x_range`, `y_range` [m] and `grid_m`.
 - `path` (strokes, 4, 3 or more), places on a spline, with `canvas_w_m` and `canvas_h_m`.
 
 Each set is cleaned to one blob per stroke. Strokes with even numbers are fitted. Strokes with odd numbers are
@@ -69,10 +68,8 @@ MARGIN_MM = 8.0  # margin around way and paint during a search
 DISCS = ((0, "disc, no lag"), (1, "disc, constant r"), (2, "disc, r0 + r1 depth"))
 OWN_WIDTHS, OWN_LAGS = (0.7, 0.85, 1.0, 1.15, 1.3), (0.5, 0.75, 1.0, 1.25, 1.5)
 LAWS = ("lag", "tip_gap", "half_width")
-# Two commands are nearly equal if the sum of two shares is small. One is the rms distance of their ways as a
-# share of
-# the paint's width. The other is the rms distance of their depths as a share of the largest depth. For
-# commands further
+# Two commands are nearly equal if the sum of two shares is small. One is the rms distance of their ways as a share of
+# the paint's width. The other is the rms distance of their depths as a share of the largest depth. For commands further
 # apart, the missing overlap no longer grows along a line.
 ALIKE_WIDTHS, ALIKE_DEPTH = 0.5, 0.3
 FEWEST_PAIRS, TENTHS = 60, 10

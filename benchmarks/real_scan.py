@@ -1,11 +1,12 @@
-"""A scan of real strokes in a printed grid: its scale by the printed bar of two inches, its places by the grid, and the
-outlines that `calibrate --scan` would give of them.
+"""Measure a scan of real strokes in a printed grid.
 
     real_scan.py SCAN [--picture FILE]
 
-Grid and bar are those of the sheets of github.com/Ardibid/ArtisticStyleRoboticPainting: square cells, a stroke in each,
-a bar of two inches below. Printed: how far the grid's crossings are from even ones, the cells' size, and of each stroke
-its area, the number of its parts and holes, and how ragged it is. The picture is to be looked at.
+The scale comes from the printed bar of two inches, places from the grid, and outlines are read as by `calibrate
+--scan`. Grid and bar are those of the sheets of github.com/Ardibid/ArtisticStyleRoboticPainting: square cells with
+one stroke each, and a bar of two inches below. The program prints how far the grid's crossings are from even ones, and
+the size of the cells. For each stroke it prints the area, the number of parts and holes, and the raggedness. The
+picture shows the result.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ from brushsvg.photo.flatten import Flat
 from brushsvg.photo.photo import read_photo
 
 BAR_MM = 50.8
-SHRUNK = 4  # the grid is looked for in so much smaller a picture
-THICK_PX, LONG_PX = 7, 120  # there: lines are thinner, and their pieces between strokes longer
+SHRUNK = 4  # factor by which the picture is reduced for the search of the grid
+THICK_PX, LONG_PX = 7, 120  # in the reduced picture: lines are thinner, and their pieces between strokes are longer
 PX_PER_MM = 8.0
-EDGE_MM = 1.2  # within a cell's lines
-NUMBER_MM = (6.5, 4.5)  # the cell's number, lower right
+EDGE_MM = 1.2  # margin inside a cell's lines
+NUMBER_MM = (6.5, 4.5)  # area of the cell's number, lower right
 
 
 def lines(grey: np.ndarray, is_level: bool) -> list[tuple[float, float]]:
-    """Straight lines (slope, place at the picture's middle) [px] across the whole picture, in order."""
+    """Return straight lines (slope, place at the picture's middle) [px] in order."""
     dark = np.uint8(grey < 170)
     thin = cv2.subtract(dark, cv2.morphologyEx(dark, cv2.MORPH_OPEN, np.ones((THICK_PX, THICK_PX), np.uint8)))
     if not is_level:
@@ -59,7 +60,7 @@ def lines(grey: np.ndarray, is_level: bool) -> list[tuple[float, float]]:
 
 
 def crossings(grey: np.ndarray) -> np.ndarray:
-    """(rows, columns, 2) of the grid in px of the whole picture."""
+    """Return the crossings (rows, columns, 2) of the grid in px of the whole picture."""
     level, upright = lines(grey, True), lines(grey, False)
     rows, columns = grey.shape
     out = np.zeros((len(level), len(upright), 2))
@@ -73,7 +74,7 @@ def crossings(grey: np.ndarray) -> np.ndarray:
 
 
 def bar_px(grey: np.ndarray, below: float) -> float:
-    """How long the widest dark thing below the grid is."""
+    """Return the length of the widest dark object below the grid."""
     start = int(below) + 15
     _, _, stats, _ = cv2.connectedComponentsWithStats(np.uint8(grey[start:] < 110))
     wide = stats[1:, cv2.CC_STAT_WIDTH]

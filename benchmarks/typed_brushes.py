@@ -1,10 +1,11 @@
-"""What a brush file from a few typed numbers is worth: how well a word is painted that was planned with it.
+"""Measure how well a word is painted with a brush file from a few typed numbers.
 
     typed_brushes.py [--brushes 12] [--seed 1]
 
 Random brushes are hidden from the planner. Each is measured with a ruler: lag and width at some depths, to the nearest
 0.5 mm. `brush new` makes a file from the numbers, a word is planned with it, and the slow stepping simulator of
-tests/laws paints the plan with the hidden brush. Printed: overlap of paint and drawing (intersection over union).
+tests/laws paints the plan with the hidden brush. The program prints the overlap of
+paint and drawing (intersection over union).
 """
 
 from __future__ import annotations
@@ -28,25 +29,28 @@ from brushsvg.calibration.numbers.from_widths import lag_of_turn, new_brush
 from brushsvg.show.evaluation.report import target_rings
 
 READ_TO_MM = 0.5
-SHARES = (0.25, 0.6, 1.0)  # of the greatest depth
+SHARES = (0.25, 0.6, 1.0)  # shares of the greatest depth
 WIDEST_OF_WORD_MM = 5.5
 
 
 def measured(hidden, share: float) -> tuple[float, float, float]:
-    """Depth, lag and width as a ruler reads them."""
+    """Return depth, lag and width as read with a ruler."""
     depth = share * hidden.deepest
     lag, half = (hidden.law(name)(depth) for name in ("lag", "half_width"))
     return depth, *(max(round(true / READ_TO_MM), 1) * READ_TO_MM for true in (lag, 2 * half))
 
 
 def turn_of(hidden, depth: float) -> float:
-    """How far before the tool's second line the mark turns: the lag, without what the widest section is in front."""
+    """Return the distance of the mark's turn from the tool's second line.
+
+    It is the lag less the distance by which the widest section is ahead.
+    """
     lag, gap, half = (hidden.law(name)(depth) for name in ("lag", "tip_gap", "half_width"))
     return max(round((lag + gap - hidden.widest_per_half * half) / READ_TO_MM), 0) * READ_TO_MM
 
 
 def files_of(hidden) -> dict[str, object]:
-    """Brushes as they are typed in, by how much was measured."""
+    """Return typed brushes by the number of measured values."""
     rows = [measured(hidden, share) for share in SHARES]
     lags, widths = [row[:2] for row in rows], [(row[0], row[2]) for row in rows]
     turns = [(depth, lag_of_turn(turn_of(hidden, depth), width)) for depth, width in widths]
@@ -93,7 +97,7 @@ def main() -> None:
 
 
 def with_widths(svg: str, size: float) -> str:
-    """The word with strokes so many times as wide."""
+    """Return the word with strokes this many times as wide."""
     return re.sub(r'stroke-width="([\d.]+)"', lambda found: f'stroke-width="{size * float(found[1]):.3f}"', svg)
 
 

@@ -1,11 +1,11 @@
 """Plant faults in all sources, and find which tests catch them.
 
-    pip install tree-sitter tree-sitter-cpp     # in the Python that runs this python benchmarks/faults plant
-    # a copy of the tree with 100 faults, each switched off; built python benchmarks/faults map [PATH ...]
-    # run all tests once: which fault each reaches, and its duration;
+    pip install tree-sitter tree-sitter-cpp     # in the Python that runs this program
+    python benchmarks/faults plant              # copy and build the tree with 100 faults, each switched off
+    python benchmarks/faults map [PATH ...]     # run all tests once, and record the faults and duration of each;
                                                 # use --tier ci first, then the others for surviving faults
     python benchmarks/faults try                # switch each fault on, for the tests that reach it
-    python benchmarks/faults report             # a table, totals, and the survivors
+    python benchmarks/faults report             # print a table, totals, and the survivors
 
 A seed chooses the faults: at least one in each folder of code, and the rest by lines. The eight kinds are as
 even as possible: changed comparisons and arithmetic operators, swapped `and` and `or`, negated conditions,

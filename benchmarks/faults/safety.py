@@ -1,4 +1,4 @@
-"""The code that keeps a robot within its bounds, in parts: `plant --safety N` plants N faults in each."""
+"""List the parts of the safety code; `plant --safety N` plants N faults in each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PARTS = {
 
 
 def part_of(fault: Fault) -> str | None:
-    """The part whose files hold a fault."""
+    """Return the part whose files contain a fault."""
     path = PurePosixPath(fault.file)
     for part, patterns in PARTS.items():
         for pattern in patterns:

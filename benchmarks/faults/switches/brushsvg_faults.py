@@ -1,7 +1,7 @@
 """The switches of planted faults in Python: __fault__(k) is true in a process whose BRUSHSVG_FAULT is k.
 
-Where BRUSHSVG_FAULT_HITS names a folder, the numbers of faults that a test comes by are written there. A .pth file of
-the planted tree's .venv imports this module, so that every process of its Python knows __fault__.
+If BRUSHSVG_FAULT_HITS names a folder, the numbers of faults that a test reaches are written there. A .pth file of
+the planted tree's .venv imports this module, so that every process of its Python has __fault__.
 """
 
 import builtins
@@ -13,7 +13,7 @@ seen = set()
 
 
 def differ(original, mutated) -> bool:
-    """Whether two expressions have different values; raising counts as one."""
+    """Return whether two expressions have different values; an exception counts as a value."""
     try:
         unequal = original() != mutated()
     except Exception:
@@ -25,7 +25,10 @@ def differ(original, mutated) -> bool:
 
 
 def watch(number: int, original=None, mutated=None) -> bool:
-    """Never a fault: writes down who comes by, once for each test; where two forms are given only if they differ."""
+    """Return False, and record the fault once for each test.
+
+    If two forms are given, the fault is recorded only if they differ.
+    """
     if number not in seen and (original is None or differ(original, mutated)):
         seen.add(number)
         test = os.environ.get("PYTEST_CURRENT_TEST", "")
@@ -39,14 +42,14 @@ def switch(number: int, *_) -> bool:
 
 
 def reset() -> None:
-    """From here on what comes by is written down again: another test begins."""
+    """Record reached faults again, because another test begins."""
     import ctypes
     import sys
 
     seen.clear()
     core = sys.modules.get("brushsvg._core")
     again = core and getattr(ctypes.CDLL(core.__file__), "brushsvg_faults_reset", None)
-    if again:  # there are faults in C++
+    if again:  # the tree has faults in C++
         again()
 
 

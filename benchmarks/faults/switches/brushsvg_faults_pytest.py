@@ -1,4 +1,4 @@
-"""Plugin of pytest for a planted tree: which tests run, in which order and how long; what became of each.
+"""Select, order and limit the tests of a planted tree, and record their outcomes (pytest plugin).
 
 FAULTS_RESULTS   a folder: a line of JSON for the beginning of each test, one for its end
 FAULTS_SELECT    a file of JSON, {test: seconds it may take}: these tests alone
@@ -19,11 +19,11 @@ import brushsvg_faults
 import pytest
 
 CURRENT = "PYTEST_CURRENT_TEST"
-GRACE_S = 20  # for code that does not come back to Python; then the process ends
+GRACE_S = 20  # the process ends if code does not return to Python
 
 
 class TimeLimitError(BaseException):
-    """Nothing but pytest may catch it."""
+    """Only pytest may catch this exception."""
 
 
 def late(*_):
@@ -57,13 +57,13 @@ class Planted:
             kept = [item for item in kept if item.nodeid not in known]
         if out := os.environ.get("FAULTS_COLLECT"):
             Path(out).write_text(json.dumps([item.nodeid for item in kept]), encoding="utf-8")
-        self.caches = caches()  # before tests/conftest.py hides what is there from gc
+        self.caches = caches()  # before tests/conftest.py hides existing objects from gc
         config.hook.pytest_deselected(items=[item for item in items if item not in set(kept)])
         items[:] = kept
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_make_collect_report(self, collector):
-        """What a file computes when it is imported belongs to its tests."""
+        """Count faults reached by the import of a file for its tests."""
         if isinstance(collector, pytest.Module):
             os.environ[CURRENT] = f"{collector.nodeid} (collect)"
             brushsvg_faults.reset()
@@ -88,7 +88,9 @@ class Planted:
     def pytest_runtest_protocol(self, item):
         if item.path != self.file:
             self.file = item.path
-            for each in self.caches + caches():  # a file finds no results of another's: its tests come by all faults
+            for each in (
+                self.caches + caches()
+            ):  # a file must not find results of another file, so that its tests reach all faults
                 each.cache_clear()
         brushsvg_faults.reset()
         self.failed, self.skipped, self.why = False, False, ""
@@ -117,7 +119,7 @@ def tail(report) -> str:
 
 
 def caches() -> list:
-    """All functools.cache and lru_cache of the package and its tests."""
+    """Return all functools.cache and lru_cache of the package and its tests."""
     found = [each for each in gc.get_objects() if isinstance(each, functools._lru_cache_wrapper)]
     homes = [getattr(each.__wrapped__, "__code__", None) for each in found]
     ours = [home and any(part in home.co_filename for part in ("/brushsvg/", "/tests/")) for home in homes]
@@ -125,7 +127,7 @@ def caches() -> list:
 
 
 def shared(item) -> list[str]:
-    """Fixtures of the item that live longer than its file, of this project."""
+    """Return fixtures of this project that live longer than the file of the item."""
     root = str(item.config.rootpath)
     return [
         name
