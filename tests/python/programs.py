@@ -69,5 +69,5 @@ def is_refused_when_damaged(capsys, path, old, new, reported, *words):
     damaged, count = re.subn(old, new, text, count=1)
     assert count == 1
     path.write_text(damaged)
-    status, _, said = in_json(capsys, *check)
-    return status == 1 and any(is_reported(said, code) for code in reported.split("|"))
+    status, _, messages = in_json(capsys, *check)
+    return status == 1 and any(is_reported(messages, code) for code in reported.split("|"))

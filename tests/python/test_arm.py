@@ -182,6 +182,6 @@ def test_joint_angles_agree_with_another_library(name):
 
 def test_links_of_another_arm_are_refused():
     arm = find_cell("ur5e").arm
-    with pytest.raises(Error) as said:
+    with pytest.raises(Error) as refusal:
         joints_of(replace(arm, prebuilt="ur3e"))
-    assert (said.value.code, said.value.where) == ("cell-arm", "arm.prebuilt")
+    assert (refusal.value.code, refusal.value.where) == ("cell-arm", "arm.prebuilt")

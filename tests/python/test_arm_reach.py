@@ -169,10 +169,10 @@ def test_place_reports_workable_paper_positions_and_draws_the_table(tmp_path, ca
     box = ((-400.0, -1000.0, -50.0), (400.0, -700.0, 500.0))
     cell = replace(cell, workspace=replace(cell.workspace, box_mm=box))
     far.write_text(write_cell(cell))
-    status, said, reported = in_json(capsys, "cell", "place", far, drawing, "-o", picture)
+    status, output, reported = in_json(capsys, "cell", "place", far, drawing, "-o", picture)
     assert status == 1 and is_reported(reported, "arm-out-of-reach UR5e")
     assert picture.read_text().count('class="sheet"') == 2
-    numbers = re.search(r"origin_mm = \[(.*?)\]", said).group(1).split(",")
+    numbers = re.search(r"origin_mm = \[(.*?)\]", output).group(1).split(",")
     paper = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
     near.write_text(write_cell(replace(cell, paper=paper)))
     assert in_json(capsys, "cell", "place", near, drawing)[0] == 0

@@ -367,7 +367,7 @@ def test_an_invalid_drawing_is_a_refused_row(desk, data):
 
 
 @pytest.mark.parametrize(
-    ("items", "choices", "said"),
+    ("items", "choices", "expected"),
     [
         (["in", "in/1.svg"], {}, "name-taken in/1.svg"),
         (["none*.svg"], {}, "file-unreadable"),
@@ -388,9 +388,9 @@ def test_an_invalid_drawing_is_a_refused_row(desk, data):
         (["in"], {"width": -1}, "out-of-range"),
     ],
 )
-def test_a_problem_of_the_whole_batch_is_one_refusal(desk, items, choices, said):
+def test_a_problem_of_the_whole_batch_is_one_refusal(desk, items, choices, expected):
     choices = {"jobs": 1} | choices
-    with refused(said):
+    with refused(expected):
         brushsvg.batch(items, "out", **choices)
     assert not Path("out/table.csv").exists()
 
@@ -547,17 +547,19 @@ def test_parquet_contains_the_same_table_as_csv(desk, monkeypatch):
 
 
 def test_progress_shows_rate_and_remaining_time_and_cancel_works(desk):
-    said, is_over = [], threading.Event()
+    progress_texts, is_over = [], threading.Event()
 
     def progress(text):
-        said.append(text)
+        progress_texts.append(text)
         is_over.set()
 
     with threads() as executor, pytest.raises(CancelledError):
         brushsvg.batch(["in"], "out", executor=executor, progress=progress, cancel=is_over)
-    assert gives(said[0], "4") and len(re.findall(r"\d+(?:\.\d+)?", said[0])) >= 3, "how many, how fast, how long"
+    assert gives(progress_texts[0], "4") and len(re.findall(r"\d+(?:\.\d+)?", progress_texts[0])) >= 3, (
+        "how many, how fast, how long"
+    )
     rows = Path("out/manifest.jsonl").read_text().splitlines()[1:]
-    assert 1 <= len(rows) < 4 or len(said) == len(rows)
+    assert 1 <= len(rows) < 4 or len(progress_texts) == len(rows)
     assert not Path("out/table.csv").exists()
 
 
@@ -597,9 +599,9 @@ def test_an_interrupted_batch_continues(desk, monkeypatch, by):
     while len(rows_there()) < 5 and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(by)
-    status, said = process.wait(20), Path("said.txt").read_text()
-    assert status == (-by if by == signal.SIGKILL else 130), said
-    assert by == signal.SIGKILL or said == "brushsvg: interrupted\n"
+    status, printed = process.wait(20), Path("said.txt").read_text()
+    assert status == (-by if by == signal.SIGKILL else 130), printed
+    assert by == signal.SIGKILL or printed == "brushsvg: interrupted\n"
     end = time.monotonic() + 10
     while (left := processes_of(process.pid)) and time.monotonic() < end:
         time.sleep(0.05)

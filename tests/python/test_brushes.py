@@ -192,7 +192,7 @@ def _drop(*keys):
 
 
 @pytest.mark.parametrize(
-    ("change", "where", "said"),
+    ("change", "where", "expected"),
     [
         (_set("version", to=2), "version", "version-unknown 2 brushsvg/brush"),
         (_set("format", to="brushsvg/plan"), "format", "format-unknown brushsvg/plan"),
@@ -231,8 +231,8 @@ def _drop(*keys):
         ),
     ],
 )
-def test_errors_name_their_key(changed, change, where, said):
-    with refused(said, where):
+def test_errors_name_their_key(changed, change, where, expected):
+    with refused(expected, where):
         find_brush(changed(change))
 
 

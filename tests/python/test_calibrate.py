@@ -69,7 +69,7 @@ def test_an_outlier_is_named_and_does_not_affect_least_absolute_residuals(tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected"),
     [
         ("", "table-columns kind depth_mm value_mm"),
         ("kind,depth_mm,value_mm\nlagg,3,4\n", "measurement-kind 'line 2' lagg"),
@@ -79,11 +79,11 @@ def test_an_outlier_is_named_and_does_not_affect_least_absolute_residuals(tmp_pa
         ("kind,depth_mm,value_mm\nlag,3,4000\n", "out-of-range 2.value_mm 4000 1000"),
     ],
 )
-def test_an_unusable_measurement_writes_no_file(text, said, tmp_path, capsys):
+def test_an_unusable_measurement_writes_no_file(text, expected, tmp_path, capsys):
     (tmp_path / "m.csv").write_text(text)
     words = ("calibrate", tmp_path / "m.csv", "-o", tmp_path / "b.json")
     status, _, ((file, reported),) = in_json(capsys, *words)
-    assert (status, file) == (1, str(tmp_path / "m.csv")) and agrees(reported, said), reported
+    assert (status, file) == (1, str(tmp_path / "m.csv")) and agrees(reported, expected), reported
     assert not (tmp_path / "b.json").exists()
 
 
@@ -121,7 +121,7 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
 
 
 @pytest.mark.parametrize(
-    ("rows", "where", "said"),
+    ("rows", "where", "expected"),
     [
         ({"lag": values([7, 7.4], [3, 3.01]), **WIDTH}, "lag[0]", "depths-too-few 3"),
         (
@@ -188,10 +188,12 @@ MIXED = [3, 7, 1, 9, 0, 5, 2, 8, 4, 6]
         ({"lag": values(LAG[:3], DEPTHS[:3]), **WIDTH}, "lag[0]", "depth-not-measured"),
     ],
 )
-def test_impossible_measurements_are_refused_with_a_remedy(rows, where, said, tmp_path, capsys):
+def test_impossible_measurements_are_refused_with_a_remedy(rows, where, expected, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     status, _, ((file, reported),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
-    assert (status, file, reported.where) == (1, str(tmp_path / "m.json"), where) and agrees(reported, said), reported
+    assert (status, file, reported.where) == (1, str(tmp_path / "m.json"), where) and agrees(reported, expected), (
+        reported
+    )
     assert not (tmp_path / "b.json").exists()
 
 
@@ -200,7 +202,7 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
 
 
 @pytest.mark.parametrize(
-    ("rows", "where", "said"),
+    ("rows", "where", "expected"),
     [
         ({"lag": values(LAG / 25.4), **WIDTH}, "lag", "not-millimetres"),
         (INCHES, "half_width", "not-millimetres"),
@@ -226,13 +228,13 @@ FALLS = np.where(DEPTHS == 2, LAG[0] - 1.4, LAG)
         ({"lag": values(LAG), **WIDTH}, "", ""),
     ],
 )
-def test_unusual_measurements_are_reported(rows, where, said, tmp_path, capsys):
+def test_unusual_measurements_are_reported(rows, where, expected, tmp_path, capsys):
     (tmp_path / "m.json").write_text(json.dumps({"format": "brushsvg/measurements", "version": 1} | rows))
     status, _, reported = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
     of_it = [one for file, one in reported if file == str(tmp_path / "m.json")]
     assert status == 0
-    if said:
-        assert any(one.where == where and agrees(one, said) for one in of_it), reported
+    if expected:
+        assert any(one.where == where and agrees(one, expected) for one in of_it), reported
     else:
         assert not of_it
 
@@ -393,18 +395,18 @@ def test_a_duplicate_column_is_refused(tmp_path, capsys, column, shown):
 
 
 @pytest.mark.parametrize(
-    ("line", "column", "said"),
+    ("line", "column", "expected"),
     [
         ("nan,3", "depth_mm", "out-of-range nan"),
         ("3,-2", "width_mm", "out-of-range -2"),
         ("0,2", "depth_mm", "out-of-range 0"),
     ],
 )
-def test_an_impossible_width_is_refused_with_its_line(line, column, said, tmp_path, capsys):
+def test_an_impossible_width_is_refused_with_its_line(line, column, expected, tmp_path, capsys):
     (tmp_path / "w.csv").write_text(f"depth_mm,width_mm\n{line}\n")
     words = ("brush", "new", "-o", tmp_path / "b.json", "--lag", "5", "--widths", tmp_path / "w.csv")
     status, _, ((file, reported),) = in_json(capsys, *words)
-    assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, said, f"line 2, {column}"), reported
+    assert (status, file) == (1, str(tmp_path / "w.csv")) and agrees(reported, expected, f"line 2, {column}"), reported
 
 
 def test_exact_values_are_reported_without_rounding_error(tmp_path):
@@ -452,25 +454,25 @@ def test_normal_noise_is_seldom_called_an_outlier():
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         (lambda row: row["s_mm"] + 20, "angles-from-elsewhere"),
         (lambda row: np.radians(row["alpha_deg"]), "angles-in-radians"),
     ],
     ids=["from-elsewhere", "radians"],
 )
-def test_angles_that_do_not_start_with_the_first_angle_are_refused(tmp_path, capsys, change, said):
+def test_angles_that_do_not_start_with_the_first_angle_are_refused(tmp_path, capsys, change, expected):
     rows = []
     for d in (2, 4, 6, 8, 10):
         s = np.linspace(1, 1.8 * (3 + 0.8 * d), 6)
         row = {"s_mm": s, "alpha_deg": np.degrees(2 * np.arctan(np.exp(-s / (3 + 0.8 * d))))}
-        row["alpha_deg" if said == "angles-in-radians" else "s_mm"] = change(row)
+        row["alpha_deg" if expected == "angles-in-radians" else "s_mm"] = change(row)
         rows.append({"depth_mm": d, "alpha0_deg": 90, **{key: value.tolist() for key, value in row.items()}})
     widths = [{"depth_mm": d, "value_mm": width} for _, d, width in WIDTHS]
     content = {"format": "brushsvg/measurements", "version": 1, "angles": rows, "width": widths}
     (tmp_path / "m.json").write_text(json.dumps(content))
     status, _, ((_, reported),) = in_json(capsys, "calibrate", tmp_path / "m.json", "-o", tmp_path / "b.json")
-    assert status == 1 and agrees(reported, said, "angles[0]"), reported
+    assert status == 1 and agrees(reported, expected, "angles[0]"), reported
 
 
 def readings(**laws):

@@ -24,11 +24,11 @@ def table(tmp_path):
 def test_python_and_the_command_give_equal_bytes_and_reports(table, tmp_path, capsys):
     out = tmp_path / "brush.json"
     assert main(["calibrate", str(table), "-o", str(out), "--quiet"]) == 0
-    said = capsys.readouterr().out
+    printed = capsys.readouterr().out
     made = brushsvg.calibrate(table, "brush")
     assert isinstance(made, brushsvg.BrushCalibration)
     assert brushsvg._core.write_brush(made.brush) == out.read_text()
-    assert made.text == said
+    assert made.text == printed
 
 
 def test_names_come_from_the_call_or_the_file(table):

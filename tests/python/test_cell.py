@@ -43,7 +43,7 @@ def test_every_shipped_cell_loads_and_equals_the_output_of_the_tool(name):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "where", "said"),
+    ("old", "new", "where", "expected"),
     [
         ("press_mm_s = 8.0", "", "speeds.press_mm_s", "key-missing"),
         ("press_mm_s = 8.0", "press_mm_s = 8.0\npress = 3", "speeds.press", "key-unknown travel_mm_s"),
@@ -101,9 +101,9 @@ def test_every_shipped_cell_loads_and_equals_the_output_of_the_tool(name):
         ("[paper]", "[paper]\ntaught_mm = [[0, 0, 0]]", "paper.taught_mm", "paper-taught 1"),
     ],
 )
-def test_an_invalid_cell_is_refused_with_its_key(old, new, where, said):
+def test_an_invalid_cell_is_refused_with_its_key(old, new, where, expected):
     assert old in TEXT
-    with refused(said, where):
+    with refused(expected, where):
         parse_cell(TEXT.replace(old, new))
 
 
@@ -131,7 +131,7 @@ FULL = replace(
 
 
 @pytest.mark.parametrize(
-    ("station", "said"),
+    ("station", "expected"),
     [
         (
             Station("ink", (1.0, 2.0), depth_mm=25.0),
@@ -147,8 +147,8 @@ FULL = replace(
         ),
     ],
 )
-def test_a_station_that_the_tool_cannot_visit_is_refused(station, said):
-    with refused(said):
+def test_a_station_that_the_tool_cannot_visit_is_refused(station, expected):
+    with refused(expected):
         parse_cell(write_cell(replace(FULL, stations=(station,), reload=Reload("stroke"))))
 
 
@@ -164,7 +164,7 @@ def test_a_written_cell_is_read_back_unchanged(cell):
 
 
 @pytest.mark.parametrize(
-    ("change", "where", "said"),
+    ("change", "where", "expected"),
     [
         ({"reload": None}, "reload", "cell-reload"),
         ({"stations": ()}, "reload", "cell-reload"),
@@ -186,13 +186,13 @@ def test_a_written_cell_is_read_back_unchanged(cell):
         ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "out-of-range 99000 -2000 2000"),
     ],
 )
-def test_contradictions_between_keys_are_refused(change, where, said):
-    with refused(said, where):
+def test_contradictions_between_keys_are_refused(change, where, expected):
+    with refused(expected, where):
         parse_cell(write_cell(replace(FULL, **change)))
 
 
 @pytest.mark.parametrize(
-    ("workspace", "said"),
+    ("workspace", "expected"),
     [
         (
             {"box_mm": ((-450.0, -850.0, 50.0), (450.0, -200.0, 500.0))},
@@ -207,11 +207,11 @@ def test_contradictions_between_keys_are_refused(change, where, said):
         ({"reach_mm": (1500.0, 1600.0)}, "sheet-out-of-reach 816 1500 1600"),
     ],
 )
-def test_a_cell_that_reaches_no_paper_is_reported(workspace, said):
+def test_a_cell_that_reaches_no_paper_is_reported(workspace, expected):
     cell = find_cell("ur5e")
     assert out_of_reach(cell) == []
     (reported,) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
-    assert reported.where == f"workspace.{next(iter(workspace))}" and agrees(reported, said), reported
+    assert reported.where == f"workspace.{next(iter(workspace))}" and agrees(reported, expected), reported
 
 
 @pytest.mark.slow
@@ -239,16 +239,16 @@ def test_a_sheet_is_out_of_reach_only_if_no_point_of_it_is_reachable():
             away = np.linalg.norm(points, axis=1)
             inside = ((points >= low) & (points <= workspace.box_mm[1])).all(axis=1)
             is_met &= bool((inside & (away >= 100) & (away <= workspace.reach_mm[1])).any())
-        said = bool(out_of_reach(cell))
+        is_reported_out = bool(out_of_reach(cell))
         # The sheet may meet the box and the reach at different points; the limits of each program cover that
         # case.
-        assert not (said and is_met)
-        found[said] += 1
+        assert not (is_reported_out and is_met)
+        found[is_reported_out] += 1
     assert min(found.values()) > 20
 
 
 @pytest.mark.parametrize(
-    ("table", "change", "said"),
+    ("table", "change", "expected"),
     [
         ("heights", {"safe_mm": 1.0, "clearance_mm": 0.5}, "unusual-value 1 2 200"),
         ("heights", {"lowest_mm": -120.0}, "unusual-value -120 -50 -0.5"),
@@ -264,11 +264,11 @@ def test_a_sheet_is_out_of_reach_only_if_no_point_of_it_is_reachable():
         ("workspace", {"reach_mm": (200.0, 600.0)}, "out-of-reach 668.3 200 600"),
     ],
 )
-def test_unusual_values_are_reported(table, change, said):
+def test_unusual_values_are_reported(table, change, expected):
     cell = replace(find_cell("ur5e"), paper=replace(find_cell("ur5e").paper, example=False))
     assert remarks(cell) == []
     (reported,) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
-    assert reported.where.startswith(table) and agrees(reported, said), reported
+    assert reported.where.startswith(table) and agrees(reported, expected), reported
 
 
 @pytest.mark.parametrize("name", cell_names())
@@ -323,7 +323,7 @@ def test_a_table_that_only_other_languages_use_is_refused(name, table):
 
 
 @pytest.mark.parametrize(
-    ("servo", "said"),
+    ("servo", "expected"),
     [
         (Servo(((0.0, 1.0), (0.0, 2.0))), "servo-table"),
         (Servo(((0.0, 1.0), (9.0, 2.0))), "servo-table lowest_mm -8 safe_mm 5"),
@@ -331,8 +331,8 @@ def test_a_table_that_only_other_languages_use_is_refused(name, table):
         (Servo(((-30.0, 0.0), (30.0, 50.0))), "servo-coarse 1.2 0 0.5"),
     ],
 )
-def test_a_servo_without_a_value_for_each_height_is_refused(servo, said):
-    with refused(said, "servo.table"):
+def test_a_servo_without_a_value_for_each_height_is_refused(servo, expected):
+    with refused(expected, "servo.table"):
         parse_cell(write_cell(replace(find_cell("grbl-servo"), servo=servo)))
 
 
@@ -367,7 +367,7 @@ def test_a_wall_that_was_taught_facing_away_is_reported(towards):
 
 
 @pytest.mark.parametrize(
-    ("points", "said"),
+    ("points", "expected"),
     [
         ([(0, 0, 0), (5, 0, 0), (0, 99, 0)], "paper-taught 5.0"),
         ([(0, 0, 0), (99, 0, 0), (99, 3, 0)], "paper-taught 3.0"),
@@ -376,9 +376,9 @@ def test_a_wall_that_was_taught_facing_away_is_reported(towards):
         ([(0, 0, 0), (0, 99, 0), (99, 0, 0)], "paper-tilted 180.00"),
     ],
 )
-def test_badly_taught_points_are_refused(points, said):
+def test_badly_taught_points_are_refused(points, expected):
     cell = replace(find_cell(), paper=Paper(taught_mm=tuple(tuple(map(float, point)) for point in points)))
-    with refused(said):
+    with refused(expected):
         parse_cell(write_cell(cell))
 
 

@@ -311,7 +311,7 @@ def test_a_chart_file_is_read_back_unchanged():
 
 
 @pytest.mark.parametrize(
-    ("change", "where", "said"),
+    ("change", "where", "expected"),
     [
         ({"format": "x"}, "format", "format-unknown"),
         ({"version": 2}, "version", "version-unknown 2 1"),
@@ -352,9 +352,9 @@ def test_a_chart_file_is_read_back_unchanged():
         ),
     ],
 )
-def test_a_damaged_file_names_the_key(change, where, said):
+def test_a_damaged_file_names_the_key(change, where, expected):
     content = json.loads(write_chart(small_chart()))
-    with refused(said, where):
+    with refused(expected, where):
         read_chart(json.dumps(content | change).encode())
     with pytest.raises(Error):
         read_chart(b"{")
@@ -382,14 +382,14 @@ def test_chart_reports_the_expected_accuracy_of_the_brush(tmp_path, capsys):
 
 def test_wrong_usage_is_refused(tmp_path, capsys):
     out = str(tmp_path / "plan.json")
-    for flags, said in (
+    for flags, expected in (
         (["--sheet", "a9"], "a9"),
         (["--page", str(tmp_path / "p.png")], ".pdf"),
         (["--chart", out], out),
         (["--strokes", "lots"], "lots"),
     ):
         assert main(["chart", "-o", out, *flags]) == 2
-        assert said in capsys.readouterr().err
+        assert expected in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

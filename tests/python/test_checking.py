@@ -100,9 +100,9 @@ BROKEN = {
 def test_a_dangerous_program_is_reported_with_its_line(desk, fault):
     work = preparation.prepare("two.svg")
     text, cell = text_of(work, "linuxcnc-3axis")
-    edit, said = BROKEN[fault]
+    edit, expected = BROKEN[fault]
     reported = ran(edit(text), cell, work).problems
-    assert any(agrees(each, said) for each in reported), reported
+    assert any(agrees(each, expected) for each in reported), reported
 
 
 def test_a_program_deeper_than_the_brush_is_refused(desk):
@@ -140,8 +140,8 @@ UNREADABLE = {
 def test_programs_that_brushsvg_cannot_have_written_are_refused(desk, name):
     work = preparation.prepare("two.svg")
     text, cell = text_of(work, name)
-    for edit, said in UNREADABLE[name]:
-        with refused(said):
+    for edit, expected in UNREADABLE[name]:
+        with refused(expected):
             ran(edit(text), cell, work)
 
 
@@ -172,7 +172,7 @@ def test_a_resumed_program_is_not_reported_as_incomplete(desk, capsys):
 
 
 @pytest.mark.parametrize(
-    ("edit", "said"),
+    ("edit", "expected"),
     [
         (
             edited(r"\(cell: linuxcnc-3axis,", "(cell: my-own,"),
@@ -182,15 +182,15 @@ def test_a_resumed_program_is_not_reported_as_incomplete(desk, capsys):
         (edited(r"\(sheet: .*\)\n", ""), "sheet-unknown"),
     ],
 )
-def test_a_header_without_the_required_field_is_refused(desk, capsys, edit, said):
+def test_a_header_without_the_required_field_is_refused(desk, capsys, edit, expected):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_text(edit((desk / "two.ngc").read_text()))
     status, _, ((file, reported), *_) = in_json(capsys, "check", "two.ngc")
-    assert (status, file) == (1, "two.ngc") and agrees(reported, said), reported
+    assert (status, file) == (1, "two.ngc") and agrees(reported, expected), reported
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "expected"),
     [
         (
             "sheet: 1.2.3 x 70 mm",
@@ -221,21 +221,21 @@ def test_a_header_without_the_required_field_is_refused(desk, capsys, edit, said
         ),
     ],
 )
-def test_damaged_header_numbers_are_reported(desk, capsys, line, said):
+def test_damaged_header_numbers_are_reported(desk, capsys, line, expected):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
     word = line.partition(":")[0]
     text = re.sub(rf"(?m)^\({word}: .*\n", "", text)
     (desk / "two.ngc").write_text(text.replace("(cell:", f"({line})\n(cell:"))
     status, _, ((_, reported),) = in_json(capsys, "check", "two.ngc", "two.svg")
-    assert status == 1 and agrees(reported, said), reported
+    assert status == 1 and agrees(reported, expected), reported
 
 
-@pytest.mark.parametrize(("offset", "said"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")])
-def test_check_reports_a_program_for_another_paper_height(desk, capsys, offset, said):
+@pytest.mark.parametrize(("offset", "expected"), [("-3", "paper-offset 3 lower"), ("20", "paper-offset 20 higher")])
+def test_check_reports_a_program_for_another_paper_height(desk, capsys, offset, expected):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", f"--z-offset={offset}")[0] == 0
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
-    assert status == 0 and is_reported(reported, said), reported
+    assert status == 0 and is_reported(reported, expected), reported
 
 
 def test_a_json_message_marks_the_cause_of_a_refusal(desk, capsys):
@@ -358,14 +358,14 @@ THREE = DRAWING.replace("</g>", '<path id="third" d="M20 20 h60"/></g>')
 
 @pytest.mark.parametrize("drawing", [(), ("two.svg",)])
 @pytest.mark.parametrize(
-    ("lost", "said"),
+    ("lost", "expected"),
     [
         ([1], "stroke-misnumbered 14 '2 of 3' '1 of 3'"),
         ([1, 2], "stroke-misnumbered 14 '3 of 3' '1 of 3'"),
         ([2], "stroke-misnumbered '3 of 3' '2 of 3'"),
     ],
 )
-def test_a_program_without_one_of_its_strokes_is_refused(desk, capsys, drawing, lost, said):
+def test_a_program_without_one_of_its_strokes_is_refused(desk, capsys, drawing, lost, expected):
     """A program that lacks a stroke is refused.
 
     The header lists all strokes, with or without the drawing.
@@ -375,20 +375,20 @@ def test_a_program_without_one_of_its_strokes_is_refused(desk, capsys, drawing, 
     parts = sections((desk / "two.ngc").read_text())
     (desk / "two.ngc").write_text("".join(part for k, part in enumerate(parts) if k not in lost))
     status, _, reported = in_json(capsys, "check", "two.ngc", *drawing)
-    assert status == 1 and any(agrees(each, said) for _, each in reported), reported
+    assert status == 1 and any(agrees(each, expected) for _, each in reported), reported
 
 
 def test_missing_strokes_at_the_end_are_counted(desk, capsys):
     (desk / "two.svg").write_text(THREE)
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     text = (desk / "two.ngc").read_text()
-    for lost, said in (
+    for lost, expected in (
         ("3", "strokes-missing 3"),
         ("2", "strokes-missing 2 3"),
     ):
         (desk / "two.ngc").write_text(re.sub(rf"(?s)\(stroke {lost} .*(?=M2)", "", text))
         status, _, reported = in_json(capsys, "check", "two.ngc")
-        assert status == 1 and any(agrees(each, said) for _, each in reported), reported
+        assert status == 1 and any(agrees(each, expected) for _, each in reported), reported
 
 
 def painted_otherwise(text: str, how: str) -> str:
@@ -450,12 +450,12 @@ HEADER = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("old", "new", "said"), HEADER)
-def test_a_header_that_contradicts_its_program_is_reported(desk, capsys, old, new, said):
+@pytest.mark.parametrize(("old", "new", "expected"), HEADER)
+def test_a_header_that_contradicts_its_program_is_reported(desk, capsys, old, new, expected):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_text(edited(old, new)((desk / "two.ngc").read_text()))
     status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg")
-    assert status == 1 and any(agrees(each, said) for _, each in reported), reported
+    assert status == 1 and any(agrees(each, expected) for _, each in reported), reported
 
 
 @pytest.mark.parametrize(
@@ -702,13 +702,13 @@ def test_a_different_station_is_reported_with_its_line(desk, capsys):
     (desk / "mine.toml").write_text(text, encoding="utf-8")
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "mine.toml")[0] == 0
     text = (desk / "two.ngc").read_text()
-    for new, said in (
+    for new, expected in (
         ("paint: station 2, ?", "other-station \u6731 \u58a8"),
         ("paint: station 3, ?", "station-unknown 14 linuxcnc-3axis 3"),
     ):
         (desk / "two.ngc").write_text(edited("paint: station 1, \\?", new)(text))
         status, _, reported = in_json(capsys, "check", "two.ngc", "two.svg", "--cell", "mine.toml")
-        assert status == 1 and any(agrees(each, said) for _, each in reported), reported
+        assert status == 1 and any(agrees(each, expected) for _, each in reported), reported
 
 
 def test_strokes_with_any_name_are_recognized(desk, capsys):
@@ -895,10 +895,10 @@ def test_any_change_of_a_program_is_reported(desk, capsys, suffix):
     assert call(capsys, "convert", "two.svg", "-o", f"two{suffix}", *cell, *turn)[0] == 0
     text = (desk / f"two{suffix}").read_text()
     assert call(capsys, "check", f"two{suffix}", "two.svg", *turn)[0] == 0
-    for edit, said in CHANGED[suffix]:
+    for edit, expected in CHANGED[suffix]:
         (desk / f"two{suffix}").write_text(edit(text))
         status, _, reported = in_json(capsys, "check", f"two{suffix}", "two.svg", *turn)
-        assert (status, any(agrees(each, said) for _, each in reported)) == (1, True), (said, reported)
+        assert (status, any(agrees(each, expected) for _, each in reported)) == (1, True), (expected, reported)
 
 
 def test_a_changed_paint_visit_is_reported(desk, capsys):
@@ -981,8 +981,8 @@ def test_the_load_of_the_brush_is_compared_exactly(load_kg):
     """
     like = _ActComparison(find_cell("irb120"))
     reported = "local pers tooldata brush := [[0.000, 150.000], [{}, [0, 0, 50]]];"
-    said = [Act(1, "text", reported.format(text)) for text in ("0.5", "0.500", load_kg)]
-    assert like.is_same(said[1], said[0]) and not like.is_same(said[2], said[0])
+    acts = [Act(1, "text", reported.format(text)) for text in ("0.5", "0.500", load_kg)]
+    assert like.is_same(acts[1], acts[0]) and not like.is_same(acts[2], acts[0])
 
 
 def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
@@ -1001,7 +1001,7 @@ def test_a_tolerance_finer_than_the_cells_rounding_is_refused(desk, capsys):
 def test_a_servo_landing_in_two_steps_or_without_feed_is_reported(desk, capsys, drawing):
     assert call(capsys, "convert", "two.svg", "-o", "two.nc", "--cell", "grbl-servo")[0] == 0
     text = (desk / "two.nc").read_text()
-    for old, new, said in (
+    for old, new, expected in (
         (r"(?m)^M3 S60[04]\n", "M3\n", "program-changed"),
         (r"(?m)^F1200\.0\nG1", "F0.0\nG1", "line-incomplete"),
         (r"(?m)^F1200\.0\nG1", "F-1200.0\nG1", "line-incomplete"),
@@ -1009,7 +1009,7 @@ def test_a_servo_landing_in_two_steps_or_without_feed_is_reported(desk, capsys, 
     ):
         (desk / "two.nc").write_text(edited(old, new, 0)(text))
         status, _, reported = in_json(capsys, "check", "two.nc", *drawing)
-        assert status == 1 and any(agrees(each, said) for _, each in reported), (old, reported)
+        assert status == 1 and any(agrees(each, expected) for _, each in reported), (old, reported)
 
 
 @pytest.mark.slow
@@ -1251,7 +1251,7 @@ def test_the_reported_time_follows_the_feeds_in_the_program(desk, capsys):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "expected"),
     [
         (lambda text: b"\xef\xbb\xbf" + text.encode(), "line-unread 1 U+FEFF"),
         (lambda text: text.encode("utf-16"), "line-unread UTF-16"),
@@ -1263,11 +1263,11 @@ def test_the_reported_time_follows_the_feeds_in_the_program(desk, capsys):
         ),
     ],
 )
-def test_characters_inserted_by_an_editor_are_named(desk, capsys, spoil, said):
+def test_characters_inserted_by_an_editor_are_named(desk, capsys, spoil, expected):
     assert call(capsys, "convert", "two.svg", "-o", "two.ngc")[0] == 0
     (desk / "two.ngc").write_bytes(spoil((desk / "two.ngc").read_text()))
     status, out, ((file, reported),) = in_json(capsys, "check", "two.ngc")
-    assert (status, out, file) == (1, "", "two.ngc") and agrees(reported, said)
+    assert (status, out, file) == (1, "", "two.ngc") and agrees(reported, expected)
 
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "ur5e"])

@@ -251,7 +251,7 @@ REFUSED = {  # name: (file, its content, flags, reported code, reported file, re
 
 @pytest.mark.parametrize("case", REFUSED)
 def test_a_refusal_is_one_sentence_and_writes_nothing(desk, capsys, case):
-    name, content, flags, said, file, where = REFUSED[case]
+    name, content, flags, expected, file, where = REFUSED[case]
     if content is not None:
         (desk / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     before = listing(desk)
@@ -259,7 +259,7 @@ def test_a_refusal_is_one_sentence_and_writes_nothing(desk, capsys, case):
     status, out, err = run(capsys, *words)
     assert (status, out, len(err)) == (1, "", 1), err
     status, out, ((about, reported),) = in_json(capsys, *words)
-    assert (status, out, about) == (1, "", file) and agrees(reported, said, where), (about, reported)
+    assert (status, out, about) == (1, "", file) and agrees(reported, expected, where), (about, reported)
     assert err == [": ".join(part for part in ("brushsvg", file, where, reported.text) if part)]
     assert listing(desk) == before
 
@@ -275,7 +275,7 @@ def edited_plan(desk, **changes):
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "expected"),
     [
         ({"speed_mm_s": 30}, "speed-out-of-range 30 [0.000001, 25.0] round-6"),
         ({"poses_mm": [[30, 30, 0], [200, 30, 0]], "arcs": []}, "tool-off-sheet 50.00 right"),
@@ -286,11 +286,11 @@ def edited_plan(desk, **changes):
         ),
     ],
 )
-def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, said):
+def test_a_plan_beyond_limits_is_refused(desk, capsys, changes, expected):
     edited_plan(desk, **changes)
     status, _, reported = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
     assert (status, {file for file, _ in reported}) == (1, {"x.json"})
-    assert is_reported(reported, said, "line"), reported
+    assert is_reported(reported, expected, "line"), reported
     assert not (desk / "out.ngc").exists()
 
 
@@ -442,7 +442,7 @@ def test_scan_takes_one_picture(desk, capsys):
 
 
 @pytest.mark.parametrize(
-    ("flag", "said"),
+    ("flag", "expected"),
     [
         ("--origin -5,20", "left"),
         ("--origin -.5cm,20", "left"),
@@ -450,18 +450,18 @@ def test_scan_takes_one_picture(desk, capsys):
         ("--z-offset -3e3", "-3000 mm"),
     ],
 )
-def test_negative_values_are_not_read_as_flags(desk, capsys, flag, said):
+def test_negative_values_are_not_read_as_flags(desk, capsys, flag, expected):
     (desk / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="80mm" viewBox="0 0 100 80">'
         '<path d="M20 20H60" stroke="#000" stroke-width="4"/></svg>'
     )
     status, _, reported = run(capsys, "convert", "a.svg", "-o", "a.ngc", *flag.split())
-    assert status and said in " ".join(reported)
+    assert status and expected in " ".join(reported)
 
 
 def test_compare_with_swapped_arguments_reports_their_order(desk, capsys):
-    status, _, (said,) = run(capsys, *"compare drawing.svg photo.jpg".split())
-    assert status == 2 and gives(said, "photo.jpg")
+    status, _, (reported,) = run(capsys, *"compare drawing.svg photo.jpg".split())
+    assert status == 2 and gives(reported, "photo.jpg")
 
 
 @pytest.mark.parametrize("command", ["convert a.svg", "setup border a.svg", "setup height", "chart"])
@@ -834,22 +834,22 @@ def test_cells_are_listed_shown_checked_and_chosen(desk, capsys):
     assert not any(line.startswith("G64") for line in lines)
     assert max(map(len, lines)) <= 70
     text = (Path(commands.__file__).parents[2] / "data" / "cells" / "grbl-3axis.toml").read_text()
-    for old, new, where, said in (
+    for old, new, where, expected in (
         ("press_mm_s = 6.0", "press_mm_s = 0", "speeds.press_mm_s", "out-of-range 0 '[0.01, 5000]'"),
         ("name =", "nom =", "nom", "key-unknown nom decimals"),
     ):
         (desk / "my.toml").write_text(text.replace(old, new))
         status, out, ((file, reported),) = in_json(capsys, "cell", "check", "my.toml")
-        assert (status, out, file) == (1, "", "my.toml") and agrees(reported, said, where), reported
+        assert (status, out, file) == (1, "", "my.toml") and agrees(reported, expected, where), reported
     (desk / "my.toml").write_text(text.replace("paint_mm_s = 40.0", "paint_mm_s = 9"))
     assert run(capsys, "convert", "a.svg", "-o", "slow.ngc", "--cell", "my.toml", "--quiet") == (0, "", [])
     assert "F540.0" in (desk / "slow.ngc").read_text(), "a slow machine paints slowly"
     (desk / "my.toml").write_text(text.replace("margin_mm = 30.0", "margin_mm = 0.0"))
     status, _, reported = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", "my.toml", "--sheet", "96x60")
     assert status == 1 and is_reported(reported, "tool-off-sheet right"), reported
-    for cell, said in (("mine", "cell-unknown mine grbl-3axis"), ("no.toml", "file-unreadable")):
+    for cell, expected in (("mine", "cell-unknown mine grbl-3axis"), ("no.toml", "file-unreadable")):
         status, _, ((_, reported),) = in_json(capsys, "convert", "a.svg", "-o", "x.ngc", "--cell", cell)
-        assert status == 1 and agrees(reported, said), reported
+        assert status == 1 and agrees(reported, expected), reported
     assert not (desk / "x.ngc").exists()
 
 

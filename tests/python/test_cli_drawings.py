@@ -68,12 +68,12 @@ def test_warnings_about_a_drawing_precede_its_refusal(desk, capsys):
     line = "0\nLWPOLYLINE\n8\nINK\n90\n2\n70\n0\n43\n0.1\n10\n0\n20\n0\n10\n9\n20\n0\n"
     (desk / "thick.dxf").write_text(head + "0\nSECTION\n2\nENTITIES\n" + line + "0\nENDSEC\n0\nEOF\n")
     for command, *out in (("convert", "-o", "x.json"), ("preview", "-o", "x.json"), ("preview",)):
-        status, _, said = in_json(capsys, command, "thick.dxf", *out)
-        assert status == 1 and [is_reported([each], "unit-doubtful metres") for each in said] == [
+        status, _, reported = in_json(capsys, command, "thick.dxf", *out)
+        assert status == 1 and [is_reported([each], "unit-doubtful metres") for each in reported] == [
             True,
             False,
-        ], said
-        assert is_reported(said[1:], "width-out-of-reach 100.000")
+        ], reported
+        assert is_reported(reported[1:], "width-out-of-reach 100.000")
     with pytest.raises(brushsvg.Error) as caught:
         brushsvg.convert("thick.dxf")
     assert agrees(caught.value.notices[0], "unit-doubtful metres")
@@ -98,14 +98,14 @@ def test_compressed_drawings_are_read(desk, capsys):
     (desk / "z.svg").write_bytes(packed)
     plain, _ = plan(desk, capsys)
     assert plan(desk, capsys, drawing="d.svgz")[0] == plan(desk, capsys, drawing="z.svg")[0] == plain
-    for damaged, said in (
+    for damaged, expected in (
         (packed[:-40], "svgz-damaged"),
         (b"\x1f\x8b\x08\0", "svgz-damaged"),
         (packed[:20] + b"????" + packed[24:], "svgz-damaged"),
         (gzip.compress(b" " * 70_000_000, mtime=0), "file-too-large 64000000"),
     ):
         (desk / "z.svgz").write_bytes(damaged)
-        assert agrees(refusal(capsys, "convert", "z.svgz", "-o", "x.json"), said), said
+        assert agrees(refusal(capsys, "convert", "z.svgz", "-o", "x.json"), expected), expected
 
 
 def test_the_exit_status_does_not_depend_on_a_reader_of_stderr(desk):

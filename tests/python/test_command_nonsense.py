@@ -123,12 +123,12 @@ def contents(folder: Path) -> dict:
 def refused(desk, capsys, words) -> list[str]:
     before = contents(desk)
     status = main(words)
-    said = capsys.readouterr().err
-    assert status in (1, 2), (words, status, said)
-    assert said and all(line.startswith("brushsvg: ") for line in said.splitlines()), (words, said)
-    assert "should not happen" not in said, (words, said)
+    printed = capsys.readouterr().err
+    assert status in (1, 2), (words, status, printed)
+    assert printed and all(line.startswith("brushsvg: ") for line in printed.splitlines()), (words, printed)
+    assert "should not happen" not in printed, (words, printed)
     assert contents(desk) == before, words
-    return said.splitlines()
+    return printed.splitlines()
 
 
 @pytest.mark.parametrize("command", [each for each in COMMANDS if any(word in SOUND for word in each.split())])

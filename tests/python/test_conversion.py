@@ -139,7 +139,7 @@ def test_settings_of_a_drawing_apply_as_with_the_command(desk):
 
 
 @pytest.mark.parametrize(
-    ("choices", "said"),
+    ("choices", "expected"),
     [
         ({"width": 5000}, "out-of-range 5000 0.001 1000"),
         ({"wide": "most"}, "choice-unknown auto clamp"),
@@ -161,11 +161,11 @@ def test_settings_of_a_drawing_apply_as_with_the_command(desk):
         ({"join": "false"}, "wrong-type false True join"),
     ],
 )
-def test_a_refusal_is_one_error_and_writes_nothing(desk, choices, said):
+def test_a_refusal_is_one_error_and_writes_nothing(desk, choices, expected):
     with pytest.raises(brushsvg.Error) as reported:
         brushsvg.convert("two.svg", **{"out": "o.ngc", **choices})
     assert [path.name for path in desk.iterdir()] == ["two.svg"]
-    code, *numbers = said.split()
+    code, *numbers = expected.split()
     assert code in reported.value.code and all(
         number in str(reported.value) + reported.value.where for number in numbers
     )
@@ -294,14 +294,14 @@ def test_convert_can_be_cancelled_at_any_step(desk, word):
         .replace("1200mm", "5000")
         .replace("1600mm", "5000")
     )
-    said = []
+    progress_texts = []
 
     def cancel():
-        return any(word in text for text in said)
+        return any(word in text for text in progress_texts)
 
     with pytest.raises(CancelledError):
-        brushsvg.convert("long.svg", "o.ngc", picture="o.png", progress=said.append, cancel=cancel)
-    assert word in said[-1] and still_working() == []
+        brushsvg.convert("long.svg", "o.ngc", picture="o.png", progress=progress_texts.append, cancel=cancel)
+    assert word in progress_texts[-1] and still_working() == []
     assert sorted(path.name for path in desk.iterdir()) == ["long.svg", "two.svg"]
 
 

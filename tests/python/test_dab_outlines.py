@@ -106,8 +106,8 @@ def test_outlines_match_the_dabs_of_a_rotated_sheet():
     assert set(found) == {dab.name for dab in placed} - {"dab-6"}
     for dab in placed:
         if dab.name in found:
-            seen, said = shapely.Polygon(dab.rings_mm[0]), shapely.Polygon(found[dab.name])
-            assert seen.intersection(said).area > 0.95 * seen.union(said).area, dab.name
+            seen, computed = shapely.Polygon(dab.rings_mm[0]), shapely.Polygon(found[dab.name])
+            assert seen.intersection(computed).area > 0.95 * seen.union(computed).area, dab.name
 
 
 def test_dabs_that_touch_are_left_out():

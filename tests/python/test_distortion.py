@@ -120,7 +120,7 @@ def test_the_height_above_a_paper_map_is_kept_along_the_path(desk):
 
 
 @pytest.mark.parametrize(
-    ("rows", "said"),
+    ("rows", "expected"),
     [
         (GRID[:-1], "cell-machine 130 90 3 3"),
         ([*GRID, GRID[0]], "cell-machine 0 0"),
@@ -129,9 +129,9 @@ def test_the_height_above_a_paper_map_is_kept_along_the_path(desk):
         ([(*row[:2], 9.0) for row in GRID], "cell-machine 9 0 0 -5 5"),
     ],
 )
-def test_a_map_that_is_not_a_grid_is_refused(rows, said):
+def test_a_map_that_is_not_a_grid_is_refused(rows, expected):
     text = write_cell(find_cell("linuxcnc-3axis"))
-    with refused(said, "machine.map_mm"):
+    with refused(expected, "machine.map_mm"):
         parse_cell(f"{text}\n[machine]\nmap_mm = {[list(map(float, row)) for row in rows]}\n")
 
 
@@ -205,7 +205,7 @@ def _loads(work):
 
 
 @pytest.mark.parametrize(
-    ("line", "where", "said"),
+    ("line", "where", "expected"),
     [
         ("lean_mm_per_mm = [2.0, 0.0]", "machine.lean_mm_per_mm", "out-of-range 2 -1.5 1.5"),
         ("scale = [1.0, 1.2]", "machine.scale", "out-of-range 1.2 0.9 1.1"),
@@ -216,9 +216,9 @@ def _loads(work):
         ("leans = 1.0", "machine.leans", "key-unknown lean_mm_per_mm"),
     ],
 )
-def test_an_invalid_machine_table_is_refused(line, where, said):
+def test_an_invalid_machine_table_is_refused(line, where, expected):
     text = write_cell(find_cell("linuxcnc-3axis"))
-    with refused(said, where):
+    with refused(expected, where):
         parse_cell(f"{text}\n[machine]\n{line}\n")
 
 
@@ -307,9 +307,9 @@ def test_the_height_program_shows_the_height_error_of_the_paper(desk, capsys, ma
     text = (desk / "height.ngc").read_text()
     sections = re.findall(r"first to paint means --z-offset (-?[\d.]+)\)\n((?:.+\n)+)", text)
     assert len(sections) > 10
-    for said, lines in sections:
+    for title, lines in sections:
         reported = commanded_places(lines)
         over = over_the_paper(reported, machine)
-        assert np.isclose(over, float(said), atol=2e-3).sum() == 2 and over.min() > float(said) - 2e-3
+        assert np.isclose(over, float(title), atol=2e-3).sum() == 2 and over.min() > float(title) - 2e-3
         assert over[[0, -1]].min() > 5.0 - 2e-3
     assert call(capsys, "check", "height.ngc", "--cell", "mine.toml")[0] == 0

@@ -101,9 +101,9 @@ def test_end_styles_can_be_set_for_the_job_and_for_strokes(desk, capsys):
     rounded, butt = poses(BAR, "--end", "round"), poses(BAR, "--end", "butt")
     assert all(len(butt[name]) > len(rounded[name]) for name in "ab")
     assert poses(BAR) == butt  # the default suits a straight cut
-    said = BAR.replace("<svg ", '<svg data-brushsvg-end="round" ')
-    assert poses(said) == rounded
-    assert poses(said, "--end", "butt") == butt
+    with_setting = BAR.replace("<svg ", '<svg data-brushsvg-end="round" ')
+    assert poses(with_setting) == rounded
+    assert poses(with_setting, "--end", "butt") == butt
     of_one = BAR.replace('id="a"', 'id="a" data-brushsvg-end="round"')
     assert poses(of_one) == {"a": rounded["a"], "b": butt["b"]}
 
@@ -164,8 +164,8 @@ def test_document_settings_cannot_name_files(desk, capsys, file):
     (desk / "mine.toml").write_text("")
     (desk / "d.svg").write_text(on_root(f'cell="{file}"'))
     (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
-    said = f"cell-unknown data-brushsvg-cell {file} {' '.join(cell_names())}"
-    assert agrees(reported, said, "svg") and reported.advice == "give --cell"
+    expected = f"cell-unknown data-brushsvg-cell {file} {' '.join(cell_names())}"
+    assert agrees(reported, expected, "svg") and reported.advice == "give --cell"
 
 
 @pytest.mark.parametrize("file", ["/etc/hostname", "mine.json", "no-such-brush"])
@@ -221,15 +221,15 @@ def test_the_document_can_set_how_wide_outlines_are_painted(desk, capsys):
     assert main(["convert", "said.svg", "-o", "said.ngc"]) == 0
     assert main(["convert", "d.svg", "-o", "typed.ngc", "--wide", "clamp"]) == 0
     assert main(["convert", "d.svg", "-o", "filled.ngc"]) == 0
-    said = (desk / "said.ngc").read_bytes()
-    assert said == (desk / "typed.ngc").read_bytes() != (desk / "filled.ngc").read_bytes()
+    by_setting = (desk / "said.ngc").read_bytes()
+    assert by_setting == (desk / "typed.ngc").read_bytes() != (desk / "filled.ngc").read_bytes()
     assert main(["check", "said.ngc", "said.svg"]) == 0
     (desk / "no.svg").write_text(FAT.format('data-brushsvg-wide="refuse"'))
     assert is_reported(refusal_of(capsys, "convert", "no.svg", "-o", "x.ngc"), "width-out-of-reach 14", "bar")
 
 
 @pytest.mark.parametrize(
-    ("setting", "said"),
+    ("setting", "expected"),
     [
         ('compensation="most"', "data-brushsvg-compensation most none, constant, closed"),
         ('tolerance="11mm"', "data-brushsvg-tolerance 11 '[1e-05, 10] mm'"),
@@ -238,15 +238,15 @@ def test_the_document_can_set_how_wide_outlines_are_painted(desk, capsys):
         ('machine="x"', "data-brushsvg-machine width speed"),
     ],
 )
-def test_invalid_document_settings_stop_convert(desk, capsys, setting, said):
+def test_invalid_document_settings_stop_convert(desk, capsys, setting, expected):
     (desk / "d.svg").write_text(on_root(setting))
     (reported,) = refusal_of(capsys, "convert", "d.svg", "-o", "x.ngc")
-    assert agrees(reported, f"setting-invalid {said}"), reported
+    assert agrees(reported, f"setting-invalid {expected}"), reported
     assert main(["convert", "d.svg", "-o", "x.ngc", "--lenient"]) == 0
 
 
 @pytest.mark.parametrize(
-    ("name", "data", "said"),
+    ("name", "data", "expected"),
     [
         ("x.svg", b"", "file-empty"),
         ("x.svg", bytes(range(256)), "not-xml"),
@@ -255,11 +255,11 @@ def test_invalid_document_settings_stop_convert(desk, capsys, setting, said):
         ("x.dxf", None, "file-unreadable"),
     ],
 )
-def test_a_chart_for_a_file_that_is_not_a_drawing_is_refused(desk, capsys, name, data, said):
+def test_a_chart_for_a_file_that_is_not_a_drawing_is_refused(desk, capsys, name, data, expected):
     if data is not None:
         (desk / name).write_bytes(data)
     status, _, ((file, reported),) = in_json(capsys, "chart", "-o", "x.json", "--drawing", name)
-    assert (status, file) == (1, name) and agrees(reported, said), reported
+    assert (status, file) == (1, name) and agrees(reported, expected), reported
     assert not (desk / "x.json").exists()
 
 

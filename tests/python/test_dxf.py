@@ -491,8 +491,8 @@ def test_hidden_entities_are_left_out_and_counted():
         "Layout1": "paper-space 1",
     }
     assert len(design.notices) == len(expected)
-    for where, said in expected.items():
-        assert is_reported(design.notices, said, where), (said, design.notices)
+    for where, code in expected.items():
+        assert is_reported(design.notices, code, where), (code, design.notices)
 
 
 def test_paper_space_alone_is_refused():
@@ -570,7 +570,7 @@ def test_an_mpolygon_has_a_fill_and_a_border_in_their_colours():
 
 
 @pytest.mark.parametrize(
-    ("draw", "header", "said"),
+    ("draw", "header", "expected"),
     [
         (lambda m: [m.add_point((k, 3)) for k in range(3)], {"$PDMODE": 3}, "shown-otherwise points 3"),
         (lambda m: m.add_solid(SQUARE), {"$FILLMODE": 0}, "shown-otherwise outlines"),
@@ -579,7 +579,7 @@ def test_an_mpolygon_has_a_fill_and_a_border_in_their_colours():
         (lambda m: m.add_hatch().set_gradient() or SQUARE, {}, "paint-unread"),
     ],
 )  # fmt: skip
-def test_properties_that_are_not_reproduced_are_named_once(draw, header, said):
+def test_properties_that_are_not_reproduced_are_named_once(draw, header, expected):
     document = drawing()
     drawn = draw(document.modelspace())
     if drawn is SQUARE:
@@ -587,7 +587,7 @@ def test_properties_that_are_not_reproduced_are_named_once(draw, header, said):
     for name, value in header.items():
         document.header[name] = value
     (notice,) = read(document).notices
-    assert agrees(notice, said)
+    assert agrees(notice, expected)
 
 
 def test_heights_are_ignored_with_one_notice():

@@ -123,7 +123,7 @@ def test_r12_blocks_layers_and_handles_are_kept_with_newer_entities():
 
 
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "expected"),
     [
         (b"", "dxf-damaged"),
         (b"<svg/>", "dxf-damaged"),
@@ -135,8 +135,8 @@ def test_r12_blocks_layers_and_handles_are_kept_with_newer_entities():
         ),
     ],
 )
-def test_a_file_that_is_not_dxf_is_refused(data, said):
-    assert agrees(refusal(data), said)
+def test_a_file_that_is_not_dxf_is_refused(data, expected):
+    assert agrees(refusal(data), expected)
 
 
 def test_a_truncated_file_is_read_up_to_its_end():
@@ -180,7 +180,7 @@ def test_any_damage_gives_a_drawing_or_a_refusal(binary):
 
 
 @pytest.mark.parametrize(
-    ("entity", "said"),
+    ("entity", "expected"),
     [
         (LINE.replace("11 5", "11 nan"), "geometry-out-of-range 1e6"),
         (LINE.replace("11 5", "11 1e400"), "geometry-out-of-range 1e6"),
@@ -193,18 +193,18 @@ def test_any_damage_gives_a_drawing_or_a_refusal(binary):
         ("0 INSERT 8 0 2 nowhere 10 0 20 0", "dxf-block nowhere"),
     ],
 )  # fmt: skip
-def test_damaged_geometry_is_left_out_and_the_rest_is_read(entity, said):
+def test_damaged_geometry_is_left_out_and_the_rest_is_read(entity, expected):
     design = read_dxf(text_dxf(entity, "0 CIRCLE 8 0 10 0 20 0 40 5"), OPTIONS)
     assert len(design.elements) == 1
     damaged = [notice for notice in design.notices if notice.damaged]
     assert len(damaged) == 1
-    assert agrees(damaged[0], said), damaged
+    assert agrees(damaged[0], expected), damaged
     assert damaged[0].layer == "0"
     assert refusal(text_dxf(entity)).code == "nothing-to-paint"
 
 
 @pytest.mark.parametrize(
-    ("degree", "knots", "weights", "count", "said"),
+    ("degree", "knots", "weights", "count", "expected"),
     [
         (3, [0, 1], [], 4, "geometry-damaged 2 4 3"),
         (9, [], [], 2, "geometry-damaged 2 9"),
@@ -214,7 +214,7 @@ def test_damaged_geometry_is_left_out_and_the_rest_is_read(entity, said):
         (1, [3, 3, 3, 3], [], 2, "geometry-damaged coincide"),
     ],
 )
-def test_broken_splines_are_left_out(degree, knots, weights, count, said):
+def test_broken_splines_are_left_out(degree, knots, weights, count, expected):
     def draw(msp):
         spline = msp.add_spline(degree=degree)
         spline.knots, spline.weights = knots, weights
@@ -225,7 +225,7 @@ def test_broken_splines_are_left_out(degree, knots, weights, count, said):
     assert [element.id[:6] for element in design.elements] == ["CIRCLE"]
     (notice,) = design.notices
     assert notice.damaged
-    assert agrees(notice, said)
+    assert agrees(notice, expected)
 
 
 def test_splines_that_are_too_complex_are_left_out(monkeypatch):

@@ -159,7 +159,7 @@ def test_letters_of_several_heights_share_one_baseline(fonts):
 
 
 @pytest.mark.parametrize(
-    ("words", "attributes", "said"),
+    ("words", "attributes", "expected"),
     [
         (r"A{\T2;A}", {}, "text-unread distances letters"),
         ("A", {"bg_fill": 3}, "text-unread background"),
@@ -168,11 +168,11 @@ def test_letters_of_several_heights_share_one_baseline(fonts):
         (r"A {\H0;A}", {}, "geometry-damaged height 0.0"),
     ],
 )
-def test_an_unsupported_part_of_mtext_is_named(fonts, words, attributes, said):
+def test_an_unsupported_part_of_mtext_is_named(fonts, words, attributes, expected):
     document = in_boxes()
     document.modelspace().add_line((0, 0), (5, 5))
     document.modelspace().add_mtext(words, {"style": "Boxes", "char_height": 7} | attributes)
-    assert is_reported(read(document).notices, said)
+    assert is_reported(read(document).notices, expected)
 
 
 def test_an_attribute_may_have_several_lines(fonts):

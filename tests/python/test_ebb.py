@@ -249,8 +249,8 @@ def test_the_documented_sender_sends_only_commands_and_stops_at_an_error(desk, c
 def test_a_start_outside_the_workspace_is_reported(desk, capsys):
     far = replace(CELL, name="far", paper=Paper((100.0, 0.0, 0.0)))
     Path("far.toml").write_text(write_cell(far))
-    status, _, said = in_json(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "far.toml")
-    assert status == 1 and is_reported(said, "tool-off-sheet 70.00 motors")
+    status, _, reported = in_json(capsys, "convert", "a.svg", "-o", "a.ebb", "--cell", "far.toml")
+    assert status == 1 and is_reported(reported, "tool-off-sheet 70.00 motors")
 
 
 @pytest.mark.parametrize(

@@ -86,10 +86,10 @@ def test_first_word(run):
 
 @pytest.mark.slow
 def test_corners(run):
-    said = run("02_corners.py").splitlines()
-    turn, lifted = numbers(r"overlap (\d\.\d+)", "\n".join(said))
+    printed = run("02_corners.py").splitlines()
+    turn, lifted = numbers(r"overlap (\d\.\d+)", "\n".join(printed))
     assert 0.95 < turn < lifted
-    assert [line.count("zigzag") for line in said] == [1, 4]
+    assert [line.count("zigzag") for line in printed] == [1, 4]
     assert picture_has_paint("corners_turn.png") and picture_has_paint("corners_auto.png")
 
 
@@ -105,9 +105,9 @@ def test_wide_shapes(run):
 def test_text(run):
     pytest.importorskip("uharfbuzz")
     pytest.importorskip("matplotlib")
-    said = run("04_text.py")
-    assert numbers(r"overlap .*: (\d\.\d+)", said)[0] > 0.95
-    letters = re.findall(r"glyph-(\d)-(\w)", said)
+    printed = run("04_text.py")
+    assert numbers(r"overlap .*: (\d\.\d+)", printed)[0] > 0.95
+    letters = re.findall(r"glyph-(\d)-(\w)", printed)
     assert letters == sorted(letters) and {letter for _, letter in letters} == set("Helo")
     assert brushsvg.read_drawing("text.svg").elements
     assert picture_has_paint("text.png")
@@ -125,8 +125,8 @@ def test_brush_from_table(run):
 
 @pytest.mark.slow
 def test_brush_from_photo(run):
-    said = run("06_brush_from_photo.py")
-    true, found = numbers(r"true (\d+\.\d+)", said), numbers(r"found (\d+\.\d+)", said)
+    printed = run("06_brush_from_photo.py")
+    true, found = numbers(r"true (\d+\.\d+)", printed), numbers(r"found (\d+\.\d+)", printed)
     assert len(true) == 3
     assert found == pytest.approx(true, abs=0.35)  # the chart of few strokes promises about 0.2 mm
     assert brushsvg.find_brush("mine.json").lag(4.0) == pytest.approx(found[1], abs=0.01)
@@ -136,8 +136,8 @@ def test_brush_from_photo(run):
 @pytest.mark.slow
 def test_arm(run):
     pytest.importorskip("ssik")
-    said = run("07_arm.py")
-    assert "refused: " in said and "mm of the reach of cell my-ur5e" in said
+    printed = run("07_arm.py")
+    assert "refused: " in printed and "mm of the reach of cell my-ur5e" in printed
     assert brushsvg.read_cell("my_ur5e.toml").paper.origin_mm == (-120.0, -600.0, 20.0)
     assert Path("arm.script").read_text().count("movel(") + Path("arm.script").read_text().count("movep(") > 0
     assert not brushsvg.check("arm.script", EXAMPLES / "vincent.svg", cell="my_ur5e.toml").problems
@@ -145,27 +145,27 @@ def test_arm(run):
 
 @pytest.mark.slow
 def test_check(run):
-    said = run("08_check.py")
-    assert "word.ngc: 0 problems" in said
-    assert "a rapid move at 0.10 mm" in said
+    printed = run("08_check.py")
+    assert "word.ngc: 0 problems" in printed
+    assert "a rapid move at 0.10 mm" in printed
     assert Path("word.ngc").read_text() != Path("edited.ngc").read_text()
 
 
 @pytest.mark.slow
 def test_compare(run):
-    said = run("09_compare.py")
-    first, second = numbers(r"sheet (\d\.\d+)", said)
+    printed = run("09_compare.py")
+    first, second = numbers(r"sheet (\d\.\d+)", printed)
     assert 0.3 < first < 0.75 < second
-    assert said.count("from the predicted place") == 9
+    assert printed.count("from the predicted place") == 9
     assert json.loads(Path("corrections.json").read_text())["format"] == "brushsvg/comparison"
     assert cv2.imread("seen.png") is not None
 
 
 @pytest.mark.slow
 def test_batch(run):
-    said = run("10_batch.py")
-    assert "5 drawings, 1 refused, 0 done by an earlier run" in said
-    assert min(numbers(r"overlap (\d\.\d+)", said)) > 0.95
+    printed = run("10_batch.py")
+    assert "5 drawings, 1 refused, 0 done by an earlier run" in printed
+    assert min(numbers(r"overlap (\d\.\d+)", printed)) > 0.95
     assert {path.stem for path in Path("painted/programs").iterdir()} == {
         "robot",
         "vincent",

@@ -76,14 +76,14 @@ def test_a_missing_or_foreign_part_is_refused(job, capsys):
     names = sorted(path.stem for path in job.glob("B*.ls") if path.name != "waves.ls")
     whole = (job / "waves.ls").read_bytes()
     first, second = (f" : CALL {name} ;\r\n".encode() for name in names[:2])
-    for changed, said in (
+    for changed, expected in (
         (whole.replace(first + second, second + first), "11"),
         (whole.replace(second, b""), "21"),
         (whole.replace(second, second + second), names[1]),
         (whole.replace(names[0].encode(), b"BOTHER01"), "BOTHER01"),
     ):
         (job / "waves.ls").write_bytes(changed)
-        assert said in check(job, capsys)
+        assert expected in check(job, capsys)
     (job / "waves.ls").write_bytes(whole)
     part = job / f"{names[1]}.ls"
     part.write_bytes(part.read_bytes().replace(b"20mm/sec", b"90mm/sec", 5))
@@ -102,8 +102,8 @@ def small(tmp_path, capsys):
 
     def ends(change=lambda text: text):
         program.write_text(change(text), newline="")
-        status, _, said = in_json(capsys, "check", program, tmp_path / "small.json", *cell)
-        return status, said
+        status, _, reported = in_json(capsys, "check", program, tmp_path / "small.json", *cell)
+        return status, reported
 
     assert ends()[0] == 0
     return ends
@@ -115,13 +115,13 @@ def test_a_frame_is_set_before_it_is_chosen(small):
         assert chosen in text and first in text
         return text.replace(chosen, "").replace(first, chosen + first, 1)
 
-    status, said = small(before)
-    assert status == 1 and is_reported(said, "line-incomplete")
+    status, reported = small(before)
+    assert status == 1 and is_reported(reported, "line-incomplete")
 
 
 def test_a_file_that_begins_with_another_program_is_refused(small):
-    status, said = small(lambda text: text.replace("/PROG  BRUSHSVG", "/PROG  BOTHER", 1))
-    assert status == 1 and is_reported(said, "line-unread"), said
+    status, reported = small(lambda text: text.replace("/PROG  BRUSHSVG", "/PROG  BOTHER", 1))
+    assert status == 1 and is_reported(reported, "line-unread"), reported
 
 
 def test_a_speed_in_another_unit_is_read_in_that_unit(small):
@@ -151,11 +151,11 @@ def test_remarks_fit_the_pendant_and_are_read_back():
     text = text_for(on("lrmate200id", SQUARE), header=header).replace("\r\n", "\n")
     remarks = [line for line in text.split("\n") if line.startswith(" : !")]
     assert len(remarks) == 9 and max(map(len, remarks)) == len(" : !") + REMARK_LETTERS + len(" ;")
-    said = f"title: {title}".replace(";", ",")
-    assert read_header(text).title == said.removeprefix("title: ")
-    assert sound(text, find_cell("lrmate200id")).header[0] == said
+    expected = f"title: {title}".replace(";", ",")
+    assert read_header(text).title == expected.removeprefix("title: ")
+    assert sound(text, find_cell("lrmate200id")).header[0] == expected
     acts = read_program(text, ".ls", on("lrmate200id", SQUARE)).acts
-    assert f"({said})" in [act.text for act in acts]
+    assert f"({expected})" in [act.text for act in acts]
 
 
 def test_a_single_program_has_an_empty_part_name():

@@ -137,7 +137,7 @@ def test_intervals_cover_the_truth(norm):
 
 
 @pytest.mark.parametrize(
-    ("depth", "value", "said"),
+    ("depth", "value", "expected"),
     [
         ([3, 3, 3, 3, 3], [1, 2, 1, 2, 1], "depths-too-few 3 1"),
         ([], [], "depths-too-few 0"),
@@ -145,8 +145,8 @@ def test_intervals_cover_the_truth(norm):
         ([1, 2, 3], [1, 2], "sizes-differ 3 2"),
     ],
 )
-def test_data_that_cannot_be_fitted_are_refused(depth, value, said):
-    with refused(said):
+def test_data_that_cannot_be_fitted_are_refused(depth, value, expected):
+    with refused(expected):
         _core.fit_law(depth, value, _core.LawShape(RANGE, 2))
 
 

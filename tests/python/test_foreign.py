@@ -183,8 +183,8 @@ def test_check_predicts_what_a_brush_paints(desk, capsys):
     assert RUNNABLE not in out
     status, out, _ = call(capsys, "check", "servo.nc", "--cell", "grbl-servo", "--sheet", "120x100")
     assert status == 0 and gives(out.splitlines()[1], "2")
-    status, _, said = in_json(capsys, "check", "servo.nc")
-    assert status == 1 and is_reported(said, "servo-unknown 7 M3")
+    status, _, reported = in_json(capsys, "check", "servo.nc")
+    assert status == 1 and is_reported(reported, "servo-unknown 7 M3")
 
 
 ANGLES = """G21 G90
@@ -227,9 +227,9 @@ def test_the_advice_of_check_works(desk, capsys, program, typed, reported):
     check once advised M3 and grbl-servo for an M280 program, and --paper-z for a servo.
     """
     (desk / "f.gcode").write_text(program)
-    status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", *typed.split())
-    assert status == 1 and agrees(said, reported), said
-    advised = re.search(r"--(cell|paper-z) [\w.-]+", said.advice)[0].split()
+    status, _, ((_, messages),) = in_json(capsys, "check", "f.gcode", *typed.split())
+    assert status == 1 and agrees(messages, reported), messages
+    advised = re.search(r"--(cell|paper-z) [\w.-]+", messages.advice)[0].split()
     status, out, _ = call(capsys, "check", "f.gcode", *advised)
     strokes = "1" if "Z5" in program else "2"
     assert status == 0 and gives(out.splitlines()[1], strokes)
@@ -242,23 +242,23 @@ def test_servo_values_outside_shipped_tables_advise_to_write_a_table(desk, capsy
     """
     (desk / "f.gcode").write_text(SERVO.replace("S500", "S30"))
     for cell in ("linuxcnc-3axis", "grbl-servo"):
-        status, _, ((_, said),) = in_json(capsys, "check", "f.gcode", "--cell", cell)
-        assert status == 1 and agrees(said, "servo-unknown 7 S30 cell grbl-servo [servo]"), said
-    command = re.search(r"brushsvg (cell new .*?)  ", said.advice)[1]
+        status, _, ((_, reported),) = in_json(capsys, "check", "f.gcode", "--cell", cell)
+        assert status == 1 and agrees(reported, "servo-unknown 7 S30 cell grbl-servo [servo]"), reported
+    command = re.search(r"brushsvg (cell new .*?)  ", reported.advice)[1]
     assert call(capsys, *command.split())[0] == 0
     table = "table = [[-8.0, 0.0], [-1.0, 30.0], [10.0, 90.0]]"
     mine = re.sub(r"(?m)^table = .*", table, (desk / "mine.toml").read_text())
     (desk / "mine.toml").write_text(mine)
     assert call(capsys, "check", "f.gcode", "--cell", "mine.toml")[0] == 0
-    status, _, said = in_json(capsys, "check", "f.gcode", "--cell", "mine.toml", "--paper-z", "1")
-    assert status == 1 and is_reported(said, "flag-without-effect --paper-z")
+    status, _, reported = in_json(capsys, "check", "f.gcode", "--cell", "mine.toml", "--paper-z", "1")
+    assert status == 1 and is_reported(reported, "flag-without-effect --paper-z")
 
 
 def test_without_heights_no_paper_height_is_suggested(desk, capsys):
     (desk / "f.gcode").write_text("G21\nG0 X1 Y1\nG1 X40 Y5 F100\n")
     for command in (("check", "f.gcode"), ("convert", "f.gcode", "-o", "f.ngc")):
-        status, _, ((_, said),) = in_json(capsys, *command)
-        assert status == 1 and "--paper-z" not in said.advice, said
+        status, _, ((_, reported),) = in_json(capsys, *command)
+        assert status == 1 and "--paper-z" not in reported.advice, reported
 
 
 @pytest.mark.parametrize(
@@ -274,14 +274,14 @@ def test_without_heights_no_paper_height_is_suggested(desk, capsys):
 )
 def test_check_refuses_dangerous_programs(desk, capsys, old, new, reported):
     (desk / "bad.gcode").write_text(INCHES.replace(old, new))
-    status, _, said = in_json(capsys, "check", "bad.gcode", "--sheet", "90x80")
-    assert status == 1 and is_reported(said, reported)
+    status, _, messages = in_json(capsys, "check", "bad.gcode", "--sheet", "90x80")
+    assert status == 1 and is_reported(messages, reported)
 
 
 def test_a_missing_unit_is_reported(desk, capsys):
     (desk / "f.gcode").write_text("G0 Z5\nG0 X30 Y30\nG1 Z-1 F300\nG1 X60 F600\nG0 Z5\n")
-    status, _, said = in_json(capsys, "check", "f.gcode")
-    assert status == 0 and is_reported(said, "unit-assumed 1")
+    status, _, reported = in_json(capsys, "check", "f.gcode")
+    assert status == 0 and is_reported(reported, "unit-assumed 1")
     (desk / "f.gcode").write_text("G21\n" + (desk / "f.gcode").read_text())
     assert in_json(capsys, "check", "f.gcode")[2] == []
 
@@ -291,8 +291,8 @@ def test_convert_accepts_foreign_programs_and_check_agrees(desk, capsys, name):
     assert call(capsys, "convert", name, "-o", "out.ngc", "--width", "3")[0] == 0
     status, out, _ = call(capsys, "check", "out.ngc", name, "--width", "3")
     assert status == 0 and RUNNABLE in out
-    status, _, said = in_json(capsys, "convert", "out.ngc", "-o", "again.ngc")
-    assert status == 1 and is_reported(said, "program-ours")
+    status, _, reported = in_json(capsys, "convert", "out.ngc", "-o", "again.ngc")
+    assert status == 1 and is_reported(reported, "program-ours")
 
 
 @pytest.mark.parametrize(
@@ -362,8 +362,8 @@ def test_a_servo_left_down_after_the_last_line_is_reported(desk, capsys, end, is
     """
     assert SERVO.endswith("M5\n")
     (desk / "end.nc").write_text(SERVO.removesuffix("M5\n") + end)
-    status, _, said = in_json(capsys, "check", "end.nc", "--cell", "grbl-servo", "--sheet", "120x100")
-    assert status == is_down and is_reported(said, "ends-on-paper 12 z") == is_down, said
+    status, _, reported = in_json(capsys, "check", "end.nc", "--cell", "grbl-servo", "--sheet", "120x100")
+    assert status == is_down and is_reported(reported, "ends-on-paper 12 z") == is_down, reported
 
 
 DOTS = {
@@ -412,8 +412,8 @@ def test_a_pen_that_goes_down_and_up_again_draws_a_dot(desk, capsys, pen):
 def test_check_reports_missing_information(desk, capsys, program, reported):
     (desk / "bad.gcode").write_text(program)
     cell = ("--cell", "grbl-servo") if "M3" in program else ()
-    status, _, said = in_json(capsys, "check", "bad.gcode", *cell)
-    assert status == 1 and is_reported(said, reported), said
+    status, _, messages = in_json(capsys, "check", "bad.gcode", *cell)
+    assert status == 1 and is_reported(messages, reported), messages
 
 
 def test_a_brushsvg_program_without_its_header_is_recognized_by_its_strokes(desk, capsys):
@@ -421,6 +421,6 @@ def test_a_brushsvg_program_without_its_header_is_recognized_by_its_strokes(desk
     lines = (desk / "out.ngc").read_text().splitlines()
     first = next(k for k, line in enumerate(lines) if line.startswith("(stroke 1 of "))
     (desk / "headless.ngc").write_text("\n".join(["G21 G90", "G0 Z10", *lines[first:]]))
-    status, _, said = in_json(capsys, "convert", "headless.ngc", "-o", "again.ngc")
-    assert status == 1 and is_reported(said, "program-ours")
+    status, _, reported = in_json(capsys, "convert", "headless.ngc", "-o", "again.ngc")
+    assert status == 1 and is_reported(reported, "program-ours")
     assert call(capsys, "check", "headless.ngc")[0] == 1

@@ -37,8 +37,8 @@ def test_every_command_is_in_one_group(capsys):
         top := {name for name in commands() if " " not in name}
     )
     assert main(["--help"]) == 0
-    said = capsys.readouterr().out
-    assert all(f"\n  {name} " in said for name in top)
+    printed = capsys.readouterr().out
+    assert all(f"\n  {name} " in printed for name in top)
 
 
 @pytest.mark.parametrize("name", commands())

@@ -173,8 +173,8 @@ def test_a_plotter_selects_pens_by_the_colours_of_the_cell(tmp_path, capsys, mon
     own = replace(CELL, name="own", pen=replace(CELL.pen, colours=tuple(reversed(colours))))
     Path("own.toml").write_text(write_cell(own))
     words = ("pens.svg", "-o", "pens.hpgl", "--cell", "own.toml", "--brush", "rigid")
-    status, _, said = call(capsys, "convert", *words)
-    assert status == 0 and said[-1].count(", ") == 2, "how many strokes, how long, how often another pen"
+    status, _, reported = call(capsys, "convert", *words)
+    assert status == 0 and reported[-1].count(", ") == 2, "how many strokes, how long, how often another pen"
     text = Path("pens.hpgl").read_text()
     taken, target = [], []
     for line in text.splitlines():
@@ -186,15 +186,15 @@ def test_a_plotter_selects_pens_by_the_colours_of_the_cell(tmp_path, capsys, mon
     check = ("check", "pens.hpgl", "pens.svg", "--cell", "own.toml")
     assert RUNNABLE in call(capsys, *check)[1]
     Path("pens.hpgl").write_text(text.replace(f"SP{target[0]};", f"SP{target[1]};", 1))
-    status, _, said = in_json(capsys, *check)
-    assert status == 1 and is_reported(said, "program-changed")
+    status, _, reported = in_json(capsys, *check)
+    assert status == 1 and is_reported(reported, "program-changed")
     Path("pens.hpgl").write_text(re.sub('"paint: pen (......)"', '"paint: pen fedcba"', text, count=1))
-    status, _, said = in_json(capsys, *check)
-    assert status == 1 and is_reported(said, "colour-not-served #fedcba")
+    status, _, reported = in_json(capsys, *check)
+    assert status == 1 and is_reported(reported, "colour-not-served #fedcba")
     one = replace(own, pen=replace(own.pen, colours=own.pen.colours[:1]))
     Path("own.toml").write_text(write_cell(one))
-    status, _, said = in_json(capsys, "convert", "--force", *words)
-    assert status == 1 and is_reported(said, "colour-not-served")
+    status, _, reported = in_json(capsys, "convert", "--force", *words)
+    assert status == 1 and is_reported(reported, "colour-not-served")
 
 
 def test_an_air_run_is_drawn_with_the_pen_up(tmp_path, capsys, monkeypatch):
@@ -222,8 +222,8 @@ def test_a_stroke_at_the_end_of_the_previous_one_lands_there(tmp_path, capsys, c
     made = str(tmp_path / f"lines{POSTS[find_cell(cell).language].extensions[0]}")
     flags = ("--cell", cell, "--brush", "rigid")
     assert call(capsys, "convert", str(drawing), "-o", made, *flags)[0] == 0
-    status, said, _ = call(capsys, "check", made, str(drawing), *flags)
-    assert status == 0 and RUNNABLE in said
+    status, printed, _ = call(capsys, "check", made, str(drawing), *flags)
+    assert status == 0 and RUNNABLE in printed
 
 
 @pytest.mark.parametrize(
@@ -291,5 +291,5 @@ def test_a_tolerance_finer_than_the_units_is_refused(tmp_path, capsys):
         "--brush",
         "rigid",
     )
-    status, _, said = in_json(capsys, *words, "--tolerance", "0.04")
-    assert status == 1 and is_reported(said, "decimals-too-few 0.025 0.0125 0.01")
+    status, _, reported = in_json(capsys, *words, "--tolerance", "0.04")
+    assert status == 1 and is_reported(reported, "decimals-too-few 0.025 0.0125 0.01")

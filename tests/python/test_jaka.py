@@ -156,7 +156,7 @@ def test_a_written_program_is_read_back(cell):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         ("movl(to, 0, 20.000", "movl(to, 1, 20.000", "line-unread"),
         ("movl(to, 0, 20.000", "movj(to, 0, 20.000", "line-unread"),
@@ -167,11 +167,11 @@ def test_a_written_program_is_read_back(cell):
         ("to = ", "via = ", "line-incomplete"),
     ],
 )  # fmt: skip
-def test_the_reader_refuses_invalid_programs(old, new, said):
+def test_the_reader_refuses_invalid_programs(old, new, expected):
     text = text_for(CELL)
     assert old in text
     changed = text.replace(old, new) if old == "to = " else text.replace(old, new, 1)
-    with refused(said):
+    with refused(expected):
         read_program(changed, ".jks", CELL)
 
 

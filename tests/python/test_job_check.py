@@ -111,10 +111,10 @@ def test_any_change_of_a_setup_program_is_reported(desk, capsys, kind):
     assert call(capsys, "setup", job, *drawing, "-o", f"job{suffix}", *cell)[0] == 0
     text = (desk / f"job{suffix}").read_text()
     assert call(capsys, "check", f"job{suffix}")[0] == 0
-    for edit, said in CHANGED[kind]:
+    for edit, expected in CHANGED[kind]:
         (desk / f"job{suffix}").write_text(edit(text))
         status, _, reported = in_json(capsys, "check", f"job{suffix}")
-        assert (status, any(agrees(each, said) for _, each in reported)) == (1, True), (said, reported)
+        assert (status, any(agrees(each, expected) for _, each in reported)) == (1, True), (expected, reported)
 
 
 def test_a_job_without_picture_or_drawing_is_reported(desk, capsys):

@@ -52,7 +52,7 @@ def test_height_strokes_are_separate_and_on_the_sheet():
 
 
 @pytest.mark.parametrize(
-    ("sheet", "heights", "said"),
+    ("sheet", "heights", "expected"),
     [
         ((30, 20), (1, -1, 0.1), "strokes-out-of-range 2 21"),
         ((200, 100), (1, -12, 0.5), "height-out-of-range -12 '[-10, 1]'"),
@@ -61,8 +61,8 @@ def test_height_strokes_are_separate_and_on_the_sheet():
         ((200, 100), (-1, 1, 0.1), "strokes-out-of-range 2 100"),
     ],
 )
-def test_height_strokes_that_do_not_fit_are_refused(sheet, heights, said):
-    with refused(said):
+def test_height_strokes_that_do_not_fit_are_refused(sheet, heights, expected):
+    with refused(expected):
         paper_height(BRUSH, CELL, sheet, *heights)
 
 

@@ -156,13 +156,13 @@ def calibrated(tmp_path, capsys, monkeypatch):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             status = main(["calibrate", str(tmp_path / f"m.{suffix}"), "-o", str(tmp_path / "b.json")])
-        said = capsys.readouterr().err
-        if status == 0 or "so far, so good" in said:
+        message = capsys.readouterr().err
+        if status == 0 or "so far, so good" in message:
             (tmp_path / "b.json").unlink(missing_ok=True)
             return None
-        assert status == 1 and SENTENCE.fullmatch(said) and f"m.{suffix}: " in said, said
+        assert status == 1 and SENTENCE.fullmatch(message) and f"m.{suffix}: " in message, message
         assert not (tmp_path / "b.json").exists()
-        return said
+        return message
 
     return run
 
@@ -275,6 +275,6 @@ def test_each_chart_value_has_a_physical_range(path):
 def test_a_chart_given_as_a_plan_is_refused_with_its_name(calibrated, tmp_path):
     (tmp_path / "chart.json").write_text(json.dumps(CHART))
     for given in ("chart.json", CHART):
-        said = calibrated(json.dumps(painted() | {"plan": given}))
-        assert "plan" in said and "brushsvg/chart" in said, said
+        message = calibrated(json.dumps(painted() | {"plan": given}))
+        assert "plan" in message and "brushsvg/chart" in message, message
     assert "brushsvg/chart" in calibrated(json.dumps(CHART))

@@ -83,7 +83,7 @@ def test_one_lag_at_a_depth_is_the_lag_at_all_depths():
 
 
 @pytest.mark.parametrize(
-    ("lags", "said"),
+    ("lags", "expected"),
     [
         ([], "measurement-missing"),
         ([(3, 0)], "out-of-range 0"),
@@ -95,8 +95,8 @@ def test_one_lag_at_a_depth_is_the_lag_at_all_depths():
         ([(1, 5), (2, 20), (4, 3), (5, 18), (7, 2)], "law-undetermined"),
     ],
 )
-def test_impossible_lags_are_refused(lags, said):
-    with refused(said):
+def test_impossible_lags_are_refused(lags, expected):
+    with refused(expected):
         new_brush("mine", lags, [(3, 2.5), (8, 7)])
 
 
@@ -113,7 +113,7 @@ def test_zero_lag_makes_a_pen():
 
 
 @pytest.mark.parametrize(
-    ("widths", "deepest", "said"),
+    ("widths", "deepest", "expected"),
     [
         ([], None, "measurement-missing"),
         ([(3, 7), (8, 2)], None, "width-falls"),
@@ -123,20 +123,20 @@ def test_zero_lag_makes_a_pen():
         ([(3, 2)], 2, "depth-out-of-range 2"),
     ],
 )
-def test_impossible_widths_and_depths_are_refused(widths, deepest, said):
-    with refused(said):
+def test_impossible_widths_and_depths_are_refused(widths, deepest, expected):
+    with refused(expected):
         new_brush("mine", 5.0, widths, deepest)
 
 
 def test_widths_can_be_read_from_a_table():
     assert read_widths("\ufeffdepth_mm, width_mm,note\n3, 2.5,a\n8,7,b\n") == [(3, 2.5), (8, 7)]
-    for text, where, said in [
+    for text, where, expected in [
         ("3,2.5\n", "", "table-columns depth_mm,width_mm"),
         ("", "", "table-columns depth_mm,width_mm"),
         ("depth_mm,width_mm\n3,wide\n", "line 2, width_mm", "not-a-number wide"),
         ("depth_mm,width_mm\n3\n", "line 2, width_mm", "not-a-number"),
     ]:
-        with refused(said, where):
+        with refused(expected, where):
             read_widths(text)
 
 
@@ -164,7 +164,7 @@ def test_a_table_is_read_in_any_spreadsheet_format(separator, mark, ending):
 
 
 @pytest.mark.parametrize(
-    ("table", "where", "said"),
+    ("table", "where", "expected"),
     [
         (
             "depth_mm;width_mm\n3;2,5\n8;7.1\n",
@@ -193,8 +193,8 @@ def test_a_table_is_read_in_any_spreadsheet_format(separator, mark, ending):
         ('depth_mm;width_mm\n"3;2\n', "line 2, depth_mm", "not-a-number"),
     ],
 )
-def test_an_ambiguous_table_is_refused(table, where, said):
-    with refused(said, where) as refusal:
+def test_an_ambiguous_table_is_refused(table, where, expected):
+    with refused(expected, where) as refusal:
         read_widths(table)
     assert ("4.6" in str(refusal.value)) == table.endswith("3,2,5\n"), "only commas can be both"
 
@@ -248,7 +248,7 @@ def test_a_copied_brush_paints_the_same_and_claims_no_measurement(tmp_path, monk
 
 
 @pytest.mark.parametrize(
-    ("typed", "said"),
+    ("typed", "expected"),
     [
         ("brush new -o mine.json --lag 5", "--widths FILE"),
         ("brush new -o mine.json --lag 5 --width-at 3", "3=2.5"),
@@ -262,15 +262,15 @@ def test_a_copied_brush_paints_the_same_and_claims_no_measurement(tmp_path, monk
         ("brush plot round-6 -o out.pdf", ".png or .svg"),
     ],
 )
-def test_wrong_usage_is_refused(typed, said, tmp_path, monkeypatch, capsys):
+def test_wrong_usage_is_refused(typed, expected, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(typed.split()) == 2
-    assert said in capsys.readouterr().err
+    assert expected in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
-    ("typed", "file", "said"),
+    ("typed", "file", "expected"),
     [
         ("brush new -o round-6.json --lag 5 --width-at 3=2", "round-6.json", "name-taken round-6"),
         ("brush new -o mine.json --lag 5 --widths none.csv", "none.csv", "file-unreadable"),
@@ -280,10 +280,10 @@ def test_wrong_usage_is_refused(typed, said, tmp_path, monkeypatch, capsys):
         ("brush new -o odd.json --lag 5 --width-at 0.001=900", "odd.json", "not-millimetres"),
     ],
 )
-def test_input_that_makes_no_brush_is_refused(typed, file, said, tmp_path, monkeypatch, capsys):
+def test_input_that_makes_no_brush_is_refused(typed, file, expected, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     status, _, ((about, reported),) = in_json(capsys, *typed.split())
-    assert (status, about) == (1, file) and agrees(reported, said), reported
+    assert (status, about) == (1, file) and agrees(reported, expected), reported
     assert not list(tmp_path.iterdir())
 
 

@@ -554,13 +554,13 @@ def test_the_program_fetches_paint_in_the_middle_of_a_stroke():
 
 
 def test_a_station_on_the_sheet_or_too_far_away_is_refused():
-    for place, said in (
+    for place, expected in (
         ((40.0, 30.0), "station-on-sheet '400 x 100 mm'"),
         ((-90.0, 10.0), "tool-off-sheet 60.00 left"),
     ):
         cell = cell_with(Reload("stroke"), Station("ink", place, depth_mm=5.0))
         reported = [each for each in forbidden(plan_of((9, "", "")), BRUSH, cell) if each.where == "ink"]
-        assert are_reported(reported, said)
+        assert are_reported(reported, expected)
 
 
 def test_check_simulates_freshly_dipped_strokes_in_cells_without_reload():

@@ -90,7 +90,7 @@ def bent(mark, **changes):
 
 
 @pytest.mark.parametrize(
-    ("plan_", "marks_", "where", "said"),
+    ("plan_", "marks_", "where", "expected"),
     [
         (plan(), scaled([1e-3, 1e-3]), "marks", "marks-scaled metres"),
         (plan(), scaled([1 / 25.4, 1 / 25.4]), "marks", "marks-scaled inches"),
@@ -173,8 +173,8 @@ def bent(mark, **changes):
         ),
     ],
 )
-def test_invalid_painted_marks_are_refused(plan_, marks_, where, said):
-    with refused(said, where):
+def test_invalid_painted_marks_are_refused(plan_, marks_, where, expected):
+    with refused(expected, where):
         read_painted(plan_, marks_, None)
 
 
@@ -184,7 +184,7 @@ def test_an_invalid_plan_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("keys", "where", "said"),
+    ("keys", "where", "expected"),
     [
         ({"plan": "p.json"}, "plan", "measurements-mixed"),
         ({"marks": [], "lag": [{"depth_mm": 3, "value_mm": 7}]}, "lag", "measurements-mixed"),
@@ -192,14 +192,14 @@ def test_an_invalid_plan_is_refused():
         ({"marks": [], "expected": {"height_mm": -1}}, "expected.height_mm", "out-of-range 0 30"),
     ],
 )
-def test_invalid_measurement_files_are_refused(keys, where, said):
+def test_invalid_measurement_files_are_refused(keys, where, expected):
     head = {"format": "brushsvg/measurements", "version": 1}
-    with refused(said, where):
+    with refused(expected, where):
         read_measurements(json.dumps(head | keys).encode(), ".json")
 
 
 @pytest.mark.parametrize(
-    ("moved", "said"),
+    ("moved", "expected"),
     [
         (lambda p: [200, 200] - p, "marks-displaced 180"),
         (lambda p: p[:, ::-1] * [-1, 1] + [200, 0], "marks-displaced 90 counter-clockwise"),
@@ -210,7 +210,7 @@ def test_invalid_measurement_files_are_refused(keys, where, said):
         (lambda p: p - [100, 100], "marks-displaced 141"),
     ],
 )
-def test_a_displaced_sheet_is_reported_with_its_displacement(moved, said):
+def test_a_displaced_sheet_is_reported_with_its_displacement(moved, expected):
     """A sheet in another place gets one report, with its displacement.
 
     Instead, each of these sheets was once queried for the ids of its strokes.
@@ -220,7 +220,7 @@ def test_a_displaced_sheet_is_reported_with_its_displacement(moved, said):
     every = [*strokes(), *more]
     plan_ = {"passes": [{"stroke": name, "poses_mm": poses, "speed_mm_s": 20} for name, poses in every]}
     rows = [{"stroke": name, "outline_mm": [moved(np.array(around(poses))).tolist()]} for name, poses in every]
-    with refused(said, "marks"):
+    with refused(expected, "marks"):
         read_painted(plan_, rows, None)
 
 

@@ -72,7 +72,7 @@ def test_a_stroke_from_a_path_is_painted_and_returned_as_a_path():
 
 
 @pytest.mark.parametrize(
-    ("path", "width_mm", "said"),
+    ("path", "width_mm", "expected"),
     [
         ("M0 0 L10 0 M20 0 L30 0", 2, "wrong-type 2"),
         ("", 2, "wrong-type"),
@@ -89,8 +89,8 @@ def test_a_stroke_from_a_path_is_painted_and_returned_as_a_path():
         ("M0 0 L10 0", np.nan, "out-of-range nan (0"),
     ],
 )
-def test_invalid_paths_are_refused(path, width_mm, said):
-    with refused(said):
+def test_invalid_paths_are_refused(path, width_mm, expected):
+    with refused(expected):
         brushsvg.stroke_from_path(path, width_mm)
 
 

@@ -29,8 +29,8 @@ def desk(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", [name for name in LANGUAGES if name not in (*SERVOS, "fr3")])
 def test_a_program_stops_for_each_pen_change_and_check_requires_it(desk, capsys, name):
     program = f"pens{LANGUAGES[name]}"
-    status, _, said = call(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
-    assert status == 0 and sum(gives(line, "2") for line in said) == 1
+    status, _, reported = call(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
+    assert status == 0 and sum(gives(line, "2") for line in reported) == 1
     text = (desk / program).read_text(encoding="ascii")
     assert re.findall("paint: pen ([0-9a-f]+)", text) == ["ff0000", "000000"]
     status, out, _ = call(capsys, "check", program, "pens.svg")
@@ -39,8 +39,8 @@ def test_a_program_stops_for_each_pen_change_and_check_requires_it(desk, capsys,
     at = next(k for k, line in enumerate(lines) if "paint: pen 000000" in line)
     end = next(k for k, line in enumerate(lines) if "stroke 4 of 4" in line)
     (desk / program).write_text("\n".join(lines[:at] + lines[end:]), newline="")
-    status, _, said = in_json(capsys, "check", program, "pens.svg")
-    assert status == 1 and is_reported(said, "other-station nothing 'pen 000000'")
+    status, _, reported = in_json(capsys, "check", program, "pens.svg")
+    assert status == 1 and is_reported(reported, "other-station nothing 'pen 000000'")
 
 
 def test_a_job_resumed_after_a_pen_change_does_not_stop_for_it(desk, capsys):
@@ -54,8 +54,8 @@ def test_a_job_resumed_after_a_pen_change_does_not_stop_for_it(desk, capsys):
 
 def test_a_cell_without_pauses_reports_that_colours_are_drawn_as_one(desk, capsys):
     for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
-        status, _, said = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
-        assert status == 0 and is_reported(said, "colours-as-one")
+        status, _, reported = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
+        assert status == 0 and is_reported(reported, "colours-as-one")
         assert call(capsys, "check", program, "pens.svg")[0] == 0
     one = replace(find_cell("linuxcnc-3axis"), name="one", pause_per_colour=False)
     (desk / "one.toml").write_text(write_cell(one))
@@ -68,10 +68,10 @@ def test_one_speed_fits_all_strokes_within_the_limits(desk, capsys):
     feeds = re.findall(r"F([\d.]+)", (desk / "pens.ngc").read_text())
     assert set(map(float, feeds)) == {720.0, 1500.0, 480.0}, "painting, approach and press"
     assert call(capsys, "check", "pens.ngc", "pens.svg", "--speed", "12")[0] == 0
-    status, _, said = in_json(capsys, "check", "pens.ngc", "pens.svg")
-    assert status == 1 and is_reported(said, "stroke-too-fast 12.0 5.0")
-    said = in_json(capsys, "convert", "pens.svg", "-o", "x.ngc", "--speed", "26")[2]
-    assert is_reported(said, "speed-out-of-range 26 0.001 25 round-6")
-    said = in_json(capsys, "convert", "pens.svg", "-o", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
-    assert is_reported(said, "speed-out-of-range 0.5 1 25")
+    status, _, reported = in_json(capsys, "check", "pens.ngc", "pens.svg")
+    assert status == 1 and is_reported(reported, "stroke-too-fast 12.0 5.0")
+    reported = in_json(capsys, "convert", "pens.svg", "-o", "x.ngc", "--speed", "26")[2]
+    assert is_reported(reported, "speed-out-of-range 26 0.001 25 round-6")
+    reported = in_json(capsys, "convert", "pens.svg", "-o", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
+    assert is_reported(reported, "speed-out-of-range 0.5 1 25")
     assert not (desk / "x.ngc").exists()

@@ -207,8 +207,8 @@ def test_the_height_of_the_paper_can_be_given():
 def test_strokes_can_be_left_out():
     assert lines_of(SKETCH) == 2
     assert lines_of(SKETCH, skip_regions_mm=((30, 30, 100, 50),)) == 1
-    said = SKETCH.replace(b"G0 X40 Y60", b"; palette two\nG0 X40 Y60")
-    assert lines_of(said, skip_comments=("Palette",)) == 1
+    commented = SKETCH.replace(b"G0 X40 Y60", b"; palette two\nG0 X40 Y60")
+    assert lines_of(commented, skip_comments=("Palette",)) == 1
 
 
 def test_several_coats_at_one_place_are_not_dips():
@@ -298,10 +298,10 @@ def test_words_about_the_drawing_are_not_read_as_dips():
         [(10, 10), (60, 10)],
         [(70, 10), (80, 30)],
     ]
-    said = {0: "(this stroke dips below the baseline)", 2: "(dip)"}
+    comments = {0: "(this stroke dips below the baseline)", 2: "(dip)"}
     words = ["G21", "G90", "; file: washington_diploma.svg", '; Text: "brush dip pen"', "G0 Z5"]
     for k, ((x, y), (u, v)) in enumerate(lines):
-        words += [said.get(k, ""), f"G0 X{x} Y{y}", "G1 Z0 F500", f"G1 X{u} Y{v}", "G0 Z5"]
+        words += [comments.get(k, ""), f"G0 X{x} Y{y}", "G1 Z0 F500", f"G1 X{u} Y{v}", "G0 Z5"]
     text = "\n".join([*words, "M2"])
     design = read_gcode(text.encode())
     assert len(design.elements) == 4 and is_reported(design.notices, "dips-left-out 1 19")

@@ -84,7 +84,7 @@ def test_a_job_may_start_at_a_later_stroke_and_on_higher_paper():
 
 
 @pytest.mark.parametrize(
-    ("poses", "said"),
+    ("poses", "expected"),
     [
         ([(10, 10, 0), (130.5, 10, -1)], "tool-off-sheet 0.50 right"),
         ([(-31.25, 10, 0), (10, 10, -1)], "tool-off-sheet 1.25 left"),
@@ -96,10 +96,10 @@ def test_a_job_may_start_at_a_later_stroke_and_on_higher_paper():
         (np.zeros((0, 3)), "pass-empty"),
     ],
 )
-def test_exceeded_limits_are_reported_with_stroke_and_value(poses, said):
+def test_exceeded_limits_are_reported_with_stroke_and_value(poses, expected):
     plan = plan_of(STROKE, poses)
-    assert are_reported(forbidden(plan, BRUSH, find_cell()), f"{said} s2")
-    with refused(said, "s2"):
+    assert are_reported(forbidden(plan, BRUSH, find_cell()), f"{expected} s2")
+    with refused(expected, "s2"):
         program(plan, BRUSH, find_cell())
 
 

@@ -44,7 +44,7 @@ def project(text: str, folder: str = ".") -> None:
         file.write(BEGIN + text)
 
 
-def said(**settings) -> str:
+def with_settings(**settings) -> str:
     """Return the drawing with settings on its root element."""
     return DRAWING.replace(
         "<svg ",
@@ -272,7 +272,7 @@ def test_settings_come_from_command_line_drawing_project_then_default(desk, caps
     (desk / NAME).unlink()
     assert made("--cell", "ur5e", "--tolerance", "0.2", "--compensation", "none") == of_project
     project('cell = "ur5e"\n[defaults]\ntolerance = 0.2\ncompensation = "none"')
-    (desk / "d.svg").write_text(said(tolerance="0.1mm", compensation="closed"))
+    (desk / "d.svg").write_text(with_settings(tolerance="0.1mm", compensation="closed"))
     of_drawing, of_line = made(), made("--tolerance", "0.3")
     (desk / NAME).unlink()
     (desk / "d.svg").write_text(DRAWING)
@@ -282,7 +282,7 @@ def test_settings_come_from_command_line_drawing_project_then_default(desk, caps
 
 def test_explain_shows_the_source_of_each_setting(desk, capsys):
     project('cell = "ur5e"\npaper = "a4"\n[defaults]\ntolerance = 0.2\nspeed = 9')
-    (desk / "d.svg").write_text(said(tolerance="0.1mm", brush="rigid"))
+    (desk / "d.svg").write_text(with_settings(tolerance="0.1mm", brush="rigid"))
     lines = explained(capsys, "convert", "d.svg", "-o", "o.script", "--speed", "12", "--detail=fine")
     convert = command_parser()._subparsers._group_actions[0].choices["convert"]
     offered = {action.dest: action for action in convert._actions}
@@ -322,16 +322,16 @@ def test_a_typed_option_resets_related_project_options(desk, capsys):
     lines = explained(capsys, *"convert d.svg -o o.ngc --scale 0.9 --terminals butt --compensation closed".split())
     assert all(gives(lines[name], "default") for name in ("fit", "start", "lag"))
     assert all(gives(lines[name], "command line") for name in ("scale", "terminals", "compensation"))
-    (desk / "d.svg").write_text(said(terminals="round"))
+    (desk / "d.svg").write_text(with_settings(terminals="round"))
     lines = explained(capsys, "convert", "d.svg", "-o", "p.ngc")
     assert gives(lines["start"], "round", "d.svg") and gives(lines["fit"], "60x40", NAME)
     project('[defaults]\nterminals = "butt"')
-    (desk / "d.svg").write_text(said(start="pointed"))
+    (desk / "d.svg").write_text(with_settings(start="pointed"))
     lines = explained(capsys, "convert", "d.svg", "-o", "r.ngc")
     assert gives(lines["start"], "pointed", "d.svg") and gives(lines["terminals"], "butt", NAME)
     project('[defaults]\ncompensation = "constant"\nlag = 3')
     assert gives(explained(capsys, "convert", "d.svg", "-o", "s.ngc")["lag"], "3", NAME)
-    (desk / "d.svg").write_text(said(compensation="closed"))
+    (desk / "d.svg").write_text(with_settings(compensation="closed"))
     assert gives(explained(capsys, "convert", "d.svg", "-o", "q.ngc")["lag"], "default")
 
 
@@ -370,13 +370,13 @@ def test_project_settings_that_do_not_apply_to_a_drawing_are_ignored(desk, capsy
 def test_the_brush_of_a_drawing_or_plan_overrides_the_project(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')
-    (desk / "d.svg").write_text(said(brush="mine"))  # the name of a brush for which the project has a file
+    (desk / "d.svg").write_text(with_settings(brush="mine"))  # the name of a brush for which the project has a file
     assert gives(explained(capsys, "convert", "d.svg", "-o", "o.json")["brush"], "mine.json", NAME)
     assert gives(explained(capsys, "preview", "o.json", "-o", "o.png")["brush"], "mine.json", NAME)
-    (desk / "d.svg").write_text(said(brush="minne"))
+    (desk / "d.svg").write_text(with_settings(brush="minne"))
     status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "p.json")
     assert status == 1 and is_reported(reported, "brush-unknown minne")
-    (desk / "d.svg").write_text(said(brush="rigid"))
+    (desk / "d.svg").write_text(with_settings(brush="rigid"))
     assert gives(explained(capsys, "convert", "d.svg", "-o", "r.json")["brush"], "rigid", "d.svg")
     status, _, reported = in_json(capsys, "preview", "r.json", "-o", "r.png")
     assert status == 0 and not is_reported(reported, "plan-of-other-brush")
@@ -430,7 +430,7 @@ def test_a_batch_uses_the_project_of_its_first_drawing_and_drawings_override_it(
     for folder in ("one", "two"):
         (desk / folder).mkdir()
     (desk / "one/a.svg").write_text(DRAWING)
-    (desk / "two/b.svg").write_text(said(tolerance="0.1mm"))
+    (desk / "two/b.svg").write_text(with_settings(tolerance="0.1mm"))
     project('cell = "ur5e"\n[defaults]\ntolerance = 0.2', "one")
     project('cell = "grbl-3axis"', "two")
     assert main(["batch", "one/a.svg", "two/b.svg", "-o", "many", "--jobs", "1", "--quiet"]) == 0
@@ -471,14 +471,14 @@ def test_commands_without_a_drawing_use_the_project_of_the_current_folder(desk, 
 def test_a_comparison_of_brushes_includes_the_project_brush(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')
-    (desk / "d.svg").write_text(said(brush="rigid"))
+    (desk / "d.svg").write_text(with_settings(brush="rigid"))
     capsys.readouterr()
     assert main(["preview", "d.svg", "--all-brushes"]) == 0
     assert re.search(r"(?m)^mine ", capsys.readouterr().out)
     assert main(["preview", "d.svg"]) == 0
     assert "mine" not in capsys.readouterr().out
     # --all-brushes lists all brushes, not the drawing's brush only.
-    (desk / "d.svg").write_text(said(brush="unknown"))
+    (desk / "d.svg").write_text(with_settings(brush="unknown"))
     assert main(["preview", "d.svg", "--all-brushes"]) == 0
 
 
@@ -606,7 +606,7 @@ def test_the_file_written_by_init_can_be_completed(desk):
     ],
 )
 def test_a_misspelled_name_suggests_the_nearest_name(desk, capsys, words, expected):
-    (desk / "said.svg").write_text(said(brush="rigd"))
+    (desk / "said.svg").write_text(with_settings(brush="rigd"))
     assert main(words.split()) in (1, 2)
     assert gives(capsys.readouterr().err, "did you mean", f"{expected}?")
 

@@ -133,7 +133,7 @@ def test_write_program_chooses_the_language_by_extension(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("plan", "name", "said"),
+    ("plan", "name", "expected"),
     [
         (plan_of(SOUND, sheet=(30.0, 30.0)), "a.ngc", "mark-off-sheet right"),
         (plan_of(SOUND, speed=26.0), "a.ngc", "speed-out-of-range 26"),
@@ -141,8 +141,8 @@ def test_write_program_chooses_the_language_by_extension(tmp_path):
         (plan_of(SOUND), "a.txt", "program-format .txt"),
     ],
 )
-def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, said):
-    with refused(said):
+def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, expected):
+    with refused(expected):
         brushsvg.write_program(tmp_path / name, plan, brushsvg.find_brush("round-6"))
     assert list(tmp_path.iterdir()) == []
 

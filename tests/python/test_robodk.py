@@ -86,7 +86,7 @@ def test_a_tilted_brush_is_written_as_single_poses():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         ("class RobotPost", "class Post", "post-failed RobotPost"),
         ("def setZoneData", "def setZones", "post-failed setZoneData"),
@@ -97,11 +97,11 @@ def test_a_tilted_brush_is_written_as_single_poses():
         ("def ", "de ", "post-failed SyntaxError"),
     ],
 )
-def test_a_post_that_fails_is_refused(tmp_path, old, new, said):
+def test_a_post_that_fails_is_refused(tmp_path, old, new, expected):
     text = POST.read_text()
     assert old in text
     (tmp_path / "post.py").write_text(text.replace(old, new, 1))
-    with refused(said):
+    with refused(expected):
         text_for(cell_with(tmp_path / "post.py"))
 
 

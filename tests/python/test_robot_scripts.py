@@ -277,11 +277,11 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("name", "old", "new", "said"), REFUSED)
-def test_the_reader_refuses_invalid_programs(name, old, new, said):
+@pytest.mark.parametrize(("name", "old", "new", "expected"), REFUSED)
+def test_the_reader_refuses_invalid_programs(name, old, new, expected):
     text = text_for(find_cell(name))
     assert old in text
-    with refused(said):
+    with refused(expected):
         read_program(text.replace(old, new, 1), LANGUAGES[name], find_cell(name))
 
 

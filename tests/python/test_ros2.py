@@ -149,8 +149,8 @@ def test_check_accepts_a_job_as_table_and_as_json(tmp_path, capsys):
     for suffix in (".csv", ".traj", ".cdr"):
         out = str(tmp_path / f"a{suffix}")
         assert call(capsys, "convert", str(tmp_path / "a.json"), "-o", out, "--cell", "fr3")[0] == 0
-        status, said, reported = call(capsys, "check", out, str(tmp_path / "a.json"))
-        assert (RUNNABLE in said) if suffix != ".cdr" else (status == 1 and gives(reported[-1], ".csv"))
+        status, printed, reported = call(capsys, "check", out, str(tmp_path / "a.json"))
+        assert (RUNNABLE in printed) if suffix != ".cdr" else (status == 1 and gives(reported[-1], ".csv"))
     text = (tmp_path / "a.traj").read_text()
     (tmp_path / "a.traj").write_text(text.replace('0.02,"pose"', '0.02,"way"', 1))
     assert call(capsys, "check", str(tmp_path / "a.traj"))[0] == 1
@@ -163,7 +163,7 @@ def test_programs_equal_the_golden_files():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
         ("0.02,pose", "0.03,pose", "line-unread"),
         ("\n0.7700000", "\n0.7450000", "line-unread"),
@@ -176,17 +176,17 @@ def test_programs_equal_the_golden_files():
         ("# end: the brush is held up\n", "", "program-cut-short"),
     ],
 )
-def test_the_reader_refuses_invalid_programs(old, new, said):
+def test_the_reader_refuses_invalid_programs(old, new, expected):
     text = text_for(find_cell("fr3"))
     assert old in text
-    with refused(said):
+    with refused(expected):
         read_program(text.replace(old, new, 1), ".csv", find_cell("fr3"))
 
 
 def test_manual_stations_are_refused_and_frames_need_names():
     cell = find_cell("fr3")
     by_hand = replace(cell, reload=Reload("layer"), stations=(Station("hand", (120.0, 50.0), by_hand=True),))
-    for each, said in (
+    for each, expected in (
         (by_hand, "cell-station"),
         (replace(cell, tool=replace(cell.tool, base_frame="a b")), "name-invalid 'a b'"),
         (
@@ -194,7 +194,7 @@ def test_manual_stations_are_refused_and_frames_need_names():
             "out-of-range frames",
         ),
     ):
-        with refused(said):
+        with refused(expected):
             parse_cell(write_cell(each))
 
 

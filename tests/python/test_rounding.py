@@ -66,18 +66,18 @@ SMALL = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70.001, -70.0, 4), (60, 40, -2)
 )
 def test_a_circle_that_cannot_be_written_becomes_chords(name, decimals, poses, ends, centre_mm):
     circle = _core.Arc(*ends, centre_mm, 1)
-    text, said = found_by_check(poses, [circle], cell_of(name, decimals))
-    assert said is None
+    text, reported = found_by_check(poses, [circle], cell_of(name, decimals))
+    assert reported is None
     if name == "ur5e":
         assert "movec" not in text
 
 
 def test_a_circle_that_can_be_written_stays_a_circle():
     poses = [DOWN, (30, 20, -2), *arc((50, 40), 14, -70, -40, 4), (60, 40, -2), UP]
-    text, said = found_by_check(poses, [_core.Arc(2, 5, (50, 40), 1)], cell_of("ur5e", 4))
-    assert said is None and text.count("movec") == 1
-    text, said = found_by_check(ONE_CHORD, [_core.Arc(3, 4, (50, 40), 1)], cell_of("linuxcnc-3axis", 4))
-    assert said is None and text.count("G3") == 1
+    text, reported = found_by_check(poses, [_core.Arc(2, 5, (50, 40), 1)], cell_of("ur5e", 4))
+    assert reported is None and text.count("movec") == 1
+    text, reported = found_by_check(ONE_CHORD, [_core.Arc(3, 4, (50, 40), 1)], cell_of("linuxcnc-3axis", 4))
+    assert reported is None and text.count("G3") == 1
 
 
 @pytest.mark.parametrize("sideways_mm", [0.0, 1e-5, 3e-4, 2e-3])
@@ -211,8 +211,8 @@ def test_no_move_is_shorter_than_the_rounding(name, decimals):
     steps = np.column_stack([chance.uniform(-1e-3, 1e-3, (40, 2)), np.zeros(40)])
     poses = [DOWN, (30, 20, -2), *np.add(np.cumsum(steps, axis=0), (45, 22, -2)), (60, 40, -2), UP]
     cell = cell_of(name, decimals)
-    _, said = found_by_check(poses, [], cell)
-    assert said is None
+    _, reported = found_by_check(poses, [], cell)
+    assert reported is None
     written = as_written(_core.Pass("one", np.array(poses), 20.0), cell, robot_from_paper(cell))
     assert np.linalg.norm(np.diff(written.poses_mm, axis=0), axis=1).min() > 2e-3
     assert np.linalg.norm(written.poses_mm[[0, -1]] - np.array(poses)[[0, -1]], axis=1).max() < 1e-6
@@ -223,8 +223,8 @@ def test_circles_separated_by_less_than_a_move_are_merged():
     poses = [DOWN, (30, 20, -2), *first, *last, (60, 40, -2), UP]
     arcs = [_core.Arc(2, 5, (50, 40), 1), _core.Arc(6, 9, (50, 40), 1)]
     cell = cell_of("ur5e", 4)
-    text, said = found_by_check(poses, arcs, cell)
-    assert said is None and text.count("movec") == 1
+    text, messages = found_by_check(poses, arcs, cell)
+    assert messages is None and text.count("movec") == 1
     written = as_written(_core.Pass("one", np.array(poses), 20.0, arcs=arcs), cell, robot_from_paper(cell))
     (reported,) = written.arcs
     run = np.delete(written.poses_mm[:, :2], slice(reported.first + 1, reported.last), axis=0)
@@ -247,8 +247,8 @@ def test_a_whole_circle_is_written_in_halves(name, degrees, turn):
     cell = cell_of(name, 3, paper=Paper((0.3, -400.1, 20.0), (0, 0, 97.57)))
     on = arc((50, 40), 14, -70, -70 + turn * degrees, 24)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
-    text, said = found_by_check(poses, [_core.Arc(2, 25, (50, 40), turn)], cell)
-    assert said is None
+    text, reported = found_by_check(poses, [_core.Arc(2, 25, (50, 40), turn)], cell)
+    assert reported is None
     words = {"ur5e": "movec", "jaka-zu3": "movc", "irb120": "MoveC", "kr6-r900": "CIRC", "cr5": "Arc"}
     words |= {"lrmate200id": ": C P", "m0609": "movec"}
     word = words.get(name, "G3 " if turn > 0 else "G2 ")
@@ -267,8 +267,8 @@ def test_a_circle_beyond_a_full_turn_keeps_all_its_turns(name, degrees, turn):
     on = arc((50, 40), 9.47, 72.19, 72.19 + turn * degrees, 67)
     poses = [DOWN, (*on[0][:2], -1.0), *on, (60, 40, -2), UP]
     reported, cell = _core.Arc(2, 68, (50, 40), turn), cell_of(name, 4)
-    text, said = found_by_check(poses, [reported], cell)
-    assert said is None
+    text, messages = found_by_check(poses, [reported], cell)
+    assert messages is None
     read = simulate_program.simulate_program(read_program(text, LANGUAGES[name], cell), BRUSH, cell, SHEET_MM)
     x, y = np.transpose([pose[:2] for pose in read.plan.passes[0].poses_mm if pose[2] < -1.99])
     turned = np.diff(np.unwrap(np.arctan2(y - 40, x - 50))[:-1]).sum()
@@ -285,8 +285,8 @@ def test_a_circle_is_read_back_with_its_via_pose_anywhere(name, at):
     angles = [0, at / 3, at / 2, at, (at + 300) / 2, 290, 300]
     on = [point for angle in angles for point in arc((50, 40), 14, angle, angle, 1)]
     poses = [DOWN, (30, 20, -2), *on, (60, 40, -2), UP]
-    text, said = found_by_check(poses, [_core.Arc(2, 8, (50, 40), 1)], cell_of(name, 3))
-    assert said is None and text.count("movc(" if name == "jaka-zu3" else "movec") == 1
+    text, reported = found_by_check(poses, [_core.Arc(2, 8, (50, 40), 1)], cell_of(name, 3))
+    assert reported is None and text.count("movc(" if name == "jaka-zu3" else "movec") == 1
 
 
 def test_a_whole_circle_in_one_line_is_refused():

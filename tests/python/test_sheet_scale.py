@@ -32,7 +32,7 @@ def is_refused(middles, displacements):
 
 
 @pytest.mark.parametrize(
-    ("by", "said"),
+    ("by", "expected"),
     [
         ((0.97, 0.97), "smaller"),
         ((1.02, 1.02), "larger"),
@@ -40,9 +40,9 @@ def is_refused(middles, displacements):
         ((1.0, 0.97), "smaller"),
     ],
 )
-def test_a_sheet_of_another_scale_is_refused(by, said):
+def test_a_sheet_of_another_scale_is_refused(by, expected):
     found = fit_sheet_scale(A5, off(A5, 1, 0.3, by))
-    with refused(f"marks-scaled {said} --bar", "marks"):
+    with refused(f"marks-scaled {expected} --bar", "marks"):
         refuse_scale(found)
     for (share, error), true in zip((found.x, found.y), by, strict=True):
         assert abs(share - (true - 1)) < 3 * error < 0.01

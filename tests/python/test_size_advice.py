@@ -80,7 +80,7 @@ def test_nothing_is_suggested_if_no_size_can_be_painted():
     assert size_advice.advise_on_size(size_advice.best_size([line(200, 40.0)], BRUSH, painted)) == ""
 
 
-def said(tmp_path, text, **options):
+def advised(tmp_path, text, **options):
     """Return the overlap and the advice for a drawing."""
     path = tmp_path / "said.svg"
     path.write_text(text)
@@ -100,8 +100,8 @@ def test_sizes_are_tried_with_refinement_if_requested(tmp_path):
     0.7 times the size.
     """
     text = f'{SHEET}<g stroke="#000" stroke-linecap="round">{DABS}</g></svg>'
-    assert gives(said(tmp_path, text, start="pointed")[1], "0.7")
-    overlap, advice = said(tmp_path, text, start="pointed", compensation="refined")
+    assert gives(advised(tmp_path, text, start="pointed")[1], "0.7")
+    overlap, advice = advised(tmp_path, text, start="pointed", compensation="refined")
     assert not gives(advice, "0.7")
     if "--scale" in advice:
         assert gives(advice, f"{overlap:.2f}")
@@ -114,10 +114,10 @@ def test_sizes_are_tried_with_passes_if_requested(tmp_path):
     A square filled in passes was once advised to shrink, as if one stroke painted it.
     """
     text = f'{SHEET}<rect id="r" x="30" y="20" width="60" height="50"/></svg>'
-    overlap, advice = said(tmp_path, text, wide="clamp")
+    overlap, advice = advised(tmp_path, text, wide="clamp")
     assert re.search(r"--scale 0\.\d", advice) and gives(advice, f"{overlap:.2f}")
     for wide in ("passes", "auto"):
-        overlap, advice = said(tmp_path, text, wide=wide)
+        overlap, advice = advised(tmp_path, text, wide=wide)
         assert overlap > 0.99
         assert gives(advice, "0.5", "1.4") and "--scale" not in advice
 
@@ -193,14 +193,14 @@ def test_the_picture_shows_missing_strokes(drawing, capsys, tmp_path, suffix):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "expected"),
     [
         (["--brush", "rigid", "--brush", "round-6"], "--all-brushes"),
         (["--all-brushes", "-o", "x.png"], "-o"),
         (["-o", "x.pdf"], ".png"),
     ],
 )
-def test_wrong_usage_is_refused(drawing, capsys, words, said):
+def test_wrong_usage_is_refused(drawing, capsys, words, expected):
     status, _, err = ran(capsys, "preview", drawing(), *words)
     assert status == 2
-    assert said in err
+    assert expected in err

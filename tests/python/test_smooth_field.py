@@ -153,15 +153,15 @@ def test_strokes_outside_the_measured_area_are_reported(desk, capsys):
     assert beyond_field(work.plan.passes, cell_with(None)) == []
     farthest = max(np.asarray(one.poses_mm)[:, 0].max() for one in work.plan.passes) - 90.0
     nearest = 30.0 - min(np.asarray(one.poses_mm)[:, 0].min() for one in work.plan.passes)
-    said = f"beyond-field {max(farthest, nearest):.1f} 30.0 90.0 -5.0 75.0"
-    assert are_reported(beyond_field(work.plan.passes, cell_with(NARROW)), said)
+    expected = f"beyond-field {max(farthest, nearest):.1f} 30.0 90.0 -5.0 75.0"
+    assert are_reported(beyond_field(work.plan.passes, cell_with(NARROW)), expected)
     (desk / "mine.toml").write_text(write_cell(replace(find_cell("linuxcnc-3axis"), name="mine", machine=NARROW)))
     status, _, err = call(capsys, "convert", "two.svg", "-o", "two.ngc", "--cell", "mine.toml")
     assert status == 0 and any("[30.0, 90.0]" in line for line in err)
 
 
 @pytest.mark.parametrize(
-    ("lines", "where", "said"),
+    ("lines", "where", "expected"),
     [
         (["field_mm = [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]]"], "machine.field_middle_mm", "key-missing"),
         (
@@ -182,9 +182,9 @@ def test_strokes_outside_the_measured_area_are_reported(desk, capsys):
         (["field_mm = [1.0, 2.0]"], "machine.field_mm", "wrong-type"),
     ],
 )
-def test_an_invalid_field_table_is_refused(lines, where, said):
+def test_an_invalid_field_table_is_refused(lines, where, expected):
     text = write_cell(find_cell("linuxcnc-3axis"))
-    with refused(said, where):
+    with refused(expected, where):
         parse_cell(f"{text}\n[machine]\n" + "\n".join(lines) + "\n")
 
 

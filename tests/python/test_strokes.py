@@ -149,7 +149,7 @@ def test_a_long_zigzag_keeps_its_teeth():
 
 
 @pytest.mark.parametrize(
-    ("points", "width", "said"),
+    ("points", "width", "expected"),
     [
         ([(5, 5)], 3, "stroke-empty"),
         ([(5, 5)] * 3, 3, "stroke-empty"),
@@ -165,8 +165,8 @@ def test_a_long_zigzag_keeps_its_teeth():
         ([(5, 5), (9, 9)], np.array([[3], [3]]), "sizes-differ 'one row' 2 widths.ravel"),
     ],
 )
-def test_points_that_form_no_stroke_are_refused(points, width, said):
-    with refused(said, "s"):
+def test_points_that_form_no_stroke_are_refused(points, width, expected):
+    with refused(expected, "s"):
         Stroke.from_points(points, width, "s")
 
 

@@ -240,7 +240,7 @@ def test_coordinate_limits_apply_on_paper():
 
 
 @pytest.mark.parametrize(
-    ("shape", "said"),
+    ("shape", "expected"),
     [
         ('<circle id="bad" r="nan"/>', "geometry-damaged r nan"),
         ('<circle id="bad" r="-1"/>', "geometry-damaged r -1"),
@@ -266,12 +266,12 @@ def test_coordinate_limits_apply_on_paper():
         ),
     ],
 )
-def test_damaged_shapes_transforms_and_widths_are_named(shape, said):
+def test_damaged_shapes_transforms_and_widths_are_named(shape, expected):
     design = read(shape + '<path id="sound" d="M0 0H1"/>')
     damaged = [notice for notice in design.notices if notice.damaged]
     assert len(damaged) == 1
-    if said:
-        assert damaged[0].where == "bad" and agrees(damaged[0], said), damaged
+    if expected:
+        assert damaged[0].where == "bad" and agrees(damaged[0], expected), damaged
     assert design.elements[-1].id == "sound"
 
 
@@ -794,14 +794,14 @@ def test_drawings_are_read_by_file_name_and_unreadable_ones_refused(tmp_path):
     (tmp_path / "folder.svg").mkdir()
     (tmp_path / "folder").mkdir()
     (tmp_path / "drawing.txt").write_text(drawing)
-    for name, said in (
+    for name, expected in (
         ("missing.svg", "file-unreadable"),
         ("folder.svg", "file-unreadable"),
         ("folder", "file-unreadable"),
         ("drawing.txt", "drawing-format .txt .svg"),
         ("drawing", "drawing-format"),
     ):
-        with refused(said):
+        with refused(expected):
             read_drawing(tmp_path / name)
 
 

@@ -155,7 +155,7 @@ def test_own_properties_are_inherited_only_when_requested():
 
 
 @pytest.mark.parametrize(
-    ("css", "said"),
+    ("css", "expected"),
     [
         ("path:hover::foo(){stroke:red}", "css-unread path:hover::foo()"),
         ("@import 'x.css';", "css-unread @import"),
@@ -169,8 +169,8 @@ def test_own_properties_are_inherited_only_when_requested():
         ("@namespace url(urn:x);path{stroke-width:2}", "css-unread @namespace"),
     ],
 )
-def test_unsupported_parts_of_a_style_sheet_are_reported(css, said):
-    assert is_reported(read(f"<style>{css}</style>{P}").notices, said)
+def test_unsupported_parts_of_a_style_sheet_are_reported(css, expected):
+    assert is_reported(read(f"<style>{css}</style>{P}").notices, expected)
 
 
 def test_a_self_referencing_variable_has_no_value():
@@ -267,8 +267,8 @@ def test_elements_can_be_selected_with_css_selectors():
     assert [element.id for element in read(body, select="#a").elements] == ["a"]
     assert [element.id for element in read(body, select="use").elements] == ["u/a"]
     assert not read(body, select="#b").notices
-    for text, said in (("#none", "selector-matches-nothing #none"), ("g >", "selector-invalid 'g >'")):
-        with refused(said):
+    for text, expected in (("#none", "selector-matches-nothing #none"), ("g >", "selector-invalid 'g >'")):
+        with refused(expected):
             read(body, select=text)
 
 

@@ -62,16 +62,16 @@ def test_dash_patterns_are_read(attributes, count):
 
 
 @pytest.mark.parametrize(
-    ("said", "ends"),
+    ("expected", "ends"),
     [("10", [0, 4, 8, 12, 16, 20]), ("40", [0, 1, 2, 3, 4, 5]), ("0", [0, 20]), ("-3", [0, 2, 4, 6, 8, 10])],
 )
-def test_path_length_stretches_the_dashes(said, ends):
+def test_path_length_stretches_the_dashes(expected, ends):
     """pathLength stretches the dashes.
 
     A path of 20 mm with a pathLength of 10 has dashes twice as long. With a pathLength of 0, the line is
     solid.
     """
-    design = read(f'<path d="M0 0H20" stroke-dasharray="2" pathLength="{said}"/>')
+    design = read(f'<path d="M0 0H20" stroke-dasharray="2" pathLength="{expected}"/>')
     spans = [(start[0], end[0]) for _, start, end in lines(design)]
     assert np.ravel(spans)[: len(ends)] == pytest.approx(np.array(ends))
     (notice, *_) = read('<path id="p" d="M0 0H20" stroke-dasharray="2" pathLength="x"/>').notices

@@ -56,15 +56,15 @@ def test_catmull_rom_passes_through_its_points():
 
 
 @pytest.mark.parametrize(
-    ("choices", "said"),
+    ("choices", "expected"),
     [
         ({"kind": "SpiroInterpolator"}, "path-effect-unread SpiroInterpolator Linear"),
         ({"effect": "skeletal"}, "path-effect-unread skeletal outline"),
         ({"points": "0,1 | nan"}, "path-effect-unread points outline"),
     ],
 )
-def test_unsupported_effect_settings_are_named(choices, said):
-    assert is_reported(powered(**choices).notices, said, "p")
+def test_unsupported_effect_settings_are_named(choices, expected):
+    assert is_reported(powered(**choices).notices, expected, "p")
 
 
 def test_an_unsupported_effect_with_an_outline_is_reported():

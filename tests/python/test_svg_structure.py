@@ -85,7 +85,7 @@ def test_elements_hidden_by_a_viewport_are_left_out_or_reported():
 
 
 @pytest.mark.parametrize(
-    ("body", "said", "damaged"),
+    ("body", "expected", "damaged"),
     [
         ('<use id="u" href="#none"/>', "use-of-nothing '#none'", False),
         ('<use id="u" href="other.svg#a"/>', "use-of-nothing 'other.svg#a'", False),
@@ -100,9 +100,9 @@ def test_elements_hidden_by_a_viewport_are_left_out_or_reported():
         ('<svg id="s" viewBox="0 0 1"/>', "viewbox-invalid '0 0 1'", True),
     ],
 )  # fmt: skip
-def test_broken_use_references_are_reported(body, said, damaged):
+def test_broken_use_references_are_reported(body, expected, damaged):
     design = read(LINE + body)
-    (found,) = (notice for notice in design.notices if agrees(notice, said))
+    (found,) = (notice for notice in design.notices if agrees(notice, expected))
     assert found.damaged == damaged
     assert len(design.elements) == 1
 
@@ -193,12 +193,12 @@ def test_the_transform_attribute_refuses_units_and_css_functions(text):
 )
 def test_transform_origin_accepts_all_keywords(origin, point):
     x, y = point
-    for said in (
+    for keywords in (
         f'transform="scale(2)" transform-origin="{origin}"',
         f'style="transform:scale(2);transform-origin:{origin}"',
         f'style="scale:2;-webkit-transform-origin:{origin}"',
     ):
-        assert lines(read(f'<path d="M10 4H20" {said}/>'))[0][1] == pytest.approx((20 - x, 8 - y)), said
+        assert lines(read(f'<path d="M10 4H20" {keywords}/>'))[0][1] == pytest.approx((20 - x, 8 - y)), keywords
 
 
 @pytest.mark.parametrize("origin", ["top 20px", "20px left", "left left", "1 2 3 4", "10% 20% 30%", "x", "5,6"])
@@ -257,8 +257,8 @@ def test_a_transform_of_the_drawing_itself_is_reported():
 def test_unsupported_css_only_properties_are_reported(name):
     of, value = name.split(":")
     reported = read(f'<g id="g" style="{name}"><path d="M0 0H5"/></g>').notices
-    said = f"css-unread g {of.removeprefix('-webkit-')}"
-    assert are_reported(reported, *([] if value == "none" else [said]))
+    expected = f"css-unread g {of.removeprefix('-webkit-')}"
+    assert are_reported(reported, *([] if value == "none" else [expected]))
 
 
 def test_empty_attributes_are_ignored():
@@ -369,7 +369,7 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
 
 
 @pytest.mark.parametrize(
-    ("setting", "said"),
+    ("setting", "expected"),
     [
         ('speed="fast"', "setting-invalid 'fast'"),
         ('speed="-1"', "setting-invalid -1 0.001 10000"),
@@ -385,10 +385,10 @@ def test_a_width_for_a_layer_does_not_turn_its_shapes_into_lines():
         ('colour="red"', "setting-invalid data-brushsvg-colour width speed"),
     ],
 )
-def test_invalid_settings_stop_convert(setting, said):
+def test_invalid_settings_stop_convert(setting, expected):
     design = read(f'<path id="p" d="M0 0H4" data-brushsvg-{setting}/>')
     (notice,) = design.notices
-    assert agrees(notice, said) and notice.damaged, notice
+    assert agrees(notice, expected) and notice.damaged, notice
     assert not design.elements[0].settings
 
 

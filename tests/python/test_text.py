@@ -235,7 +235,7 @@ def test_control_characters_are_dropped_and_markup_is_escaped():
 
 
 @pytest.mark.parametrize(
-    ("d", "said"),
+    ("d", "expected"),
     [
         ("M 0 0 X 5 5", "glyph-damaged 7 'X 5 5'"),
         ("L 5 5", "glyph-damaged 1"),
@@ -244,11 +244,11 @@ def test_control_characters_are_dropped_and_markup_is_escaped():
         ("M 0 0 L 1e400 0", "glyph-damaged 1e6 7"),
     ],
 )
-def test_a_broken_glyph_is_skipped_and_keeps_its_advance(d, said):
+def test_a_broken_glyph_is_skipped_and_keeps_its_advance(d, expected):
     glyphs = GLYPHS + f'<glyph unicode="x" glyph-name="ex" horiz-adv-x="300" d="{d}"/>'
     document, (notice,) = text_svg("IxIx", svg_font(glyphs), size_mm=10)
     assert [path.get("id") for path in paths(document)] == ["glyph-1-I", "glyph-2-I"]
-    assert agrees(notice, said, "glyph ex") and notice.damaged
+    assert agrees(notice, expected, "glyph ex") and notice.damaged
     first, second = (float(path.get("d").split()[1].split(",")[0]) for path in paths(document))
     assert second - first == pytest.approx(5)
 
@@ -268,7 +268,7 @@ def test_filled_glyphs_in_an_svg_font_are_reported():
 
 
 @pytest.mark.parametrize(
-    ("font", "said"),
+    ("font", "expected"),
     [
         (b"", "file-empty"),
         (b"GIF89a", "font-unknown"),
@@ -285,8 +285,8 @@ def test_filled_glyphs_in_an_svg_font_are_reported():
         (svg_font(GLYPHS + '<hkern u1="I" u2="I" k="wide"/>'), "font-damaged k wide"),
     ],
 )
-def test_files_that_are_not_fonts_are_refused(font, said):
-    with refused(said):
+def test_files_that_are_not_fonts_are_refused(font, expected):
+    with refused(expected):
         text_svg("II", font)
 
 
@@ -517,7 +517,7 @@ def test_damaged_fonts_give_a_drawing_or_a_refusal(ttf):
 
 
 @pytest.mark.parametrize(
-    ("tag", "at", "becomes", "said"),
+    ("tag", "at", "becomes", "expected"),
     [
         ("head", 18, b"\0\0", "font-damaged head 0 16 16384"),
         ("head", 18, b"\x40\x01", "font-damaged head 16385 16 16384"),
@@ -527,7 +527,7 @@ def test_damaged_fonts_give_a_drawing_or_a_refusal(ttf):
         ("hmtx", None, b"", "font-damaged hmtx 0"),
     ],
 )
-def test_a_font_without_a_valid_em_size_is_refused(ttf, tag, at, becomes, said):
+def test_a_font_without_a_valid_em_size_is_refused(ttf, tag, at, becomes, expected):
     """A font without a valid em size is refused.
 
     HarfBuzz would accept the font, with 1000 units to the em or with each letter an em wide.
@@ -536,7 +536,7 @@ def test_a_font_without_a_valid_em_size_is_refused(ttf, tag, at, becomes, said):
     offset = struct.unpack(">L", ttf[row + 8 : row + 12])[0]
     start = row if at is None else offset + at
     becomes = becomes or b"zzzz"  # the table gets another name
-    with refused(said):
+    with refused(expected):
         text_svg("AV", ttf[:start] + becomes + ttf[start + len(becomes) :])
 
 

@@ -415,11 +415,11 @@ def test_check_accepts_random_tilts(seed, tmp_path, capsys):
         held = axes(*random.uniform(0, 29.5, n), towards_deg=random.uniform(0, 360, n))
         passes.append(_core.Pass(f"s{k}", poses, float(random.uniform(3, 25)), tool_axes=np.round(held, 3)))
     given, made, words = written(tmp_path, name, _core.Plan("round-6", "", (100, 60), passes), cell)
-    status, _, said = in_json(capsys, "convert", given, "-o", made, *words)
+    status, _, reported = in_json(capsys, "convert", given, "-o", made, *words)
     if status == 0:
         assert in_json(capsys, "check", made, given, *words)[0] == 0
         assert in_json(capsys, "check", made, *words)[0] == 0
-    assert status == 0 or is_reported(said, "tool-turns-too-fast")
+    assert status == 0 or is_reported(reported, "tool-turns-too-fast")
 
 
 def test_check_accepts_tilted_programs_on_tilted_mapped_paper(tmp_path, capsys):
@@ -453,9 +453,9 @@ def test_a_program_with_another_tilt_is_refused(tmp_path, capsys):
     in_json(capsys, "convert", given, "-o", made, *words)
     for other in (np.zeros((0, 3)), axes(0, 9, 9, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130]))):
         given.write_text(_core.write_plan(plan(other)))
-        status, _, said = in_json(capsys, "check", made, given, *words)
+        status, _, reported = in_json(capsys, "check", made, given, *words)
         assert status == 1
-        assert is_reported(said, "held-otherwise") or is_reported(said, "path-elsewhere")
+        assert is_reported(reported, "held-otherwise") or is_reported(reported, "path-elsewhere")
     given.write_text(_core.write_plan(plan(axes(0, 8.3, 8.3, 20, 20, towards_deg=np.array([0, 40, 40, 130, 130])))))
     assert in_json(capsys, "check", made, given, *words)[0] == 0  # the change is too small to show in a mark
 
@@ -542,13 +542,13 @@ def test_a_tilted_program_needs_the_tilt_in_its_header(name, tmp_path, capsys):
     given, made, words = written(tmp_path, name, plan(TILTED))
     in_json(capsys, "convert", given, "-o", made, *words)
     # FANUC remarks are short and continue on the next line.
-    said = r"\n[^\n]*tilt: the brush is held as each(?: ;\n : !\+)? move says[^\n]*"
-    text, count = re.subn(said, "", made.read_text(), count=1)
+    line = r"\n[^\n]*tilt: the brush is held as each(?: ;\n : !\+)? move says[^\n]*"
+    text, count = re.subn(line, "", made.read_text(), count=1)
     assert count == 1
     made.write_text(text)
-    status, _, said = in_json(capsys, "check", made, given, *words)
+    status, _, reported = in_json(capsys, "check", made, given, *words)
     assert status == 1
-    assert is_reported(said, "program-changed" if name == "ur5e" else "tool-turned")
+    assert is_reported(reported, "program-changed" if name == "ur5e" else "tool-turned")
 
 
 @pytest.mark.parametrize("about", ["x", "y", "z"])
@@ -569,9 +569,9 @@ def test_damaged_rows_between_poses_are_refused(about, tmp_path, capsys):
     place = tip - turned.apply(cell.tool.tcp_mm) / 1e3  # turned about its tip
     reported = ",".join(f"{value:.9f}" for value in [*place, *turned.as_quat()])
     made.write_text(text[: way.start()] + way[1].split(",")[0] + "," + reported + way[3] + text[way.end() :])
-    status, _, said = in_json(capsys, "check", made, given, *words)
+    status, _, messages = in_json(capsys, "check", made, given, *words)
     assert status == 1
-    assert is_reported(said, "line-unread")
+    assert is_reported(messages, "line-unread")
 
 
 def test_a_serialized_trajectory_has_the_rotations_of_the_table(tmp_path):
@@ -767,9 +767,9 @@ def test_predict_warns_of_paint_off_the_sheet(words, tmp_path, capsys):
     given = tmp_path / "a.json"
     poses = np.add(POSES, (40, 0, 0))
     given.write_text(_core.write_plan(plan(axes(*[20] * 5), poses=poses)))
-    status, _, said = in_json(capsys, "preview", given, "-o", tmp_path / "b.svg", *words)
+    status, _, reported = in_json(capsys, "preview", given, "-o", tmp_path / "b.svg", *words)
     assert status == 0
-    assert is_reported(said, "mark-off-sheet right", "s0")
+    assert is_reported(reported, "mark-off-sheet right", "s0")
 
 
 def test_the_cell_sets_tilt_limit_and_turning_speed(tmp_path, capsys):
@@ -783,9 +783,11 @@ def test_the_cell_sets_tilt_limit_and_turning_speed(tmp_path, capsys):
     (tmp_path / "cell.toml").write_text(text.replace("tilt_limit_deg = 12.0", "tilt_limit_deg = 31.0"))
     given = tmp_path / "a.json"
     given.write_text(json.dumps(json.loads(_core.write_plan(plan(TILTED)))))
-    status, _, said = in_json(capsys, "convert", given, "-o", tmp_path / "a.script", "--cell", tmp_path / "cell.toml")
+    status, _, reported = in_json(
+        capsys, "convert", given, "-o", tmp_path / "a.script", "--cell", tmp_path / "cell.toml"
+    )
     assert status == 1
-    assert is_reported(said, "out-of-range 31 30")
+    assert is_reported(reported, "out-of-range 31 30")
 
 
 def test_a_visibly_different_tool_axis_is_a_change():

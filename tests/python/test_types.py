@@ -87,9 +87,9 @@ def test_examples_have_no_type_errors_and_planted_ones_are_found(tmp_path):
     for path, (right, wrong, _) in zip(programs, PLANTED, strict=True):
         path.write_text(PROGRAM.replace(right, wrong))
     reported = mypy(*programs, cache=tmp_path).stdout
-    for path, (_, wrong, said) in zip(programs, PLANTED, strict=True):
+    for path, (_, wrong, expected) in zip(programs, PLANTED, strict=True):
         lines = [line for line in reported.splitlines() if f"{path.name}:" in line]
-        assert any(line.endswith(f"[{said}]") for line in lines), (wrong, lines)
+        assert any(line.endswith(f"[{expected}]") for line in lines), (wrong, lines)
 
 
 def test_the_package_is_marked_as_typed():

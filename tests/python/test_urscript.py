@@ -283,8 +283,8 @@ def test_check_refuses_a_program_with_weaker_contact_monitoring(name, contact, o
     text = program.read_text()
     assert old in text
     program.write_text(text.replace(old, new))
-    status, _, said = in_json(capsys, *check)
-    assert status == 1 and is_reported(said, "program-changed")
+    status, _, reported = in_json(capsys, *check)
+    assert status == 1 and is_reported(reported, "program-changed")
     # The program must also be refused in place of the program of a cell without contact sensing.
     program.write_text(text)
     assert in_json(capsys, "check", program, "--cell", name)[0] == 1

@@ -472,9 +472,9 @@ def test_repr_shows_sizes_and_units():
 def test_repr_pictures_exist_only_in_notebooks():
     asks = "import brushsvg; print(hasattr(brushsvg.find_brush('round-6'), '_repr_svg_'))"
     runs = "import sys, types; sys.modules['IPython'] = types.ModuleType('IPython'); " + asks
-    for words, said in ((asks, "False"), (runs, "True")):
+    for words, expected in ((asks, "False"), (runs, "True")):
         done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=True)
-        assert done.stdout.strip() == said
+        assert done.stdout.strip() == expected
 
 
 def test_values_have_pictures_in_a_notebook(tmp_path):

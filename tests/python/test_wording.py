@@ -66,8 +66,8 @@ def helps(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:
     lines, below = [parser.description or ""], []
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
-            said = {choice.dest: choice.help for choice in action._choices_actions}
-            lines += [f"{name}: {said.get(name, '')}" for name in action.choices]
+            summaries = {choice.dest: choice.help for choice in action._choices_actions}
+            lines += [f"{name}: {summaries.get(name, '')}" for name in action.choices]
             below += action.choices.values()
         elif not isinstance(action, argparse._HelpAction):
             lines.append(f"{' '.join(action.option_strings) or action.metavar or action.dest}: {action.help}")

@@ -57,9 +57,9 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize(("limits", "said"), [(RING, AWAY), (POST, KEPT)])
+@pytest.mark.parametrize(("limits", "code"), [(RING, AWAY), (POST, KEPT)])
 @pytest.mark.parametrize(("name", "of_stroke", "way"), [("bar", "bar", ""), ("pair", "right", " way")])
-def test_no_path_goes_through_the_robot(desk, capsys, name, of_stroke, way, limits, said):
+def test_no_path_goes_through_the_robot(desk, capsys, name, of_stroke, way, limits, code):
     """No path goes through the robot itself.
 
     Only the two ends of a path were once checked, and nothing was checked between strokes.
@@ -70,7 +70,7 @@ def test_no_path_goes_through_the_robot(desk, capsys, name, of_stroke, way, limi
         program = f"{command[-1]}.script"
         status, _, reported = in_json(capsys, *command, drawing, "-o", program, *cell)
         file, last = reported[-1]
-        expected = (f"{said}{way}", of_stroke) if command == ["convert"] else (said,)
+        expected = (f"{code}{way}", of_stroke) if command == ["convert"] else (code,)
         assert (status, file) == (1, drawing) and agrees(last, *expected), reported
         if limits == RING:
             assert 0 <= float(re.search(r"goes ([\d.]+) mm away", last.sentence)[1]) <= 40
@@ -120,7 +120,7 @@ def test_height_strokes_and_their_paths_avoid_forbidden_boxes(desk, capsys):
 
 @pytest.mark.parametrize("language", ["linuxcnc-3axis", "ur5e"])
 @pytest.mark.parametrize(
-    ("box", "who", "said"),
+    ("box", "who", "expected"),
     [
         (((-6.0, 30.0, 5.0), (-4.0, 50.0, 100.0)), "s", "in-kept-out-box way"),  # on the path from the paint
         # At the bottom of the vessel.
@@ -137,7 +137,7 @@ def test_height_strokes_and_their_paths_avoid_forbidden_boxes(desk, capsys):
         ),
     ],
 )
-def test_paint_visits_and_their_paths_avoid_forbidden_boxes(desk, capsys, language, box, who, said):
+def test_paint_visits_and_their_paths_avoid_forbidden_boxes(desk, capsys, language, box, who, expected):
     ink = Station("ink", (-20.0, 40.0), depth_mm=5.0, rim_mm=4.0, wipe_mm=((-18.0, 40.0, 5.0), (-12.0, 40.0, 5.0)))
     cell = find_cell(language)
     cell = replace(
@@ -157,7 +157,7 @@ def test_paint_visits_and_their_paths_avoid_forbidden_boxes(desk, capsys, langua
         (("check", program, "s.svg"), program),
     ):
         status, _, reported = in_json(capsys, *words, "--cell", "mine.toml")
-        assert status == 1 and is_reported([each for each in reported if each[0] == file], said, who), reported
+        assert status == 1 and is_reported([each for each in reported if each[0] == file], expected, who), reported
         assert call(capsys, "convert", "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
 
 
@@ -206,8 +206,8 @@ def test_a_rise_on_tilted_paper_may_end_below_a_box():
 
 
 @pytest.mark.parametrize("name", ["linuxcnc-3axis", "jaka-zu3"])
-@pytest.mark.parametrize(("limit", "said"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")])
-def test_a_rise_before_the_first_move_avoids_forbidden_boxes(desk, capsys, name, limit, said):
+@pytest.mark.parametrize(("limit", "expected"), [("reach_mm", "out-of-reach"), ("keep_out_mm", "in-kept-out-box")])
+def test_a_rise_before_the_first_move_avoids_forbidden_boxes(desk, capsys, name, limit, expected):
     """A rise before the first move keeps out of the forbidden space.
 
     Over the stroke, everything up to the safe height is allowed. On paper that leans, the tool first rises
@@ -229,12 +229,12 @@ def test_a_rise_before_the_first_move_avoids_forbidden_boxes(desk, capsys, name,
     for command in (["convert"], ["setup", "border"]):
         program = f"{command[-1]}{suffix}"
         status, _, reported = in_json(capsys, *command, "s.svg", "-o", program, "--cell", "mine.toml")
-        assert status == 1 and is_reported(reported, f"{said} rise mine", ""), reported
+        assert status == 1 and is_reported(reported, f"{expected} rise mine", ""), reported
         assert not (desk / program).exists()
         assert call(capsys, *command, "s.svg", "-o", program, "--cell", "free.toml")[0] == 0
         assert call(capsys, "check", program, "--cell", "free.toml")[0] == 0
         status, _, reported = in_json(capsys, "check", program, "--cell", "mine.toml")
-        assert status == 1 and is_reported(reported, f"{said} rise mine"), reported
+        assert status == 1 and is_reported(reported, f"{expected} rise mine"), reported
 
 
 def test_a_path_exactly_at_a_limit_stays_valid_after_rounding(desk, capsys):
@@ -272,15 +272,15 @@ def test_corners_keep_a_clearance_of_twice_the_cut():
 
 def test_a_path_reports_only_limits_that_its_end_points_keep():
     cell = robot(**RING)
-    (said,) = find_limits_broken_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
-    assert agrees(said, "out-of-reach way 0.0")
+    (reported,) = find_limits_broken_between((-500, 0, 0), (500, 0, 0), np.eye(4), cell)
+    assert agrees(reported, "out-of-reach way 0.0")
     assert find_limits_broken_between((-900, 0, 0), (500, 0, 0), np.eye(4), cell) == [], "it begins too far away"
 
 
 def test_a_reported_value_is_visibly_out_of_range():
     cell = robot(reach_mm=(150.0, 850.0))
-    (said,) = find_broken_limits(make_paths([[(850.0004, 0, 0)]]), np.eye(4), cell)
-    assert agrees(said, "out-of-reach 850.0004")
+    (reported,) = find_broken_limits(make_paths([[(850.0004, 0, 0)]]), np.eye(4), cell)
+    assert agrees(reported, "out-of-reach 850.0004")
 
 
 def test_forbidden_boxes_are_written_read_and_named(desk, capsys):
