@@ -171,7 +171,7 @@ def main() -> None:
             for kind, texts in (("words", words()), ("glyphs", list(GLYPHS))):
                 done = readings(texts, file.read_bytes(), pool, options.brush, options.compensation)
                 drawn, painted = done.right()
-                wrong = ", ".join(f"{each.text}: {said or '-'}" for each, said in done.spoilt())
+                wrong = ", ".join(f"{each.text}: {reading or '-'}" for each, reading in done.spoilt())
                 print(f"{file.stem[:25]:<26}{kind:<8}{len(texts):>5}{drawn:>7}{painted:>9}  {wrong}", flush=True)
                 if options.pictures:
                     _keep(options.pictures / f"{file.stem}-{kind}.png", done.spoilt())

@@ -286,9 +286,9 @@ def report(rows: list[dict]) -> None:
     )
     for row in rows:
         if row not in most:
-            said = row["said"] or {}
+            reported = row["said"] or {}
             words = ", ".join(
-                f"{cause} {gain:.3f} (said {said.get(cause, np.nan):.3f})" for cause, gain in row["gains"].items()
+                f"{cause} {gain:.3f} (said {reported.get(cause, np.nan):.3f})" for cause, gain in row["gains"].items()
             )
             print(f"  {row['number']}: named {row['named']}; lost {row['lost']:.3f}: {words}")
     print(f"{np.mean([row['seconds'] for row in rows]):.1f} s of processor time a studio")

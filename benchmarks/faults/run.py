@@ -156,9 +156,9 @@ class Tree:
             out = Path(folder) / "names"
 
             def names(*words: str) -> list[str]:
-                status, said = self.pytest("--collect-only", "-q", *words, FAULTS_COLLECT=str(out))
+                status, output = self.pytest("--collect-only", "-q", *words, FAULTS_COLLECT=str(out))
                 if status:
-                    raise SystemExit(said[-3000:])
+                    raise SystemExit(output[-3000:])
                 return json.loads(out.read_text(encoding="utf-8"))
 
             tiers = {}
@@ -287,10 +287,10 @@ class Tree:
             outcome = self.try_fault(fault, tests, hits.get(fault.number, set()), budget)
             path.write_text(json.dumps(asdict(outcome), indent=1), encoding="utf-8")
             with lock:
-                said = f"caught by {outcome.test} ({outcome.tier})" if outcome.tier else "SURVIVED"
+                outcome_text = f"caught by {outcome.test} ({outcome.tier})" if outcome.tier else "SURVIVED"
                 clock = time.perf_counter() - begin
                 print(
-                    f"{clock:6.0f} s  {fault.number:3} {fault.file}:{fault.line} {fault.kind}: {said}",
+                    f"{clock:6.0f} s  {fault.number:3} {fault.file}:{fault.line} {fault.kind}: {outcome_text}",
                     flush=True,
                 )
 

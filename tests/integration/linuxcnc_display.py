@@ -17,16 +17,16 @@ MOST_S = 60
 def run(program, samples):
     command, status, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 
-    def said(*words):
+    def send(*words):
         getattr(command, words[0])(*words[1:])
         command.wait_complete()
 
     with samples.open("w") as out, subprocess.Popen(["halsampler", "-t"], stdout=out) as sampler:
-        said("state", linuxcnc.STATE_ESTOP_RESET)
-        said("state", linuxcnc.STATE_ON)
-        said("home", -1)
-        said("mode", linuxcnc.MODE_AUTO)
-        said("program_open", str(program))
+        send("state", linuxcnc.STATE_ESTOP_RESET)
+        send("state", linuxcnc.STATE_ON)
+        send("home", -1)
+        send("mode", linuxcnc.MODE_AUTO)
+        send("program_open", str(program))
         command.auto(linuxcnc.AUTO_RUN, 0)
         end, began = time.monotonic() + MOST_S, False
         while time.monotonic() < end:

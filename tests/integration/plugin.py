@@ -41,10 +41,10 @@ class Plugin:
 
         `preview__brush="rigid"` sets a value of org.brushsvg.preview.
         """
-        said = " ".join(f'org.brushsvg.{k.replace("__", ".")}="{v}"' for k, v in parameters.items())
+        attributes = " ".join(f'org.brushsvg.{k.replace("__", ".")}="{v}"' for k, v in parameters.items())
         (self.profile / "preferences.xml").write_text(
             '<inkscape xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd" version="1">'
-            f'<group id="extensions" python-interpreter="/usr/bin/python3" {said}/></inkscape>'
+            f'<group id="extensions" python-interpreter="/usr/bin/python3" {attributes}/></inkscape>'
         )
 
     def save(self, drawing: Path, out: Path, entry: str = "") -> subprocess.CompletedProcess:

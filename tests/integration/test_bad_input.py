@@ -67,12 +67,12 @@ DRAWINGS = {
 
 @sample("case", DRAWINGS, keep=6)
 def test_a_bad_drawing_is_refused_by_every_command(desk, case):
-    content, said = DRAWINGS[case]
+    content, expected = DRAWINGS[case]
     if content is not None:
         (desk / "x.svg").write_bytes(content if isinstance(content, bytes) else content.encode())
     words = ["--picture", "out.png", "--report", "out.txt"]
     file, reported = refusal(desk, "convert", "x.svg", "-o", "out.ngc", *words, **bounded())
-    assert file == "x.svg" and agrees(reported, said), reported
+    assert file == "x.svg" and agrees(reported, expected), reported
     line = ": ".join(part for part in (file, reported.where, reported.text) if part)
     assert refused(desk, "convert", "x.svg", "-o", "old.ngc", "--force", **bounded()) == line
     if case not in ("NaN", "1e30", "beyond all numbers", "off the sheet"):  # previews show the rest of the drawing
@@ -135,10 +135,10 @@ BRUSHES = {
 
 @pytest.mark.parametrize("case", BRUSHES)
 def test_a_bad_brush_is_refused_by_every_command(desk, case):
-    changes, where, said = BRUSHES[case]
+    changes, where, expected = BRUSHES[case]
     changed_brush(desk, **changes)
     file, reported = refusal(desk, "brush", "check", "mine.json")
-    assert file == "mine.json" and agrees(reported, said, where), reported
+    assert file == "mine.json" and agrees(reported, expected, where), reported
     flags = ["--brush", "mine.json"]
     assert refusal(desk, "convert", "sound.svg", "-o", "out.ngc", *flags) == (file, reported)
     assert refusal(desk, "preview", "sound.svg", "-o", "out.png", *flags) == (file, reported)
@@ -201,11 +201,11 @@ PLANS = {  # a change, and the key or stroke that is reported with its code
 def test_a_bad_plan_is_refused(desk, case):
     brushsvg("convert", "sound.svg", "-o", "plan.json", cwd=desk, status=0)
     plan = json.loads((desk / "plan.json").read_text())
-    change, where, said = PLANS[case]
+    change, where, expected = PLANS[case]
     change(plan)
     (desk / "x.json").write_text(json.dumps(plan))
     file, reported = refusal(desk, "convert", "x.json", "-o", "out.ngc", **bounded())
-    assert file == "x.json" and agrees(reported, said, where), reported
+    assert file == "x.json" and agrees(reported, expected, where), reported
 
 
 @pytest.mark.parametrize("content", ["", "moo", '{"format": "brushsvg/plan", "ver', "[" * 100_000, "\xff\0"])

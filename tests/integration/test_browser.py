@@ -39,10 +39,10 @@ class Browser:
         """
         picture = self.folder / "shown.png"
         picture.unlink(missing_ok=True)
-        said = self._run(page, moment, f"--screenshot={picture}", "--window-size={},{}".format(*size)).stderr
+        messages = self._run(page, moment, f"--screenshot={picture}", "--window-size={},{}".format(*size)).stderr
         image = cv2.imread(str(picture))
-        assert image is not None, said
-        return image, re.findall(r"CONSOLE.*", said)
+        assert image is not None, messages
+        return image, re.findall(r"CONSOLE.*", messages)
 
     def text(self, page, moment: str) -> str:
         """Return the document after its script has run."""
@@ -127,15 +127,15 @@ def until(marks, number: int, pose: float):
 
 
 def test_the_first_frame_has_no_paint(page, browser):
-    image, said = browser.shown(page, "t=0&bare")
-    assert said == []
+    image, messages = browser.shown(page, "t=0&bare")
+    assert messages == []
     assert painted(image).max() < 0.02
 
 
 def test_the_last_frame_equals_the_prediction(page, browser, played):
     work, marks, rows = played
-    image, said = browser.shown(page, f"t={rows.time_s[-1]:.3f}&bare")
-    assert said == []
+    image, messages = browser.shown(page, f"t={rows.time_s[-1]:.3f}&bare")
+    assert messages == []
     assert overlap(image, marks, work) > 0.98
 
 
@@ -151,8 +151,8 @@ def test_a_middle_frame_shows_the_paint_so_far(page, browser, played, number, sh
     moment = rows.time_s[
         chapter.first_row + int(np.flatnonzero(near < 1e-6)[-1])
     ]  # a moment that occurs twice counts the second time
-    image, said = browser.shown(page, f"t={moment:.3f}&bare")
-    assert said == []
+    image, messages = browser.shown(page, f"t={moment:.3f}&bare")
+    assert messages == []
     assert overlap(image, until(marks, number, pose), work) > 0.98
 
 
@@ -181,17 +181,17 @@ def test_the_footprint_is_swept_between_distant_rows(tmp_path, browser, notch):
     rows = timeline(whole_program(loads_of(work), work.brush, find_cell()), marks)
     moment = rows.time_s[np.flatnonzero(~np.isnan(rows.depth_mm))[row]]
     (tmp_path / "a.html").write_bytes(outputs.make_animation(work, loads_of(work), marks, find_cell()))
-    image, said = browser.shown(tmp_path / "a.html", f"t={moment:.3f}&bare")
-    assert said == []
+    image, messages = browser.shown(tmp_path / "a.html", f"t={moment:.3f}&bare")
+    assert messages == []
     assert overlap(image, until(marks, 0, marks.passes[0].pose[row]), work) > 0.98
     half, _ = browser.shown(tmp_path / "a.html", f"t={(moment + rows.time_s[0]) / 2:.3f}&bare")
     assert 0.2 < painted(half).sum() / painted(image).sum() < 0.8
 
 
 def test_target_mark_and_path_are_shown_on_a_narrow_screen(page, browser):
-    with_all, said = browser.shown(page, "t=31.3", (500, 800))
+    with_all, messages = browser.shown(page, "t=31.3", (500, 800))
     bare, _ = browser.shown(page, "t=31.3&bare", (500, 800))
-    assert said == []
+    assert messages == []
     assert with_all.shape == bare.shape
     blue, grey = np.array([0xD9, 0x8F, 0x3F]), np.array([0xDB, 0xE2, 0xE4])
     for colour, tolerance, least in ((blue, 60, 50), (grey, 2, 500)):

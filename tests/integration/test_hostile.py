@@ -186,11 +186,11 @@ def bounded():
 
 @sample("name", [*CASES, *OUTLINES], keep=10)
 def test_hostile_drawings_are_read_or_refused_within_bounds(name, tmp_path):
-    body, status, said = {**CASES, **OUTLINES}[name]
+    body, status, expected = {**CASES, **OUTLINES}[name]
     (tmp_path / "hostile.svg").write_text(f"{HEAD}{body()}</svg>")
     words = ("--messages", "json", "preview", "hostile.svg", "-o", "seen.svg", "--show", "strokes")
     done = brushsvg(*words, cwd=tmp_path, status=status, preexec_fn=bounded, timeout_s=300)
-    assert not said or is_reported(done.reported, said), done.err
+    assert not expected or is_reported(done.reported, expected), done.err
     assert (tmp_path / "seen.svg").exists() == (status == 0)
 
 

@@ -49,9 +49,11 @@ def drawn(program, folder) -> list[np.ndarray]:
         encoding="latin-1",
         check=True,
     )
-    said = done.stdout + done.stderr
-    assert re.search(r"command\(s\) ignored: *0\b", said) and re.search(r"Unexpected event\(s\): *0\b", said), said
-    low = [float(each) for each in re.search(r"Coordinate range: \((.*?), (.*?)\)", said).groups()]
+    output = done.stdout + done.stderr
+    assert re.search(r"command\(s\) ignored: *0\b", output) and re.search(r"Unexpected event\(s\): *0\b", output), (
+        output
+    )
+    low = [float(each) for each in re.search(r"Coordinate range: \((.*?), (.*?)\)", output).groups()]
     strokes: list[list] = []
     written = (folder / "out.plt").read_text(encoding="latin-1")
     for word, x, y in re.findall(r"(PU|PD)(-?[\d.]+),(-?[\d.]+);", written):

@@ -46,8 +46,8 @@ def programs(tmp_path, text):
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_a_program_other_than_brushsvg_is_reported(plugin, tmp_path, drawing, script, does, reported):
     other = programs(tmp_path, does)
-    said = sentence(plugin.script(script, drawing, f"--executable={other}"))
-    assert reported in said if reported else said.startswith(f"{other} ") and said.count("\n") == 1
+    message = sentence(plugin.script(script, drawing, f"--executable={other}"))
+    assert reported in message if reported else message.startswith(f"{other} ") and message.count("\n") == 1
 
 
 def test_a_chosen_program_that_does_not_exist_is_reported(plugin, tmp_path, drawing):

@@ -17,8 +17,8 @@ STORED = {"brush": "mine", "cell": "grbl-servo", "tolerance": "0.1mm", "speed": 
 @pytest.fixture
 def drawing(tmp_path):
     file = tmp_path / "drawing.svg"
-    said = " ".join(f'data-brushsvg-{name}="{value}"' for name, value in STORED.items())
-    file.write_text(SOUND.replace("<svg ", f"<svg {said} "))
+    attributes = " ".join(f'data-brushsvg-{name}="{value}"' for name, value in STORED.items())
+    file.write_text(SOUND.replace("<svg ", f"<svg {attributes} "))
     return file
 
 
@@ -106,12 +106,12 @@ def test_the_command_line_uses_settings_stored_by_inkscape(plugin, tmp_path):
     chosen = {"brush": "rigid", "compensation": "none", "cell": "ur5e", "wide": "refuse", "tolerance": "0.2"}
     plugin.set(**{f"settings__{name}": value for name, value in chosen.items()})
     try:
-        said = plugin.effect("settings", source, tmp_path / "said.svg")
+        saved = plugin.effect("settings", source, tmp_path / "said.svg")
     finally:
         plugin.set()
     brushsvg("convert", "said.svg", "-o", "said.script", cwd=tmp_path, status=0)
     flags = [word for name, value in chosen.items() for word in (f"--{name}", value)]
     brushsvg("convert", "drawing.svg", "-o", "typed.script", *flags, cwd=tmp_path, status=0)
     assert (tmp_path / "said.script").read_bytes() == (tmp_path / "typed.script").read_bytes()
-    again = plugin.effect("settings", said, tmp_path / "again.svg")
-    assert stored(again.read_text()) == stored(said.read_text()) == {**chosen, "tolerance": "0.2mm"}
+    again = plugin.effect("settings", saved, tmp_path / "again.svg")
+    assert stored(again.read_text()) == stored(saved.read_text()) == {**chosen, "tolerance": "0.2mm"}

@@ -43,7 +43,7 @@ def test_painted_text_is_read_as_well_as_drawn_text(fonts):
             for texts in (words(), list(GLYPHS)):
                 done = readings(texts, font, pool)
                 drawn, painted = done.right()
-                print(drawn, painted, [(each.text, said) for each, said in done.spoilt()], flush=True)
+                print(drawn, painted, [(each.text, reading) for each, reading in done.spoilt()], flush=True)
                 assert painted >= drawn - LESS_OF_ONE * len(texts), f"{done.spoilt()}"
                 texts_drawn, texts_painted, count = (
                     texts_drawn + drawn,

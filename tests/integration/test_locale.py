@@ -13,10 +13,10 @@ def german(tmp_path_factory):
     words = ["localedef", "-i", "de_DE", "-f", "UTF-8", folder / "de_DE.UTF-8"]
     subprocess.run(words, check=True, capture_output=True)
     environment = {"LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8"}
-    said = subprocess.run(
+    done = subprocess.run(
         ["/usr/bin/printf", "%.1f", "0,5"], env=environment, capture_output=True, text=True, check=True
     )
-    assert said.stdout == "0,5", "the locale is not in force"
+    assert done.stdout == "0,5", "the locale is not in force"
     return environment
 
 

@@ -124,10 +124,10 @@ def reported(tmp_path_factory, npm):
         text=True,
         env=os.environ | {"PYTHONPATH": str(folder / "site")},
     )
-    said = json.loads(done.stdout)
-    assert said["summary"]["filesAnalyzed"] == len(files) + 1
+    output = json.loads(done.stdout)
+    assert output["summary"]["filesAnalyzed"] == len(files) + 1
     found: dict[str, list[tuple[str, str]]] = {name: [] for name in [*files, "sound"]}
-    for each in said["generalDiagnostics"]:
+    for each in output["generalDiagnostics"]:
         line = f"{each['range']['start']['line'] + 1}: {each['message']}"
         found[Path(each["file"]).stem].append((each.get("rule", ""), line))
     return found
@@ -140,11 +140,14 @@ def test_all_shown_code_is_checked():
 
 
 def test_shown_code_has_no_type_errors(reported):
-    assert {name: said for name, said in reported.items() if said and not name.startswith("planted")} == {}
+    assert {name: errors for name, errors in reported.items() if errors and not name.startswith("planted")} == {}
 
 
 @pytest.mark.parametrize("number", range(len(PLANTED)), ids=lambda number: PLANTED[number][1])
 def test_planted_errors_are_found(reported, number):
     right, wrong, rule = PLANTED[number]
     assert PROGRAM.count(right) == 1
-    assert rule in [said for said, _ in reported[f"planted {number}"]], (wrong, reported[f"planted {number}"])
+    assert rule in [found_rule for found_rule, _ in reported[f"planted {number}"]], (
+        wrong,
+        reported[f"planted {number}"],
+    )

@@ -126,9 +126,9 @@ def test_the_report_shows_lean_and_map_of_edges_and_overlap():
     _, marks = painted(DISPLACED_LITTLE_MM, lean, by_map, turn=0.0, height=0.1)
     made = brushsvg.calibrate(marks, "b", machine=("lean", "axes")).fit
     text = report(by_overlap._make_calibration(made, machine_added(made))).text(True)
-    said = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
-    assert np.array(said["lean"][:2], float) == pytest.approx(lean, abs=0.08)
-    assert np.array(said["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
+    numbers = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
+    assert np.array(numbers["lean"][:2], float) == pytest.approx(lean, abs=0.08)
+    assert np.array(numbers["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
 
 
 @pytest.mark.thorough

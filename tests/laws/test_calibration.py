@@ -198,16 +198,16 @@ def test_other_depths_decide_the_sign_of_e_for_a_centre_line():
     off.
     """
     rng = np.random.default_rng(2)
-    off, held, said = [], [], []
+    off, held, remarked = [], [], []
     for _ in range(4):
         made = calibrate(centre_lines_and_footprints(rng), "b")
         [fitted] = [each for each in made.laws if each.name == "tip_to_widest"]
         half = half_interval_mm(fitted.fit.covariance, np.array([1.0]), fitted.fit.degrees_of_freedom)[0]
         off.append(fitted.fit.law(1.0) - SHALLOW(1.0))
         held.append(abs(off[-1]) <= half)
-        said.append(any("centre_line[0]" in remark for remark in made.remarks))
+        remarked.append(any("centre_line[0]" in remark for remark in made.remarks))
     assert np.mean(off) < 0.25
-    assert all(is_held or is_said for is_held, is_said in zip(held, said, strict=True))
+    assert all(is_held or is_said for is_held, is_said in zip(held, remarked, strict=True))
 
 
 def test_centre_lines_are_weighted_by_the_scatter_of_their_points():
@@ -372,7 +372,7 @@ def test_plain_and_total_least_squares_agree_with_numpy():
 
 
 @pytest.mark.parametrize(
-    ("rows", "where", "said"),
+    ("rows", "where", "expected"),
     [
         ({"width": WIDTHS}, "lag", "measurement-missing lag angles angular"),
         ({"lag": values(DEPTHS, lag(DEPTHS))}, "half_width", "measurement-missing width"),
@@ -404,6 +404,6 @@ def test_plain_and_total_least_squares_agree_with_numpy():
         ({}, "", "measurement-missing"),
     ],
 )
-def test_impossible_calibrations_are_refused_with_a_remedy(rows, where, said):
-    with refused(said, where):
+def test_impossible_calibrations_are_refused_with_a_remedy(rows, where, expected):
+    with refused(expected, where):
         calibrate(from_dict(**rows), "b")

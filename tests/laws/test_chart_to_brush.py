@@ -71,9 +71,9 @@ def test_the_brush_that_painted_the_chart_is_recovered(painted):
 
 def test_intervals_agree_with_the_prediction_before_painting(painted):
     made, found = painted
-    said, _ = expected_brush(made.plan, truth(), NOISE_MM)
+    expected, _ = expected_brush(made.plan, truth(), NOISE_MM)
     for law in ("lag", "tip_gap", "half_width"):
-        before, after = (law_band(brush, law, DEPTHS)[0] for brush in (said, found))
+        before, after = (law_band(brush, law, DEPTHS)[0] for brush in (expected, found))
         ratio = np.mean(after) / np.mean(before)
         assert 0.5 < ratio < 2, (law, before, after)
         off = np.abs([getattr(found, law)(d) - getattr(truth(), law)(d) for d in DEPTHS])

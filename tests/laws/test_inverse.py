@@ -695,8 +695,8 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
         mark = painted_region(poses)
         return (mark & target).area / (mark | target).area, len(poses)
 
-    (butt, count), (said, _), (rounded, before) = map(overlap, ("auto", "butt", "round"))
-    assert butt == said > least > rounded + 0.1
+    (butt, count), (requested, _), (rounded, before) = map(overlap, ("auto", "butt", "round"))
+    assert butt == requested > least > rounded + 0.1
     assert count < before + 75
 
 
@@ -738,14 +738,14 @@ def test_a_disc_wider_than_the_brush_gets_a_ring_if_no_gap_remains(radius_mm, le
     drawn = shapely.Point(50, 50).buffer(radius_mm, 64)
     stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 4.2)])
     stroke.wanted_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
-    said, rounded = (
+    automatic, rounded = (
         core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan.passes[0].poses_mm
         for start in ("auto", "round")
     )
     if least is None:
-        np.testing.assert_array_equal(said, rounded)
+        np.testing.assert_array_equal(automatic, rounded)
     else:
-        mark = painted_region(said)
+        mark = painted_region(automatic)
         assert (mark & drawn).area / (mark | drawn).area > least
 
 
@@ -809,8 +809,8 @@ def test_auto_chooses_a_suitable_start_and_a_stroke_can_override_it():
     sharp.wanted_mm = [np.array(points, float)]
     plan = core.compensate([sharp], ROUND, (99.0, 99.0), start="auto").plan
     np.testing.assert_array_equal(plan.passes[0].poses_mm, pointed)
-    said = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="round"))
-    plan = core.compensate([said], ROUND, (99.0, 99.0), start="pointed").plan
+    with_setting = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="round"))
+    plan = core.compensate([with_setting], ROUND, (99.0, 99.0), start="pointed").plan
     np.testing.assert_array_equal(plan.passes[0].poses_mm, rounded)
     wrong = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="soft"))
     with pytest.raises(Error) as refused:
@@ -1013,8 +1013,8 @@ def test_automatic_starts_keep_round_caps():
     np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), rounded)
     butt = poses_of(middle, half_width, start="butt")
     assert len(butt) > len(rounded)
-    said = core.Stroke(id="s", middle_mm=middle, half_width=half_width, settings=core.Settings(start="butt"))
-    plan = core.compensate([said], ROUND, (200.0, 200.0), start="pointed").plan
+    with_setting = core.Stroke(id="s", middle_mm=middle, half_width=half_width, settings=core.Settings(start="butt"))
+    plan = core.compensate([with_setting], ROUND, (200.0, 200.0), start="pointed").plan
     np.testing.assert_array_equal(plan.passes[0].poses_mm, butt)
 
 

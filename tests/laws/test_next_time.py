@@ -500,9 +500,9 @@ def test_widths_are_corrected_from_a_photograph(tmp_path, capsys):
     studio.own = {name: np.zeros(2) for name in rings}
     studio.grown = {"bar": 0.4, "bow": -0.3, "line": 0.03}
     out = studio.compared(studio.photographed(plan))
-    said = {row["stroke"]: row["correction"]["wider_mm"] for row in json.loads(out.read_text())["strokes"]}
-    assert -0.34 < said["bar"] < -0.28 and 0.18 < said["bow"] < 0.26, said
-    assert said["line"] == said["cross"] == said["loop"] == 0, said
+    wider_mm = {row["stroke"]: row["correction"]["wider_mm"] for row in json.loads(out.read_text())["strokes"]}
+    assert -0.34 < wider_mm["bar"] < -0.28 and 0.18 < wider_mm["bow"] < 0.26, wider_mm
+    assert wider_mm["line"] == wider_mm["cross"] == wider_mm["loop"] == 0, wider_mm
     again = studio.rings(studio.plan("--corrections", out))
     sizes = {name: area(again[name]).area - area(rings[name]).area for name in rings}
     assert sizes["bar"] < -10 and sizes["bow"] > 5 and abs(sizes["loop"]) < 1, sizes

@@ -146,7 +146,7 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
 
 
 @pytest.mark.parametrize(
-    ("made", "said"),
+    ("made", "expected"),
     [
         (found(), ""),
         (found([(1.2, -1.2)] * 4), ""),
@@ -156,9 +156,9 @@ def found(displacements=(), shift=(0.0, 0.0), height=0.0, turn=0.0):
         (found(turn=0.11), r' 6.3 degrees.* 1.1 degrees.*\{"turn_deg": 7\}'),
     ],
 )
-def test_results_far_beyond_expectation_are_reported(made, said):
-    assert re.search(said, "".join(mark_report._unexpected(made)))
-    assert bool(said) == bool(mark_report._unexpected(made))
+def test_results_far_beyond_expectation_are_reported(made, expected):
+    assert re.search(expected, "".join(mark_report._unexpected(made)))
+    assert bool(expected) == bool(mark_report._unexpected(made))
 
 
 @pytest.mark.parametrize(
@@ -170,8 +170,8 @@ def test_results_far_beyond_expectation_are_reported(made, said):
     ],
 )
 def test_a_photograph_has_flags_and_no_measurement_file(made, flag):
-    (said,) = mark_report._unexpected(made, of_photo=True)
-    assert re.search(flag, said) and 'expected"' not in said
+    (reported,) = mark_report._unexpected(made, of_photo=True)
+    assert re.search(flag, reported) and 'expected"' not in reported
 
 
 def test_marks_unlike_their_predictions_are_reported(monkeypatch):

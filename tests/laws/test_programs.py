@@ -137,9 +137,9 @@ def moves_on_paper(text, remark, speed, unit_mm=1.0):
     for line in text.splitlines():
         if line.startswith(remark):
             visit = line.startswith(f"{remark}paint")
-        said = re.search(speed, line)
+        match = re.search(speed, line)
         for point in re.findall(r"on_paper\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)", line):
-            yield False, tuple(unit_mm * float(value) for value in point), unit_mm * float(said[1]), visit
+            yield False, tuple(unit_mm * float(value) for value in point), unit_mm * float(match[1]), visit
 
 
 def jaka_moves(text):
@@ -169,8 +169,8 @@ def krl_moves(text):
     for line in text.splitlines():
         if line.startswith("; "):
             visit = line.startswith("; paint")
-        if said := re.fullmatch(r"\$VEL\.CP = ([\d.]+)", line):
-            speed = 1e3 * float(said[1])
+        if match := re.fullmatch(r"\$VEL\.CP = ([\d.]+)", line):
+            speed = 1e3 * float(match[1])
         if line.startswith(("LIN {", "CIRC {")):
             for point in re.findall(r"\{X (-?[\d.]+), Y (-?[\d.]+), Z (-?[\d.]+), ", line):
                 yield False, tuple(map(float, point)), speed, visit

@@ -319,7 +319,7 @@ def test_other_formats_and_rotated_cameras_give_the_same_marks():
 
 
 @pytest.mark.parametrize(
-    ("data", "said"),
+    ("data", "expected"),
     [
         (b"", "photo-format .jpg"),
         (b"no picture", "photo-format .jpg"),
@@ -327,8 +327,8 @@ def test_other_formats_and_rotated_cameras_give_the_same_marks():
         (b"\x00\x00\x00\x18ftypheic" + b"\x00" * 50, "photo-format HEIC JPEG"),
     ],
 )
-def test_files_that_are_not_pictures_are_refused(data, said):
-    with refused(said):
+def test_files_that_are_not_pictures_are_refused(data, expected):
+    with refused(expected):
         read_chart_photos(a5(), [("", data)])
 
 
@@ -435,7 +435,7 @@ def only(count):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said", "numbers"),
+    ("spoil", "expected", "numbers"),
     [
         (lambda p: np.full_like(p, 120), "photo-markers-missing", "chart [0-9a-f]{8} "),
         (only(2), "photo-markers-missing 2 6 3", r"\(\d+, \d+\)"),
@@ -454,8 +454,8 @@ def only(count):
     ],
     ids=["no marker", "two markers", "doubled", "mirrored", "small", "blurred"],
 )
-def test_unusable_pictures_are_refused(spoil, said, numbers):
-    with refused(said) as caught:
+def test_unusable_pictures_are_refused(spoil, expected, numbers):
+    with refused(expected) as caught:
         read(spoil(small().copy()))
     assert re.search(numbers, caught.value.sentence), caught.value
 
@@ -651,7 +651,7 @@ def test_bulging_paper_is_not_flat_without_any_subset_of_markers(pair):
 
 def test_wrong_usage_is_refused(tmp_path, capsys):
     out = str(tmp_path / "out.json")
-    for words, said in (
+    for words, flag in (
         (["calibrate", "--force", "a.jpg", "-o", out], "--chart"),
         (["calibrate", "a.json", "--chart", "c.json", "-o", out], "--chart"),
         (["calibrate", "a.json", "--bar", "150", "-o", out], "--bar"),
@@ -670,7 +670,7 @@ def test_wrong_usage_is_refused(tmp_path, capsys):
         ),
     ):
         assert main(words) == 2
-        assert said in capsys.readouterr().err, words
+        assert flag in capsys.readouterr().err, words
 
 
 def test_refusals_name_the_photograph(tmp_path, capsys):

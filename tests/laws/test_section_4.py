@@ -265,7 +265,7 @@ TURNED = np.array(LINE["points_mm"])
 
 
 @pytest.mark.parametrize(
-    ("kind", "row", "said", "where"),
+    ("kind", "row", "expected", "where"),
     [
         ("centre_line", LINE | {"points_mm": TURNED[:4].tolist()}, "measurement-missing 6", "points_mm"),
         ("centre_line", LINE | {"points_mm": (TURNED - np.array([60, -30])).tolist()}, "not-a-turn", ""),
@@ -291,9 +291,9 @@ TURNED = np.array(LINE["points_mm"])
         ),
     ],
 )
-def test_unreadable_rows_are_refused_with_their_position(kind, row, said, where):
+def test_unreadable_rows_are_refused_with_their_position(kind, row, expected, where):
     rows = {kind: [row, *(lines([4.0, 8.0]) if kind == "centre_line" else [])]}
-    with refused(said, ".".join(filter(None, [f"{kind}[0]", where]))):
+    with refused(expected, ".".join(filter(None, [f"{kind}[0]", where]))):
         calibrate(from_dict(**rows, **FOOTPRINTS), "b")
 
 

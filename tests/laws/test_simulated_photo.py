@@ -104,8 +104,8 @@ def test_no_seed_draws_paper_that_a_chart_cannot_be_painted_on(tmp_path, capsys,
     for seed in (2, 3):  # seed 2 was once refused, and seed 3 was not
         assert main(["simulate-photo", "c.json", "-o", "p.jpg", "--seed", str(seed)]) == 0, capsys.readouterr().err
     Path("s.toml").write_text(HEAD + "[machine]\nheight_mm = 1.0\n")
-    status, _, said = in_json(capsys, "simulate-photo", "c.json", "-o", "p.jpg", "--studio", "s.toml")
-    assert status == 1 and is_reported(said, "depth-out-of-range 11.000 machine.height_mm")
+    status, _, reported = in_json(capsys, "simulate-photo", "c.json", "-o", "p.jpg", "--studio", "s.toml")
+    assert status == 1 and is_reported(reported, "depth-out-of-range 11.000 machine.height_mm")
 
 
 def test_letters_of_the_page_end_at_their_layout_positions(monkeypatch):

@@ -39,9 +39,9 @@ def run_dobot(text: str, start, paper: np.ndarray, down: np.ndarray, tool: np.nd
     done = subprocess.run(
         [LUA or "lua5.4", str(STUB), *flanges], input=text.encode("latin-1"), capture_output=True, check=True
     )
-    said = [line.split("\t") for line in done.stdout.decode("latin-1").split("\n")[:-1]]
-    begins = [k for k, words in enumerate(said) if words[0] == "start"]
-    runs = [said[first + 1 : last] for first, last in zip(begins, [*begins[1:], len(said)], strict=True)]
+    lines = [line.split("\t") for line in done.stdout.decode("latin-1").split("\n")[:-1]]
+    begins = [k for k, words in enumerate(lines) if words[0] == "start"]
+    runs = [lines[first + 1 : last] for first, last in zip(begins, [*begins[1:], len(lines)], strict=True)]
     try:
         for words in runs[0]:
             _done(arm, words[0], int(words[1]), words[2:])
@@ -88,9 +88,9 @@ def _done(arm: Arm, kind: str, number: int, words: list[str]) -> None:
         arm.circle(number, _pose(words[:12]), _pose(words[12:24]), speed, acceleration, cut_mm)
 
 
-def _first(said: list[list[str]], start: np.ndarray, tool: np.ndarray, back: np.ndarray) -> str:
+def _first(lines: list[list[str]], start: np.ndarray, tool: np.ndarray, back: np.ndarray) -> str:
     """Describe how a run begins: straight up to a height, or elsewhere."""
-    move = next((words for words in said if words[0] in MOVES), None)
+    move = next((words for words in lines if words[0] in MOVES), None)
     if move is None:
         return "goes nowhere"
     if move[0] == "arc":

@@ -155,18 +155,18 @@ def _statement(number: int, raw: str):
     line = re.fullmatch(r" *\d* *:(.*?)(;?) *", raw)
     if not line:
         raise RefusedError(f"line {number}: {raw[:30]!r} is no instruction")
-    said = line[1].strip(" ")
-    if said.startswith("!"):
-        if not line[2] or ";" in said or len(said) > REMARK + 1:
+    text = line[1].strip(" ")
+    if text.startswith("!"):
+        if not line[2] or ";" in text or len(text) > REMARK + 1:
             raise RefusedError(f"line {number}: a remark that is too long, or has no end")
-        return "remark", said[1:]
-    said = re.sub(" +", " ", said)
+        return "remark", text[1:]
+    text = re.sub(" +", " ", text)
     for what, pattern in STATEMENTS.items():
-        if what != "remark" and (found := pattern.fullmatch(said)):
+        if what != "remark" and (found := pattern.fullmatch(text)):
             if bool(line[2]) == (what == "circle"):
                 raise RefusedError(f"line {number}: an end too much, or none")
             return what, found
-    raise RefusedError(f"line {number}: {said[:40]!r} is no instruction")
+    raise RefusedError(f"line {number}: {text[:40]!r} is no instruction")
 
 
 class _Robot(Arm):
@@ -276,21 +276,21 @@ class _Robot(Arm):
         self.configuration = point[4]
         return self.base @ _as_frame([float(value) for value in point.groups()[4:]])
 
-    def _speed(self, number: int, said: str, unit: str) -> float:
-        speed = float(said) / (6 if unit == "cm/min" else 1)
-        if "." in said or not 1 <= float(said) <= FASTEST_MM_S:
-            raise RefusedError(f"line {number}: a speed of {said}")
+    def _speed(self, number: int, text: str, unit: str) -> float:
+        speed = float(text) / (6 if unit == "cm/min" else 1)
+        if "." in text or not 1 <= float(text) <= FASTEST_MM_S:
+            raise RefusedError(f"line {number}: a speed of {text}")
         return speed
 
-    def _cut_mm(self, number: int, said: str, speed: float) -> float:
-        if said == "FINE":
+    def _cut_mm(self, number: int, text: str, speed: float) -> float:
+        if text == "FINE":
             return 0.0
-        if said.startswith("CR"):
-            self.run.acts.append(f"line {number}: {said} is an option")
+        if text.startswith("CR"):
+            self.run.acts.append(f"line {number}: {text} is an option")
             return 0.0
-        percent = int(said[3:])
+        percent = int(text[3:])
         if percent > 100:
-            raise RefusedError(f"line {number}: {said}")
+            raise RefusedError(f"line {number}: {text}")
         return percent / 100 * self.ramp_s * speed / 2
 
     def _move(self, number: int, program: _Program, found) -> None:

@@ -226,8 +226,8 @@ class _Robot(Arm):
     def _target(self, number: int, word: str) -> np.ndarray:
         if not self.has_begun:
             raise RefusedError(f"line {number}: the first move must be PTP")
-        said = _parts(number, word) if word.startswith("{") else self._value(number, word)
-        self.last = self.last | said
+        value = _parts(number, word) if word.startswith("{") else self._value(number, word)
+        self.last = self.last | value
         if set(self.last) < set("xyzabc"):
             raise RefusedError(f"line {number}: a place that is not whole")
         return self.base @ _as_frame(self.last)

@@ -71,7 +71,7 @@ class _Machine:
             self._act("a return within a line")
         if any(ord(letter) > 126 or (letter < " " and letter not in "\r\t") for letter in line):
             self._act("a letter that is not plain")
-        code, remark, said = line.rstrip("\r").partition(";")
+        code, remark, comment = line.rstrip("\r").partition(";")
         code = code.strip().upper()
         if len(code) > LONGEST[self.firmware]:
             self._act("a line that is cut")
@@ -79,7 +79,7 @@ class _Machine:
             self.has_code = True
             self._command(code)
         if remark:
-            words = said.removeprefix(" ").rstrip()
+            words = comment.removeprefix(" ").rstrip()
             if self.has_code:
                 self.run.titles.append((words, len(self.run.legs)))
             else:

@@ -57,10 +57,10 @@ def ring(random, middle, reach: tuple[float, float], count: int) -> str:
     """Return a star-shaped polygon or a closed curve around a point."""
     angles = np.sort(random.uniform(0, 2 * np.pi, count))
     points = middle + (random.uniform(*reach, count) * np.exp(1j * angles)).view(float).reshape(-1, 2)
-    said = [f"{x:.3f} {y:.3f}" for x, y in points]
+    texts = [f"{x:.3f} {y:.3f}" for x, y in points]
     if random.random() < 0.5:
-        return f"M{said[0]} L{' L'.join(said[1:])} Z"
-    return f"M{said[0]} " + " ".join(f"Q{a} {b}" for a, b in zip(said[1::2], said[2::2], strict=False)) + " Z"
+        return f"M{texts[0]} L{' L'.join(texts[1:])} Z"
+    return f"M{texts[0]} " + " ".join(f"Q{a} {b}" for a, b in zip(texts[1::2], texts[2::2], strict=False)) + " Z"
 
 
 def outlines(random, at: Path) -> Path:
@@ -220,7 +220,7 @@ def _judged(number, dialect, cell, source, flags, folder, check) -> tuple[str, l
         wrong += stepped(source, found.job.plan, brush, toml, without)
         again = folder / f"again{program.suffix}"
         again.unlink(missing_ok=True)
-        wrong += [f"second time: {said}" for said in converted(source, again, "--cell", toml, *flags)]
+        wrong += [f"second time: {refusal}" for refusal in converted(source, again, "--cell", toml, *flags)]
         if again.exists() and again.read_bytes() != program.read_bytes():
             wrong.append("the same input gives other bytes")
     return "", wrong

@@ -90,16 +90,16 @@ def judged(
         find_cell(toml)
     except Error as refusal:
         return Judged((str(refusal),))
-    if said := converted(source, program, "--cell", toml, *flags):
-        wrong = (f"refused, and written: {said}",) if program.exists() else ()
-        return Judged(tuple(said), wrong)
+    if refusals := converted(source, program, "--cell", toml, *flags):
+        wrong = (f"refused, and written: {refusals}",) if program.exists() else ()
+        return Judged(tuple(refusals), wrong)
     planned = [word for word in flags if word not in said_of(flags, "--z-offset")]
     text = _whole(program)
     # convert writes the plan's file without the limits of the machine. The program has passed these limits.
-    if said := converted(source, plan, "--cell", toml, *planned):
+    if refusals := converted(source, plan, "--cell", toml, *planned):
         if "--z-offset" in flags:  # the paper of the plan is lower and may be out of reach
-            return Judged(tuple(said))
-        return Judged((), (f"no plan: {said}",))
+            return Judged(tuple(refusals))
+        return Judged((), (f"no plan: {refusals}",))
     job = job_for(toml.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
     run = job.interpret(text)
     wrong = [f"the controller stops: {run.refused}"] if run.refused else []
@@ -113,8 +113,8 @@ def judged(
     if any((job.machine or {}).get("backlash_mm", ())):
         exact = put(folder / "exact.toml", write_cell(without_backlash(cell)))
         twin = folder / f"exact{suffix}"
-        if said := converted(source, twin, "--cell", exact, *flags):
-            wrong.append(f"no program without backlash: {said}")
+        if refusals := converted(source, twin, "--cell", exact, *flags):
+            wrong.append(f"no program without backlash: {refusals}")
         else:
             of = job_for(exact.read_text(encoding="utf-8"), plan.read_text(), said_of(flags, "--brush")[1], flags)
             has_circles = re.search(r"^G[23] ", text, re.MULTILINE) is not None
@@ -122,7 +122,7 @@ def judged(
     words = [word for flag in requested for word in said_of(flags, flag)]
     drawing = () if source.suffix == ".json" else (source,)
     denied = check(program, *drawing, "--cell", toml, *words)
-    assert not any(CRASHED in said for said in denied), denied
+    assert not any(CRASHED in refusals for refusals in denied), denied
     return Judged((), tuple(wrong), tuple(denied), job)
 
 

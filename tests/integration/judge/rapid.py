@@ -533,13 +533,13 @@ class _Robot(Arm):
         frames = [base @ _as_frame(number, target[:2]) for target in targets]
         if not zone[0] and zone[2] < zone[1]:
             raise RefusedError(f"line {number}: a zone that the tool turns in is smaller than its own")
-        said = [
+        numbers = [
             speed[1:],
             tool[2],
             *(target[2:] for target in targets),
         ]  # turns, load, configurations, other axes
-        said += [] if zone[0] else [[each - zone[1] for each in zone[2:4]], zone[4], zone[6], zone[1] == 0]
-        self.run.frame.append(f"moves with {said}")
+        numbers += [] if zone[0] else [[each - zone[1] for each in zone[2:4]], zone[4], zone[6], zone[1] == 0]
+        self.run.frame.append(f"moves with {numbers}")
         return (*frames, speed[0], 0.0 if zone[0] else zone[1])
 
     def _work_object(self, number: int, wobj: list) -> np.ndarray:

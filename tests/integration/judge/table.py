@@ -37,8 +37,8 @@ class Figures:
     def of(self, dialect: str, verdict: str | None = None, refused: bool | None = None) -> int:
         return sum(
             number
-            for (its, said, was), number in self.counts.items()
-            if its == dialect and verdict in (None, said) and refused in (None, was)
+            for (its, its_verdict, was), number in self.counts.items()
+            if its == dialect and verdict in (None, its_verdict) and refused in (None, was)
         )
 
     def table(self) -> str:
@@ -94,7 +94,7 @@ def measure(made: Made, count: int, seed: int, figures: Figures) -> None:
             refusals = tuple(check(put(made.program, text), *made.words))
             figures.counts[made.dialect, verdict, bool(refusals)] += 1
             wrong = verdict == "harmless" and refusals
-            crashed = any(CRASHED in said for said in refusals)
+            crashed = any(CRASHED in refusal for refusal in refusals)
             figures.crashes += [(made.dialect, made.name, damage, refusals)] if crashed else []
             if wrong or crashed or (verdict == "dangerous" and not refusals) or verdict == "neither":
                 lines = changed(made.whole.text, text)

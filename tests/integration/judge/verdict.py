@@ -448,16 +448,16 @@ def unlike(way: Way, job: Job, sound: list[np.ndarray] | None = None) -> list[st
     not checked.
     """
     strokes = strokes_of(way, job)
-    said = []
+    reasons = []
     if len(strokes) != len(job.passes):
-        said.append(f"{len(strokes)} strokes instead of {len(job.passes)}")
+        reasons.append(f"{len(strokes)} strokes instead of {len(job.passes)}")
     for k, (stroke, target) in enumerate(zip(strokes, job.passes, strict=False)):
         if sound and k < len(sound) and sound[k].shape == stroke.shape and (sound[k] == stroke).all():
             continue
         if (away := off_mm(stroke, target, sound[k] if sound and k < len(sound) else None)) > OFF_MM:
-            said.append(f"stroke {k + 1} is {away:.3g} mm off, lost in part, or runs another way")
+            reasons.append(f"stroke {k + 1} is {away:.3g} mm off, lost in part, or runs another way")
             break
-    return said + _corners(way, job)
+    return reasons + _corners(way, job)
 
 
 def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> float:
@@ -607,14 +607,14 @@ def facts(run: Run) -> tuple[dict, list]:
 
     A user who resumes a job relies on the titles of the sections.
     """
-    said: dict[str, set] = {}
+    by_word: dict[str, set] = {}
     for line in run.header:
         if found := FACT.fullmatch(line.strip()):
-            said.setdefault(found[1], set()).add(found[2])
-    said["what frames it"] = set(run.frame)
+            by_word.setdefault(found[1], set()).add(found[2])
+    by_word["what frames it"] = set(run.frame)
     sizes = [float(np.linalg.norm(np.subtract(leg.end, leg.start))) for leg in run.legs]
     done = np.concatenate([[0.0], np.cumsum(sizes)])
-    return said, [(words, float(done[at])) for words, at in run.titles if TITLE.match(words)]
+    return by_word, [(words, float(done[at])) for words, at in run.titles if TITLE.match(words)]
 
 
 FASTER_MM_S = 0.01  # rounding changes a feed by at most this much
@@ -622,8 +622,8 @@ LIFT_S = 0.05  # duration of one step of a servo's lift
 
 
 def same_facts(one: tuple[dict, list], other: tuple[dict, list]) -> bool:
-    (said, titles), (its, others) = one, other
-    if said != its or [words for words, _ in titles] != [words for words, _ in others]:
+    (ours, titles), (its, others) = one, other
+    if ours != its or [words for words, _ in titles] != [words for words, _ in others]:
         return False
     return all(abs(a - b) < SAME_PLACE_MM for (_, a), (_, b) in zip(titles, others, strict=True))
 
@@ -659,8 +659,8 @@ def sound(text: str, job: Job) -> Sound:
     run = job.interpret(text)
     assert not run.refused and not run.acts, (run.refused, run.acts)
     way = way_of(run, job)
-    said = broken(way, job) + (unlike(way, job) if job.compare else [])
-    assert not said, said
+    reasons = broken(way, job) + (unlike(way, job) if job.compare else [])
+    assert not reasons, reasons
     return Sound(job, text, way, strokes_of(way, job))
 
 
@@ -669,19 +669,19 @@ def dangers(text: str, whole: Sound) -> tuple[list[str], Way]:
     job = whole.job
     run = job.interpret(text)
     way = way_of(run, job)
-    said = [f"acts: {what}" for what in run.acts]
-    said += broken(way, job)
-    said += unlike(way, job, whole.strokes)
-    if run.refused and (said or not run.legs):
-        said.append(f"the controller stops: {run.refused}")
-    return said, way
+    reasons = [f"acts: {what}" for what in run.acts]
+    reasons += broken(way, job)
+    reasons += unlike(way, job, whole.strokes)
+    if run.refused and (reasons or not run.legs):
+        reasons.append(f"the controller stops: {run.refused}")
+    return reasons, way
 
 
 def judged(text: str, whole: Sound) -> tuple[str, str]:
     """Return "dangerous", "harmless" or "neither", and the reason."""
-    said, way = dangers(text, whole)
-    if said:
-        return "dangerous", "; ".join(said[:3])
+    reasons, way = dangers(text, whole)
+    if reasons:
+        return "dangerous", "; ".join(reasons[:3])
     if way.run.refused:
         return "neither", f"the controller stops: {way.run.refused}"
     if not same_facts(facts(way.run), whole.facts):

@@ -191,9 +191,9 @@ def flags_for(flags: tuple[str, ...], dialect: str) -> tuple[str, ...]:
 
 
 def job_for(cell_toml: str, plan_json: str, brush_name: str, flags=()) -> Job:
-    said = dict(itertools.pairwise(flags))
+    options = dict(itertools.pairwise(flags))
     brush = find_brush(brush_name)
-    z_offset, first = float(said.get("--z-offset", 0)), int(said.get("--from-stroke", 1))
+    z_offset, first = float(options.get("--z-offset", 0)), int(options.get("--from-stroke", 1))
     return job_of(tomllib.loads(cell_toml), plan_json, brush.max_speed_mm_s, z_offset, first)
 
 
@@ -209,9 +209,9 @@ def make(name: str, dialect: str, folder: Path) -> Made:
     planned = [
         flag for k, flag in enumerate(flags) if not {"--z-offset", "--from-stroke"} & set(flags[max(0, k - 1) : k + 1])
     ]
-    assert not (said := converted(svg, plan, "--cell", cell, *planned)), said
+    assert not (refusals := converted(svg, plan, "--cell", cell, *planned)), refusals
     source = plan if work.by_plan else svg
-    assert not (said := converted(source, program, "--cell", cell, *flags)), said
+    assert not (refusals := converted(source, program, "--cell", cell, *flags)), refusals
     text = program.read_text(encoding="ascii")
     brush = json.loads(plan.read_text())["brush"]
     job = job_for(cell_toml, plan.read_text(), brush, flags)
