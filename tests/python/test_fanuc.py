@@ -62,7 +62,7 @@ def test_a_long_job_is_a_main_program_that_calls_its_parts(job, capsys):
     assert len({name for name, _ in ran.titles}) == 31 and len(ran.legs) == 30 * 94
 
 
-def test_jobs_of_one_title_and_length_have_parts_of_other_names():
+def test_jobs_with_equal_title_and_length_have_different_part_names():
     """Moved by 5 mm, a job has the same text in its main program."""
     here = {each.stroke: each.poses_mm for each in waves(30, 90).passes}
     there = {name: np.add(poses, (5.0, 0.0, 0.0)) for name, poses in here.items()}
