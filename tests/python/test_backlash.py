@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, refused
+from diagnostics import in_json, is_reported, refused
 from programs import is_refused_when_damaged
 from sampling import sample
 from shapely import LineString, distance, points
@@ -249,3 +249,31 @@ def test_servo_and_pen_cells_compensate_backlash(tmp_path, capsys, name, ending)
     flags = ("--cell", tmp_path / "c.toml", *brush)
     assert in_json(capsys, "convert", tmp_path / "a.svg", "-o", tmp_path / f"a{ending}", *flags)[0] == 0
     assert in_json(capsys, "check", tmp_path / f"a{ending}", tmp_path / "a.svg", *flags)[0] == 0
+
+
+def test_commands_ahead_of_their_places_stay_in_the_box(tmp_path, capsys):
+    """No command leaves the box, also where the play is added to a place inside of it.
+
+    The limits were once checked before the play was added, and the program commanded places outside of the box. The
+    paper is turned by a right angle, so the box's x and the play of the machine's x limit the y of the paper.
+    """
+    (tmp_path / "a.svg").write_text(DRAWING)
+    free = replace(
+        find_cell("grbl-3axis"),
+        paper=Paper((200.0, 20.0, 0.0), (0.0, 0.0, 90.0)),
+        machine=Machine(backlash_mm=(1.0, 0.0)),
+    )
+    (tmp_path / "free.toml").write_text(write_cell(free))
+    program = tmp_path / "a.gcode"
+    convert = ("convert", tmp_path / "a.svg", "-o", program, "--cell")
+    assert in_json(capsys, *convert, tmp_path / "free.toml")[0] == 0
+    commanded = [float(value) for value in re.findall(r"^G[0-3] X(\S+)", program.read_text(), re.MULTILINE)]
+    for narrower_mm, status in ((-0.01, 0), (0.01, 1), (0.49, 1)):
+        left, right = min(commanded) + narrower_mm, max(commanded) - narrower_mm
+        box = ((left, -100.0, -50.0), (right, 300.0, 100.0))
+        cell = replace(free, workspace=replace(free.workspace, box_mm=box))
+        (tmp_path / "c.toml").write_text(write_cell(cell))
+        for words in (convert, ("check", program, "--cell")):
+            found, _, reported = in_json(capsys, *words, tmp_path / "c.toml")
+            assert found == status, (narrower_mm, reported)
+            assert not status or is_reported(reported, "out-of-box x 0.5 machine.backlash_mm"), reported

@@ -11,6 +11,7 @@ from ..errors import Notice
 from .cells.cell import LEAST_SPEED_MM_S, Cell, Station
 from .motion import Move, Section
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
+from .realised.backlash import half_mm
 from .realised.tilt import check_tilt_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6  # slack for the rounding of numbers
@@ -174,7 +175,8 @@ def find_broken_limits(
     """Report each limit of place that moves break anywhere on their path.
 
     The limits are the sheet with its margin, the cell's box, reach and boxes to keep out of, and the heights of a
-    servo's table. The notices name no stroke or station yet.
+    servo's table. The box is smaller by half of the machine's play, because a program commands places ahead of the
+    tool. The notices name no stroke or station yet.
 
     frame: (4, 4) pose of the moves' frame, which is the paper's frame, in the robot's frame.
     slack_mm: how far rounding may have moved the moves.
@@ -259,13 +261,15 @@ def _check_sheet(low: np.ndarray, high: np.ndarray, sheet_mm, cell: Cell, slack_
 
 
 def _check_box(least: np.ndarray, greatest: np.ndarray, cell: Cell, slack_mm: float) -> Iterator[Notice]:
+    play_mm = (*half_mm(cell).tolist(), 0.0)  # a program commands x and y this far ahead of their places
     for axis, name in enumerate("xyz" if cell.workspace.box_mm else ""):
-        low, high = cell.workspace.box_mm[0][axis], cell.workspace.box_mm[1][axis]
+        low, high = cell.workspace.box_mm[0][axis] + play_mm[axis], cell.workspace.box_mm[1][axis] - play_mm[axis]
         if least[axis] < low - slack_mm or greatest[axis] > high + slack_mm:
             shown_mm = least[axis] if low - least[axis] > greatest[axis] - high else greatest[axis]
+            less = f", less {play_mm[axis]:g} mm for half of machine.backlash_mm" if play_mm[axis] else ""
             sentence = (
                 f"the tool goes to {name} {_outside_text(shown_mm, low, high)} mm, outside the range "
-                f"[{low:g}, {high:g}] mm of workspace.box_mm of cell {cell.name}"
+                f"[{low:g}, {high:g}] mm of workspace.box_mm of cell {cell.name}{less}"
             )
             yield Notice("", sentence, code="out-of-box", about=name)
     if cell.servo:  # the paper is level, and a height beyond the table would silently become its last height

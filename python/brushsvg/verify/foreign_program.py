@@ -105,6 +105,7 @@ def _check_workspace_limits(ways: list[Way], cell: Cell, sheet_mm) -> list[Notic
             lines.append(way.line)
             paths.append(points)
     frame, slack_mm = robot_from_paper(cell), ROUNDING_MM + CHORD_MM
+    cell = replace(cell, machine=None)  # its commands are its places: nothing was added for the machine's play
     if not paths or not find_broken_limits(straight_extents(paths), frame, cell, sheet_mm, slack_mm):
         return []
     return [
