@@ -226,6 +226,38 @@ def test_a_stroke_that_sweeps_through_a_vessel_is_refused():
     assert not reported(rim_mm=-3.5, surface_mm=-3.5)
 
 
+def test_lower_paper_does_not_lower_the_vessels_on_the_table(tmp_path, capsys):
+    """With lower paper, the tool still clears the vessels, which stay on the table.
+
+    The safe height moves down with the paper, and the tool once passed over a rim without the clearance.
+    """
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+        '<path id="line" d="M80 30 H40" stroke="#000" stroke-width="4"/></svg>'
+    )
+    pot = Station("pot", (-20.0, 20.0), depth_mm=5.0, rim_mm=4.0)
+    for name, station in (
+        ("low", pot),
+        ("high", replace(pot, rim_mm=4.5)),
+        ("hand", replace(pot, rim_mm=4.5, depth_mm=0.0, by_hand=True)),
+    ):
+        cell = replace(cell_with(Reload("stroke"), station), name=name)  # the safe height is 10 mm, the clearance 1 mm
+        (tmp_path / f"{name}.toml").write_text(write_cell(cell))
+
+    def run(command, name, z_offset):
+        program = ("a.svg", "-o", "a.ngc") if command == "convert" else ("a.ngc",)
+        words = (tmp_path / word if "." in word else word for word in program)
+        return in_json(capsys, command, *words, "--cell", tmp_path / f"{name}.toml", "--z-offset", z_offset)
+
+    for name, z_offset in (("high", 20), ("high", 0), ("hand", -5), ("low", -5)):
+        for command in ("convert", "check"):
+            status, _, reported = run(command, name, z_offset)
+            assert status == 0, (name, z_offset, reported)
+    for command in ("convert", "check"):
+        status, _, reported = run(command, "high", -5)
+        assert status == 1 and is_reported(reported, "cell-station 4.5 4 --z-offset -5", "pot"), reported
+
+
 def test_a_person_dips_the_brush_at_safe_height():
     section = make_visit(Station("hand", (5.0, 6.0), by_hand=True), BRUSH, find_cell())
     assert section.moves[0].points_mm.tolist() == [[5, 6, 10]]

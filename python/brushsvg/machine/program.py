@@ -31,7 +31,14 @@ from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written, as_written
 from .realised.tilt import limit_turning_speed
 from .tool_axes import axes_of, tilts_deg
-from .workspace_limits import broken_limits, check_first_rise, find_astray_sections, find_vessels_entered, touching_mm_s
+from .workspace_limits import (
+    broken_limits,
+    check_first_rise,
+    find_astray_sections,
+    find_vessels_entered,
+    find_vessels_near_travel,
+    touching_mm_s,
+)
 
 STRAIGHT_SEGMENT, VERTICAL_SEGMENT = -1, -2  # kinds of segments that are not part of an arc
 
@@ -106,6 +113,7 @@ def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE
     if cell.pen and job.z_offset_mm:
         sentence = f"the pen of cell {cell.name} is up or down: no height of the paper can be set"
         problems.append(Notice("", sentence, code="pen-depth"))
+    problems += find_vessels_near_travel(cell, job.z_offset_mm)
     commanded_mm = value_mm(cell) if cell.servo else 10.0**-cell.decimals
     problems += broken_limits(
         [_pass_at_servo_places(a_pass, made) for a_pass in left_loads],

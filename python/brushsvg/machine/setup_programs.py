@@ -14,7 +14,7 @@ from .motion import Move, Program, Section, Wait, rise_height_mm, set_programmed
 from .move_extents import make_paths
 from .program import approach_mm_s, find_moves_out_of_limits, out_of_arm, point_above, safe_point_above
 from .realised.distortion import commanded_mm, in_lines_mm
-from .workspace_limits import find_broken_limits, touching_mm_s
+from .workspace_limits import find_broken_limits, find_vessels_near_travel, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to see where the tip is
 TEST_SPEED_MM_S = 15.0
@@ -322,6 +322,7 @@ def _checked_program(
         return (set_programmed_speeds(section, cell) for section in sections())
 
     program = Program((), cell, frame, sections_at_programmed_speeds, *rises_mm, touching_mm_s(brush, cell))
-    for notice in find_moves_out_of_limits(program, sheet_mm) or out_of_arm(program, sheet_mm):
+    problems = find_vessels_near_travel(cell, z_offset_mm) or find_moves_out_of_limits(program, sheet_mm)
+    for notice in problems or out_of_arm(program, sheet_mm):
         raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return program

@@ -117,6 +117,27 @@ def find_vessels_entered(section: Section, vessels: Sequence[Station], cell: Cel
     return notices
 
 
+def find_vessels_near_travel(cell: Cell, z_offset_mm: float) -> list[Notice]:
+    """Report vessels that the tool does not clear at the safe height of lower paper.
+
+    A program lowers the visits to stations together with its strokes, but a vessel on the table stays where it is.
+
+    z_offset_mm: how much higher the paper is than the cell says. Higher paper also raises the safe height.
+    """
+    top_mm = cell.heights.safe_mm + z_offset_mm - cell.heights.clearance_mm
+    return [
+        Notice(
+            station.name,
+            f"rim_mm {station.rim_mm:g} is above {top_mm:g} mm, clearance_mm below the safe height with --z-offset "
+            f"{z_offset_mm:g}: a vessel on the table does not move down with the paper",
+            code="cell-station",
+            advice="raise safe_mm of the cell, or teach the paper anew",
+        )
+        for station in (cell.stations if z_offset_mm < 0 else ())
+        if not station.by_hand and station.rim_mm > top_mm + ROUNDING_MM
+    ]
+
+
 MAX_MOVES_AT_ONCE = 10_000  # more moves need more memory, fewer moves are slower
 
 

@@ -31,6 +31,7 @@ from ..machine.workspace_limits import (
     check_first_rise,
     find_broken_limits,
     find_limits_broken_between,
+    find_vessels_near_travel,
     touching_mm_s,
 )
 from .readback import Readback, ReadSection, Step
@@ -121,6 +122,7 @@ def simulate_program(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: f
         is_counted = cell.reload and len(visited) == len(run_passes)
         dips = [[0.0] if not is_counted or visited[k] else [] for k in range(len(run_passes))]
         _core.narrow(marks, brush.paint, dips)
+    problems += find_vessels_near_travel(cell, z_offset_mm)
     problems += broken_limits(programmed, sheet_mm, brush, _with_rounding_allowance(cell))
     problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return SimulatedProgram(plan, run_plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
