@@ -198,20 +198,12 @@ def find_moves_out_of_limits(program: Program, sheet_mm) -> list[Notice]:
 
 
 def _find_vessels_entered(program: Program) -> list[Notice]:
-    """Report vessels that moves enter below the rim, except for the visits to them."""
-    cell, notices = program.cell, []
-    names = names_of_stations(cell)
-    vessel_by_title = {
-        f"paint: {names[visited]}": station
-        for station in cell.stations
-        for visited in (station, shorten_visit(station))
-        if not station.by_hand
-    }
-    for section in program.sections() if vessel_by_title else ():
-        visited = vessel_by_title.get(section.title)
-        vessels = [each for each in cell.stations if not each.by_hand and each is not visited]
-        notices += find_vessels_entered(section, vessels, cell)
-    return notices
+    """Report vessels that strokes enter below the rim. Visits go to vessels, and vessels may stand close together."""
+    cell = program.cell
+    vessels = [station for station in cell.stations if not station.by_hand]
+    visits = {f"paint: {name}" for name in names_of_stations(cell).values()}
+    strokes = (section for section in program.sections() if section.title not in visits) if vessels else ()
+    return [notice for section in strokes for notice in find_vessels_entered(section, vessels, cell)]
 
 
 def _home_sections(program: Program) -> tuple[Section, ...]:

@@ -99,7 +99,7 @@ def find_vessels_entered(section: Section, vessels: Sequence[Station], cell: Cel
 
     A vessel counts as the square about its circle.
     """
-    if not vessels or not section.moves:
+    if not section.moves:
         return []
     moves, notices = _paths_of_moves(section.moves, None), []
     for vessel in vessels:

@@ -283,9 +283,7 @@ class Station:
     surface_mm: float = _number("height of the paint's surface", -1e3, 1e3, default=0.0)
     depth_mm: float = _number("how deep the tip goes below the paint's surface", 0, 100, default=0.0)
     rim_mm: float = _number("height of the vessel's rim", -1e3, 1e3, default=0.0)
-    radius_mm: float = _number(
-        "radius of the vessel, which only its own visits enter below the rim", 0, 1e3, default=10.0
-    )
+    radius_mm: float = _number("radius of the vessel, which no stroke enters below the rim", 0, 1e3, default=10.0)
     hold_s: float = _number("wait in the paint", 0, 600, default=0.0)
     drip_s: float = _number("wait above it", 0, 600, default=0.0)
     wipe_mm: tuple = _key("points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=())
