@@ -10,10 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arm_judge import compare
+from diagnostics import in_json, is_reported
 
 from brushsvg.errors import Error
 from brushsvg.machine.arm.joints import joint_frames_of, joints_of
-from brushsvg.machine.cells.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell_file import cell_names, find_cell, write_cell
 
 pytestmark = pytest.mark.arm
 
@@ -185,3 +186,11 @@ def test_links_of_another_arm_are_refused():
     with pytest.raises(Error) as refusal:
         joints_of(replace(arm, prebuilt="ur3e"))
     assert (refusal.value.code, refusal.value.where) == ("cell-arm", "arm.prebuilt")
+
+
+@pytest.mark.parametrize("prebuilt", ["ur3e", "x"])
+def test_cell_check_refuses_an_arm_that_convert_refuses(prebuilt, tmp_path, capsys):
+    cell = find_cell("ur5e")
+    (tmp_path / "mine.toml").write_text(write_cell(replace(cell, arm=replace(cell.arm, prebuilt=prebuilt))))
+    status, out, reported = in_json(capsys, "cell", "check", tmp_path / "mine.toml")
+    assert (status, out) == (1, "") and is_reported(reported, f"cell-arm '{prebuilt}'", "arm.prebuilt"), reported

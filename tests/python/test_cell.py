@@ -184,11 +184,28 @@ def test_a_written_cell_is_read_back_unchanged(cell):
         ),
         ({"reload": Reload("length", 10.0, 5.0)}, "reload.every_mm", "cell-reload backtrack_mm 5"),
         ({"tool": Tool((0.0, 0.0, 99000.0))}, "tool.tcp_mm", "out-of-range 99000 -2000 2000"),
+        (
+            {"arm": replace(FULL.arm, posture_deg=(0.0, 0.0, -190.0, 0.0, 0.0, 360.0))},
+            "arm.posture_deg",
+            "cell-arm 'joint 3' -190 '[-180, 180]'",
+        ),
     ],
 )
 def test_contradictions_between_keys_are_refused(change, where, expected):
     with refused(expected, where):
         parse_cell(write_cell(replace(FULL, **change)))
+
+
+def test_cell_check_refuses_units_that_convert_refuses(tmp_path, capsys):
+    """Units that are too coarse for the usual tolerance are refused.
+
+    `cell check` once accepted such a cell, and convert refused every drawing.
+    """
+    cell = find_cell("axidraw-ebb")
+    coarse = replace(cell, motors=replace(cell.motors, steps_per_mm=((2.0, -2.0), (2.0, 2.0))))
+    (tmp_path / "coarse.toml").write_text(write_cell(coarse))
+    status, out, reported = in_json(capsys, "cell", "check", tmp_path / "coarse.toml")
+    assert (status, out) == (1, "") and is_reported(reported, "decimals-too-few 0.5 0.25 0.0125"), reported
 
 
 @pytest.mark.parametrize(

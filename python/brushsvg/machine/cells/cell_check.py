@@ -136,6 +136,11 @@ def _check_arm(cell: Cell) -> None:
         if not low < high:
             sentence = f"joint {number}: the least angle {low:g} must be below the greatest, {high:g} degrees"
             raise Error(sentence, where="arm.limits_deg", code="cell-arm")
+        if arm.posture_deg and not low <= (angle := arm.posture_deg[number - 1]) <= high:
+            sentence = (
+                f"joint {number}: {angle:g} degrees are outside the range [{low:g}, {high:g}] degrees of limits_deg"
+            )
+            raise Error(sentence, where="arm.posture_deg", code="cell-arm")
 
 
 # Each key that only one language has, with this language and the reason why another language refuses the key.

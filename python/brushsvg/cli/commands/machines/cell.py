@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from ....errors import Error, Notice
 from ....jobs.options import DEFAULT_BRUSH
+from ....machine.arm.joints import is_installed, joints_of
 from ....machine.cells import cell_check as cell_checks
 from ....machine.cells.cell import robot_from_paper
 from ....machine.cells.cell_file import (
@@ -21,6 +22,7 @@ from ....machine.cells.cell_file import (
 from ....machine.cells.describe_cell import cell_page
 from ....machine.paint_reload import split_into_loads
 from ....machine.posts import POSTS
+from ....machine.preflight import DEFAULT_TOLERANCE_MM, check_rounding
 from ....machine.program import find_stations_out_of_limits
 from ....machine.writer import whole_program
 from ....model.library import find_brush
@@ -42,6 +44,10 @@ def cell_show(args) -> None:
 def cell_check(args) -> None:
     with refuse_errors(args.input):
         cell = find_cell(args.input)
+        if cell.language in POSTS:
+            check_rounding(cell, DEFAULT_TOLERANCE_MM)
+        if cell.arm and is_installed():
+            joints_of(cell.arm)
     if cell.language not in POSTS:
         known_languages = ", ".join(POSTS)
         sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known_languages}"
@@ -58,7 +64,6 @@ def cell_check(args) -> None:
 def cell_place(args) -> None:
     from ....machine.arm import place
     from ....machine.arm.follow import follow
-    from ....machine.arm.joints import joints_of
     from ....machine.program import find_moves_out_of_limits
     from ....machine.setup_programs import over_sheet
     from ....show.table_picture import table_picture
