@@ -288,6 +288,24 @@ def test_unusual_values_are_reported(table, change, expected):
     assert reported.where.startswith(table) and agrees(reported, expected), reported
 
 
+@pytest.mark.parametrize(
+    ("tilt_deg", "by_hand", "is_remarked"), [(45, False, True), (45, True, False), (14, False, False)]
+)
+def test_dips_next_to_leaning_paper_are_remarked_on(tilt_deg, by_hand, is_remarked):
+    """The brush dips along the paper's normal, which may lead it against the rim of a level vessel."""
+    station = Station("ink", (-20.0, 20.0), by_hand=by_hand, depth_mm=0.0 if by_hand else 5.0)
+    cell = find_cell("ur5e")
+    leaning = replace(
+        cell,
+        paper=Paper((-50.0, -600.0, 200.0), (float(tilt_deg), 0.0, 0.0)),
+        workspace=replace(cell.workspace, tilt_limit_deg=90.0),
+        stations=(station,),
+        reload=Reload("stroke"),
+    )
+    reported = remarks(parse_cell(write_cell(leaning)))
+    assert is_reported(reported, f"paper-tilted {tilt_deg} by_hand", "stations") is is_remarked, reported
+
+
 @pytest.mark.parametrize("name", cell_names())
 def test_shipped_cells_have_no_unusual_values(name):
     cell = find_cell(name)

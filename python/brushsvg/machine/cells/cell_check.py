@@ -36,6 +36,8 @@ from .cell import (
 # Tilt from which paper counts as a wall that is painted from the robot's side only.
 # An arm may reach across flatter paper.
 MIN_WALL_TILT_DEG = 45.0
+# Largest tilt of paper next to which the brush dips into a vessel without a remark. The shipped arms allow no more.
+MAX_DIP_TILT_DEG = 15.0
 # Smallest spacing of the grid lines of a height map, and largest height or depth in the map.
 MIN_GRID_SPACING_MM, MAX_MAP_MM = 5.0, 5.0
 # Largest slope of a displacement field in mm per mm, equal to the limit of scale and skew.
@@ -586,7 +588,7 @@ def remarks(cell: Cell) -> list[Notice]:
         notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
     if cell.paper.example:
         notices.append(OF_EXAMPLE)
-    return notices + _check_facing(cell) + _check_sheet_corner(cell)
+    return notices + _check_facing(cell) + _check_dip_tilt(cell) + _check_sheet_corner(cell)
 
 
 def _check_facing(cell: Cell) -> list[Notice]:
@@ -603,6 +605,18 @@ def _check_facing(cell: Cell) -> list[Notice]:
         "seen from its front, the third point is to the left of the way from the first to the second"
     )
     return [Notice("paper", sentence, code="paper-faces-away")]
+
+
+def _check_dip_tilt(cell: Cell) -> list[Notice]:
+    """Report dips next to paper that leans, because they go along the paper's normal."""
+    tilt_deg = normal_tilt_deg(robot_from_paper(cell))
+    if tilt_deg <= MAX_DIP_TILT_DEG or not any(station.depth_mm for station in cell.stations):
+        return []
+    sentence = (
+        f"the paper leans {tilt_deg:.0f} degrees, and the brush dips along the paper's normal: it may hit the rim of a "
+        "level vessel"
+    )
+    return [Notice("stations", sentence, code="paper-tilted", advice="dip the brush yourself, with by_hand = true")]
 
 
 def _check_sheet_corner(cell: Cell) -> list[Notice]:
