@@ -5,6 +5,7 @@ Near the paper, a first run is never fast or deep.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,7 @@ from programs import SERVOS
 from sampling import sample
 
 from brushsvg.machine.cells.cell import robot_from_paper
-from brushsvg.machine.cells.cell_file import cell_names, find_cell
+from brushsvg.machine.cells.cell_file import cell_names, find_cell, write_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.setup_programs import first_run
@@ -54,6 +55,29 @@ def test_the_first_run_does_its_steps_in_a_safe_order(name):
     for before, move in zip(all_moves(sections), all_moves(sections)[1:], strict=False):
         if min(before.points_mm[-1, 2], move.points_mm[:, 2].min()) < 1.5:  # The paper may be 1 mm higher.
             assert move.speed_mm_s <= max(cell.speeds.press_mm_s, 15.0)
+
+
+@sample("name", WAITING, keep=4)
+def test_without_room_above_the_safe_height_the_high_lap_is_left_out(name, tmp_path, capsys):
+    """Without room above the safe height, the high lap is left out.
+
+    It was once run at the safe height under the title "high in the air".
+    """
+    cell = find_cell(name)
+    top_mm = float(robot_from_paper(cell)[2, 3]) + cell.heights.safe_mm + 14.0
+    low, high = cell.workspace.box_mm or ((-50.0, -50.0, -50.0), (300.0, 200.0, 0.0))
+    cell = replace(cell, name="low", workspace=replace(cell.workspace, box_mm=(low, (*high[:2], top_mm))))
+    (tmp_path / "low.toml").write_text(write_cell(cell))
+    program = tmp_path / f"first{POSTS[cell.language].extensions[0]}"
+    status, _, reported = in_json(capsys, "setup", "first-run", tmp_path / "low.toml", "-o", program)
+    assert status == 0 and is_reported(reported, f"out-of-box 15 z '{top_mm:g}] mm'"), reported
+    status, _, reported = in_json(capsys, "check", program, "--cell", tmp_path / "low.toml")
+    assert status == 0, reported
+    made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
+    assert made.rise_mm == pytest.approx(cell.heights.safe_mm)
+    first, *others = made.sections()
+    assert first.title.endswith("at safe height") and isinstance(first.steps[0], Wait)
+    assert not any("high" in section.title.split() for section in others)
 
 
 @pytest.mark.parametrize("name", WAITING)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Error
+from ..errors import Error, Notice
 from .cells.cell import LEAST_SPEED_MM_S, Cell, reason_for_no_waiting, robot_from_paper
 from .motion import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .move_extents import make_paths
@@ -24,8 +24,9 @@ LANE_SPACING_MM = 6.0
 MAX_SHEET_LANE_SPACING_MM = 25.0
 LONG_STROKE_INTERVAL = 5  # every fifth stroke is longer, so that strokes are easy to count
 LONG_STROKE_RATIO = 1.5
-# Height of the first air run above the safe height. A wrong measurement is seen before anything is hit.
-AIR_RUN_RISE_MM = 30.0
+# Heights of the first air run above the safe height; the first one that the workspace allows is used.
+# A wrong measurement is seen before anything is hit.
+AIR_RUN_RISES_MM = (30.0, 15.0)
 LAST_STROKE_MM, ONE_STROKE_DEPTH_MM = 30.0, 2.0
 
 
@@ -44,7 +45,8 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
 
     The tool goes round the sheet high in the air and again at the safe height. It goes down to the paper at four
     points, paints the strokes of `paper_height`, and paints one more stroke. A person confirms each of these steps.
-    The tool first rises straight up to the height of the air run, and is never lowered at travel speed.
+    The tool first rises straight up to the height of the first air run, and is never lowered at travel speed. Without
+    room above the safe height, the high air run is left out.
 
     Raises Error if the program cannot wait for a person, leaves the workspace, or has strokes that do not fit.
     """
@@ -55,7 +57,7 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
             advice="use border" if cell.pen else "use border and height one by one",
         )
     width, height = sheet_mm
-    high_mm = _air_run_height_mm(cell, sheet_mm) - cell.heights.safe_mm
+    high_mm = _air_run_rise_mm(cell, sheet_mm)
     air_run = border((0.0, 0.0, width, height), brush, cell, sheet_mm)
     strokes = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
     used_mm = max(x for x, _ in _stroke_starts(len(stroke_heights_mm(highest_mm, lowest_mm, step_mm)), sheet_mm))
@@ -74,8 +76,9 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
         start, *others = air_section.steps
         # The tool may come down from the higher air run.
         slowly = Move("approach", start.points_mm, approach_mm_s(brush, cell))
-        raised_moves = tuple(_raise_step(step, high_mm) for step in (slowly, *others))
-        yield Section("first run: round the sheet, high in the air", raised_moves)
+        if high_mm:
+            raised_moves = tuple(_raise_step(step, high_mm) for step in (slowly, *others))
+            yield Section("first run: round the sheet, high in the air", raised_moves)
         yield Section(
             "first run: round the sheet, at safe height",
             (_wait_for_person("all clear of the tool"), slowly, *others),
@@ -109,22 +112,33 @@ def _raise_step(step: Move | Wait, by_mm: float) -> Move | Wait:
     return step if isinstance(step, Wait) else replace(step, points_mm=step.points_mm + np.array([0.0, 0.0, by_mm]))
 
 
-def _air_run_height_mm(cell: Cell, sheet_mm) -> float:
-    """Return the height [mm] of the first air run.
+def report_missing_air_run(cell: Cell, sheet_mm) -> list[Notice]:
+    """Report that a first run leaves out the high air run, with the limit that leaves no room for it."""
+    if _air_run_rise_mm(cell, sheet_mm):
+        return []
+    rise_mm = AIR_RUN_RISES_MM[-1]
+    notice = _find_limits_of_air_run(rise_mm, cell, sheet_mm)[0]
+    sentence = f"the lap high in the air is left out: {rise_mm:g} mm above the safe height {notice.sentence}"
+    return [replace(notice, sentence=sentence)]
 
-    It is AIR_RUN_RISE_MM above the safe height, half of that, or the safe height, as the workspace allows.
+
+def _air_run_rise_mm(cell: Cell, sheet_mm) -> float:
+    """Return how far [mm] the first air run is above the safe height.
+
+    Returns 0 if the workspace has no room above the safe height.
     """
+    rises_mm = (rise_mm for rise_mm in AIR_RUN_RISES_MM if not _find_limits_of_air_run(rise_mm, cell, sheet_mm))
+    return next(rises_mm, 0.0)
+
+
+def _find_limits_of_air_run(rise_mm: float, cell: Cell, sheet_mm) -> list[Notice]:
     width, height = sheet_mm
     corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
-    frame, safe_mm = robot_from_paper(cell), cell.heights.safe_mm
-    for more_mm in (AIR_RUN_RISE_MM, AIR_RUN_RISE_MM / 2):
-        corner_poses = [
-            commanded_mm(point_above(corner, safe_mm), cell.machine)[0] + np.array([0.0, 0.0, more_mm])
-            for corner in corners
-        ]
-        if not find_broken_limits(make_paths([np.array(corner_poses)]), frame, cell, sheet_mm):
-            return safe_mm + more_mm
-    return safe_mm
+    corner_poses = [
+        commanded_mm(point_above(corner, cell.heights.safe_mm), cell.machine)[0] + np.array([0.0, 0.0, rise_mm])
+        for corner in corners
+    ]
+    return find_broken_limits(make_paths([np.array(corner_poses)]), robot_from_paper(cell), cell, sheet_mm)
 
 
 def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
