@@ -179,5 +179,5 @@ def test_values_that_no_pendant_shows_are_refused():
     cell = find_cell("lrmate200id")
     with refused("out-of-range 'N U'"):
         parse_cell(write_cell(replace(cell, tool=replace(cell.tool, configuration="N U"))))
-    with refused("out-of-range"):
+    with refused("key-unused"):
         parse_cell(write_cell(find_cell("cr5")).replace("radius_mm = 2.0", "radius_mm = 2.0\nramp_s = 0.4"))

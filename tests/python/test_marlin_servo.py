@@ -129,7 +129,7 @@ def test_check_refuses_damaged_programs(tmp_path, capsys, old, new, reported):
         ({"pen": Pen(-0.2)}, "servo-table"),
         ({"pen": Pen(-0.2, servo_values=(40.0, 40.2))}, "servo-table"),
         ({"pen": Pen(-0.2, ("#000000",), (90.0, 40.0))}, "out-of-range"),
-        ({"language": "hpgl"}, "out-of-range hpgl"),
+        ({"language": "hpgl"}, "key-unused hpgl"),
         ({"language": "marlin"}, "key-unused 'pen' marlin"),
         ({"stations": (Station("ink", (120.0, 10.0), depth_mm=1.0),)}, "cell-station"),
     ],

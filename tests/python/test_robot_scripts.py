@@ -164,7 +164,7 @@ def test_values_that_dobot_cannot_express_are_refused():
     with refused("speed-out-of-range [1.000000"):
         gentle(find_cell("cr5"), 0.9)
     fine = write_cell(find_cell("irb120")).replace("radius_mm = 2.0", "radius_mm = 2.0\nstep_mm = 0.5")
-    with refused("out-of-range blends"):
+    with refused("key-unused blends"):
         parse_cell(fine)
 
 

@@ -191,7 +191,7 @@ def test_manual_stations_are_refused_and_frames_need_names():
         (replace(cell, tool=replace(cell.tool, base_frame="a b")), "name-invalid 'a b'"),
         (
             replace(find_cell("cr5"), tool=replace(find_cell("cr5").tool, base_frame="base")),
-            "out-of-range frames",
+            "key-unused frames",
         ),
     ):
         with refused(expected):

@@ -164,12 +164,12 @@ def _check_own_keys(cell: Cell) -> None:
         name, _, entry = key.partition(".")
         table = getattr(cell, name)
         if table and getattr(table, entry) != getattr(type(table), entry) and cell.language != language:
-            raise Error(f"language {cell.language!r} {why}", where=key, code="out-of-range")
+            raise Error(f"language {cell.language!r} {why}", where=key, code="key-unused")
     if cell.arc_segment_mm and cell.language not in ARCS_IN_SEGMENTS:
         raise Error(
             f"language {cell.language!r} makes no lines of circles",
             where="arc_segment_mm",
-            code="out-of-range",
+            code="key-unused",
         )
     if cell.language == "fanuc" and not re.fullmatch(FANUC_CONFIGURATION_PATTERN, cell.tool.configuration):
         raise Error(
