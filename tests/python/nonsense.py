@@ -341,7 +341,7 @@ ARGUMENTS = {
         [25.0, *NUMBERS],
     ],
     "overlap": [rings, rings],
-    "path_from_pass": [lambda: [a_pass(), brushsvg.Pass()], [None, *NUMBERS]],
+    "path_from_pass": [lambda: [each for made in plans() for each in made.passes], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
     "read_project": [
         [FOLDER / "shared" / "brushsvg.toml", *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]

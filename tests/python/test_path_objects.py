@@ -5,6 +5,7 @@ Drawings that are already open can be used as well.
 
 import io
 import xml.etree.ElementTree as ET
+from pathlib import Path
 from xml.etree.ElementTree import ElementTree
 
 import ezdxf
@@ -15,11 +16,22 @@ from diagnostics import refused
 
 import brushsvg
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 DATA = "M10 20 L30 20 Q40 20 40 30 A 10 6 30 0 1 25 45 C 20 50 15 40 12 30"
 
 
 def sampled(path, count=400):
     return np.array([path.point(t) for t in np.linspace(0, 1, count)])
+
+
+def way_mm(a_pass):
+    """Return the length of a pass over the paper, from its poses and the circles of its arcs."""
+    poses = np.asarray(a_pass.poses_mm)[:, :2]
+    moves_mm = np.linalg.norm(np.diff(poses, axis=0), axis=1)
+    for arc in a_pass.arcs:
+        moves, radius = slice(arc.first, arc.last), np.linalg.norm(poses[arc.first] - arc.centre_mm)
+        moves_mm[moves] = 2 * radius * np.arcsin(moves_mm[moves] / (2 * radius))
+    return moves_mm.sum()
 
 
 def away(points, others):
@@ -67,8 +79,46 @@ def test_a_stroke_from_a_path_is_painted_and_returned_as_a_path():
     way = brushsvg.path_from_pass(done.plan.passes[0])
     poses = np.asarray(done.plan.passes[0].poses_mm)[:, :2] @ (1, 1j)
     assert (way.start, way.end) == (poses[0], poses[-1])
-    assert way.length() == pytest.approx(np.abs(np.diff(poses)).sum())
+    assert way.length() == pytest.approx(way_mm(done.plan.passes[0]))
     assert brushsvg.path_from_stroke(stroke).d() == "M 30.0,40.0 C 50.0,70.0 80.0,70.0 100.0,40.0"
+
+
+@pytest.mark.parametrize("page_height_mm", [None, 100.0])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_moves_along_arcs_are_arcs_of_the_circle(direction, page_height_mm):
+    angles = np.radians(direction * np.array([0, 90, 180, 270, 360]))
+    circle = np.column_stack([60 + 20 * np.cos(angles), 50 + 20 * np.sin(angles), np.full(5, -2.0)])
+    poses = np.vstack([circle, [90, 50, -2]])
+    a_pass = brushsvg.Pass("a", poses, arcs=[brushsvg.Arc(0, 4, (60, 50), direction)])
+    way = brushsvg.path_from_pass(a_pass, page_height_mm)
+    assert [type(piece) for piece in way] == [svgpathtools.Arc] * 4 + [svgpathtools.Line]
+    assert way.length() == pytest.approx(40 * np.pi + 10)
+    assert np.abs(sampled(svgpathtools.Path(*way[:4])) - (60 + 50j)) == pytest.approx(20)
+    quarter = way[0].point(0.5) - (60 + 50j)
+    assert np.sign(quarter.imag) == (direction if page_height_mm is None else -direction)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_an_arc_too_short_for_its_direction_is_a_line(direction):
+    angle = direction * 5e-9
+    poses = [[20, 0, -2], [20 * np.cos(angle), 20 * np.sin(angle), -2]]
+    a_pass = brushsvg.Pass("a", poses, arcs=[brushsvg.Arc(0, 1, (0, 0), direction)])
+    assert brushsvg.path_from_pass(a_pass).length() == pytest.approx(1e-7, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    "arc", [brushsvg.Arc(-1, 5, (25, 20), 1), brushsvg.Arc(0, 1, (np.nan, 20), 1), brushsvg.Arc(0, 1, (20, 20), 1)]
+)
+def test_an_arc_that_does_not_agree_with_its_poses_is_refused(arc):
+    with refused("arc-invalid 0"):
+        brushsvg.path_from_pass(brushsvg.Pass("a", [[20, 20, -2], [30, 20, -2]], arcs=[arc]))
+
+
+def test_the_way_of_a_plan_with_arcs_is_as_long_as_its_passes():
+    done = brushsvg.convert(EXAMPLES / "vincent.svg")
+    assert any(a_pass.arcs for a_pass in done.plan.passes)
+    for a_pass in done.plan.passes:
+        assert brushsvg.path_from_pass(a_pass).length() == pytest.approx(way_mm(a_pass))
 
 
 @pytest.mark.parametrize(

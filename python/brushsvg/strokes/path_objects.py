@@ -70,16 +70,39 @@ def path_from_stroke(stroke: _core.Stroke, page_height_mm: float | None = None) 
 
 
 def path_from_pass(a_pass: _core.Pass, page_height_mm: float | None = None) -> svgpathtools.Path:
-    """Return the TCP's way over the paper as a svgpathtools.Path of lines [mm].
+    """Return the TCP's way over the paper as a svgpathtools.Path of lines and arcs of circles [mm].
 
-    y points up, or down from the upper edge of a page of page_height_mm. Poses where the tool only rises or sinks
-    add nothing to it.
+    y points up, or down from the upper edge of a page of page_height_mm. Each move along one of the arcs of the pass
+    is a svgpathtools.Arc, each other move a Line. Poses where the tool only rises or sinks add nothing to it.
+
+    Raises Error if an arc does not agree with its poses.
     """
     from svgpathtools import Line, Path
 
     require_type(a_pass, _core.Pass, "a pass of a plan")
+    if a_pass.arcs:
+        _core.write_plan(_core.Plan("", "", (1.0, 1.0), [a_pass]))  # refuses arcs that do not agree with their poses
     points = _as_complex(np.asarray(a_pass.poses_mm)[:, :2], page_height_mm).tolist()
-    return Path(*(Line(here, there) for here, there in itertools.pairwise(points) if here != there))
+    arcs = {row: arc for arc in a_pass.arcs for row in range(arc.first, arc.last)}
+    return Path(
+        *(
+            _arc_between(here, there, arcs[row], page_height_mm) if row in arcs else Line(here, there)
+            for row, (here, there) in enumerate(itertools.pairwise(points))
+            if here != there
+        )
+    )
+
+
+def _arc_between(
+    here: complex, there: complex, arc: _core.Arc, page_height_mm: float | None
+) -> svgpathtools.Arc | svgpathtools.Line:
+    from svgpathtools import Arc, Line
+
+    radius = float(abs(here - _as_complex(np.array(arc.centre_mm), page_height_mm)))
+    is_counter_clockwise = (arc.direction > 0) == (page_height_mm is None)
+    piece = Arc(here, radius * (1 + 1j), 0.0, False, is_counter_clockwise, there)
+    # poses of a circle are less than half a turn apart, so rounding has reversed an arc that turns more
+    return piece if abs(piece.delta) <= 180 else Line(here, there)
 
 
 def _as_complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
