@@ -220,6 +220,23 @@ def test_impossible_arguments_are_refused(call, code):
     assert refused.value.code == code
 
 
+@pytest.mark.parametrize("integer", [False, True])
+def test_masked_entries_are_refused_as_nan_is(integer):
+    values = np.ma.array([3, 99, 5], int if integer else float, mask=[False, True, False])
+    for call in (
+        lambda: laws.fit_law(values, [3, 4, 5.0], 0),
+        lambda: laws.fit_law([1, 2, 3.0], values, 0),
+        lambda: laws.contact_offset(0.5, values),
+        lambda: laws.contact_offset(0.5, [values, values]),
+        lambda: laws.contact_offset(0.5, np.ma.masked),
+    ):
+        with refused("out-of-range"):
+            call()
+    unmasked = np.ma.array([3.0, 4.0], mask=[False, False])
+    assert np.array_equal(laws.contact_offset(0.5, unmasked), laws.contact_offset(0.5, [3.0, 4.0]))
+    assert type(laws.contact_offset(0.5, unmasked)) is np.ndarray
+
+
 def test_results_of_follow_are_read_only():
     found = laws.follow([[0, 0], [9, 0.0]], [0, 3], brushsvg.find_brush("round-6").lag)
     with pytest.raises(ValueError, match="read-only"):

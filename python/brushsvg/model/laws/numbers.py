@@ -16,16 +16,26 @@ DEEPEST_MM = 1000.0
 def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
     """Return the given numbers as floats.
 
-    Raises Error for values that are no numbers, or outside of [least, greatest]. what: names the argument in the
-    message.
+    Raises Error for values that are no numbers, masked, or outside of [least, greatest]. what: names the argument in
+    the message.
     """
+    rows = given if isinstance(given, (list, tuple)) else [given]
+    is_masked = any(isinstance(row, np.ma.MaskedArray) for row in rows)
     try:
-        array = np.asarray(given)
+        array = np.ma.asarray(given) if is_masked else np.asarray(given)
     except ValueError:  # rows of different lengths
         raise Error(f"{what} is no number and no array of them", code="wrong-type") from None
     if array.dtype.kind not in "iuf":
         raise Error(f"{what} is no number and no array of them", code="wrong-type")
     array = array.astype(float)
+    if np.ma.is_masked(array):
+        raise Error(
+            f"{what} has masked entries, outside the range [{least:g}, {greatest:g}] as NaN is: leave them out",
+            value=np.nan,
+            range=(least, greatest),
+            code="out-of-range",
+        )
+    array = np.asarray(array)
     outside = array[~((array >= least) & (array <= greatest))]
     if outside.size:
         raise Error(
