@@ -123,13 +123,21 @@ def require_type(value, kind: type | tuple[type, ...], what: str) -> None:
         raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
 
 
+def as_number(value, what: str) -> float:
+    """Return a value as a float; raise Error unless it is a number.
+
+    what: the expected number in words. Fractions and numpy's scalars are numbers, too.
+    """
+    require_type(value, Real, what)
+    try:
+        return float(value)
+    except OverflowError:  # an integer of hundreds of digits
+        return math.inf if value > 0 else -math.inf
+
+
 def need_number(value, what: str, least: float, greatest: float) -> float:
     """Return a value as a float; raise Error unless it is a number in the range."""
-    require_type(value, Real, f"a number, which {what} is")
-    try:
-        number = float(value)
-    except OverflowError:  # an integer of hundreds of digits
-        number = math.inf if value > 0 else -math.inf
+    number = as_number(value, f"a number, which {what} is")
     if not least <= number <= greatest:
         raise Error(
             f"{what}, {number:g}, is outside the range [{least:g}, {greatest:g}]",
@@ -137,6 +145,15 @@ def need_number(value, what: str, least: float, greatest: float) -> float:
             code="out-of-range",
         )
     return number
+
+
+def need_numbers(values, what: str, count: int, least: float, greatest: float) -> tuple[float, ...]:
+    """Return a tuple, list or array as floats; raise Error unless it has `count` numbers in the range."""
+    values = as_listed(values)
+    require_type(values, (tuple, list), f"{count} numbers, which {what} is")
+    if len(values) != count:
+        raise Error(f"{what} has {len(values)} numbers, not {count}", what, code="wrong-type")
+    return tuple(need_number(value, f"a number of {what}", least, greatest) for value in values)
 
 
 def need_truth(value, what: str) -> None:

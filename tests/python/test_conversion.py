@@ -9,6 +9,7 @@ import threading
 from concurrent.futures import CancelledError
 from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -181,6 +182,29 @@ def test_arrays_are_accepted_like_lists(desk):
     assert brushsvg.new_brush("n", np.array(lags), np.array(widths)) == brushsvg.new_brush("n", lags, widths)
     brush = brushsvg.find_brush("round-6")
     assert brushsvg.chart(brush, np.array([210, 297])).plan == brushsvg.chart(brush, (210, 297)).plan
+
+
+@pytest.mark.parametrize("number", [Fraction, np.float32, np.longdouble])
+def test_any_real_number_is_as_a_float(desk, number):
+    """The choices are numbers that each of these types represents exactly."""
+    given = {"sheet": (150, 120), "origin": (30, 35), "scale": 0.5, "tolerance": 0.0625, "paint_speed": 12.5}
+    given |= {"z_offset": 0.25, "compensation": "constant", "lag": 3.5, "width": 2.5}
+
+    def typed(value):
+        return value if isinstance(value, str) else tuple(map(number, value)) if np.ndim(value) else number(value)
+
+    others = {name: typed(value) for name, value in given.items()}
+    assert brushsvg.convert("two.svg", **others).text == brushsvg.convert("two.svg", **given).text
+    widths = [(3, 2.5), (8, 7)]
+    made = brushsvg.new_brush("n", number(5.5), [tuple(map(number, pair)) for pair in widths], number(9), number(20))
+    assert made == brushsvg.new_brush("n", 5.5, widths, 9, 20)
+    lags = [(2, 4), (8, 9)]
+    made = brushsvg.new_brush("n", [tuple(map(number, pair)) for pair in lags], widths)
+    assert made == brushsvg.new_brush("n", lags, widths)
+    made = brushsvg.stroke_from_path("M10 20 L30 25", number(2.5), page_height_mm=number(100))
+    assert made == brushsvg.stroke_from_path("M10 20 L30 25", 2.5, page_height_mm=100)
+    options = brushsvg.ReadOptions(sheet_mm=typed((150, 120)))
+    assert brushsvg.read_drawing("two.svg", options).sheet_mm == (150, 120)
 
 
 def test_further_reasons_of_a_refusal_are_exception_notes(desk):

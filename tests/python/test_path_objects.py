@@ -171,3 +171,30 @@ def test_objects_that_are_neither_file_nor_document_are_refused():
     for wrong in (None, 3, io.BytesIO(b"x"), object()):
         with refused("drawing-format ElementTree"):
             brushsvg.read_drawing(wrong)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"skip_comments": "fill"}, "wrong-type fill skip_comments"),
+        ({"skip_comments": None}, "wrong-type skip_comments"),
+        ({"skip_comments": (3,)}, "wrong-type 3 skip_comments"),
+        ({"skip_regions_mm": None}, "wrong-type skip_regions_mm"),
+        ({"skip_regions_mm": "0,0,9,9"}, "wrong-type skip_regions_mm"),
+        ({"skip_regions_mm": [("0", 0, 9, 9)]}, "wrong-type 0 skip_regions_mm"),
+        ({"skip_regions_mm": [(0, 0, 9)]}, "wrong-type 3 4 skip_regions_mm"),
+        ({"skip_regions_mm": [(0, 0, 9, 10**400)]}, "out-of-range inf skip_regions_mm"),
+        ({"sheet_mm": 100}, "wrong-type 100 sheet_mm"),
+        ({"sheet_mm": np.zeros(3)}, "wrong-type 3 2 sheet_mm"),
+        ({"sheet_mm": (100, True)}, "wrong-type True sheet_mm"),
+        ({"paper_z_mm": "0"}, "wrong-type 0"),
+    ],
+)
+def test_options_of_reading_that_are_none_are_refused(options, said):
+    with refused(said):
+        brushsvg.read_drawing(EXAMPLES / "vincent.svg", brushsvg.ReadOptions(**options))
+
+
+def test_options_of_reading_may_be_arrays():
+    options = brushsvg.ReadOptions(sheet_mm=np.array([300, 200]), skip_regions_mm=np.array([[0, 0, 9, 9]]))
+    assert brushsvg.read_drawing(EXAMPLES / "vincent.svg", options).sheet_mm == (300.0, 200.0)

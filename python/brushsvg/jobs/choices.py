@@ -13,12 +13,12 @@ from typing import TypedDict
 
 from .. import _core
 from ..comparison.corrections import SheetBefore, read_sheet_before
-from ..errors import Error, Notice, as_listed, need_number, need_one_of, need_truth, require_type
+from ..errors import Error, Notice, need_number, need_numbers, need_one_of, need_truth, require_type
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..machine.posts import GCODE
 from ..model.library import brush_names, find_brush
-from ..read import BACKGROUNDS, PENS, SCRIPTS, SIZE_MM, UNITS, ReadOptions, settings_in
+from ..read import BACKGROUNDS, PENS, SCRIPTS, SIZE_MM, UNITS, ReadOptions, need_regions, need_texts, settings_in
 from ..read.layout import Layout
 from ..suggestions import did_you_mean
 from .json_files import read_plan
@@ -182,35 +182,22 @@ def check_choices(chosen: Choices) -> Choices:
             need_one_of(getattr(chosen, name), choices, name)
     for name, limits in CHOICE_RANGES.items():
         if getattr(chosen, name) is not None:
-            need_number(getattr(chosen, name), name, *limits)
+            chosen = replace(chosen, **{name: need_number(getattr(chosen, name), name, *limits)})
     for name, limits in (("sheet", SIZE_MM), ("fit", SIZE_MM), ("origin", (-1e6, 1e6))):
-        pair = as_listed(getattr(chosen, name))
-        if pair is not None:
-            require_type(pair, (tuple, list), f"two numbers, which {name} is")
-            if len(pair) != 2:
-                raise Error(f"{name} has {len(pair)} numbers, not two", name, code="wrong-type")
-            chosen = replace(
-                chosen,
-                **{name: tuple(need_number(number, f"a number of {name}", *limits) for number in pair)},
-            )
+        if getattr(chosen, name) is not None:
+            chosen = replace(chosen, **{name: need_numbers(getattr(chosen, name), name, 2, *limits)})
     if chosen.skip_region is not None:
-        require_type(chosen.skip_region, (tuple, list), "a list of regions, which skip_region is")
-        for region in chosen.skip_region:
-            require_type(region, (tuple, list), "a region, (x0, y0, x1, y1) in mm")
-            for side in region:
-                need_number(side, "a number of skip_region", -1e6, 1e6)
+        chosen = replace(chosen, skip_region=[*need_regions(chosen.skip_region, "skip_region")])
     if chosen.colour is not None:
         require_type(chosen.colour, str, "a colour, as #1a237e")
         chosen = replace(chosen, colour=read_colour(chosen.colour))
     if chosen.join is not None:
         need_truth(chosen.join, "join")
-    for name in ("layer", "select", "skip_comment"):
-        given = getattr(chosen, name)
-        is_list = name != "select"
-        if is_list and given is not None:
-            require_type(given, (tuple, list), f"a list of texts, which {name} is")
-        for text in () if given is None else given if is_list else [given]:
-            require_type(text, str, f"a text, which {name} is")
+    for name in ("layer", "skip_comment"):
+        if getattr(chosen, name) is not None:
+            need_texts(getattr(chosen, name), name)
+    if chosen.select is not None:
+        require_type(chosen.select, str, "a text, which select is")
     for name in ("brush", "cell", "corrections"):
         kinds = {"brush": (_core.Brush,), "cell": (Cell,)}.get(name, ())
         if getattr(chosen, name) is not None:
@@ -434,7 +421,7 @@ def make_read_options(chosen: Choices) -> ReadOptions:
         chosen.background or ReadOptions.background,
         chosen.pen,
         chosen.paper_z,
-        tuple(map(tuple, chosen.skip_region or ())),
+        tuple(chosen.skip_region or ()),
         tuple(chosen.skip_comment or ()),
         lenient=True,  # damaged geometry is reported together with the other notices
     )

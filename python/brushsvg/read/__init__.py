@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import io
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 from xml.etree import ElementTree
 
-from ..errors import Error, need_number, need_one_of, need_truth, require_type
+from ..errors import Error, as_listed, need_number, need_numbers, need_one_of, need_truth, require_type
 from ..files import read_bytes
 from .damage import refuse_damage
 
@@ -52,31 +52,45 @@ SCRIPTS = ("auto", "latin", "arabic", "devanagari", "cjk")  # writing systems of
 PENS = ("z", "servo")  # the axes that can move the pen of a program
 
 
-def refuse_invalid_options(options: ReadOptions) -> None:
-    """Raise Error if the options are of a wrong type or out of range."""
+def check_read_options(options: ReadOptions) -> ReadOptions:
+    """Return the options, validated and with numbers as floats.
+
+    Raises Error if an option is of a wrong type or out of range.
+    """
     require_type(options, ReadOptions, "options to read a drawing with, as ReadOptions are")
-    if options.sheet_mm is not None:
-        require_type(options.sheet_mm, (tuple, list), "a sheet's width and height [mm]")
-        if len(options.sheet_mm) != 2:
-            raise Error(f"sheet_mm has {len(options.sheet_mm)} numbers, not two", "sheet_mm", code="wrong-type")
-        for side in options.sheet_mm:
-            need_number(side, "a side of the sheet [mm]", *SIZE_MM)
+    sheet_mm, paper_z_mm = options.sheet_mm, options.paper_z_mm
+    if sheet_mm is not None:
+        sheet_mm = need_numbers(sheet_mm, "sheet_mm", 2, *SIZE_MM)
     if options.units is not None:
         need_one_of(options.units, UNITS, "units")
     need_one_of(options.background, BACKGROUNDS, "background")
     if options.pen is not None:
         need_one_of(options.pen, PENS, "pen")
-    if options.paper_z_mm is not None:
-        need_number(options.paper_z_mm, "the height at which a program draws [mm]", -1e4, 1e4)
-    for region in options.skip_regions_mm:
-        require_type(region, (tuple, list), "a region, four numbers [mm]")
-        if len(region) != 4:
-            raise Error(f"a region has {len(region)} numbers, not four", "skip_regions_mm", code="wrong-type")
-    for text in options.skip_comments:
-        require_type(text, str, "a text of comments")
+    if paper_z_mm is not None:
+        paper_z_mm = need_number(paper_z_mm, "the height at which a program draws [mm]", -1e4, 1e4)
+    regions = need_regions(options.skip_regions_mm, "skip_regions_mm")
+    need_texts(options.skip_comments, "skip_comments")
     need_truth(options.lenient, "lenient")
     if options.select is not None:
         require_type(options.select, str, "a text, which select is")
+    return replace(options, sheet_mm=sheet_mm, paper_z_mm=paper_z_mm, skip_regions_mm=regions)
+
+
+def need_regions(regions, what: str) -> tuple[tuple[float, ...], ...]:
+    """Return rectangles (x0, y0, x1, y1) in mm as floats; raise Error for anything else."""
+    regions = as_listed(regions)
+    require_type(regions, (tuple, list), f"a list of regions, (x0, y0, x1, y1) in mm, which {what} is")
+    return tuple(need_numbers(region, f"a region of {what}", 4, -1e6, 1e6) for region in regions)
+
+
+def need_texts(texts, what: str) -> None:
+    """Raise Error unless texts are a list or tuple of texts.
+
+    One text would be read as a list of its letters.
+    """
+    require_type(texts, (tuple, list), f"a list of texts, which {what} is")
+    for text in texts:
+        require_type(text, str, f"a text, which {what} has")
 
 
 @dataclass(frozen=True)
@@ -165,7 +179,7 @@ def read_drawing(path: Source, options: ReadOptions = AS_DRAWN) -> Design:
     Raises Error if the drawing cannot be read, has an unknown format or has nothing to paint. Damaged geometry is an
     error, too, unless options.lenient is True.
     """
-    refuse_invalid_options(options)
+    options = check_read_options(options)
     reader, data = _load_source(path)
     from .duplicates import remove_duplicates  # imported here for the same reason as the readers
     from .pressure_strokes import join_pressure_strokes

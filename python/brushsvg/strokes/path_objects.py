@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..errors import Error, require_type
+from ..errors import Error, as_number, need_number, require_type
 from ..read.svg.paths.path_data import MOST_COMMANDS, parse_path, snippet
 from ..read.svg.paths.path_to_cubics import trace
 
@@ -36,7 +36,7 @@ def stroke_from_path(
     Raises Error if the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not
     positive.
     """
-    require_type(width_mm, (int, float, np.number), "a width in mm")
+    width_mm = as_number(width_mm, "a width in mm")
     require_type(id, str, "a stroke's id")
     if not (np.isfinite(width_mm) and width_mm > 0):
         raise Error(f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range")
@@ -48,7 +48,7 @@ def stroke_from_path(
     else:
         cubics = _read_array(path, id)
         closed = len(cubics) > 0 and np.ptp(cubics.reshape(-1, 2), axis=0).any() and _meets(cubics[-1, 3], cubics[0, 0])
-    _need_height(page_height_mm)
+    page_height_mm = _need_height(page_height_mm)
     if page_height_mm is not None:
         cubics = cubics * (1.0, -1.0) + (0.0, page_height_mm)
     half_mm = width_mm / 2
@@ -106,15 +106,15 @@ def _arc_between(
 
 
 def _as_complex(points: np.ndarray, page_height_mm: float | None) -> np.ndarray:
-    _need_height(page_height_mm)
+    page_height_mm = _need_height(page_height_mm)
     y = points[..., 1] if page_height_mm is None else page_height_mm - points[..., 1]
     return points[..., 0] + 1j * y
 
 
-def _need_height(page_height_mm) -> None:
-    require_type(page_height_mm, (int, float, np.number, type(None)), "a page's height in mm, or None")
-    if page_height_mm is not None and not abs(page_height_mm) <= 1e6:
-        raise Error("the page's height is outside the range [-1e6, 1e6] mm", code="out-of-range")
+def _need_height(page_height_mm) -> float | None:
+    if page_height_mm is None:
+        return None
+    return need_number(page_height_mm, "a page's height [mm]", -1e6, 1e6)
 
 
 def _read_text(text: str, id: str) -> tuple[np.ndarray, bool]:

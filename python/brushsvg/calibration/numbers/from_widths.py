@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import json
 import math
-from numbers import Real
 
 from ... import _core
-from ...errors import Error, as_listed, need_number, require_type
+from ...errors import Error, as_listed, as_number, need_number, require_type
 from ...model import footprint_shapes
 from ...model.laws.fitted import need_fits
 from . import plausibility
@@ -53,7 +52,8 @@ def new_brush(
     require_type(name, str, "the name of a brush")
     lag_mm, widths_mm = as_listed(lag_mm), as_listed(widths_mm)
     lags = sorted(_check_lags(lag_mm)) if isinstance(lag_mm, (list, tuple)) else []
-    is_pen = not lags and need_number(lag_mm, "the lag [mm]", -MAX_NUMBER, MAX_NUMBER) == 0
+    lag_mm = 0.0 if lags else need_number(lag_mm, "the lag [mm]", -MAX_NUMBER, MAX_NUMBER)
+    is_pen = not lags and lag_mm == 0
     speed_mm_s = need_number(speed_mm_s, "the speed [mm/s]", -MAX_NUMBER, MAX_NUMBER)
     if depth_max_mm is not None:
         depth_max_mm = need_number(depth_max_mm, "the greatest depth [mm]", -MAX_NUMBER, MAX_NUMBER)
@@ -109,7 +109,7 @@ def outlines_assumed(source: str) -> str:
 
 def _sorted_widths(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
     require_type(widths_mm, (list, tuple), "a list of (depth, width)")
-    _need_pairs(widths_mm, "width")
+    widths_mm = _need_pairs(widths_mm, "width")
     if not widths_mm:
         raise Error(
             "there is no width: at least one is needed, for example 5 mm at depth 4 mm",
@@ -134,16 +134,18 @@ def _sorted_widths(widths_mm: list[tuple[float, float]]) -> list[tuple[float, fl
     return sorted(widths_mm)
 
 
-def _need_pairs(pairs, what: str) -> None:
+def _need_pairs(pairs, what: str) -> list[tuple[float, float]]:
+    checked = []
     for pair in pairs:
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             raise Error(f"{str(pair)[:40]} is no (depth, {what}) in mm", what, code="wrong-type")
-        for number in pair:
-            require_type(number, Real, f"a depth or a {what} in mm")
+        depth, value = (as_number(number, f"a depth or a {what} in mm") for number in pair)
+        checked.append((depth, value))
+    return checked
 
 
 def _check_lags(pairs) -> list[tuple[float, float]]:
-    _need_pairs(pairs, "lag")
+    pairs = _need_pairs(pairs, "lag")
     if not pairs:
         raise Error(
             "there is no lag: one is needed, for example 6 mm at depth 4 mm",
@@ -157,7 +159,7 @@ def _check_lags(pairs) -> list[tuple[float, float]]:
         if not (math.isfinite(lag) and 0 < lag <= MAX_LENGTH_MM):
             sentence = f"the lag {lag:g} mm at depth {depth:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm"
             raise Error(sentence, "lag", lag, code="out-of-range")
-    return list(pairs)
+    return pairs
 
 
 def _constant_lag(lag_mm: float) -> _core.Profile:
