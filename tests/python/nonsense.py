@@ -422,6 +422,7 @@ def read_options():
     for value in ["furlong", *NUMBERS, *WRONG_TYPES]:
         yield brushsvg.ReadOptions(units=value)
         yield brushsvg.ReadOptions(select=value)
+        yield brushsvg.ReadOptions(paper_z_mm=value, skip_comments=value, skip_regions_mm=value)
 
 
 def laws_requested():

@@ -5,7 +5,9 @@ import re
 import struct
 import sys
 import xml.etree.ElementTree as ET
+from fractions import Fraction
 
+import numpy as np
 import pytest
 import svgpathtools
 from diagnostics import agrees, are_reported, refused
@@ -305,7 +307,38 @@ def test_numbers_out_of_range_are_refused(value):
     assert agrees(refusal("I", svg_font(), width_mm=value), f"{reported} width")
     assert agrees(refusal("I", svg_font(), line_spacing=value), f"{reported} '(0, 100]'")
     if value != 1000.5:
-        assert agrees(refusal("I", svg_font(), sheet_mm=(10, value)), f"{reported} sheet")
+        assert agrees(refusal("I", svg_font(), sheet_mm=(10, value)), f"{reported} sheet_mm")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"size_mm": "20"}, "wrong-type 20 size"),
+        ({"size_mm": None}, "wrong-type None size"),
+        ({"size_mm": True}, "wrong-type True size"),
+        ({"size_mm": 10**400}, "out-of-range inf size"),
+        ({"width_mm": "1"}, "wrong-type 1 width"),
+        ({"width_mm": 10**400}, "out-of-range inf width"),
+        ({"line_spacing": None}, "wrong-type None spacing"),
+        ({"line_spacing": [1]}, "wrong-type spacing"),
+        ({"sheet_mm": 0}, "wrong-type 0 sheet_mm"),
+        ({"sheet_mm": True}, "wrong-type True sheet_mm"),
+        ({"sheet_mm": "9x9"}, "wrong-type 9x9 sheet_mm"),
+        ({"sheet_mm": ()}, "wrong-type 0 2 sheet_mm"),
+        ({"sheet_mm": (100,)}, "wrong-type 1 2 sheet_mm"),
+        ({"sheet_mm": (100, "60")}, "wrong-type 60 sheet_mm"),
+        ({"sheet_mm": (100, 10**400)}, "out-of-range inf sheet_mm"),
+        ({"sheet_mm": np.zeros((2, 2))}, "wrong-type sheet_mm"),
+    ],
+)
+def test_values_that_are_no_numbers_are_refused_in_a_sentence(options, said):
+    assert agrees(refusal("I", svg_font(), **options), said)
+
+
+def test_an_array_of_two_numbers_is_a_sheet():
+    given = {"size_mm": 10.0, "width_mm": 0.5, "line_spacing": 1.5, "sheet_mm": (100, 60)}
+    arrays = {"size_mm": np.int64(10), "width_mm": Fraction(1, 2), "line_spacing": np.float32(1.5)}
+    assert text_svg("I\nI", svg_font(), **arrays, sheet_mm=np.array([100, 60])) == text_svg("I\nI", svg_font(), **given)
 
 
 def test_text_is_centred_on_a_given_sheet_or_refused():

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import unicodedata
 
-from ...errors import Error, missing_packages_error, need_one_of, require_type
-from .. import SCRIPTS
+from ...errors import Error, as_number, missing_packages_error, need_numbers, need_one_of, require_type
+from .. import SCRIPTS, SIZE_MM
 from ..design import Notice
 from . import svg_font
 from .page import svg_document
@@ -44,11 +43,10 @@ def text_svg(
     require_type(text, str, "a text")
     require_type(font, bytes, "what a font file holds, as bytes")
     need_one_of(script, SCRIPTS, "script")
-    _check_range("size", size_mm, 1000, " mm")
-    _check_range("width", 1.0 if width_mm is None else width_mm, 1000, " mm")
-    _check_range("line spacing", line_spacing, 100)
-    for side_mm in sheet_mm or ():
-        _check_range("a side of the sheet", side_mm, 1e6, " mm")
+    size_mm = _checked("size", size_mm, 1000, " mm")
+    width_mm = None if width_mm is None else _checked("width", width_mm, 1000, " mm")
+    line_spacing = _checked("line spacing", line_spacing, 100)
+    sheet_mm = None if sheet_mm is None else need_numbers(sheet_mm, "sheet_mm", 2, *SIZE_MM)
     if not text:
         raise Error("the text is empty", "text", code="text-empty")
     if len(text) > _MAX_CHARACTERS:
@@ -84,15 +82,17 @@ def text_svg(
     return svg_document(typeset, text, line_spacing * size_mm, stroke_mm, sheet_mm, script), notices
 
 
-def _check_range(name: str, value: float, maximum: float, unit: str = "") -> None:
-    if not (math.isfinite(value) and 0 < value <= maximum):
+def _checked(name: str, value: float, maximum: float, unit: str = "") -> float:
+    number = as_number(value, f"a number, which {name} is")
+    if not 0 < number <= maximum:
         raise Error(
-            f"{name} {value:g}{unit} is outside the range (0, {maximum:g}]{unit}",
+            f"{name} {number:g}{unit} is outside the range (0, {maximum:g}]{unit}",
             "",
-            value,
+            number,
             (0, maximum),
             code="out-of-range",
         )
+    return number
 
 
 def _remove_controls(text: str) -> tuple[str, list[Notice]]:
