@@ -161,7 +161,8 @@ def need_truth(value, what: str) -> None:
 
     Without this check, the text "no" would count as True.
     """
-    if not isinstance(value, bool) and getattr(getattr(value, "dtype", None), "kind", "") != "b":
+    is_numpy_bool = getattr(getattr(value, "dtype", None), "kind", "") == "b" and value.ndim == 0
+    if not (isinstance(value, bool) or is_numpy_bool):
         raise Error(
             f"{type(value).__name__} {str(value)[:40]!r} is not True or False, which {what} is",
             code="wrong-type",

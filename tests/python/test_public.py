@@ -158,3 +158,21 @@ def test_unknown_choices_are_refused(tmp_path):
     for choice in ("varnish", "", np.ones((2, 2)), None):
         with refused("choice-unknown auto clamp passes refuse"):
             brushsvg.within_reach([], brush, choice)
+
+
+@pytest.mark.parametrize("value", ["no", 1, None, np.array(True)[None], np.array([True, False])])
+@pytest.mark.parametrize(
+    ("argument", "call"),
+    [
+        ("dabs", lambda value: brushsvg.chart(brushsvg.find_brush("round-6"), (210, 297), dabs=value)),
+        ("one_load", lambda value: brushsvg.chart(brushsvg.find_brush("round-6"), (210, 297), one_load=value)),
+        ("is_searched", lambda value: brushsvg.within_reach([], brushsvg.find_brush("round-6"), is_searched=value)),
+        ("through_zero", lambda value: brushsvg.laws.fit_law([1, 2, 3], [1, 2, 4], 1, through_zero=value)),
+        ("absolute", lambda value: brushsvg.laws.fit_law([1, 2, 3], [1, 2, 4], 1, absolute=value)),
+        ("total", lambda value: brushsvg.laws.from_angles(1.5, [1, 3], [1.2, 0.9], total=value)),
+        ("lenient", lambda value: brushsvg.convert("none.svg", lenient=value)),
+    ],
+)
+def test_what_is_neither_true_nor_false_is_refused(argument, call, value):
+    with refused(f"wrong-type True False {argument}"):
+        call(value)

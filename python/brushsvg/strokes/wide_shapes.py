@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..errors import Error, need_one_of, require_type
+from ..errors import Error, need_one_of, need_truth, require_type
 from ..read.design import Notice
 from .trial_mark import trial_overlap
 
@@ -36,6 +36,7 @@ def within_reach(
     """
     require_type(brush, _core.Brush, "a brush")
     need_one_of(wide, WIDE, "what becomes of wide shapes")
+    need_truth(is_searched, "is_searched")
     for stroke in strokes:
         require_type(stroke, _core.Stroke, "a stroke")
     if not brush.width_follows_depth() and wide != "passes":

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from ... import _core
-from ...errors import Error, as_listed, need_number, need_one_of, require_type
+from ...errors import Error, as_listed, need_number, need_one_of, need_truth, require_type
 from ...model.perturbed import with_lag
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
 from .painting_order import early_and_late, shallow_to_deep
@@ -180,6 +180,8 @@ def chart(
     """
     require_type(brush, _core.Brush, "a brush")
     _core.check(brush)
+    need_truth(dabs, "dabs")
+    need_truth(one_load, "one_load")
     if dabs and one_load:
         raise Error("dabs do not show how marks narrow: one load is for strokes", code="options-contradict")
     sheet_mm = as_listed(sheet_mm)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ... import _core
 from ...array_values import ArrayValue
-from ...errors import Error
+from ...errors import Error, need_truth
 from .fitted import need_fits
 from .numbers import FARTHEST_MM, frozen, numbers, together
 
@@ -81,6 +81,7 @@ def from_angles(
     broadcast.
     """
     need_fits()
+    need_truth(total, "total")
     alpha0 = numbers(alpha0_rad, "alpha0 [rad]", 0.0, np.radians(95.0) + 1e-9)
     rows = [
         numbers(s_mm, "the way s [mm]", 0.0, FARTHEST_MM),

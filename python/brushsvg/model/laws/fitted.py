@@ -7,7 +7,7 @@ import math
 from numpy.typing import ArrayLike
 
 from ... import _core
-from ...errors import Error, require_type
+from ...errors import Error, need_truth, require_type
 from .numbers import DEEPEST_MM, FARTHEST_MM, numbers
 
 
@@ -38,6 +38,8 @@ def fit_law(
     if depth.ndim != 1 or value.ndim != 1:
         raise Error("depths and values are lists of numbers", code="wrong-type")
     require_type(degree, int, "a degree")
+    need_truth(through_zero, "through_zero")
+    need_truth(absolute, "absolute")
     shape = _core.LawShape(
         (float(depth.min(initial=0.0)), float(depth.max(initial=1.0))),
         max(-1, min(degree, 99)),
