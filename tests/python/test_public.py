@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import agrees, refused
 
 import brushsvg
 
@@ -145,6 +145,19 @@ def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, expected
     with refused(expected):
         brushsvg.write_program(tmp_path / name, plan, brushsvg.find_brush("round-6"))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_write_program_reports_a_plan_of_another_brush(tmp_path):
+    brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
+    assert brushsvg.write_program(tmp_path / "a.ngc", plan, brush) == []
+    assert "warnings" not in (tmp_path / "a.ngc").read_text()
+    plan.brush_sha256 = "0" * 64
+    (notice,) = brushsvg.write_program(tmp_path / "a.ngc", plan, brush)
+    assert agrees(notice, "plan-of-other-brush round-6", "brush_sha256")
+    assert "(warnings: 1)" in (tmp_path / "a.ngc").read_text()
+    plan.brush = "liner"
+    (notice,) = brushsvg.write_program(tmp_path / "a.json", plan, brush)
+    assert agrees(notice, "plan-of-other-brush liner round-6", "brush")
 
 
 def test_unknown_choices_are_refused(tmp_path):

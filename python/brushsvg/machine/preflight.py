@@ -30,6 +30,17 @@ from .workspace_limits import distances_beyond_edges
 DEFAULT_TOLERANCE_MM = 0.05
 
 
+def report_other_brush(plan: _core.Plan, brush: _core.Brush) -> list[Notice]:
+    """Return a notice if a plan was made for another brush, or with another file of this brush."""
+    if brush.name != plan.brush:
+        where, sentence = "brush", f"the plan was made for brush {plan.brush}, not for {brush.name}"
+    elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
+        where, sentence = "brush_sha256", f"the plan was made with another file of brush {brush.name}"
+    else:
+        return []
+    return [Notice(where, sentence, code="plan-of-other-brush")]
+
+
 def check_job(
     loads: PlanInLoads,
     brush: _core.Brush,

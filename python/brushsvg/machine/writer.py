@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error, require_type
+from ..errors import Error, Notice, require_type
 from ..files import write_files
 from .cells.cell import Cell
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
@@ -16,7 +16,7 @@ from .header_lines import header_of
 from .motion import Program, duration_s, program_in_robot_frame
 from .paint_reload import PlanInLoads, split_into_loads, station_visits
 from .posts import POSTS, Post
-from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job
+from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush
 from .program import WHOLE_JOB, CheckedProgram, Job, make_checked_program, out_of_arm, unchecked_program
 from .realised.backlash import compensate_backlash
 
@@ -179,10 +179,13 @@ def write_program(
     brush: _core.Brush,
     title: str = "",
     cell: Cell | None = None,
-) -> None:
-    """Write a plan as a plan.json or as a program.
+) -> list[Notice]:
+    """Write a plan as a plan.json or as a program, and return notices.
 
     The program is in the cell's language. The extension of path decides between the two.
+
+    There is a notice if the plan was made for another brush, or with another file of this brush. The program paints
+    with the given brush, and its header counts the notices.
 
     Raises Error, and writes nothing, if paint leaves the sheet or a limit of the brush or the cell is broken.
     """
@@ -197,4 +200,7 @@ def write_program(
     cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
     marks, loads = _core.simulate(plan, brush), split_into_loads(plan, brush, cell)
     walk = check_job(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
-    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title)))
+    notices = report_other_brush(plan, brush)
+    notes = [f"warnings: {len(notices)}"] if notices else []
+    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title, notes)))
+    return notices

@@ -15,7 +15,7 @@ from ...comparison.corrections import apply_corrections
 from ...errors import Error
 from ...machine.cells.cell import LEAST_SPEED_MM_S
 from ...machine.paint_reload import fetched_mm, split_into_loads
-from ...machine.preflight import check_job
+from ...machine.preflight import check_job, report_other_brush
 from ...machine.program import Job
 from ...model.library import find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper
@@ -437,23 +437,7 @@ def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> li
 
 def _prepare_plan(plan, options: Options) -> Work:
     brush = options.brush or find_brush(plan.brush)
-    notices = mistyped_keys(brush)
-    if brush.name != plan.brush:
-        notices.append(
-            Notice(
-                "brush",
-                f"the plan was made for brush {plan.brush}, not for {brush.name}",
-                code="plan-of-other-brush",
-            )
-        )
-    elif plan.brush_sha256 and brush.sha256 and plan.brush_sha256 != brush.sha256:
-        notices.append(
-            Notice(
-                "brush_sha256",
-                f"the plan was made with another file of brush {brush.name}",
-                code="plan-of-other-brush",
-            )
-        )
+    notices = mistyped_keys(brush) + report_other_brush(plan, brush)
     _check_speed(brush, options)
     plan = _set_requested_speed(plan, options)
     return Work("", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices))
