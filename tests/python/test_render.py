@@ -6,8 +6,11 @@ import xml.etree.ElementTree as ET
 import cv2
 import numpy as np
 import pytest
+from diagnostics import refused
 
 from brushsvg import (
+    Pass,
+    Plan,
     Stroke,
     area,
     compensate,
@@ -118,6 +121,54 @@ def test_the_toolpath_is_drawn_over_the_paint(painted):
     assert paths["travel"] == "M25.000 27.000L25.000 12.000"
     image = decode(marks_png(marks, brush, SHEET, colours, toolpath_mm=toolpath_mm))
     assert pixel(image, 10, 3) == pixel(image, 40, 18) == TOOLPATH
+
+
+def test_lines_may_be_nested_lists(painted):
+    marks, brush, colours = painted
+    lists = {"blank": [[[5, 5], [9, 5], [9, 9]]], "toolpath_mm": [[[5, 3, 2], [25, 3, -4]], [], [[25, 18], [45, 18]]]}
+    arrays = {name: [np.array(line, float) for line in lines if line] for name, lines in lists.items()}
+    assert marks_svg(marks, SHEET, colours, **lists) == marks_svg(marks, np.array(SHEET), tuple(colours), **arrays)
+    assert marks_png(marks, brush, SHEET, colours, **lists) == marks_png(marks, brush, SHEET, colours, **arrays)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"band": 3}, "wrong-type 3 band"),
+        ({"blank": 3}, "wrong-type blank"),
+        ({"blank": [[[5, 5], [9]]]}, "wrong-type blank"),
+        ({"blank": [[[[5, 5], [9, 9]]]]}, "wrong-type blank"),
+        ({"blank": [[["x", 5]]]}, "wrong-type blank"),
+        ({"blank": [[[5, np.nan], [9, 9]]]}, "not-finite blank"),
+        ({"toolpath_mm": [[5, 5], [9, 9]]}, "wrong-type toolpath_mm"),
+        ({"toolpath_mm": [None]}, "wrong-type toolpath_mm"),
+        ({"colours": "rgb"}, "wrong-type rgb"),
+        ({"colours": [RED, BLUE, 3]}, "wrong-type 3"),
+        ({"colours": None}, "wrong-type None"),
+        ({"sheet_mm": (60, True)}, "wrong-type True"),
+        ({"sheet_mm": (60, 10**400)}, "out-of-range inf"),
+        ({"sheet_mm": (60, 0)}, "out-of-range 0 1e6"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused(painted, changed, said):
+    marks, brush, colours = painted
+    given = {"sheet_mm": SHEET, "colours": colours} | changed
+    with refused(said):
+        marks_svg(marks, **given)
+    with refused(said):
+        marks_png(marks, brush, **given)
+
+
+def test_marks_without_outlines_are_refused_as_svg():
+    brush = find_brush("round-6")
+    painting, touching = (Pass("a", [(10, 10, -depth), (30, 10, -depth)]) for depth in (2.0, 0.0))
+    marks = simulate(Plan("round-6", "", SHEET, [painting]), brush)
+    with refused("nothing-to-show trace_outlines"):
+        marks_svg(marks, SHEET, [RED])
+    assert marks_png(marks, brush, SHEET, [RED])
+    trace_outlines(marks, brush)
+    assert RED in marks_svg(marks, SHEET, [RED])
+    assert marks_svg(simulate(Plan("round-6", "", SHEET, [touching]), brush), SHEET, [RED])
 
 
 def test_svg_numbers_are_plain_decimals(painted):

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import cv2
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import Error, require_type
-from .marks_svg import BAND, LINE_WIDTH_SHARE, TOOLPATH, Band, check_picture, known_colour, travels
+from .marks_svg import BAND, LINE_WIDTH_SHARE, TOOLPATH, Band, check_lines, check_picture, known_colour, travels
 from .overlap_svg import MISSING
 from .png_canvas import (
     PNG_LONG_SIDE_PX,
@@ -29,8 +30,8 @@ def marks_png(
     sheet_mm: tuple[float, float],
     colours: list[str],
     band: Band | None = None,
-    blank: Iterable[np.ndarray] = (),
-    toolpath_mm: Sequence[np.ndarray] = (),
+    blank: Iterable[ArrayLike] = (),
+    toolpath_mm: Iterable[ArrayLike] = (),
 ) -> bytes:
     """Draw the sheet with its paint, anti-aliased.
 
@@ -38,7 +39,8 @@ def marks_png(
     unpainted parts of shapes, outlined; toolpath_mm: the tool's positions (n, 2) or (n, 3) in each pass, drawn over the
     paint, thinner where the tool travels in the air. Raises Error where there is nothing to draw.
     """
-    check_picture(marks, sheet_mm, colours)
+    sheet_mm = check_picture(marks, sheet_mm, colours, band)
+    blank, toolpath_mm = check_lines(blank, "blank"), check_lines(toolpath_mm, "toolpath_mm")
     require_type(brush, _core.Brush, "a brush")
     px_per_mm = min(20.0, PNG_LONG_SIDE_PX / max(sheet_mm))
     window = (0.0, 0.0, *sheet_mm)

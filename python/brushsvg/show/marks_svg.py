@@ -6,13 +6,13 @@ import re
 from collections.abc import Container, Iterable, Sequence
 from html import escape
 from itertools import pairwise
-from numbers import Real
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import _core
-from ..errors import Error, require_type
+from ..errors import Error, need_numbers, require_type
 from .overlap_svg import MISSING
 from .svg_text import path_data, printable, quoted
 
@@ -41,9 +41,9 @@ def marks_svg(
     tracking_errors: Sequence[_core.TrackingError | None] = (),
     made: str = "",
     band: Band | None = None,
-    blank: Iterable[np.ndarray] = (),
+    blank: Iterable[ArrayLike] = (),
     astray: Container[str] = (),
-    toolpath_mm: Sequence[np.ndarray] = (),
+    toolpath_mm: Iterable[ArrayLike] = (),
 ) -> str:
     """Draw one path per pass in its colour, in millimetres of the sheet.
 
@@ -51,9 +51,19 @@ def marks_svg(
     95 % band of their edges, drawn with a legend; blank: rings of the unpainted parts of shapes, outlined; astray:
     names of strokes that are marked because their paint is displaced; toolpath_mm: the tool's positions (n, 2) or
     (n, 3) in each pass, drawn over the paint, dashed where the tool travels in the air.
+
+    Raises Error for marks without outlines, and for arguments that cannot be drawn.
     """
-    check_picture(marks, sheet_mm, colours)
-    width, height = sheet_mm
+    width, height = check_picture(marks, sheet_mm, colours, band)
+    blank, toolpath_mm = check_lines(blank, "blank"), check_lines(toolpath_mm, "toolpath_mm")
+    for text, what in ((title, "title"), (made, "made")):
+        require_type(text, str, f"a text, which {what} is")
+    _need_outlines(marks)
+    if tracking_errors and len(tracking_errors) != len(marks.passes):
+        raise Error(
+            f"tracking_errors has {len(tracking_errors)} entries, not {len(marks.passes)}, one for each pass",
+            code="sizes-differ",
+        )
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
         f'viewBox="0 0 {width:g} {height:g}"' + (f" data-made={quoted(made)}" if made else "") + ">",
@@ -80,24 +90,57 @@ def marks_svg(
     return "\n".join([*lines, "</svg>", ""])
 
 
-def check_picture(marks: _core.Marks, sheet_mm: tuple[float, float], colours: list[str]) -> None:
-    """Raise Error for a sheet or colours that cannot be drawn.
+def check_picture(
+    marks: _core.Marks, sheet_mm: tuple[float, float], colours: list[str], band: Band | None
+) -> tuple[float, float]:
+    """Return the width and height of the sheet; raise Error for arguments that cannot be drawn.
 
     The sheet must have a size, and each pass a colour.
     """
     require_type(marks, _core.Marks, "marks, as simulate returns them")
-    require_type(sheet_mm, (tuple, list), "a sheet's width and height")
-    for side in sheet_mm:
-        require_type(side, Real, "the side of a sheet")
-    if len(sheet_mm) != 2 or not all(0 < side <= 1e6 for side in sheet_mm):
+    width, height = need_numbers(sheet_mm, "sheet_mm", 2, 0.0, 1e6)
+    if not min(width, height) > 0:
         raise Error(
-            f"a sheet of {sheet_mm} mm cannot be drawn: both sides must be within (0, 1e6] mm",
+            f"a sheet of {width:g} x {height:g} mm cannot be drawn: both sides must be within (0, 1e6] mm",
             code="out-of-range",
         )
+    require_type(colours, (list, tuple), "a list of colours, one for each pass")
+    for colour in colours:
+        require_type(colour, str, "a colour, as #1a237e")
+    if band is not None and not (hasattr(band, "rings") and hasattr(band, "words")):
+        raise Error(f"{type(band).__name__} {str(band)[:40]!r} is not a band with rings and words", code="wrong-type")
     if len(colours) != len(marks.passes):
         raise Error(
             f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}",
             code="wrong-type",
+        )
+    return width, height
+
+
+def check_lines(lines: Iterable[ArrayLike], what: str) -> list[np.ndarray]:
+    """Return lines or rings as arrays of points (n, 2) or (n, 3), without the empty ones.
+
+    Raises Error for anything else, and for points that are not finite.
+    """
+    try:
+        arrays = [np.asarray(line, dtype=float) for line in lines]
+    except (TypeError, ValueError):
+        arrays = None
+    if arrays is None or any(each.size and (each.ndim != 2 or each.shape[1] not in (2, 3)) for each in arrays):
+        raise Error(f"{what} is not a list of lines, each an array of points (n, 2) or (n, 3)", code="wrong-type")
+    if not all(np.isfinite(each).all() for each in arrays):
+        raise Error(f"a point of {what} is infinite or not a number", code="not-finite")
+    return [each for each in arrays if each.size]
+
+
+def _need_outlines(marks: _core.Marks) -> None:
+    if not any(trace.outline_mm for trace in marks.passes) and any(
+        (trace.depth_mm > 0).any() for trace in marks.passes
+    ):
+        raise Error(
+            "the marks have no outlines that could be drawn: call trace_outlines(marks, brush) first",
+            "marks",
+            code="nothing-to-show",
         )
 
 
