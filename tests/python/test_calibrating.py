@@ -3,12 +3,16 @@
 Both return the same brush, the same report and the same refusals.
 """
 
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 from diagnostics import refused
 
 import brushsvg
+from brushsvg.calibration.chart.photograph import marks_of
 from brushsvg.cli import main
-from brushsvg.jobs.calibrating import GivenOptions
+from brushsvg.jobs.calibrating import GivenOptions, make_checked_options, read_chart_photographs
 from brushsvg.jobs.calibration_options import CalibrationOptions, find_contradiction
 
 NUMBERS = "kind,depth_mm,value_mm\nlag,1,1.9\nlag,2,2.4\nlag,3,3.1\nwidth,1,2.2\nwidth,2,4.1\nwidth,3,6.2\n"
@@ -83,3 +87,33 @@ def test_a_list_of_one_file_equals_the_file(table):
 def test_a_resolution_too_low_to_measure_is_refused():
     with refused("out-of-range dpi"):
         brushsvg.calibrate("scan.png", chart="chart.json", dpi=50)
+
+
+@pytest.mark.slow
+def test_a_chart_and_a_plan_may_be_given_as_their_files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main("chart -o c.ngc --chart chart.json --strokes few --quiet".split()) == 0
+    assert main("simulate-photo chart.json -o photo.jpg --quiet".split()) == 0
+    chart = brushsvg.chart(brushsvg.find_brush("round-6"), (210, 297), "few")
+
+    def read(chart):
+        found = read_chart_photographs(["photo.jpg"], make_checked_options({"chart": chart}), print, print)
+        return found.chart, marks_of(found)
+
+    by_path, by_chart = read("chart.json"), read(chart)
+    assert len(by_path[1]) == len(chart.strokes) and by_chart == by_path
+    with refused("chart-markers", "dictionary"):
+        read(replace(chart, dictionary="none"))
+    Path("plan.json").write_text(brushsvg.write_plan(chart.plan))
+    refusals = []
+    for plan in ("plan.json", chart.plan):
+        with pytest.raises(brushsvg.Error) as caught:  # the photograph shows the page of the chart
+            brushsvg.calibrate("photo.jpg", plan=plan, prior="round-6")
+        refusals.append((caught.value.code, caught.value.file, str(caught.value)))
+    assert refusals[0] == refusals[1] and refusals[0][1] == "photo.jpg"
+
+
+@pytest.mark.parametrize("name", ["chart", "plan", "spread"])
+def test_what_is_neither_a_file_nor_its_contents_is_refused(name):
+    with refused(f"wrong-type 3 {name}"):
+        brushsvg.calibrate("photo.jpg", **{name: 3})

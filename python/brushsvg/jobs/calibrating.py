@@ -14,7 +14,8 @@ from typing import Any, Generic, Literal, Required, TypedDict, TypeVar, Unpack, 
 
 from .. import _core
 from ..calibration.chart.dabs import dabs_of, is_of_dabs
-from ..calibration.chart.file import read_chart
+from ..calibration.chart.file import read_chart, write_chart
+from ..calibration.chart.layout import Chart
 from ..calibration.chart.photograph import Read, edge_mm, expected, marks_of, read_chart_photos, remarks
 from ..calibration.chart.photograph import describe_reading as reading_in_words
 from ..calibration.dabs import dab_report
@@ -95,14 +96,14 @@ class GivenOptions(TypedDict, total=False):
     cell: str | Cell
     paint: bool
     aim: Literal["edges", "overlap"]
-    chart: str | os.PathLike[str]
+    chart: str | os.PathLike[str] | Chart
     bar_mm: float
     dpi: float
     mirrored: bool
     height_mm: float
     spread: str | os.PathLike[str]
     brush: str | _core.Brush
-    plan: str | os.PathLike[str]
+    plan: str | os.PathLike[str] | _core.Plan
     prior: str | _core.Brush
 
 
@@ -199,7 +200,7 @@ def calibrate(
         one painted chart or job.
     name: the name of the brush, by default the name in the measurements or of the first file.
     progress: called with words on the progress.
-    options: see CalibrationOptions.
+    options: see CalibrationOptions. A Chart replaces its chart.json, and a Plan its plan.json.
 
     Raises Error for a file that cannot be read, and for options that contradict each other. Measurements that leave
     a law undetermined, or that no brush can have, also raise Error.
@@ -250,10 +251,15 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
     ):
         if name in options:
             options[name] = need_number(options[name], name, minimum, maximum)
-    for name in ("chart", "spread", "plan"):
+    for name, loaded, kinds in (
+        ("chart", (Chart,), "a path or a Chart"),
+        ("spread", (), "a path"),
+        ("plan", (_core.Plan,), "a path or a Plan"),
+    ):
         if name in options:
-            require_type(options[name], (str, os.PathLike), f"a path, which {name} is")
-            options[name] = os.fspath(options[name])
+            require_type(options[name], (str, os.PathLike, *loaded), f"{kinds}, which {name} is")
+            if not isinstance(options[name], loaded):
+                options[name] = os.fspath(options[name])
     need_one_of(options.get("aim", "edges"), AIMS, "aim")
     return CalibrationOptions(**options)
 
@@ -289,10 +295,17 @@ def run_calibration(
     return _calibrate_from_strokes(photos, read, name, options, stage, warn)
 
 
+def _path_of(file) -> str:
+    """Return the path of a file, or "" for its contents."""
+    return file if isinstance(file, str) else ""
+
+
 def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
     """Read the photographs of one painted chart, and warn of missing strokes."""
-    with name_file_in_errors(options.chart):
-        chart = read_chart(read_bytes(options.chart))
+    with name_file_in_errors(_path_of(options.chart)):
+        # a chart that was made in Python must be valid as a file
+        data = write_chart(options.chart).encode() if isinstance(options.chart, Chart) else read_bytes(options.chart)
+        chart = read_chart(data)
     with name_file_in_errors(photos[0]):
         stage("reading the photographs")
         read = read_chart_photos(
@@ -359,7 +372,7 @@ def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibr
     for is_broken, why in (
         (
             options.brush is None,
-            f"{options.chart} is a chart of dabs: give the brush whose lag is known, --brush FILE",
+            f"{_path_of(options.chart) or 'this'} is a chart of dabs: give the brush whose lag is known, --brush FILE",
         ),
         (bool(options.machine), "--machine needs strokes: dabs say nothing about the machine"),
         (options.height_mm is not None, "--height is for strokes: dabs count as deep as they were requested"),
@@ -391,15 +404,15 @@ def _fit_lag_from_strokes(photos, read: Read, name, options, stage, warn) -> Bru
 def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
     """Return a known brush, updated by photographs of a painted job."""
     prior_brush = load_brush(options.prior)
-    with name_file_in_errors(options.plan):
-        plan = read_plan(options.plan)
+    with name_file_in_errors(_path_of(options.plan)):
+        plan = read_plan(_core.write_plan(options.plan) if isinstance(options.plan, _core.Plan) else options.plan)
     with name_file_in_errors(options.spread or ""):
         spread_mm = read_displacement_mm(options.spread) if options.spread else None
     pictures = [(path, read_bytes(path)) for path in photos]
     digests = [hashlib.sha256(data).hexdigest() for _, data in pictures]
     with name_file_in_errors("" if isinstance(options.prior, _core.Brush) else options.prior):
         refuse_learned(prior_brush, digests)
-    warn(options.plan, other_brush(plan, prior_brush))
+    warn(_path_of(options.plan), other_brush(plan, prior_brush))
     with name_file_in_errors(photos[0]):
         stage("reading the photographs and fitting the brush")
         learned = learn(plan, prior_brush, pictures, name, options.machine, spread_mm)

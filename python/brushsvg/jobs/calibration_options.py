@@ -14,6 +14,7 @@ from ..photo import PHOTOS
 
 if TYPE_CHECKING:
     from .. import _core
+    from ..calibration.chart.layout import Chart
     from ..machine.cells.cell import Cell
 
 AIMS = ("edges", "overlap")
@@ -36,7 +37,7 @@ class CalibrationOptions:
     aim: "edges" or "overlap".
 
     For photographs of a chart:
-    chart: its chart.json.
+    chart: its chart.json, or the Chart itself.
     bar_mm: the measured length of the printed bar.
     dpi: the resolution of a flatbed scan without a printed page.
     mirrored: the photograph was taken through a clear sheet.
@@ -45,7 +46,7 @@ class CalibrationOptions:
     brush: the brush whose lag (for dabs) or outlines (for strokes) are known.
 
     For photographs of a job:
-    plan: the painted plan.json.
+    plan: the painted plan.json, or the Plan itself.
     prior: the brush that painted it.
     """
 
@@ -55,14 +56,14 @@ class CalibrationOptions:
     cell: str | Cell | None = None
     paint: bool = False
     aim: str = "edges"
-    chart: str | None = None
+    chart: str | Chart | None = None
     bar_mm: float | None = None
     dpi: float | None = None
     mirrored: bool = False
     height_mm: float | None = None
     spread: str | None = None
     brush: str | _core.Brush | None = None
-    plan: str | None = None
+    plan: str | _core.Plan | None = None
     prior: str | _core.Brush | None = None
 
 
