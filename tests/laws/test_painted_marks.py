@@ -3,7 +3,9 @@
 The slow stepping simulator paints the marks.
 """
 
+import copy
 import re
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
@@ -237,6 +239,20 @@ def test_an_undetermined_law_is_refused_with_its_value():
     with refused("law-undetermined '12.0 +- 14.4 mm' 10", "lag"):
         open_by(1.2)
     open_by(0.7)  # the lag is uncertain only in the last tenth
+
+
+def test_a_law_that_is_left_open_at_few_depths_is_a_reservation():
+    """The lag of 30 real strokes was known to +- 24 mm at touch, and the verdict did not say so."""
+    _, _, made = calibrated(3)
+    assert "lag" not in report(made).verdict
+    brush, covariance = copy.deepcopy(made.brush), np.array(made.brush.covariance)
+    deepest = brush.depth_range_mm[1]
+    covariance[3, 3] += (0.7 * brush.lag(deepest) / deepest**3 / 1.96) ** 2
+    brush.covariance = covariance.tolist()
+    _refuse_undetermined(brush, made.fit)  # at few depths only
+    doubtful = report(replace(made, brush=brush))
+    assert doubtful.verdict.startswith("usable, but") and gives(doubtful.verdict, "lag", f"depth {deepest:.4g}")
+    assert any(gives(line, "lag", "%") and "curved" in line for line in doubtful.lines)
 
 
 def intervals(made, law="lag"):

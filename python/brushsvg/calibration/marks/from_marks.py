@@ -558,18 +558,30 @@ def refuse_many_outliers(fit, painted: Painted) -> None:
 
 
 def _refuse_undetermined(brush: _core.Brush, fit) -> None:
+    for law, share, value in find_undetermined_laws(brush):
+        if share > MAX_UNDETERMINED_SHARE:
+            advice = fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
+            raise Error(
+                f"these marks do not determine the {law.replace('_', ' ')}: {value}: {advice}",
+                law,
+                code="law-undetermined",
+            )
+
+
+def find_undetermined_laws(brush: _core.Brush) -> list[tuple[str, float, str]]:
+    """Return the laws that the marks leave undetermined at some depths.
+
+    Each has the share of these depths, and the worst value in words, with its interval and depth.
+    """
     depths = np.linspace(*brush.depth_range_mm, 21)[1:]
     covariance, at = np.array(brush.covariance), places(brush)
+    found = []
     for law in ("lag", "half_width"):  # the other laws do not matter for a plan
         half = half_interval_mm(covariance[at[law], at[law]], depths, None)
         values = np.array([getattr(brush, law)(d) for d in depths])
         undetermined = (half > MAX_RELATIVE_INTERVAL * values) & (half > MAX_INTERVAL_MM)
-        if undetermined.mean() > MAX_UNDETERMINED_SHARE:
+        if undetermined.any():
             worst = int(np.argmax(np.where(undetermined, half / np.maximum(values, 1e-9), 0.0)))
-            advice = fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
-            raise Error(
-                f"these marks do not determine the {law.replace('_', ' ')}: {values[worst]:.1f} +- {half[worst]:.1f} "
-                f"mm (95 %) at depth {depths[worst]:g} mm: {advice}",
-                law,
-                code="law-undetermined",
-            )
+            value = f"{values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at depth {depths[worst]:.4g} mm"
+            found.append((law, float(undetermined.mean()), value))
+    return found

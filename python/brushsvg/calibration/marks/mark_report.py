@@ -19,6 +19,7 @@ from .from_marks import (
     HALF_TERMS,
     LAG_TERMS,
     MIN_CHI_SQUARE,
+    find_undetermined_laws,
     front_ratio,
     height_at,
     simulate_fitted_brush,
@@ -42,9 +43,9 @@ def report(calibration, of_photo: bool = False) -> Report:
     instead of keys of a measurement file.
 
     "Do not use" means that marks overlap with their predictions by 0.5 or less without displacements. "Usable, but"
-    means one of the following: the overlap is less than 0.9; the fit stopped before it converged; marks were left out
-    or are astray; the sheet differs from the expected one; a tenth of the edges is masked; too few depths were painted
-    for the usual lag.
+    means one of the following: the overlap is less than 0.9; the lag or the half width is undetermined at some depths,
+    though at too few for a refusal; the fit stopped before it converged; marks were left out or are astray; the sheet
+    differs from the expected one; a tenth of the edges is masked; too few depths were painted for the usual lag.
     """
     brush, fit = calibration.brush, calibration.fit
     in_place, moved = overlaps(calibration)
@@ -53,6 +54,7 @@ def report(calibration, of_photo: bool = False) -> Report:
     strays = plural(len(calibration.strays), "mark")
     reservations = [
         *low_overlap,
+        *(f"the {law.replace('_', ' ')} is only known as {value}" for law, _, value in find_undetermined_laws(brush)),
         "" if fit.converged else NOT_CONVERGED,
         (f"{strays} had to be left out" if calibration.strays_left_out else f"the fit is unlike {strays}")
         if calibration.strays
@@ -83,6 +85,7 @@ def report(calibration, of_photo: bool = False) -> Report:
         *unexpected,
         *_warn_of_poor_fit(fit, moved),
         *_warn_of_few_depths(calibration),
+        *_list_undetermined(brush),
         *fit.remarks,
     ]
     details = [*laws_table(brush), "", _describe_tail(calibration), *_list_departing_laws(calibration)]
@@ -162,6 +165,15 @@ def _warn_of_few_depths(calibration) -> list[str]:
     return [
         f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {calibration.painted.depths} depths were "
         "painted. Between them its error may exceed its confidence interval"
+    ]
+
+
+def _list_undetermined(brush) -> list[str]:
+    """Return a sentence for each law that the marks leave undetermined at some depths."""
+    return [
+        f"these marks do not determine the {law.replace('_', ' ')} at {100 * share:.0f} % of the depths: paint curved "
+        "strokes there"
+        for law, share, _ in find_undetermined_laws(brush)
     ]
 
 
