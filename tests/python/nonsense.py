@@ -122,6 +122,7 @@ def plans():
 
 def marks():
     sound = brushsvg.simulate(plan(a_pass()), brush())
+    brushsvg.trace_outlines(sound, brush())
     yield sound
     yield brushsvg.Marks()
     empty = brushsvg.Marks()

@@ -174,7 +174,7 @@ def test_objects_that_are_neither_file_nor_document_are_refused():
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "expected"),
     [
         ({"skip_comments": "fill"}, "wrong-type fill skip_comments"),
         ({"skip_comments": None}, "wrong-type skip_comments"),
@@ -190,8 +190,8 @@ def test_objects_that_are_neither_file_nor_document_are_refused():
         ({"paper_z_mm": "0"}, "wrong-type 0"),
     ],
 )
-def test_options_of_reading_that_are_none_are_refused(options, said):
-    with refused(said):
+def test_options_of_reading_that_are_none_are_refused(options, expected):
+    with refused(expected):
         brushsvg.read_drawing(EXAMPLES / "vincent.svg", brushsvg.ReadOptions(**options))
 
 

@@ -132,7 +132,7 @@ def test_lines_may_be_nested_lists(painted):
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "expected"),
     [
         ({"band": 3}, "wrong-type 3 band"),
         ({"blank": 3}, "wrong-type blank"),
@@ -150,12 +150,12 @@ def test_lines_may_be_nested_lists(painted):
         ({"sheet_mm": (60, 0)}, "out-of-range 0 1e6"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused(painted, changed, said):
+def test_what_cannot_be_drawn_is_refused(painted, changed, expected):
     marks, brush, colours = painted
     given = {"sheet_mm": SHEET, "colours": colours} | changed
-    with refused(said):
+    with refused(expected):
         marks_svg(marks, **given)
-    with refused(said):
+    with refused(expected):
         marks_png(marks, brush, **given)
 
 

@@ -311,7 +311,7 @@ def test_numbers_out_of_range_are_refused(value):
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "expected"),
     [
         ({"size_mm": "20"}, "wrong-type 20 size"),
         ({"size_mm": None}, "wrong-type None size"),
@@ -331,8 +331,8 @@ def test_numbers_out_of_range_are_refused(value):
         ({"sheet_mm": np.zeros((2, 2))}, "wrong-type sheet_mm"),
     ],
 )
-def test_values_that_are_no_numbers_are_refused_in_a_sentence(options, said):
-    assert agrees(refusal("I", svg_font(), **options), said)
+def test_values_that_are_no_numbers_are_refused_in_a_sentence(options, expected):
+    assert agrees(refusal("I", svg_font(), **options), expected)
 
 
 def test_an_array_of_two_numbers_is_a_sheet():
