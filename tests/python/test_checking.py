@@ -10,6 +10,7 @@ from diagnostics import agrees, gives, in_json, is_reported, refused
 from programs import LANGUAGES, RUNNABLE, SERVOS, call
 from sampling import sample
 
+import brushsvg
 from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.jobs.preparation import preparation
@@ -346,6 +347,23 @@ def test_a_resumed_program_is_compared_with_its_remaining_strokes(desk, capsys):
     for drawing in (("two.svg",), ()):  # The program's header shows this without the drawing, too.
         status, _, ((_, reported), *_) = in_json(capsys, "check", "two.ngc", *drawing)
         assert status == 1 and agrees(reported, "stroke-misnumbered '900000 of 3' '2 of 3'"), reported
+
+
+def test_a_program_resumed_at_a_stroke_is_compared_with_the_rest_of_the_drawing(desk):
+    """One that begins within a stroke is not: nobody knows which part of that stroke it paints."""
+    (desk / "two.svg").write_text(THREE)
+    (desk / "mine.toml").write_text((SHIPPED / "linuxcnc-3axis.toml").read_text() + PAINT)
+    brushsvg.convert("two.svg", "two.ngc", cell="mine.toml")
+    names = [a_pass.stroke for a_pass in brushsvg.check("two.ngc", cell="mine.toml").plan.passes]
+    assert sum("+" in name for name in names) >= 3, "all three strokes are painted in parts"
+    for number, name in enumerate(names, 1):
+        brushsvg.convert("two.svg", "rest.ngc", cell="mine.toml", from_stroke=number)
+        figures = brushsvg.check("rest.ngc", "two.svg", cell="mine.toml").figures
+        if "+" in name:
+            assert figures.total.overlap is None and not figures.places, name
+            assert figures.verdict.startswith("usable, but ")
+        else:
+            assert figures.total.overlap > 0.95 and not any(place.outside_mm2 for place in figures.places), name
 
 
 def sections(text: str) -> list[str]:

@@ -61,7 +61,7 @@ from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
-from .work import Work, match_whole_strokes, order_nearest_first
+from .work import Work, list_strokes_from, match_whole_strokes, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
@@ -270,8 +270,8 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
             if work.strokes is not None:
                 target_strokes = match_whole_strokes(work, loads)
                 strokes = None if None in stroke_rows else [target_strokes[k] for k in stroke_rows]
-                whole_job = header.first_stroke == 1
-                drawn = [each for each in work.strokes if not is_margin(each)] if whole_job else None
+                drawn = list_strokes_from(work, loads, header.first_stroke)
+                drawn = drawn and [each for each in drawn if not is_margin(each)]
         rewritten, rewrite_notices = _compare_with_rewritten(program, simulated, work, speeds, z_offset_mm)
         problems = problems + rewrite_notices
         if rewritten and not problems:

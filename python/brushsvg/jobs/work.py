@@ -84,6 +84,17 @@ def match_whole_strokes(work: Work, loads: PlanInLoads) -> list:
     return matched
 
 
+def list_strokes_from(work: Work, loads: PlanInLoads, first_load: int) -> list | None:
+    """Return the strokes that the loads from number first_load on paint, counted from 1.
+
+    None if that load continues a stroke: nothing says where in the stroke it begins.
+    """
+    painted, rest = loads.loads[: first_load - 1], loads.left(first_load).loads
+    if rest and is_later_part(rest[0]):
+        return None
+    return work.strokes[sum(not is_later_part(a_pass) for a_pass in painted) :]
+
+
 def list_colours(work: Work) -> list[str]:
     """Return the colours of the strokes, the lightest first.
 

@@ -149,6 +149,12 @@ class PaintedPlan:
     compensation: str = "closed"
     unreached: Sequence[Bare] = ()
 
+    def target(self) -> list[_core.Stroke] | None:
+        """Return everything that the plan should paint, None if a pass paints an unknown part of a stroke."""
+        if self.drawn is not None:
+            return list(self.drawn)
+        return None if self.strokes is None or None in self.strokes else list(self.strokes)
+
 
 def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
     """Return the figures of each pass, and of all passes together."""
@@ -168,8 +174,8 @@ def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
         _path_figures(a_pass) if stroke is None else _stroke_figures(painted, a_pass, stroke, *next(measured))
         for a_pass, stroke in zip(passes, strokes, strict=True)
     )
-    target = known_strokes if painted.drawn is None else list(painted.drawn)
-    overlap = _core.common_area(traces, target, brush).overlap if rows else None
+    target = painted.target()
+    overlap = _core.common_area(traces, target, brush).overlap if rows and target is not None else None
     return rows, _total_figures(rows, overlap)
 
 
@@ -196,7 +202,7 @@ def _stroke_figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_erro
 def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
     """Return the places where paint differs most from the drawing.
 
-    The largest difference comes first.
+    The largest difference comes first. There are none if the target of the plan is unknown.
     """
     pairs = zip(painted.plan.passes, painted.strokes or (), strict=bool(painted.strokes))
     whole = {stroke.id: (run, stroke) for run, stroke in pairs if stroke is not None}
@@ -212,8 +218,7 @@ def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
         is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found_cause.words)
         return found_cause, error.largest_mm if is_off else None
 
-    targets = painted.drawn if painted.drawn is not None else [stroke for _, stroke in whole.values()]
-    return find_places(painted.marks, painted.brush, list(targets), why)
+    return find_places(painted.marks, painted.brush, painted.target() or [], why)
 
 
 def _square_side_mm(line: np.ndarray) -> float:

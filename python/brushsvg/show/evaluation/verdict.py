@@ -2,7 +2,8 @@
 
 do not use:   a limit forbids running the program; no stroke can be painted; the overlap is below 0.70
 usable, but:  strokes are left out; the overlap is below 0.95; paint visibly misses the drawing; a law of the brush was
-              never measured, or is so uncertain that paint may be 1 mm from the prediction; the drawing is not known
+              never measured, or is so uncertain that paint may be 1 mm from the prediction; the drawing, or the part of
+              it that the program paints, is not known
 good:         none of these
 
 An overlap of 0.95 is where differences become hard to see. The shipped brush in place of the real one gives about 0.6.
@@ -34,7 +35,8 @@ def _left_out_reasons(report) -> list[str]:
     count, total = len(report.refused), len(report.strokes) + len(report.refused)
     left_out = [f"{count} of {plural(total, 'stroke')} cannot be painted"] if count else []
     if report.strokes and report.total.overlap is None:
-        left_out.append("the drawing is not known, so nobody can say whether the paint matches it")
+        unknown = "the drawing" if report.tolerance_mm is None else "the part of a stroke that the program begins with"
+        left_out.append(f"{unknown} is not known, so nobody can say whether the paint matches it")
     return left_out
 
 
