@@ -210,6 +210,19 @@ def test_lines_are_cut_by_clip_paths():
     assert ids(gone) == ["other"] and are_reported(gone.notices, "clipped-away line")
 
 
+@pytest.mark.parametrize("is_upright", [False, True])
+def test_a_mask_on_a_line_without_height_or_width_keeps_all_that_it_shows(is_upright):
+    """The bounds of such a line have no area, of which the default rectangle of a mask is a part."""
+    turn = ' transform="rotate(90 30 30)"' if is_upright else ""
+    d = "M30 -10V50" if is_upright else "M10 30H70"
+    line = f'<g{turn}><path id="line" fill="none" stroke="#000" stroke-width="2" d="{d}" mask="url(#m)"/></g>'
+    shown = '<rect x="-60" y="-60" width="200" height="200" fill="#fff"/><circle cx="30" cy="30" r="5"/>'
+    (element,) = read(f'<mask id="m">{shown}</mask>{line}').elements
+    assert np.ravel(sorted(map(sorted, spans(element)))) == pytest.approx([10, 25, 35, 70], abs=0.01)
+    hidden = read(f'<mask id="m" width="200%">{shown}</mask>{line}{LINE.replace("line", "other")}')
+    assert ids(hidden) == ["other"] and are_reported(hidden.notices, "clipped-away line")
+
+
 def test_shapes_are_intersected_with_clip_paths():
     square = '<rect id="s" x="10" y="10" width="40" height="40" clip-path="url(#Clip)"/>'
     (element,) = clip('<rect x="30" y="30" width="40" height="30"/>', square).elements

@@ -130,7 +130,8 @@ class ClipPaths:
     def _mask_rectangle(self, mask: ET.Element, context: Context, bounds) -> shapely.Geometry | None:
         """Return the rectangle outside of which a mask hides everything.
 
-        The result is None for the default rectangle of a group, which is larger than the group.
+        The result is None for the default rectangle of a group, which is larger than the group, and of a horizontal or
+        vertical line, whose bounds have no area. Any other rectangle in the size of such bounds is empty.
         """
         import shapely
 
@@ -141,8 +142,12 @@ class ClipPaths:
                 context.length(text, context.viewport[name in ("y", "height")]) for name, text in sides.items()
             ]
         else:
-            if (box := bounds()) is None and sides == DEFAULT_MASK_RECTANGLE:
+            box = bounds()
+            has_area = box is not None and box[2] * box[3] > 0
+            if not has_area and sides == DEFAULT_MASK_RECTANGLE:
                 return None
+            if box is not None and not has_area:
+                return shapely.Polygon()
             matrix = multiply(context.matrix, _matrix_from_bounds(box))
             rectangle = [length_px(text, 1.0, context.em_px) for text in sides.values()]
         return shapely.Polygon(rectangle_corners(matrix, tuple(rectangle)))
