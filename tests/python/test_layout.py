@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import agrees, refused
 from svg_text import read
 
 from brushsvg.read.layout import AS_DRAWN, Layout, arrange, bounds_mm
@@ -44,6 +44,24 @@ def test_layers_can_be_selected():
 def test_one_width_can_be_set_for_all_lines():
     design = arrange(read(BODY), Layout(width_mm=2.5))
     assert {element.stroke_width_mm for element in design.elements} == {2.5}
+
+
+SHAPES = "".join(f'<path id="s{k}" fill="red" stroke="none" d="M{9 * k} 5h7v7z"/>' for k in range(5))
+
+
+def test_filled_shapes_have_no_width():
+    """A width for them is reported: once for the option, for each element that asks for one itself."""
+    design = arrange(read(BODY + SHAPES), Layout(width_mm=2.5))
+    (reported,) = (each for each in design.notices if each.code == "width-without-effect")
+    assert agrees(reported, "width-without-effect --width s0 s1 s2") and "s3" not in reported.sentence
+    assert {each.id: each.stroke_width_mm for each in design.elements}["c"] == 2.5
+    assert not any("width" in each.code for each in arrange(read(BODY), Layout(width_mm=2.5)).notices)
+    of_ink = arrange(read(BODY + SHAPES), Layout(width_mm=2.5, layers=("Ink",)))
+    assert not any("width" in each.code for each in of_ink.notices)
+    both = '<path id="b" fill="red" d="M60 5h7v7z"/><path id="l" d="M70 5h7"/>'
+    own = read(f'<g data-brushsvg-width="2">{SHAPES}{both}</g>')
+    assert [each.where for each in own.notices] == [f"s{k}" for k in range(5)], "lines have a width"
+    assert {each.code for each in own.notices} == {"width-without-effect"}
 
 
 def test_fit_scales_to_the_size_and_centres_on_the_sheet():

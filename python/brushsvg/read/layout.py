@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import Error
+from ..errors import Error, Notice
 from ..geometry.cubics import extremes
 from .design import Design, Element, SubPath
 
@@ -19,7 +19,7 @@ class Layout:
     A value that is None or empty leaves the drawing as drawn.
 
     layers: names of the layers to paint, with all that they contain.
-    width_mm: width of every stroke, in place of the drawing's widths.
+    width_mm: width of every line, in place of the drawing's widths. Filled shapes have none.
     fit_mm: (width, height); the target marks are scaled to fill this size as far as their shape allows, and placed
     in the middle of the sheet.
     scale: a factor in place of fit_mm, about the middle of the marks.
@@ -37,6 +37,7 @@ AS_DRAWN = Layout()
 # Codes of the notices about widths. These notices are dropped if width_mm replaces the widths.
 WIDTH_NOTICE_CODES = ("gcode-no-width", "stretched-unevenly")
 _MAX_NAMED_LAYERS = 20  # layers that a sentence names
+_MAX_NAMED_SHAPES = 3  # filled shapes that a sentence names
 
 
 def arrange(design: Design, layout: Layout) -> Design:
@@ -51,7 +52,7 @@ def arrange(design: Design, layout: Layout) -> Design:
     if layout.width_mm is not None:
         elements = tuple(_set_width(e, layout.width_mm) for e in design.elements)
         notices = tuple(notice for notice in design.notices if notice.code not in WIDTH_NOTICE_CODES)
-        design = replace(design, elements=elements, notices=notices)
+        design = replace(design, elements=elements, notices=(*notices, *_report_shapes_without_width(elements)))
     if layout.fit_mm is None and layout.scale is None and layout.origin_mm is None:
         return design
     keeps_width = layout.width_mm is not None
@@ -175,6 +176,15 @@ def _explain_empty_layer(design: Design, path: str, is_chosen) -> str:
         first = next((notice for notice in of_layers if notice.damaged), of_layers[0])
         sentence += f": {first.where}: {first.sentence}"
     return sentence
+
+
+def _report_shapes_without_width(elements: tuple[Element, ...]) -> list[Notice]:
+    names = [element.id or "filled" for element in elements if not element.is_stroked]
+    if not names:
+        return []
+    named = ", ".join(names[:_MAX_NAMED_SHAPES]) + " ..." * (len(names) > _MAX_NAMED_SHAPES)
+    sentence = f"--width has no effect on filled shapes, which keep their outline: {named}"
+    return [Notice("", sentence, code="width-without-effect", about="width")]
 
 
 def _set_width(element: Element, width_mm: float) -> Element:

@@ -279,7 +279,12 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         type=values.words,
         help="leave out strokes of G-code that follow a comment with this text; several: more than once",
     )
-    add("--width", metavar="MM", type=values.width, help="width of all strokes; default: as drawn")
+    add(
+        "--width",
+        metavar="MM",
+        type=values.width,
+        help="width of all lines; default: as drawn; filled shapes keep their outline",
+    )
     add(
         "--as",
         dest="paths_as",

@@ -99,10 +99,11 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
     strokes = _drop_left_out(strokes, planned)
     planned.plan = _set_requested_speed(_set_drawn_speeds(planned.plan, strokes.targets), options)
     tried_compensation = compensated if options.layout.width_mm is None else None
+    line_elements = {stroke.origin.element for stroke in found_strokes if not stroke.wanted_mm}
     unreached, missed, outside = _find_stray_paint(strokes, planned, brush, options)
     notices += (
         *planned.notices,
-        *add_width_advice(planned.painted, planned.done, brush, tried_compensation),
+        *add_width_advice(planned.painted, planned.done, brush, tried_compensation, line_elements),
         *_report_other_brushes(strokes.targets, brush),
         *notices_of_areas(unreached),
         *notices_of_areas(missed),

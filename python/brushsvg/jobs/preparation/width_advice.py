@@ -11,7 +11,7 @@ from ...errors import Error
 from ...read.design import Notice
 
 
-def add_width_advice(painted, compensation, brush, compensated) -> list[Notice]:
+def add_width_advice(painted, compensation, brush, compensated, line_elements: set[str]) -> list[Notice]:
     """Return the warnings of the compensation, with advice on widths.
 
     The warning on depths that were not measured names a stroke. It is dropped where only the ends of the stroke
@@ -19,6 +19,8 @@ def add_width_advice(painted, compensation, brush, compensated) -> list[Notice]:
     cannot avoid them. The warning that widths are ignored names no stroke.
 
     compensated: compensates strokes, to try the advised width; None if one width was requested.
+    line_elements: names of the elements that are drawn lines. A filled shape has no single width, and the search adds
+    strokes to shapes that have no outline of their own.
     """
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
@@ -32,7 +34,7 @@ def add_width_advice(painted, compensation, brush, compensated) -> list[Notice]:
     unmeasured = {each.where for each in compensation.warnings if each.code == "depth-not-measured"} - shallow_at_ends
     advice, advisable = "", []
     if compensated is not None and measured and measured[0] < measured[1]:
-        advisable = [stroke for stroke in painted if stroke.id in unmeasured and not stroke.wanted_mm]
+        advisable = [stroke for stroke in painted if stroke.id in unmeasured and stroke.origin.element in line_elements]
         advice = _make_width_advice(advisable[:1], brush, measured, compensated)
     advised = {stroke.id for stroke in advisable}
     return [
@@ -58,7 +60,7 @@ def _make_width_advice(lines: list, brush, measured: tuple[float, float], compen
     if not helps:
         return ""
     min_width_mm, max_width_mm = (2 * half for half in halves)
-    return f"--width MM, from {min_width_mm:.2g} to {max_width_mm:.2g}, gives all strokes one width that was measured"
+    return f"--width MM, from {min_width_mm:.2g} to {max_width_mm:.2g}, gives all lines one width that was measured"
 
 
 def _is_shallow_only_at_ends(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:

@@ -109,6 +109,9 @@ class PaintedElements:
             self.notes.add(node, context, sentence, code="white-paint")
         # A black fill by default is rarely intended next to a stroke of another colour.
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
+        if stroke == "none" and "width_mm" in context.settings:
+            sentence = "data-brushsvg-width has no effect: it is a filled shape without a stroke"
+            self.notes.add(node, context, sentence, code="width-without-effect", about="data-brushsvg-width")
         if tag in _WITH_MARKERS and any(properties[name] != "none" for name in MARKERS):
             self.notes.add(node, context, "markers are not read: left out", code="markers-unread")
         element = Element(
