@@ -75,6 +75,7 @@ APART = [
     ("--per-colour", "--margin-strokes"),
     ("--colour", "--margin-strokes"),
 ]
+ENDS = ("--terminals", "--start", "--end")
 # these options leave one stroke, so there is no second
 SINGLE = [("--from-stroke", "--select"), ("--from-stroke", "--layer"), ("--from-stroke", "--colour")]
 
@@ -83,8 +84,10 @@ def rows(options: dict) -> list[dict]:
     names = [*options]
 
     def is_offered(row: list) -> bool:
-        given = {name for name, value in zip(names, row, strict=False) if value and value != "off"}
-        return not any({a, b} <= given for a, b in APART + SINGLE)
+        values = dict(zip(names, row, strict=False))
+        given = {name for name, value in values.items() if value and value != "off"}
+        has_ends = values.get("--compensation") not in ("none", "constant")  # these follow the line up to its ends
+        return not any({a, b} <= given for a, b in APART + SINGLE) and (has_ends or given.isdisjoint(ENDS))
 
     return [dict(zip(names, row, strict=True)) for row in AllPairs([*options.values()], filter_func=is_offered)]
 

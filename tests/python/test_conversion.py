@@ -139,12 +139,27 @@ def test_settings_of_a_drawing_apply_as_with_the_command(desk):
         assert "compensation: none" in brushsvg.convert(source).texts[".script"]
 
 
+def test_ends_of_a_drawing_need_no_compensation_and_chosen_ones_do(desk):
+    """The ends that a drawing asks for hold for other compensations, too."""
+    line = LINE.format(*"a", 20, 90, "red", 3)
+    Path("ends.svg").write_text(PAGE.format(' data-brushsvg-terminals="butt"', line))
+    assert brushsvg.convert("ends.svg", compensation="none", start="auto").plan.passes
+    Path("none.svg").write_text(PAGE.format(' data-brushsvg-compensation="none"', line))
+    with refused("options-contradict start butt none"):
+        brushsvg.convert("none.svg", start="butt")
+    assert brushsvg.convert("none.svg", start="butt", compensation="closed").plan.passes
+
+
 @pytest.mark.parametrize(
     ("choices", "expected"),
     [
         ({"width": 5000}, "out-of-range 5000 0.001 1000"),
         ({"wide": "most"}, "choice-unknown auto clamp"),
         ({"lag": 3}, "options-contradict"),
+        *(
+            ({name: "butt", "compensation": method}, f"options-contradict {name} butt {method}")
+            for name, method in (("terminals", "none"), ("start", "constant"), ("end", "none"))
+        ),
         ({"units": "mm"}, "options-contradict"),
         ({"fit": (1, 2), "scale": 2}, "options-contradict"),
         ({"formats": [".txt"]}, "program-format .txt"),

@@ -66,6 +66,8 @@ CHOICE_RANGES = {  # equal to the range of the flag; lengths in mm, speed in mm/
     "z_offset": (-20.0, 20.0),
     "paper_z": (-1000.0, 1000.0),
 }
+END_CHOICES = ("terminals", "start", "end")
+METHODS_WITHOUT_ENDS = ("none", "constant")  # compensations that follow the drawn line up to its ends
 CHOICE_VALUES = {
     "units": UNITS,
     "background": BACKGROUNDS,
@@ -220,6 +222,20 @@ def check_choices(chosen: Choices) -> Choices:
     return chosen
 
 
+def refuse_ends_without_effect(chosen: Choices) -> None:
+    """Raise Error for ends that were chosen for this call, if the compensation has no choice of ends.
+
+    The ends of a project file or of a drawing are no mistake: they hold for other compensations, too.
+    """
+    if chosen.compensation not in METHODS_WITHOUT_ENDS:
+        return
+    for name in END_CHOICES:
+        end = getattr(chosen, name)
+        if end not in (None, "auto") and name not in chosen.from_project:
+            sentence = f"{name} {end} needs compensation closed or refined, not {chosen.compensation}"
+            raise Error(sentence, name, code="options-contradict")
+
+
 def read_colour(text: str) -> str:
     """Return a colour, written as in SVG, as "#rrggbb". Error for any other text."""
     from ..read.svg.colour import parse_colour
@@ -281,7 +297,9 @@ def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:
                 code=f"{kind}-unknown",
                 advice=f"give --{kind}",
             )
-    return replace(chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None})
+    filled = replace(chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None})
+    refuse_ends_without_effect(replace(chosen, compensation=filled.compensation))
+    return filled
 
 
 def drop_overruled(chosen: Choices, settings: Mapping[str, object] | None = None) -> Choices:
@@ -305,6 +323,8 @@ def drop_overruled(chosen: Choices, settings: Mapping[str, object] | None = None
         compensation = settings.get("compensation", compensation)
     if compensation != "constant":
         dropped.add("lag")
+    if compensation in METHODS_WITHOUT_ENDS:
+        dropped.update(END_CHOICES)
     names = settings if suffix_of(chosen.input) != ".json" else {"brush": _find_plan_brush(chosen)}
     return drop_from_project(chosen, dropped | find_overruled_names(chosen, names))
 

@@ -44,6 +44,7 @@ from .choices import (
     make_options,
     name_file_in_errors,
     path_of,
+    refuse_ends_without_effect,
     report_ineffective_flags,
     suffix_of,
 )
@@ -189,7 +190,9 @@ def make_choices(drawing, choices: Mapping) -> Choices:
     for name in choices:
         if name not in choice_names:
             raise TypeError(f"{name!r} is no choice; known are {', '.join(sorted(choice_names))}")
-    return check_choices(Choices(input=drawing, **choices))
+    chosen = check_choices(Choices(input=drawing, **choices))
+    refuse_ends_without_effect(chosen)
+    return chosen
 
 
 def _is_path_given(path, name: str) -> bool:

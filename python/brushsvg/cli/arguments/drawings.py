@@ -29,6 +29,7 @@ from .usage_checks import (
     DRAWINGS,
     PICTURES,
     PROGRAMS,
+    check_compensation,
     check_drawing,
     check_extension,
     check_files,
@@ -116,8 +117,7 @@ def _check_batch(args) -> None:
         args.parser.error("--words and --font go together")
     if args.size is not None and args.words is None:
         args.parser.error("--size is for --words")
-    if args.lag is not None and args.compensation != "constant":
-        args.parser.error("--lag needs --compensation constant")
+    check_compensation(args)
     if args.jobs is not None and args.cluster is not None:
         args.parser.error("--jobs is for this machine, not for --cluster")
     if args.z_offset and args.format == ".json":

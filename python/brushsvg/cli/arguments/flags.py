@@ -166,7 +166,8 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add(
         "--terminals",
         choices=TERMINALS,
-        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each; default: auto",
+        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each; default: auto; "
+        "with --compensation closed or refined",
     )
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
     add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")

@@ -25,8 +25,16 @@ def check_drawing(args) -> None:
         args.parser.error("--units is for drawings that do not say them; an SVG does")
     if args.select and suffix_of(args.input) == ".dxf":
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
+    check_compensation(args)
+
+
+def check_compensation(args) -> None:
+    """Refuse flags that need another compensation."""
     if args.lag is not None and args.compensation != "constant":
         args.parser.error("--lag needs --compensation constant")
+    for flag in ("terminals", "start", "end"):
+        if args.compensation in ("none", "constant") and getattr(args, flag) not in (None, "auto"):
+            args.parser.error(f"--{flag} needs --compensation closed or refined, not {args.compensation}")
 
 
 def check_job(args) -> None:
