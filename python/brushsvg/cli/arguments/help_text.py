@@ -22,6 +22,7 @@ TOPICS = {
     "what is painted": "layer select colour background width as lenient pen paper-z skip-region skip-comment",
     "strokes": "wide detail terminals start end corners script join order from-stroke margin-strokes per-colour",
 }
+HELP_ALL = "--help-all"
 # Options that only --help-all shows.
 RARE_OPTIONS = {
     f"--{name}"
@@ -82,19 +83,20 @@ def command_text(parser: argparse.ArgumentParser, is_whole: bool) -> str:
 
     is_whole: include its rare options.
     """
-    options = [action for action in parser._actions if action.option_strings]
+    options = [action for action in parser._actions if action.option_strings and HELP_ALL not in action.option_strings]
     rare = RARE_OPTIONS if parser.prog.endswith(" convert") else RARE_OPTIONS | COMMON_IN_CONVERT
     is_long = len(options) > MAX_UNGROUPED_OPTIONS and not is_whole
-    hidden = [action for action in options if is_long and (rare | {"--help-all"}) & {*action.option_strings}]
-    saved_help = {action: action.help for action in hidden}
-    for action in hidden:
+    hidden = [action for action in options if is_long and rare & {*action.option_strings}]
+    unlisted = [*hidden, *(action for action in parser._actions if HELP_ALL in action.option_strings and not is_whole)]
+    saved_help = {action: action.help for action in unlisted}
+    for action in unlisted:
         action.help = argparse.SUPPRESS
     parser.usage = " ".join([parser.prog, *_list_operands(parser._actions)])
     text = argparse.ArgumentParser.format_help(parser)
     parser.usage = None
     for action, help_words in saved_help.items():
         action.help = help_words
-    hint = f"\n--help-all shows {len(hidden) - 1} more options.\n"
+    hint = f"\n{HELP_ALL} shows {len(hidden)} more options.\n"
     return text + hint * bool(hidden)
 
 

@@ -118,9 +118,8 @@ def command_parser() -> argparse.ArgumentParser:
     drawings.add_simulate_photo(commands)
     installation.add_doctor(commands)
     for command in _iterate_parsers(commands):
-        if sum(bool(action.option_strings) for action in command._actions) > help_text.MAX_UNGROUPED_OPTIONS:
-            command.add_argument("--help-all", action=_HelpAll, nargs=0, help="show all options and exit")
         help_text.group_options(command)
+        command.add_argument(help_text.HELP_ALL, action=_HelpAll, nargs=0, help="show all options and exit")
     return parser
 
 
