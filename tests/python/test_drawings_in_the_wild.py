@@ -208,6 +208,12 @@ def test_lines_are_cut_by_clip_paths():
     assert spans(whole.elements[0]) == [(10, 70)] and not whole.notices
     gone = clip('<rect x="90" width="10" height="60"/>', CUT + LINE.replace("line", "other"))
     assert ids(gone) == ["other"] and are_reported(gone.notices, "clipped-away line")
+    wide = LINE.replace("line", "wide").replace('"3"', '"30"').replace("/>", ' clip-path="url(#Clip)"/>')
+    shape = '<path id="shape" d="M60 0h9v9z" clip-path="url(#Clip)"/>'
+    reaching_in = clip('<rect width="50" height="25"/>', wide + shape + LINE.replace("line", "other"))
+    assert ids(reaching_in) == ["other"], "the middle line decides, as its notice says"
+    assert are_reported(reaching_in.notices, "clipped-away wide 'middle line'", "clipped-away shape")
+    assert sum("middle line" in notice.sentence for notice in reaching_in.notices) == 1
 
 
 @pytest.mark.parametrize("is_upright", [False, True])

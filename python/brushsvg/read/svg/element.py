@@ -138,7 +138,9 @@ class PaintedElements:
 
         pieces = clip_element(element, context.clip)
         if not pieces:
-            sentence = "it is outside the clip path, mask or viewport that would show it: left out"
+            # Lines are cut where their middle line crosses the edge, so the width may still reach in.
+            what = "its middle line" if element.is_stroked else "it"
+            sentence = f"{what} is outside the clip path, mask or viewport that would show it: left out"
             self.notes.add(node, context, sentence, code="clipped-away")
         return pieces
 
