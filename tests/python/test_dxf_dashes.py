@@ -55,7 +55,7 @@ def test_each_dash_is_a_stroke(name, dashes):
     design = read(typed(lambda m: m.add_line((0, 0), (32, 0), {"linetype": name, "lineweight": 50})))
     (element,) = design.elements
     assert spans(element) == dashes
-    assert element.stroke_width_mm == 0.5
+    assert (element.stroke_width_mm, element.dash_gap_mm) == (0.5, pytest.approx(5))
     assert are_reported(design.notices, f"dashed {element.id} {len(dashes)}") and design.notices[0].layer == "0"
 
 

@@ -46,6 +46,30 @@ def test_one_width_can_be_set_for_all_lines():
     assert {element.stroke_width_mm for element in design.elements} == {2.5}
 
 
+@pytest.mark.parametrize(
+    ("dashes", "layout", "gap_mm"),
+    [
+        ("6 3", AS_DRAWN, None),
+        ("6 2", AS_DRAWN, "2 2"),
+        ("6 1", AS_DRAWN, "1 2"),
+        ("6 9 6 1", AS_DRAWN, "1 2"),
+        ("9 6 1", AS_DRAWN, "1 2"),
+        ("6 0", AS_DRAWN, None),
+        ("60 1", AS_DRAWN, None),
+        ("6 3", Layout(width_mm=3.0), "3 3"),
+        ("6 1", Layout(width_mm=0.5), None),
+        ("6 3", Layout(scale=2.0, width_mm=3.0), None),
+        ("6 1", Layout(scale=2.0), "2 4"),
+    ],
+)
+def test_dashes_that_join_are_reported(dashes, layout, gap_mm):
+    """Dashes join if the gaps are not wider than the line, which its final width and size decide."""
+    design = arrange(read(f'<path id="p" d="M5 5H45" stroke-width="2" stroke-dasharray="{dashes}"/>'), layout)
+    joining = [each for each in design.notices if each.code == "dashes-join"]
+    assert len(joining) == (gap_mm is not None)
+    assert all(agrees(each, f"dashes-join p {gap_mm}") for each in joining)
+
+
 SHAPES = "".join(f'<path id="s{k}" fill="red" stroke="none" d="M{9 * k} 5h7v7z"/>' for k in range(5))
 
 

@@ -13,6 +13,15 @@ from .design import SubPath
 _MIN_DASH_START_SHARE = 1e-9
 
 
+def find_smallest_gap_mm(pattern_mm: list[float]) -> float:
+    """Return the smallest gap of a pattern that is not 0, or 0 if there is none.
+
+    A gap of 0 leaves the line as it is. In a pattern with an odd count, each length is once a gap.
+    """
+    gaps_mm = pattern_mm[1::2] if len(pattern_mm) % 2 == 0 else pattern_mm
+    return min((gap for gap in gaps_mm if gap > 0), default=0.0)
+
+
 def cut_into_dashes(subpath: SubPath, pattern_mm: list[float], offset_mm: float, limit: int) -> list[SubPath]:
     """Return the dashes of a sub-path, in order.
 

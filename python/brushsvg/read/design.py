@@ -40,6 +40,7 @@ class Element:
     settings: the settings for brushsvg that the drawing contains.
     fill_rule: "nonzero" or "evenodd" for a filled shape, "" without a fill.
     fill_colour: colour of the fill if the stroke has another colour, otherwise "".
+    dash_gap_mm: the smallest gap between the dashes of the stroke, 0 without dashes.
     """
 
     id: str
@@ -50,6 +51,7 @@ class Element:
     settings: dict = field(default_factory=dict)
     fill_rule: str = ""
     fill_colour: str = ""
+    dash_gap_mm: float = 0.0
 
     @property
     def is_stroked(self) -> bool:

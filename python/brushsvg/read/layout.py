@@ -53,8 +53,13 @@ def arrange(design: Design, layout: Layout) -> Design:
         elements = tuple(_set_width(e, layout.width_mm) for e in design.elements)
         notices = tuple(notice for notice in design.notices if notice.code not in WIDTH_NOTICE_CODES)
         design = replace(design, elements=elements, notices=(*notices, *_report_shapes_without_width(elements)))
-    if layout.fit_mm is None and layout.scale is None and layout.origin_mm is None:
-        return design
+    if layout.fit_mm is not None or layout.scale is not None or layout.origin_mm is not None:
+        design = _place(design, layout)
+    joining = _report_joining_dashes(design.elements)
+    return replace(design, notices=(*design.notices, *joining)) if joining else design
+
+
+def _place(design: Design, layout: Layout) -> Design:
     keeps_width = layout.width_mm is not None
     lines, marks = bounds_mm(design, with_widths=False), bounds_mm(design)
     scale = layout.scale or 1.0
@@ -187,6 +192,25 @@ def _report_shapes_without_width(elements: tuple[Element, ...]) -> list[Notice]:
     return [Notice("", sentence, code="width-without-effect", about="width")]
 
 
+def _report_joining_dashes(elements: tuple[Element, ...]) -> list[Notice]:
+    """Return notices on dashed lines that are painted without gaps.
+
+    Each dash is painted half a width beyond its ends. Only the final widths and sizes show whether dashes join.
+    """
+    return [
+        Notice(
+            element.id,
+            f"the gaps of its dashes, {element.dash_gap_mm:.3g} mm, are not wider than the line, "
+            f"{element.stroke_width_mm:.3g} mm: the dashes join on paper",
+            layer=element.layer,
+            code="dashes-join",
+            advice="draw wider gaps, or a narrower line",
+        )
+        for element in elements
+        if len(element.subpaths) > 1 and 0 < element.dash_gap_mm <= element.stroke_width_mm
+    ]
+
+
 def _set_width(element: Element, width_mm: float) -> Element:
     if not element.is_stroked:
         return element
@@ -199,6 +223,7 @@ def _scale_and_move(element: Element, scale: float, shift: np.ndarray, width_sca
     return replace(
         element,
         stroke_width_mm=element.stroke_width_mm * width_scale,
+        dash_gap_mm=element.dash_gap_mm * scale,
         settings={
             name: value * width_scale if name == "width_mm" else value for name, value in element.settings.items()
         },

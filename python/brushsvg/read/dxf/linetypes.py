@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import Error
 from ...geometry.arc_length import knots
-from ..dashes import cut_into_dashes
+from ..dashes import cut_into_dashes, find_smallest_gap_mm
 from ..design import Element, Notice, SubPath
 from .pens import Pen
 
@@ -73,6 +73,7 @@ class DashCutter:
         if len(pieces) > len(element.subpaths):
             sentence = f"it is dashed: {len(pieces)} dashes, each a stroke"
             self.notices.append(Notice(element.id, sentence, layer=element.layer, code="dashed"))
+            element = replace(element, dash_gap_mm=find_smallest_gap_mm(pattern))
         return replace(element, subpaths=tuple(pieces))
 
     def _cut_runs(self, subpath: SubPath, runs, length: np.ndarray, pattern, limit: int) -> list[SubPath]:

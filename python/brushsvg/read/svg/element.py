@@ -92,7 +92,7 @@ class PaintedElements:
             return
         before = len(self.notes.notices)
         outline = self._outline_on_paper(node, tag, attributes, context, power)
-        subpaths = self._with_dashes(node, context, outline) if stroke != "none" else outline
+        subpaths, gap_mm = self._with_dashes(node, context, outline) if stroke != "none" else (outline, 0.0)
         if not subpaths:
             return
         has_even_width = "width_mm" in context.settings or (context.counts_in_screen_px and power is None)
@@ -123,6 +123,7 @@ class PaintedElements:
             settings=context.settings,
             fill_rule="" if fill == "none" else properties["fill-rule"],
             fill_colour=fill if is_two else "",
+            dash_gap_mm=gap_mm,
         )
         elements = [element]
         # The dashes do not enclose the filled area, so the fill keeps the outline without dashes.
@@ -195,7 +196,7 @@ class PaintedElements:
         subpaths = self._trace_geometry(node, tag, attributes, context, greatest)
         return add_widths(power, subpaths, math.sqrt(greatest * least)) if power else subpaths
 
-    def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
+    def _with_dashes(self, node, context: Context, subpaths: tuple[SubPath, ...]) -> tuple[tuple[SubPath, ...], float]:
         greatest, least = scales(context.matrix)
         mm_per_unit = MM_PER["px"] if context.counts_in_screen_px else math.sqrt(greatest * least)
         return self._cut_dashes(node, context, subpaths, mm_per_unit)
@@ -229,11 +230,12 @@ class PaintedElements:
             self.notes.add(node, context, f"{count} without a line to follow: skipped", code="moveto-alone")
         return line.subpaths
 
-    def _cut_dashes(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[SubPath, ...]:
+    def _cut_dashes(self, node, context: Context, subpaths, mm_per_unit: float) -> tuple[tuple[SubPath, ...], float]:
+        """Return the dashes of an element and the smallest gap between them, 0 if it is not cut."""
         properties = context.style.inherited
         if properties["stroke-dasharray"] == "none" or not subpaths:
-            return subpaths
-        from ..dashes import cut_into_dashes
+            return subpaths, 0.0
+        from ..dashes import cut_into_dashes, find_smallest_gap_mm
 
         words = [word for part in properties["stroke-dasharray"].split(",") for word in part.split() or [""]]
         try:
@@ -242,7 +244,7 @@ class PaintedElements:
             offset = context.length(properties["stroke-dashoffset"], context.diagonal) * scale
         except Error as error:
             self.notes.add(node, context, f"stroke-dasharray: {error}: the line counts as solid", code="dashes-unread")
-            return subpaths
+            return subpaths, 0.0
         if min(pattern, default=0.0) < 0:
             self.notes.add(
                 node,
@@ -250,12 +252,12 @@ class PaintedElements:
                 "stroke-dasharray has a negative length: the line counts as solid",
                 code="dashes-unread",
             )
-            return subpaths
+            return subpaths, 0.0
         if not 0 < sum(pattern) < math.inf:
-            return subpaths
+            return subpaths, 0.0
         if subpaths[0].widths is not None:
             self.notes.add(node, context, "its dashes are not read: its width varies", code="dashes-unread")
-            return subpaths
+            return subpaths, 0.0
         pieces: list[SubPath] = []
         try:
             for subpath in subpaths:
@@ -264,7 +266,7 @@ class PaintedElements:
             raise Error(str(error), where=self.notes.label(node), code=error.code) from None
         self.dashes_left -= len(pieces)
         self.notes.add(node, context, f"it is dashed: {len(pieces)} dashes, each a stroke", code="dashed")
-        return tuple(pieces)
+        return tuple(pieces), find_smallest_gap_mm(pattern) if len(pieces) > len(subpaths) else 0.0
 
     def _dash_unit_scale(self, node, context: Context, subpaths, mm_per_unit: float) -> float:
         """Return the length of a dash unit as a multiple of mm_per_unit.
