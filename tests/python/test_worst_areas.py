@@ -47,3 +47,10 @@ def test_slivers_and_specks_are_not_reported():
     assert found(target, sheet((1, 4, 9, 6), (2, 7, 2 + side, 7 + side))) == []
     assert len(found(target, sheet((1, 4, 9, 6), (2, 7, 2.5, 7.5)))) == 1
     assert found(target, target) == []
+
+
+def test_area_at_a_dot_belongs_to_the_dot():
+    """The middle line of a dot has one point."""
+    lines = [LINES[0], np.array([(5.0, 15.0)])]
+    (area,) = worst_areas(sheet(), sheet((4, 14, 6, 16)), (0.0, 20.0), PX, lines, 1)
+    assert area.stroke == 1

@@ -98,7 +98,8 @@ def _nearest_line(shape, corner_mm, px_per_mm: float, lines_mm) -> np.ndarray:
     drawn = np.zeros(shape, np.int32)
     for number, line in enumerate(lines_mm):
         at = (np.asarray(line, float)[:, :2] - corner_mm) * (px_per_mm, -px_per_mm) - 0.5
-        cv2.polylines(drawn, [np.round(at).astype(np.int32).reshape(-1, 1, 2)], False, number + 1)
+        pixels = np.round(np.vstack([at, at[-1:]])).astype(np.int32)  # of one point alone, nothing would be drawn
+        cv2.polylines(drawn, [pixels.reshape(-1, 1, 2)], False, number + 1)
     is_line = drawn > 0
     if not is_line.any():
         return np.zeros(shape, np.int32)
