@@ -17,6 +17,7 @@ from brushsvg.machine import motion, program, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.model.library import find_brush
 from brushsvg.planning import travel_order
+from brushsvg.reporting.report_text import format_overlap
 from brushsvg.show.evaluation import report
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
@@ -61,10 +62,10 @@ def test_the_comparison_is_a_table(drawing):
     assert len(re.split("  +", lines[2])) == 4
     assert len({len(line) for line in lines[2:]}) == 1
     for line, (how, figures) in zip(lines[4:], totals.items(), strict=True):
-        name, *numbers = line.split()
-        assert name == how
-        expected = (figures.overlap, figures.centre_mean_mm, figures.centre_largest_mm)
-        assert [float(number) for number in numbers] == pytest.approx(expected, abs=5.1e-4)
+        name, overlap, *errors_mm = line.split()
+        assert (name, overlap) == (how, format_overlap(figures.overlap))
+        expected = (figures.centre_mean_mm, figures.centre_largest_mm)
+        assert [float(error_mm) for error_mm in errors_mm] == pytest.approx(expected, abs=5.1e-4)
 
 
 def test_a_program_is_written_in_the_language_of_its_cell(drawing):
