@@ -66,7 +66,7 @@ def main() -> None:
         strokes, _ = stage("strokes", lambda: strokes_of(design))
         done = stage(
             "compensate (simulated until within 0.05 mm)",
-            lambda: _core.compensate(strokes, brush, design.sheet_mm),
+            lambda: _core.compensate(strokes, brush, design.sheet_mm, start="auto", end="auto"),
         )
         marks = stage("simulate", lambda: _core.simulate(done.plan, brush))
         loads = split_into_loads(done.plan, brush, find_cell())
