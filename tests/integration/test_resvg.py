@@ -46,7 +46,7 @@ def read(text: str, folder) -> Page:
     with pytest.MonkeyPatch.context() as patch:  # resvg's tree has whole paths in groups with clips
         patch.setattr(PaintedElements, "_clipped", lambda self, node, context, whole: [whole])
         patch.setattr("brushsvg.read.duplicates.remove_duplicates", lambda design: design)
-        patch.setattr("brushsvg.read.svg.keep_on_page", lambda elements, sheet_mm: (tuple(elements), []))
+        patch.setattr("brushsvg.read.svg.keep_on_page", lambda elements, *_: (tuple(elements), []))
         design = brushsvg.read_drawing(file, ReadOptions(background="keep", lenient=True))
     height_mm = design.sheet_mm[1]
 

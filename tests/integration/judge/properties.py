@@ -20,7 +20,7 @@ from brushsvg.model.library import find_brush
 
 from .checked import CRASHED, converted, put
 from .random_jobs import REQUESTED, judged, said_of
-from .random_works import SHEET, random_brush, random_cell, random_flags, random_svg
+from .random_works import SHEET, follows_ends, random_brush, random_cell, random_flags, random_svg
 from .works import CELLS, PENS
 
 EDGE_MM = 0.02  # marks may leave the sheet by this much, because they are followed in steps
@@ -144,8 +144,8 @@ WEIGHTS = {"lines": 3, "outlines": 4, "dots": 1, "dxf": 1, "gcode": 1, "plan": 1
 LAYOUT = ("--wide", "--width", "--fit")  # check needs these options as well, like --corners
 
 
-def more_flags(random, kind: str) -> tuple[str, ...]:
-    """Return options in addition to the options of random_flags."""
+def more_flags(random, kind: str, with_end: bool) -> tuple[str, ...]:
+    """Return options in addition to the options of random_flags. with_end: whether an end may be requested."""
     flags: tuple[str, ...] = ()
     if kind == "plan":
         return flags
@@ -156,7 +156,8 @@ def more_flags(random, kind: str) -> tuple[str, ...]:
     if random.random() < 0.15:
         flags += ("--fit", f"{random.uniform(20, 60):.0f}x{random.uniform(15, 45):.0f}")
     if random.random() < 0.1:
-        flags += ("--end", str(random.choice(("round", "butt"))))
+        end = str(random.choice(("round", "butt")))
+        flags += ("--end", end) if with_end else ()
     return flags
 
 
@@ -180,7 +181,7 @@ def one(number: int, folder: Path, shelf: Path, check: Callable, dialects: Seque
     try:
         source = DRAWINGS[kind](random, folder / "drawing")
         flags = () if kind == "plan" else random_flags(random, dialect)
-        flags = (*flags, *more_flags(random, kind), "--brush", brush)
+        flags = (*flags, *more_flags(random, kind, follows_ends(flags)), "--brush", brush)
         refused, wrong = _judged(number, dialect, cell, source, flags, folder, check)
     except Exception as mistake:
         return _ended(tried, "", [f"{CRASHED}: {type(mistake).__name__} {mistake}"])

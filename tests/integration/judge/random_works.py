@@ -290,6 +290,11 @@ def random_brush(random) -> _core.Brush:
     return new_brush("mine", lag_mm, [(1.0, 0.6), (float(random.choice((4.0, 8.0))), 6.0)])
 
 
+def follows_ends(flags: tuple[str, ...]) -> bool:
+    """Return whether the compensation of options paints requested ends. With the others, they are refused."""
+    return not {"none", "constant"} & set(flags)
+
+
 def random_flags(random, dialect: str) -> tuple[str, ...]:
     flags: tuple[str, ...] = ()
     if random.random() < 0.4:
@@ -297,7 +302,8 @@ def random_flags(random, dialect: str) -> tuple[str, ...]:
         how = random.choice(("none", "constant", "refined"), p=chances)
         flags += ("--compensation", str(how))
     if random.random() < 0.3:
-        flags += ("--start", str(random.choice(("pointed", "round", "butt"))))
+        start = str(random.choice(("pointed", "round", "butt")))
+        flags += ("--start", start) if follows_ends(flags) else ()
     if random.random() < 0.3:
         flags += ("--corners", "turn")
     if random.random() < 0.2:

@@ -283,7 +283,6 @@ class Station:
     surface_mm: float = _number("height of the paint's surface", -1e3, 1e3, default=0.0)
     depth_mm: float = _number("how deep the tip goes below the paint's surface", 0, 100, default=0.0)
     rim_mm: float = _number("height of the vessel's rim", -1e3, 1e3, default=0.0)
-    radius_mm: float = _number("radius of the vessel, which no stroke enters below the rim", 0, 1e3, default=10.0)
     hold_s: float = _number("wait in the paint", 0, 600, default=0.0)
     drip_s: float = _number("wait above it", 0, 600, default=0.0)
     wipe_mm: tuple = _key("points x, y, z that the tip passes afterwards, at press_mm_s", (None, 3), default=())
@@ -291,6 +290,7 @@ class Station:
         "radius of circles in the paint before it is taken, or in the water; 0: none", 0, 100, default=0.0
     )
     stir_turns: int = _key("how many circles", "whole", 1, 20, default=2)
+    radius_mm: float = _number("radius of the vessel, which no stroke enters below the rim", 0, 1e3, default=10.0)
 
 
 def shorten_visit(station: Station) -> Station:
