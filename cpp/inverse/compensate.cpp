@@ -80,6 +80,9 @@ using Depths = std::array<double, 2>;
 Depths depths_of_widths(const Stroke& stroke, const Brush& brush) {
     Depths found{std::numeric_limits<double>::infinity(), 0.0};
     for (const WidthKnot& knot : stroke.half_width) {
+        if (!(knot.half_width_mm > 0.0))
+            throw Error("width-out-of-reach", "its width is 0 mm at a place: no brush paints that, draw it wider",
+                        stroke.id, 0.0, std::array<double, 2>{0.0, 2.0 * brush.half_width_range_mm()[1]});
         const double depth = brush.depth_for_half_width(knot.half_width_mm, stroke.id);
         found = {std::min(found[0], depth), std::max(found[1], depth)};
     }

@@ -72,6 +72,14 @@ def test_jobs_with_equal_title_and_length_have_different_part_names():
         assert names[0] == names[1] and len(names[0]) > 2 and names[0] & names[2] == {""}
 
 
+def test_jobs_of_other_speeds_have_different_part_names():
+    """The main program has no speed, and its time is rounded."""
+    strokes, fast = {each.stroke: each.poses_mm for each in waves(30, 90).passes}, find_cell("lrmate200id")
+    slow = replace(fast, speeds=replace(fast.speeds, press_mm_s=fast.speeds.press_mm_s - 1.0))
+    names = [programs(text_for(cell, strokes)).keys() for cell in (fast, slow)]
+    assert names[0] & names[1] == {""}
+
+
 def test_a_missing_or_foreign_part_is_refused(job, capsys):
     names = sorted(path.stem for path in job.glob("B*.ls") if path.name != "waves.ls")
     whole = (job / "waves.ls").read_bytes()

@@ -226,6 +226,24 @@ def test_a_stroke_that_sweeps_through_a_vessel_is_refused():
     assert not reported(rim_mm=-3.5, surface_mm=-3.5)
 
 
+def test_check_refuses_a_program_that_sweeps_through_a_vessel(tmp_path, capsys):
+    """The program was written for a smaller vessel."""
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+        '<path id="line" d="M80 30 H4" stroke="#000" stroke-width="6"/></svg>'
+    )
+    pot = Station("pot", (-6.0, 30.0), depth_mm=5.0, rim_mm=3.0, radius_mm=0.0)
+    (tmp_path / "c.toml").write_text(write_cell(replace(cell_with(Reload("stroke"), pot), name="c")))
+    words = str(tmp_path / "a.ngc"), "--cell", str(tmp_path / "c.toml")
+    assert call(capsys, "convert", str(tmp_path / "a.svg"), "-o", *words)[0] == 0
+    assert in_json(capsys, "check", *words)[0] == 0
+    wide = cell_with(Reload("stroke"), replace(pot, radius_mm=10.0))
+    (tmp_path / "c.toml").write_text(write_cell(replace(wide, name="c")))
+    for drawing in ((), (str(tmp_path / "a.svg"),)):
+        status, _, reported = in_json(capsys, "check", words[0], *drawing, *words[1:])
+        assert status == 1 and is_reported(reported, "vessel-entered pot", "line"), reported
+
+
 def test_lower_paper_does_not_lower_the_vessels_on_the_table(tmp_path, capsys):
     """With lower paper, the tool still clears the vessels, which stay on the table.
 

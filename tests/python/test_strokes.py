@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from diagnostics import refused
 
-from brushsvg import Stroke, _core, flatten
+from brushsvg import Stroke, _core, compensate, find_brush, flatten
 from brushsvg.read.design import Design, Element, SubPath
 from brushsvg.read.svg import read_svg
 from brushsvg.strokes.extraction import strokes
@@ -174,3 +174,9 @@ def test_points_that_form_no_stroke_are_refused(points, width, expected):
 def test_an_array_of_the_wrong_shape_is_a_type_error(points):
     with pytest.raises(TypeError):
         Stroke.from_points(points, 3.0)
+
+
+def test_width_of_nothing_is_refused_in_a_sentence():
+    stroke = Stroke.from_points([(20, 40), (60, 40)], 1.0, "s").replaced(half_width=[(0, 1.0), (1, 0.0)])
+    with refused("width-out-of-reach 0", "s"):
+        compensate([stroke], find_brush("round-6"), (140, 100))

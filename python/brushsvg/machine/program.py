@@ -35,7 +35,7 @@ from .workspace_limits import (
     broken_limits,
     check_first_rise,
     find_astray_sections,
-    find_vessels_entered,
+    find_strokes_in_vessels,
     find_vessels_near_travel,
     touching_mm_s,
 )
@@ -189,21 +189,15 @@ def find_moves_out_of_limits(program: Program, sheet_mm) -> list[Notice]:
 
     frame, height_mm = program.robot_from_frame, program.rise_mm
     notices = find_astray_sections(sections(), frame, program.cell, sheet_mm)
-    notices += _find_vessels_entered(program)
+    if program.cell.stations:  # visits go to vessels, and vessels may stand close together
+        visits = {f"paint: {name}" for name in names_of_stations(program.cell).values()}
+        strokes = (section for section in program.sections() if section.title not in visits)
+        notices += find_strokes_in_vessels(strokes, program.cell)
     post = POSTS.get(program.cell.language)
     if post and post.in_robot_frame:  # other programs rise to the safe height over the paper
         ends = list(transform_points(frame, np.reshape(ends, (-1, 3))))
         frame, height_mm = np.eye(4), program.rise_in_robot_mm
     return notices + check_first_rise(height_mm, ends, frame, program.cell)
-
-
-def _find_vessels_entered(program: Program) -> list[Notice]:
-    """Report vessels that strokes enter below the rim. Visits go to vessels, and vessels may stand close together."""
-    cell = program.cell
-    vessels = [station for station in cell.stations if not station.by_hand]
-    visits = {f"paint: {name}" for name in names_of_stations(cell).values()}
-    strokes = (section for section in program.sections() if section.title not in visits) if vessels else ()
-    return [notice for section in strokes for notice in find_vessels_entered(section, vessels, cell)]
 
 
 def _home_sections(program: Program) -> tuple[Section, ...]:

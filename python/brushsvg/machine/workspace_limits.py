@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cells.cell import LEAST_SPEED_MM_S, Cell, Station
+from .cells.cell import LEAST_SPEED_MM_S, Cell
 from .motion import Move, Section
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
 from .realised.backlash import half_mm
@@ -94,18 +94,28 @@ def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: C
     return list(dict.fromkeys(problems))
 
 
-def find_vessels_entered(section: Section, vessels: Sequence[Station], cell: Cell) -> list[Notice]:
-    """Report vessels that the moves of a section enter below the rim.
+def find_strokes_in_vessels(strokes: Iterable[Section], cell: Cell) -> list[Notice]:
+    """Report vessels that strokes enter below the rim. Each notice names the stroke."""
+    notices = []
+    for group in _group_sections(section for section in strokes if section.moves):
+        # Most strokes enter no vessel, so the whole group is checked first.
+        if find_vessels_entered(_paths_of_moves([move for section in group for move in section.moves], None), cell):
+            for section in group:
+                entered = find_vessels_entered(_paths_of_moves(section.moves, None), cell)
+                notices += [replace(notice, where=section.name) for notice in entered]
+    return notices
+
+
+def find_vessels_entered(moves: Ways, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[Notice]:
+    """Report vessels that moves in the paper's frame enter below the rim. The notices name no stroke yet.
 
     A vessel counts as the square about its circle.
     """
-    if not section.moves:
-        return []
-    moves, notices = _paths_of_moves(section.moves, None), []
-    for vessel in vessels:
-        reach_mm = np.full(2, max(vessel.radius_mm, vessel.stir_mm))
+    notices = []
+    for vessel in (station for station in cell.stations if not station.by_hand):
+        reach_mm = np.full(2, max(vessel.radius_mm, vessel.stir_mm) - slack_mm)
         low, high = np.array(vessel.place_mm) - reach_mm, np.array(vessel.place_mm) + reach_mm
-        place = find_place_inside(moves, (*low, -np.inf), (*high, vessel.rim_mm - ROUNDING_MM))
+        place = find_place_inside(moves, (*low, -np.inf), (*high, vessel.rim_mm - slack_mm))
         if place is not None:
             where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
             sentence = (
@@ -113,7 +123,7 @@ def find_vessels_entered(section: Section, vessels: Sequence[Station], cell: Cel
                 f"{vessel.radius_mm:g} mm in radius and has its rim at {vessel.rim_mm:g} mm"
             )
             advice = "place it further from the sheet, or correct its radius_mm"
-            notices.append(Notice(section.name, sentence, code="vessel-entered", about=vessel.name, advice=advice))
+            notices.append(Notice("", sentence, code="vessel-entered", about=vessel.name, advice=advice))
     return notices
 
 

@@ -31,6 +31,7 @@ from ..machine.workspace_limits import (
     check_first_rise,
     find_broken_limits,
     find_limits_broken_between,
+    find_vessels_entered,
     find_vessels_near_travel,
     touching_mm_s,
 )
@@ -234,7 +235,9 @@ def _check_workspace_limits(
         on = np.flatnonzero(track.step == number)
         start = points[on[0] - 1] if on[0] else here
         circles.append((start, points[on[-1]], track.centres[number]))
-    return notices + find_broken_limits(make_paths([points], circles), frame, cell, sheet_mm, slack)
+    moves = make_paths([points], circles)
+    entered = [] if section.title.startswith("paint: ") else find_vessels_entered(moves, cell, slack)
+    return notices + entered + find_broken_limits(moves, frame, cell, sheet_mm, slack)
 
 
 def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:

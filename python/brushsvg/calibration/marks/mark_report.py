@@ -71,8 +71,7 @@ def report(calibration, of_photo: bool = False) -> Report:
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(calibration.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {format_overlap(moved)}, by {format_overlap(in_place)} with "
-        f"the displacements of marks (mean "
-        "of intersection over union)",
+        "the displacements of marks (mean of intersection over union)",
         *(_describe_paint(calibration) if brush.paint else []),
         _describe_displacements(calibration),
         _list_worst_marks(calibration),

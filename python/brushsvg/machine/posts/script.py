@@ -70,7 +70,7 @@ def split_into_parts(program: Program, words: LanguageWords, lines_around: int, 
 def name_parts(program: Program, setup: str) -> Iterator[str]:
     """Yield names of programs that the main program calls, without end.
 
-    They depend on the main program's text and on all points, so that the names of two jobs differ. Controllers take
+    They depend on the main program's text and on all moves, so that the names of two jobs differ. Controllers take
     names of 8 letters.
 
     setup: the main program's text before its calls.
@@ -78,7 +78,9 @@ def name_parts(program: Program, setup: str) -> Iterator[str]:
     digest = hashlib.sha256(setup.encode())
     for section in program.sections():
         for move in section.moves:
-            digest.update((np.round(move.points_mm, program.cell.decimals) + 0.0).tobytes())  # + 0.0: -0 becomes 0
+            for values in (move.points_mm, move.speed_mm_s, move.axes, move.blends_mm):
+                if values is not None:  # + 0.0: -0 becomes 0
+                    digest.update((np.round(np.asarray(values, float), program.cell.decimals) + 0.0).tobytes())
     of_job = np.base_repr(int.from_bytes(digest.digest()[:8], "big") % 36**4, 36).zfill(4)
     return (f"B{of_job}{number:03d}" for number in itertools.count(1))
 
