@@ -170,11 +170,13 @@ def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
     if len(way.touches) != len(exact.touches):
         return [f"{len(way.touches)} touches, {len(exact.touches)} without backlash"]
     lines = [shapely.LineString(each.samples[:, :2]) for each in (way, exact)]
+    shapely.prepare(lines)
     touches = zip(way.touches, exact.touches, strict=True)
     for number, both in enumerate(touches, 1):
         for touch, line in zip(both, lines[::-1], strict=True):
-            far_mm = shapely.distance(shapely.points(touch[:, :2]), line).max()
-            if far_mm > near_mm:
+            points = shapely.points(touch[:, :2])
+            if not shapely.dwithin(points, line, near_mm).all():
+                far_mm = shapely.distance(points, line).max()
                 return [f"touch {number} is {far_mm:.4g} mm from where it is without backlash"]
     return []
 
