@@ -5,25 +5,16 @@ the first one (seen.png), and the corrections (corrections.json). The run takes 
 the sheets and take the photographs yourself.
 """
 
-import subprocess
-import sys
 from pathlib import Path
 
 import brushsvg
 
 drawing = Path(__file__).with_name("robot.svg")
 
-
-def photograph(name: str, *words: str) -> None:
-    """Simulate the photograph of a sheet that an imperfect machine painted."""
-    command = ["simulate-photo", str(drawing), "-o", name, "--studio", "studio.toml", *words]
-    subprocess.run([sys.executable, "-m", "brushsvg", *command], check=True, capture_output=True)
-
-
 # The simulated machine paints each stroke about 0.8 mm to a side, the same on every sheet.
 studio = 'format = "brushsvg/studio"\nversion = 1\n[machine]\nown_mm = 0.8\n'
 Path("studio.toml").write_text(studio, encoding="utf-8")
-photograph("first.jpg")
+brushsvg.simulate_photo(drawing, "first.jpg", studio="studio.toml")
 first = brushsvg.compare(drawing, "first.jpg")
 for stroke in first.strokes:
     x_mm, y_mm = stroke.placed.shift_mm
@@ -32,6 +23,6 @@ Path("seen.png").write_bytes(first.picture())
 Path("corrections.json").write_text(first.json, encoding="utf-8")
 
 # The second sheet is painted with the corrections.
-photograph("second.jpg", "--corrections", "corrections.json")
+brushsvg.simulate_photo(drawing, "second.jpg", studio="studio.toml", corrections="corrections.json")
 second = brushsvg.compare(drawing, "second.jpg", corrections="corrections.json")
 print(f"overlap with the drawing: first sheet {first.overlap:.3f}, second sheet {second.overlap:.3f}")

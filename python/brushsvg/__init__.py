@@ -37,7 +37,9 @@ if TYPE_CHECKING:  # the names that the table below imports at run time
         write_marks,
         write_plan,
     )
-    from .calibration.chart.layout import chart
+    from .calibration.chart.file import write_chart
+    from .calibration.chart.layout import Chart, chart
+    from .calibration.chart.page import chart_page
     from .calibration.numbers.from_widths import new_brush
     from .errors import Error
     from .jobs.batch.run import Batch, batch
@@ -47,6 +49,7 @@ if TYPE_CHECKING:  # the names that the table below imports at run time
     from .jobs.conversion import Conversion, convert
     from .jobs.json_files import read_marks, read_plan
     from .jobs.project import Project, find_project, read_project
+    from .jobs.setting_up import SetupProgram, setup_border, setup_first_run, setup_height
     from .machine.cells.cell import Cell
     from .machine.cells.cell_file import cell_names, find_cell, read_cell, write_cell
     from .machine.writer import write_program
@@ -56,6 +59,7 @@ if TYPE_CHECKING:  # the names that the table below imports at run time
     from .read.text import text_svg
     from .show.marks_png import marks_png
     from .show.marks_svg import marks_svg
+    from .simulated.simulate_photo import SimulatedPhoto, simulate_photo
     from .strokes.corners import lifted_at_corners
     from .strokes.extraction import strokes
     from .strokes.path_objects import path_from_pass, path_from_stroke, stroke_from_path
@@ -84,7 +88,10 @@ _HOME = {
     "new_brush": "calibration.numbers.from_widths",
     "BrushCalibration": "jobs.calibrating",
     "calibrate": "jobs.calibrating",
+    "Chart": "calibration.chart.layout",
     "chart": "calibration.chart.layout",
+    "chart_page": "calibration.chart.page",
+    "write_chart": "calibration.chart.file",
     "Check": "jobs.checking",
     "check": "jobs.checking",
     "PaintedJob": "jobs.comparing",
@@ -96,6 +103,10 @@ _HOME = {
     "Project": "jobs.project",
     "find_project": "jobs.project",
     "read_project": "jobs.project",
+    "SetupProgram": "jobs.setting_up",
+    "setup_border": "jobs.setting_up",
+    "setup_first_run": "jobs.setting_up",
+    "setup_height": "jobs.setting_up",
     "read_marks": "jobs.json_files",
     "read_plan": "jobs.json_files",
     "write_program": "machine.writer",
@@ -103,6 +114,8 @@ _HOME = {
     "within_reach": "strokes.wide_shapes",
     "marks_png": "show.marks_png",
     "marks_svg": "show.marks_svg",
+    "SimulatedPhoto": "simulated.simulate_photo",
+    "simulate_photo": "simulated.simulate_photo",
 } | dict.fromkeys(
     [
         "Arc",
@@ -140,6 +153,7 @@ __all__ = [
     "Brush",
     "BrushCalibration",
     "Cell",
+    "Chart",
     "Check",
     "Compensated",
     "Conversion",
@@ -155,6 +169,8 @@ __all__ = [
     "Project",
     "ReadOptions",
     "Settings",
+    "SetupProgram",
+    "SimulatedPhoto",
     "Stroke",
     "__version__",
     "area",
@@ -164,6 +180,7 @@ __all__ = [
     "calibrate",
     "cell_names",
     "chart",
+    "chart_page",
     "check",
     "compare",
     "compensate",
@@ -187,7 +204,11 @@ __all__ = [
     "read_plan",
     "read_project",
     "save_brush",
+    "setup_border",
+    "setup_first_run",
+    "setup_height",
     "simulate",
+    "simulate_photo",
     "stroke_from_path",
     "strokes",
     "text_svg",
@@ -196,6 +217,7 @@ __all__ = [
     "wanted_outline",
     "within_reach",
     "write_cell",
+    "write_chart",
     "write_marks",
     "write_plan",
     "write_program",

@@ -19,7 +19,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_page, chart_pdf
+from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_pdf, chart_svg
 from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
@@ -234,7 +234,7 @@ def svg_shapes(svg, height_mm):
 def test_the_scale_bar_is_clear_of_marks_and_has_its_stated_length(sheet):
     made = chart(find_brush("round-6"), sheet, "few")
     (x, y), length = made.bar.at_mm, made.bar.length_mm
-    drawn = re.search(r'<path data-bar="([^"]*)"[^>]* d="([^"]*)"', chart_page(made))
+    drawn = re.search(r'<path data-bar="([^"]*)"[^>]* d="([^"]*)"', chart_svg(made))
     points = np.array([p.split(",") for p in re.findall(r"[-\d.]+,[-\d.]+", drawn[2])], float)
     assert float(drawn[1]) == length == np.ptp(points[:, 0]) >= 0.7 * sheet[0]
     bar = shapely.box(x, y - 1.1, x + length, y + 1.1)
@@ -293,7 +293,7 @@ def test_a_chart_file_of_an_earlier_version_can_be_read():
     content["markers"] = [row | {"id": k} for k, row in enumerate(content["markers"][:4])]
     made = read_chart(json.dumps(content | {"dictionary": "DICT_4X4_50"}).encode())
     assert (made.id, made.bar, made.labels, made.dictionary) == ("", None, (), "DICT_4X4_50")
-    assert len(detected(chart_page(made), A5, "DICT_4X4_50")) == 4
+    assert len(detected(chart_svg(made), A5, "DICT_4X4_50")) == 4
 
 
 def test_another_chart_has_other_markers():
@@ -307,7 +307,7 @@ def test_a_chart_file_is_read_back_unchanged():
     again = read_chart(text.encode())
     assert write_chart(again) == text and again.id in again.labels[-1].text
     assert [stroke.id for stroke in again.strokes] == [each.stroke for each in again.plan.passes]
-    assert chart_page(made).count("<text") == len(made.labels)
+    assert chart_svg(made).count("<text") == len(made.labels)
 
 
 @pytest.mark.parametrize(

@@ -91,13 +91,11 @@ def make_job_page(suffix: str, work: Work) -> bytes:
 
     The strokes are in the order in which they were drawn.
     """
-    from ..calibration.chart.page import chart_page, chart_pdf
+    from ..calibration.chart.page import chart_page
     from ..comparison.job_page import job_page
 
     printed_page = job_page(work.plan, work.title)
-    if suffix == ".pdf":
-        return chart_pdf(printed_page.printed, printed_page.ticks)
-    return chart_page(printed_page.printed, printed_page.ticks).encode()
+    return chart_page(printed_page.printed, suffix, printed_page.ticks)
 
 
 def overlap_picture(

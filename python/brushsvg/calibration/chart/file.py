@@ -10,7 +10,7 @@ import json
 import numpy as np
 
 from ... import _core, json_fields
-from ...errors import Error
+from ...errors import Error, require_type
 from .layout import DICTIONARY, Bar, Chart, Label, Marker, Stroke, chart_id
 
 FORMAT, VERSION = "brushsvg/chart", 1
@@ -20,10 +20,11 @@ MAX_SHEET_SIDE_MM, MAX_DEPTH_MM = 1e6, 1000.0
 
 
 def write_chart(chart: Chart) -> str:
-    """Return a chart as JSON, with lengths to 1e-4 mm as in a program.
+    """Return the chart.json with which a painted chart is read. Equal charts give equal bytes.
 
-    Equal charts give equal bytes.
+    Lengths are rounded to 1e-4 mm, as in a program.
     """
+    require_type(chart, Chart, "a chart")
 
     def mm(values):
         return [round(float(value), 4) for value in values]

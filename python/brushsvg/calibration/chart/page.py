@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 
 from ... import _core
-from ...errors import missing_packages_error
+from ...errors import missing_packages_error, need_one_of, require_type
 from ...model.plot import new_figure
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
@@ -23,9 +23,23 @@ LETTER_WIDTH_PER_SIZE = 0.6  # mean width of a sans serif letter relative to its
 INK_COLOUR, LABEL_COLOUR = "#000000", "#b4b4b4"  # letters are too light to look like paint
 LINE_MM = 0.3  # width of the line of the bar
 INCH_MM = 25.4
+PAGE_EXTENSIONS = (".pdf", ".svg")
 
 
-def chart_page(chart: Chart, more=()) -> str:
+def chart_page(chart: Chart, extension: str, rings=()) -> bytes:
+    """Return the page with markers to print at 100 % and paint on, as PDF (".pdf") or SVG (".svg").
+
+    chart: as `chart` returns it.
+    rings: additional black rings, arrays (n, 2) [mm].
+
+    Raises Error for another extension, and for ".pdf" if matplotlib is missing.
+    """
+    require_type(chart, Chart, "a chart")
+    need_one_of(extension, PAGE_EXTENSIONS, "the extension of a page")
+    return chart_pdf(chart, rings) if extension == ".pdf" else chart_svg(chart, rings).encode()
+
+
+def chart_svg(chart: Chart, more=()) -> str:
     """Return the page of a chart as an SVG to print at 100 %.
 
     more: additional black rings.

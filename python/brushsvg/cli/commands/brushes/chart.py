@@ -35,7 +35,7 @@ def chart_file(args) -> None:
     from ....calibration.chart.expected import chart_report
     from ....calibration.chart.file import write_chart
     from ....calibration.chart.layout import chart
-    from ....calibration.chart.page import chart_page, chart_pdf
+    from ....calibration.chart.page import chart_page
 
     check_outputs(args, args.output, args.page, args.chart)
     chosen = make_choices(args)
@@ -56,9 +56,8 @@ def chart_file(args) -> None:
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
         files = writer.in_files(args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title))
     if args.page:
-        is_pdf = suffix_of(args.page) == ".pdf"
         with refuse_errors(args.page):
-            files[args.page] = chart_pdf(laid_out) if is_pdf else chart_page(laid_out).encode()
+            files[args.page] = chart_page(laid_out, suffix_of(args.page))
     if args.chart:
         files[args.chart] = write_chart(laid_out).encode()
     warn_about_cell(args, cell)

@@ -1,0 +1,127 @@
+"""Jobs around painting from Python: programs to set up a machine, charts, and simulated photographs.
+
+Their results equal the files of the commands byte for byte.
+"""
+
+from pathlib import Path
+
+import pytest
+from diagnostics import refused
+
+import brushsvg
+from brushsvg.cli import main
+
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">'
+    '<path id="a" d="M20 20H90" fill="none" stroke="#000" stroke-width="3"/>'
+    '<path id="b" d="M20 40C40 60 70 60 90 40" fill="none" stroke="#000" stroke-width="2"/></svg>'
+)
+STUDIO = 'format = "brushsvg/studio"\nversion = 1\n[brush]\nlag = 1.1\n'
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("word.svg").write_text(DRAWING, encoding="utf-8")
+    Path("studio.toml").write_text(STUDIO, encoding="utf-8")
+    return tmp_path
+
+
+def written(*words) -> bytes:
+    """Run a command that writes the file after -o, and return its bytes."""
+    assert main(list(words)) == 0
+    return Path(words[words.index("-o") + 1]).read_bytes()
+
+
+JOBS = {
+    "border": (
+        ("setup", "border", "word.svg", "-o", "own.gcode", "--cell", "grbl-3axis", "--z-offset", "0.5"),
+        lambda: brushsvg.setup_border("word.svg", "py.gcode", cell="grbl-3axis", z_offset=0.5),
+    ),
+    "first run": (
+        ("setup", "first-run", "linuxcnc-3axis", "-o", "own.ngc", "--sheet", "160x100", "--brush", "liner-1"),
+        lambda: brushsvg.setup_first_run("linuxcnc-3axis", "py.ngc", sheet=(160, 100), brush="liner-1"),
+    ),
+    "height": (
+        ("setup", "height", "-o", "own.script", "--cell", "ur5e", "--from", "0.5", "--to", "-0.5", "--step", "0.25"),
+        lambda: brushsvg.setup_height("ur5e", "py.script", highest=0.5, lowest=-0.5, step=0.25),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", JOBS)
+def test_python_writes_the_same_setup_program_as_the_command(desk, name):
+    words, make = JOBS[name]
+    own = written(*words)
+    made = make()
+    assert own == Path("py" + Path(words[words.index("-o") + 1]).suffix).read_bytes() == made.text.encode()
+    assert made.time_s > 1
+    assert made.stroke_count == {"border": 0, "first run": 22, "height": 5}[name]
+
+
+def test_a_setup_program_without_a_path_is_only_returned(desk):
+    made = brushsvg.setup_border("word.svg", cell="grbl-3axis")
+    assert "border of" in made.text
+    assert {path.name for path in desk.iterdir()} == {"word.svg", "studio.toml"}
+    assert [notice.code for notice in brushsvg.setup_border("word.svg", cell="ur5e").notices] == ["paper-example"]
+
+
+def test_setup_programs_refuse_wrong_values(desk):
+    with refused("program-format"):
+        brushsvg.setup_border("word.svg", "border.script", cell="grbl-3axis")
+    with refused("cannot-wait"):
+        brushsvg.setup_first_run("axidraw-ebb")
+    with refused("out-of-range"):
+        brushsvg.setup_height(step=0.0)
+    with refused("wrong-type"):
+        brushsvg.setup_height(highest="high")
+    with refused("height-out-of-range"):
+        brushsvg.setup_height(lowest=-15, step=1)
+    with refused("wrong-type"):
+        brushsvg.setup_first_run("grbl-3axis", 3)
+
+
+def test_python_makes_the_same_chart_as_the_command(desk):
+    own = written(
+        *("chart", "-o", "own.ngc", "--sheet", "250x180", "--strokes", "few"),
+        *("--chart", "own.json", "--page", "own.svg"),
+    )
+    brush = brushsvg.find_brush("round-6")
+    chart = brushsvg.chart(brush, (250, 180), "few", deepest_mm=10)
+    brushsvg.write_program("py.ngc", chart.plan, brush, "calibration chart of brush round-6")
+    assert Path("py.ngc").read_bytes() == own
+    assert brushsvg.write_chart(chart) == Path("own.json").read_text(encoding="utf-8")
+    assert brushsvg.chart_page(chart, ".svg") == Path("own.svg").read_bytes()
+    assert brushsvg.chart_page(chart, ".pdf").startswith(b"%PDF")
+    with refused("choice-unknown"):
+        brushsvg.chart_page(chart, ".png")
+
+
+@pytest.mark.parametrize("choices", [{}, {"studio": "studio.toml"}, {"true_brush": "liner-1", "seed": 3}])
+def test_python_simulates_the_same_photograph_as_the_command(desk, choices):
+    flags = [word for name, value in choices.items() for word in ("--" + name.replace("_", "-"), str(value))]
+    own = written("simulate-photo", "word.svg", "-o", "own.jpg", *flags)
+    made = brushsvg.simulate_photo("word.svg", "py.jpg", **choices)
+    assert own == Path("py.jpg").read_bytes() == made.jpeg
+    assert "lag = 1.1\n" in made.studio or "studio" not in choices
+
+
+def test_a_chart_is_photographed_from_its_file_and_from_its_value(desk):
+    chart_brush = brushsvg.find_brush("round-6")
+    chart = brushsvg.chart(chart_brush, (180, 180), "few")
+    Path("chart.json").write_text(brushsvg.write_chart(chart), encoding="utf-8")
+    for drawing in (chart, "chart.json"):
+        photographed = brushsvg.simulate_photo(drawing, "photo.jpg", studio="studio.toml")
+        assert photographed.stroke_count == len(chart.plan.passes)
+        assert brushsvg.calibrate("photo.jpg", chart=chart).brush.lag(4) > 1.05 * chart_brush.lag(4)
+
+
+def test_a_simulated_photograph_refuses_wrong_values(desk):
+    with refused("program-format"):
+        brushsvg.simulate_photo("word.svg", "photo.png")
+    with refused("out-of-range"):
+        brushsvg.simulate_photo("word.svg", seed=0)
+    with refused("wrong-type"):
+        brushsvg.simulate_photo("word.svg", studio=3)
+    with refused("wrong-type"):
+        brushsvg.simulate_photo("word.svg", true_brush=3)
