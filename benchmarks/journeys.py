@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 ALL = ("-m", "thorough or not thorough")
 # the title of a line, and the tests that pytest runs for it
 GROUPS = {
-    "brushes that begin with no width paint filled letters": ["tests/python/test_unreached.py"],
+    "brushes that begin with no width paint filled letters": ["tests/python/test_uncovered_areas.py"],
     "thin lines and slivers of a liner": ["tests/python/test_reach.py"],
     "servo plotters: offsets, heights, steep strokes": ["tests/python/test_servo.py"],
     "arms: the highest elbow, joints above the table": ["tests/python/test_arm_reach.py"],
@@ -39,7 +39,7 @@ GROUPS = {
         "tests/python/test_replacing.py",
     ],
     "check: middles of circles, servo ramps, stops; first run": [
-        "tests/python/test_stands_in_paint.py",
+        "tests/python/test_accidental_stops.py",
         "tests/python/test_first_run.py",
     ],
     "Python: intervals, sign of e, one type of fits, kinds, depths": [
@@ -47,7 +47,7 @@ GROUPS = {
         "tests/laws/test_forward.py",
         "tests/python/test_brushes.py",
     ],
-    "programs of others: G-code that crashed": ["tests/python/test_foreign.py"],
+    "programs of others: G-code that crashed": ["tests/python/test_foreign_gcode.py"],
     "every brush paints every drawing": ["tests/journeys/test_brush_and_drawing.py"],
     "every pair of brush, drawing, cell and command": ["tests/journeys/test_every_combination.py"],
     "each shipped cell: calibrate, convert, check, compare, convert": ["tests/journeys/test_shipped_cells.py"],

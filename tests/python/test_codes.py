@@ -19,7 +19,7 @@ CODE = re.compile("[a-z]+(-[a-z]+)*")
 FOUR_WORDS = re.compile(r"(?<![\w-])[A-Za-z][a-z]+(?: [a-z]+(?:'[a-z]+)?){3}(?![\w-])")
 QUOTED = {  # file: number of its expected texts with four or more plain words, which no code can replace
     "integration/command.py": 1,  # the beginning of an internal error's message
-    "python/test_checking.py": 3,  # lines from the header and the end of a program
+    "python/test_readback.py": 3,  # lines from the header and the end of a program
     "python/test_jaka.py": 1,
     "python/test_ros2.py": 1,  # the end of a table
     "python/test_docs_lint.py": 2,  # sentences that the linter must find

@@ -1,7 +1,7 @@
-"""Call public names with nonsense arguments: python nonsense.py NAME ...
+"""Call public names with nonsense arguments: python wrong_arguments.py NAME ...
 
-test_nonsense.py runs this script in a separate process. It prints one line per call with a wrong outcome. A
-right outcome is a result, brushsvg.Error or, for a value of the wrong Python type, TypeError.
+test_public_wrong_arguments.py runs this script in a separate process. It prints one line per call with a wrong
+outcome. A right outcome is a result, brushsvg.Error or, for a value of the wrong Python type, TypeError.
 """
 
 import contextlib

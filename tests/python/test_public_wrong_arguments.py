@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from nonsense import ARGUMENTS, FITS
 from sampling import sample
+from wrong_arguments import ARGUMENTS, FITS
 
 import brushsvg
 
@@ -27,7 +27,7 @@ def test_every_public_name_is_tested():
 @pytest.mark.slow
 def test_invalid_arguments_give_a_result_or_a_refusal(batch, tmp_path):
     done = subprocess.run(
-        [sys.executable, Path(__file__).with_name("nonsense.py"), *sorted(ARGUMENTS | FITS)[batch::BATCHES]],
+        [sys.executable, Path(__file__).with_name("wrong_arguments.py"), *sorted(ARGUMENTS | FITS)[batch::BATCHES]],
         capture_output=True,
         text=True,
         errors="replace",
