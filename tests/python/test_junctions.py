@@ -141,3 +141,17 @@ def test_a_bowl_that_widens_towards_a_thin_bar_leaves_no_wedge_in_the_counter():
     assert bare.intersection(shapely.box(-2, -2.6, 4, 6)).area < 0.3
     bar = min((_core.flatten(each, 0.02) for each in strokes), key=lambda line: line[:, 0].min())
     assert len(strokes) == 2 and bar[:, 0].max() > 6 and np.ptp(bar[:, 1]) < 0.5
+
+
+def test_no_line_of_a_bold_4_crosses_its_counter():
+    outside = [
+        *[(28.0, 6.4), (27.5, 10.7), (25.9, 10.9), (25.2, 23.5), (14.4, 24.2), (12.7, 23.8), (3.0, 12.9), (1.3, 10.3)],
+        *[(1.2, 7.5), (3.0, 5.7), (11.8, 5.5), (12.1, 2.4), (13.6, 0.8), (23.5, 0.7), (25.4, 1.8), (25.9, 5.5)],
+    ]
+    counter = np.array([(11.7, 16.5), (11.7, 10.9), (7.9, 11.0), (8.1, 12.2)])
+    strokes = [
+        _core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width)
+        for s in outline_strokes([np.array(outside), counter])
+    ]
+    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    assert shapely.Polygon(counter).intersection(painted).area < 0.2 * shapely.Polygon(counter).area

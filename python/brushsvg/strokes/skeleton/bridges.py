@@ -400,9 +400,12 @@ def _find_probe_ways(crossing: Crossing) -> list[tuple[np.ndarray, np.ndarray]]:
     (p, back), (q, d) = ((arm.line[arm.out, :2], -arm.direction) for arm in crossing.arms)
     centre, radius = crossing.discs[0, :2], crossing.discs[0, 2]
     cross = back[0] * d[1] - back[1] * d[0]
-    meet = centre  # parallel arms: one line, or a line there and back
+    # Parallel arms are one line, or a line there and back. Arms that meet ahead enclose a counter, as in a bold 4.
+    meet = centre
     if abs(cross) >= 0.2:
-        meet = p + ((q - p)[0] * d[1] - (q - p)[1] * d[0]) / cross * back
+        crossed = p + ((q - p)[0] * d[1] - (q - p)[1] * d[0]) / cross * back
+        if max((crossed - p) @ back, (crossed - q) @ d) > 0:
+            meet = crossed
     ray = meet - centre
     return [
         (centre, ray * min(1.0, 1.5 * radius / max(np.hypot(*ray), 1e-9))),
