@@ -140,6 +140,14 @@ def test_arabic_is_written_from_the_right_with_bodies_before_dots():
     assert group_areas(boxes, "arabic") == [[3], [1], [0], [2]]
 
 
+def test_dots_and_accents_above_each_other_follow_their_letter():
+    body, left, right, top = (0, 0, 60, 20), (42, 26, 46, 30), (48, 26, 52, 30), (45, 38, 49, 42)
+    assert group_areas(np.array([top, left, right, body]), "arabic") == [[3], [2], [0], [1]], "a sheen"
+    letter, next_letter, roof, acute = (0, 0, 30, 35), (36, 0, 60, 35), (9, 37, 21, 43), (14, 46, 22, 53)
+    groups = group_areas(np.array([acute, roof, next_letter, letter]), "latin")
+    assert [set(group) for group in groups] == [{0, 1, 3}, {2}], "an A with a roof and an acute"
+
+
 def test_characters_of_a_line_are_cut_at_gaps_and_each_is_one_group():
     # Two characters of two parts each, side by side.
     parts = np.array([(0, 0, 8, 20), (10, 0, 20, 20), (24, 0, 32, 20), (34, 0, 44, 20)])

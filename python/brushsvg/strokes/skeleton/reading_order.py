@@ -62,7 +62,7 @@ def _is_one_character(boxes: np.ndarray) -> bool:
 def _group_rows(boxes: np.ndarray) -> list[list[int]]:
     """Return the areas of each row from the top.
 
-    Rows of dots and accents belong to the nearer row.
+    Rows of dots and accents belong to the nearer row, also where they are above each other.
     """
     rows: list[list[int]] = []
     floor = np.inf
@@ -72,6 +72,16 @@ def _group_rows(boxes: np.ndarray) -> list[list[int]]:
             floor = boxes[k, 1]
         rows[-1].append(k)
         floor = min(floor, boxes[k, 1])
+    while len(merged := _merge_low_rows(rows, boxes)) < len(rows):
+        rows = merged
+    return rows
+
+
+def _merge_low_rows(rows: list[list[int]], boxes: np.ndarray) -> list[list[int]]:
+    """Merge rows of dots and accents with the nearer row.
+
+    Rows of dots above each other, as in a sheen, leave rows that can be merged again.
+    """
     sizes = [(boxes[row, 2:] - boxes[row, :2]).max() for row in rows]
     bottoms = np.array([boxes[row, 1].min() for row in rows])
     tops = np.array([boxes[row, 3].max() for row in rows])
