@@ -131,6 +131,15 @@ def test_identical_lines_are_painted_once(tmp_path):
     assert are_reported(design.notices, "drawn-twice copy back")
 
 
+def test_rings_that_begin_at_different_points_are_painted_once(tmp_path):
+    shapes = '<rect id="box" x="20" y="20" width="40" height="6"/><path id="copy" d="M60 20V26H20V20Z"/>'
+    again = '<use href="#box"/><path id="larger" d="M60 20V27H20V20Z"/>'
+    design = from_file(tmp_path, f"<svg {PAGE}>{shapes}{again}</svg>".encode())
+    assert ids(design) == ["box", "larger"]
+    assert are_reported(design.notices, "drawn-twice copy (like box)")
+    assert "box (drawn again)" in design.notices[0].sentence
+
+
 OLD_INKSCAPE = f'{INKSCAPE} width="744.09448" height="1052.3622" inkscape:version="0.91 r13725"'
 ILLUSTRATOR = 'data-name="Layer 1" width="595.28" height="841.89" viewBox="0 0 595.28 841.89"'
 
