@@ -12,6 +12,7 @@ from svg_text import read
 
 from brushsvg import _core
 from brushsvg.errors import Error
+from brushsvg.read.layout import Layout, arrange
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.skeleton.cut_ends import run_to_cut
 
@@ -516,6 +517,10 @@ def test_a_drawing_without_paintable_shapes_is_refused():
         painted(path(BAR), paths_as="stroke")
     with refused("nothing-to-paint 'no area'"):
         painted(path("M10 10H50Z"))
+    wide = arrange(read(path(BAR, 'fill="red" stroke="none"')), Layout(width_mm=2.0))
+    with refused("nothing-to-paint 'no stroke'") as caught:
+        strokes(wide, paths_as="stroke")
+    assert "for example" not in caught.value.sentence, "a notice about no element is no example"
     _, notices = strokes(read(f'<g fill="red" stroke="none">{path(BAR)}<path id="thin" d="M0 0H5Z"/></g>'))
     assert are_reported(notices, "outline-empty thin")
 

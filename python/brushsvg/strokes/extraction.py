@@ -73,7 +73,7 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
     if not painted_elements:
         where, sentence = (notices[-1].where, notices[-1].text) if notices else ("", "it is empty")
         sentence = f"there is nothing to paint: {sentence}"
-        if notice := next(iter(design.notices), None):
+        if notice := next((notice for notice in design.notices if notice.where), None):
             sentence += f"; for example {notice.where}: {notice.sentence}"
         raise Error(sentence, where=where, code="nothing-to-paint")
     names, renamed = _name_elements([(element, len(lines)) for element, lines in painted_elements])
