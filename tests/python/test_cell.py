@@ -11,7 +11,7 @@ import pytest
 from diagnostics import agrees, are_reported, in_json, is_reported, refused
 
 from brushsvg.cli import main
-from brushsvg.machine.cells.cell import Paper, Reload, RoboDK, Servo, Station, Tool, robot_from_paper
+from brushsvg.machine.cells.cell import Machine, Paper, Reload, RoboDK, Servo, Station, Tool, robot_from_paper
 from brushsvg.machine.cells.cell_check import check, out_of_reach, remarks
 from brushsvg.machine.cells.cell_file import (
     SHIPPED,
@@ -161,6 +161,13 @@ def test_a_manual_station_is_refused_if_the_brush_would_drop():
 @pytest.mark.parametrize("cell", [FULL, *map(find_cell, cell_names())])
 def test_a_written_cell_is_read_back_unchanged(cell):
     assert parse_cell(write_cell(cell)) == cell
+
+
+def test_comments_of_a_written_cell_have_single_spaces():
+    corrected = replace(FULL, machine=Machine(scale=(1.01, 1.0)))
+    comments = [line for line in write_cell(corrected).splitlines() if line.startswith("# ")]
+    assert any("calibrate --machine" in line for line in comments)
+    assert not [line for line in comments if "  " in line]
 
 
 @pytest.mark.parametrize(

@@ -204,7 +204,8 @@ def _table_lines(table) -> list[str]:
 
 
 def _comment_lines(text: str) -> list[str]:
-    return textwrap.wrap(text, 108, initial_indent="# ", subsequent_indent="# ")
+    one_line = " ".join(text.split())  # a docstring of two lines has an indent in it
+    return textwrap.wrap(one_line, 108, initial_indent="# ", subsequent_indent="# ")
 
 
 def _to_toml(value) -> str:
