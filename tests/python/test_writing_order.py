@@ -140,6 +140,13 @@ def test_arabic_is_written_from_the_right_with_bodies_before_dots():
     assert group_areas(boxes, "arabic") == [[3], [1], [0], [2]]
 
 
+def test_a_small_arabic_letter_next_to_a_wide_one_is_no_dot():
+    first, wide, dot = (64, -6, 76, 8), (0, 0, 60, 20), (30, 26, 34, 30)
+    assert group_areas(np.array([wide, dot, first]), "arabic") == [[2], [0], [1]], "reh and sheen"
+    alef, hamza = (6, 0, 10, 40), (2, 44, 12, 52)
+    assert group_areas(np.array([hamza, alef]), "arabic") == [[1], [0]]
+
+
 def test_dots_and_accents_above_each_other_follow_their_letter():
     body, left, right, top = (0, 0, 60, 20), (42, 26, 46, 30), (48, 26, 52, 30), (45, 38, 49, 42)
     assert group_areas(np.array([top, left, right, body]), "arabic") == [[3], [2], [0], [1]], "a sheen"

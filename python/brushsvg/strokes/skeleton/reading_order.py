@@ -148,10 +148,21 @@ def _group_cells(row: list[int], boxes: np.ndarray) -> list[list[int]]:
 
 
 def _group_bodies_and_dots(row: list[int], boxes: np.ndarray) -> list[list[int]]:
-    """Return bodies, then dots, both from the right; each is a letter of its own."""
+    """Return bodies, then dots, both from the right; each is a letter of its own.
+
+    Dots are small and above or below a body. A small letter next to a wide one is no dot.
+    """
     sizes = (boxes[:, 2:] - boxes[:, :2]).max(axis=1)
-    is_dot = sizes < MAX_DOT_SHARE * sizes[row].max()
-    return [[k] for k in sorted(row, key=lambda k: (is_dot[k], -boxes[k, 2]))]
+    bodies = [k for k in row if sizes[k] >= MAX_DOT_SHARE * sizes[row].max()]
+    dots = {k for k in row if k not in bodies and _is_stacked(boxes[k], boxes[bodies])}
+    return [[k] for k in sorted(row, key=lambda k: (k in dots, -boxes[k, 2]))]
+
+
+def _is_stacked(box: np.ndarray, others: np.ndarray) -> bool:
+    """Return whether an area is above or below one of the others."""
+    shared = np.minimum(box[2], others[:, 2]) - np.maximum(box[0], others[:, 0])
+    narrower = np.minimum(box[2] - box[0], others[:, 2] - others[:, 0])
+    return bool((shared > MIN_STACKED_SHARE * narrower).any())
 
 
 def _move_headline_last(order: list[int], lines: list[np.ndarray]) -> list[int]:
