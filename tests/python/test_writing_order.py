@@ -3,6 +3,8 @@
 The tests compare the positions of the lines' centres.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from svg_text import read
@@ -145,6 +147,26 @@ def test_a_small_arabic_letter_next_to_a_wide_one_is_no_dot():
     assert group_areas(np.array([wide, dot, first]), "arabic") == [[2], [0], [1]], "reh and sheen"
     alef, hamza = (6, 0, 10, 40), (2, 44, 12, 52)
     assert group_areas(np.array([hamza, alef]), "arabic") == [[1], [0]]
+
+
+def test_arabic_glyphs_that_are_paths_of_their_own_are_written_from_the_right():
+    glyphs = [
+        ("dot", "M18 8h4v4h-4z"),
+        ("last", "M5 20H35V30H5Z"),
+        ("alef", "M38 5h5v25h-5z"),
+        ("first", "M46 20H76V30H46Z"),
+    ]
+    drawn = read("".join(f'<path id="{name}" d="{d}" fill="red" stroke="none"/>' for name, d in glyphs))
+    line = read('<path id="line" d="M5 40H76"/>')
+    design = replace(drawn, elements=(*drawn.elements, *line.elements))
+
+    def order(design, script) -> list[str]:
+        return [stroke.id.split("/")[0] for stroke in strokes(design, script=script)[0]]
+
+    assert order(design, "arabic") == ["first", "alef", "last", "dot", "line"]
+    assert order(design, "latin") == order(design, "auto") == ["dot", "last", "alef", "first", "line"]
+    typeset = replace(design, elements=tuple(replace(each, settings={"script": "arabic"}) for each in design.elements))
+    assert order(typeset, "arabic") == order(design, "auto"), "such as brushsvg text writes them"
 
 
 def test_dots_and_accents_above_each_other_follow_their_letter():

@@ -7,7 +7,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ..errors import Error, need_one_of, require_type
 from ..read import SCRIPTS
@@ -47,7 +50,7 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
 
     paths_as: "stroke" ignores fills; "outline" ignores strokes, and every path is the outline of a shape; None
     takes paths as they are drawn. script: "auto", "latin", "arabic", "devanagari" or "cjk", how filled shapes are
-    written unless an element says so itself.
+    written unless an element says so itself. "arabic" also orders the filled shapes of a line of text from the right.
 
     A stroke has the id of its element, or id/1, id/2 ... if there are several. Without an id it is strokeN, where N
     counts the elements without one from 1. The setting `order` moves strokes, smaller ones first; `passes` repeats
@@ -77,12 +80,41 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
             sentence += f"; for example {notice.where}: {notice.sentence}"
         raise Error(sentence, where=where, code="nothing-to-paint")
     names, renamed = _name_elements([(element, len(lines)) for element, lines in painted_elements])
+    named_elements = [(*each, own) for each, own in zip(painted_elements, names, strict=True)]
+    if script == "arabic":
+        named_elements = _order_letters_from_right(named_elements)
     ordered = [
         (element.settings.get("order", 0), stroke)
-        for (element, lines), own in zip(painted_elements, names, strict=True)
+        for element, lines, own in named_elements
         for stroke in _make_strokes(element, own, lines)
     ]
     return [stroke for _, stroke in sorted(ordered, key=lambda pair: pair[0])], [*renamed, *notices]
+
+
+def _order_letters_from_right(
+    named_elements: list[tuple[Element, list[_Line], str]],
+) -> list[tuple[Element, list[_Line], str]]:
+    """Return elements with the filled letters from right to left, bodies before dots.
+
+    Other programs write each glyph as a path of its own, from the left. Elements that say their script, as those of
+    `brushsvg text` do, are in the order of writing already. Letters keep their place among lines and layers.
+    """
+    from .skeleton.reading_order import group_areas
+
+    def run_of(named_element) -> tuple:
+        element, lines, _ = named_element
+        is_letter = "script" not in element.settings and all(line.wanted_mm for line in lines)
+        return is_letter, element.layer, element.colour, element.settings.get("order", 0)
+
+    ordered = []
+    for (is_letter, *_), group in groupby(named_elements, run_of):
+        run = list(group)
+        if is_letter:
+            rings = [np.vstack([ring for line in lines for ring in line.wanted_mm]) for _, lines, _ in run]
+            boxes = np.array([[*each.min(axis=0), *each.max(axis=0)] for each in rings])
+            run = [run[k] for areas in group_areas(boxes, "arabic") for k in areas]
+        ordered += run
+    return ordered
 
 
 def _report_left_out(elements: list[Element], paths_as: str | None) -> list[Notice]:
