@@ -173,8 +173,10 @@ def test_a_line_starts_at_its_first_known_position(text, lines):
 
 
 def test_a_program_without_pen_commands_is_refused():
-    with refused("pen-unknown"):
+    with refused("pen-unknown 'between strokes, by Z or by M3'"):
         read_pen(read_moves("G21\nG0 X1 Y1\nG1 X5 Y5 F100\n"))
+    with refused("pen-unknown '--paper-z 0'"):
+        read_pen(read_moves("G21\nG0 X1 Y1 Z0\nG1 X5 Y5 F100\n"))
 
 
 def test_check_predicts_what_a_brush_paints(desk, capsys):

@@ -89,9 +89,10 @@ def pen_kind(all_ways: list[Way]) -> str:
 
 
 def _pen_unknown_error(levels: list[float | None]) -> Error:
-    sentence = "nothing shows when its pen is down: no height changes between strokes, and no M3, M5 or M280 stands"
+    sentence = "nothing shows when its pen is down: no height changes between strokes, and it has no M3, M5 or M280"
     known = [level for level in levels if level is not None]
-    advice = f"--paper-z {known[0]:g} reads all lines at this height" if known else ""
+    lifts = "write the program again with a pen that is lifted between strokes, by Z or by M3 and M5"
+    advice = f"--paper-z {known[0]:g} reads all lines at this height" if known else lifts
     return Error(sentence, code="pen-unknown", advice=advice)
 
 
