@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from svg_text import read
 
 from brushsvg import _core, compensate, find_brush, flatten, simulate
 from brushsvg.show.evaluation import report
-from brushsvg.show.evaluation.error_causes import _sharpest_corner_deg
+from brushsvg.show.evaluation.error_causes import _path_cause, _sharpest_corner_deg, _StrokePlace
+from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.wide_shapes import within_reach
 
 
@@ -97,6 +99,17 @@ def test_a_coarse_tolerance_is_reported_as_the_cause():
     assert worst.code == "coarse-tolerance" and "5 mm" in worst.reason
     fine = found(stroke(arc(15.0, 1.0, 200), 2.0, True), "closed")
     assert fine.code != "coarse-tolerance"
+
+
+def test_the_middle_of_a_diamond_is_reported_as_a_change_of_width():
+    """The width rises up to the middle and falls after it, so that its central difference is 0 there.
+
+    The cause was once a tracking error of 2.8e-14 mm.
+    """
+    (diamond,), _ = strokes(read('<path d="M50 10L54 18L50 26L46 18Z" fill="red" stroke="none"/>'))
+    line = flatten(diamond, 0.01)
+    widest = _StrokePlace(diamond, line, find_brush("round-6"), int(line[:, 3].argmax()), True)
+    assert _path_cause(widest).code == "steep-width"
 
 
 def test_an_uncompensated_lag_is_reported_as_the_cause():

@@ -186,8 +186,8 @@ def _path_cause(place: _StrokePlace) -> Cause | None:
     if radius_mm < half:
         words = f"turns tighter than half its width: radius {radius_mm:.2g} mm"
         return Cause(words, code="tighter-than-width")
-    rise = np.gradient(line[:, 3], np.maximum.accumulate(line[:, 2] + 1e-9 * np.arange(len(line))))
-    if abs(rise[place.at]) > MAX_WIDTH_SLOPE:
+    slopes = np.abs(np.diff(line[:, 3]) / np.diff(np.maximum.accumulate(line[:, 2] + 1e-9 * np.arange(len(line)))))
+    if slopes[max(place.at - 1, 0) : place.at + 1].max(initial=0.0) > MAX_WIDTH_SLOPE:  # on either side
         return Cause("its width changes faster than the footprint can follow", code="steep-width")
     return None
 
