@@ -77,6 +77,31 @@ def test_lines_are_painted_in_writing_order(d, places):
     assert len(set(order.tolist())) == len(places)
 
 
+# Accents over a letter that begins at x = 0 and is 24 wide, from y = 18 down.
+ACCENTS = {
+    "acute": "m12 10l6-6h5l-6 6Z",
+    "tilde": "m3 9q5-6 10-2t10-2v3q-5 6-10 2t-10 2Z",
+    "ring": "m12 1a5 5 0 1 1-.1 0Zm0 2a3 3 0 1 0 .1 0Z",
+    "two dots": "m4 4h4v4h-4Zm12 0h4v4h-4Z",
+}
+
+
+@pytest.mark.parametrize("accent", ACCENTS.values(), ids=ACCENTS)
+def test_accents_follow_their_letter_in_a_word_that_is_one_path(accent):
+    body = "m0 18h6v2q8-5 18 2v23h-6v-21q-6-2-12 2v19h-6Z"
+    data = "".join(f"M{x} 0{part}" for x in (5, 35, 65) for part in (accent, body))
+    found = lines_of(data)
+    places = [line.mean(axis=0) for line in found]
+    count = len(places) // 3
+    assert count * 3 == len(places)
+    for k, x in enumerate((5, 35, 65)):
+        letter = places[k * count : (k + 1) * count]
+        assert all(x < place[0] < x + 24 for place in letter)
+        above = [place[1] > 50 - 14 for place in letter]
+        assert any(above)
+        assert above == sorted(above)
+
+
 def test_a_dot_above_a_bar_comes_first_in_a_character():  # the dot of an i comes after its bar in a letter
     dot, bar = lines_of("M5 20H45V26H5ZM21 5H29V12H21Z", "cjk")
     assert dot[:, 1].mean() > bar[:, 1].mean()
@@ -174,7 +199,7 @@ def test_dots_and_accents_above_each_other_follow_their_letter():
     assert group_areas(np.array([top, left, right, body]), "arabic") == [[3], [2], [0], [1]], "a sheen"
     letter, next_letter, roof, acute = (0, 0, 30, 35), (36, 0, 60, 35), (9, 37, 21, 43), (14, 46, 22, 53)
     groups = group_areas(np.array([acute, roof, next_letter, letter]), "latin")
-    assert [set(group) for group in groups] == [{0, 1, 3}, {2}], "an A with a roof and an acute"
+    assert [set(group) for group in groups] == [{3}, {0, 1}, {2}], "an A with a roof and an acute"
 
 
 def test_characters_of_a_line_are_cut_at_gaps_and_each_is_one_group():

@@ -8,6 +8,7 @@ from .stroke_order import find_writing_order
 
 # Dots and accents are smaller than this share of their letters, and so are rows of them.
 MAX_DOT_SHARE = 0.4
+MAX_ACCENT_HEIGHT = 0.5  # accents are lower than this share of their letter, and nearer to it
 MIN_STACKED_SHARE = 0.5  # areas that share more of their width are one letter
 # Weight of the height against the place in a row: an upper part comes before a lower one that begins on the left.
 HEIGHT_WEIGHT = 0.5
@@ -34,7 +35,10 @@ def order_strokes(boxes: np.ndarray, lines: list[list[np.ndarray]], script: str 
 
 
 def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
-    """Return the areas of each letter or character, in reading order."""
+    """Return the areas of each letter or character, in reading order.
+
+    The accents of a letter are a group of their own, unless it could be a character, whose upper parts come first.
+    """
     if script == "cjk" and _is_one_character(boxes):
         return [list(range(len(boxes)))]
     groups = []
@@ -44,7 +48,8 @@ def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
         elif script == "cjk" or (script == "auto" and not stand_side_by_side(boxes[row])):
             groups += _group_cells(row, boxes)
         else:
-            groups += _group_letters(row, boxes)
+            for letter in _group_letters(row, boxes):
+                groups += [letter] if script == "auto" else _split_off_accents(letter, boxes)
     return groups
 
 
@@ -82,7 +87,7 @@ def _merge_low_rows(rows: list[list[int]], boxes: np.ndarray) -> list[list[int]]
 
     Rows of dots above each other, as in a sheen, leave rows that can be merged again.
     """
-    sizes = [(boxes[row, 2:] - boxes[row, :2]).max() for row in rows]
+    sides = [(boxes[row, 2:] - boxes[row, :2]).max(axis=0) for row in rows]  # of the widest and the highest area
     bottoms = np.array([boxes[row, 1].min() for row in rows])
     tops = np.array([boxes[row, 3].max() for row in rows])
     # The gap above each row, and below the last.
@@ -91,7 +96,9 @@ def _merge_low_rows(rows: list[list[int]], boxes: np.ndarray) -> list[list[int]]
     joins = False
     for k, row in enumerate(rows):
         nearer = k - 1 if gaps[k] < gaps[k + 1] else min(k + 1, len(rows) - 1)
-        is_low = sizes[k] < MAX_DOT_SHARE * sizes[nearer]
+        accent_mm = MAX_ACCENT_HEIGHT * sides[nearer][1]
+        is_accent = sides[k][1] < accent_mm and min(gaps[k], gaps[k + 1]) < accent_mm
+        is_low = is_accent or sides[k].max() < MAX_DOT_SHARE * sides[nearer].max()
         if joins or (is_low and nearer < k):
             merged[-1] += row
         else:
@@ -128,6 +135,22 @@ def _group_letters(row: list[int], boxes: np.ndarray) -> list[list[int]]:
         return x0 + x1 - HEIGHT_WEIGHT * (y0 + y1)
 
     return sorted(letters, key=place)
+
+
+def _split_off_accents(letter: list[int], boxes: np.ndarray) -> list[list[int]]:
+    """Return the areas of a letter without its dots and accents, and these: they are written after it.
+
+    A dot or accent is much lower than an area that is above or below it.
+    """
+    heights = boxes[:, 3] - boxes[:, 1]
+
+    def is_accent(k: int) -> bool:
+        apart = [j for j in letter if boxes[j, 3] <= boxes[k, 1] or boxes[k, 3] <= boxes[j, 1]]
+        return any(heights[k] < MAX_ACCENT_HEIGHT * heights[j] for j in apart)
+
+    accents = [k for k in letter if is_accent(k)]
+    bodies = [k for k in letter if k not in accents]
+    return [bodies, accents] if accents else [bodies]
 
 
 def _group_cells(row: list[int], boxes: np.ndarray) -> list[list[int]]:
