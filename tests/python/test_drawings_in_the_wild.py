@@ -238,6 +238,16 @@ def test_a_mask_on_a_line_without_height_or_width_keeps_all_that_it_shows(is_upr
     assert ids(hidden) == ["other"] and are_reported(hidden.notices, "clipped-away line")
 
 
+def test_a_line_that_a_clip_path_cuts_lengthwise_is_reported():
+    """The width of a line is not cut, so paint goes beyond the edge, as with strokes that Figma draws inside."""
+    line = '<path id="{}" d="{}" fill="none" stroke="#000" stroke-width="4" clip-path="url(#Clip)"/>'
+    window = '<rect x="10" y="10" width="80" height="40"/>'
+    along = line.format("along", "M10 11h80") + line.format("around", "M10 10h80v40h-80z")
+    across = line.format("across", "M0 30h100") + line.format("slanted", "M60 0L100 40") + line.format("in", "M20 40h9")
+    design = clip(window, along + across)
+    assert are_reported(design.notices, "clipping-unread along '1 mm beyond'", "clipping-unread around '2 mm beyond'")
+
+
 def test_shapes_are_intersected_with_clip_paths():
     square = '<rect id="s" x="10" y="10" width="40" height="40" clip-path="url(#Clip)"/>'
     (element,) = clip('<rect x="30" y="30" width="40" height="30"/>', square).elements

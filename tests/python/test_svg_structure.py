@@ -79,7 +79,7 @@ def test_elements_hidden_by_a_viewport_are_left_out_or_reported():
     design = read(body.format('<path id="in" d="M1 1Q5 -1 9 1"/>'))
     assert [element.id for element in design.elements] == ["over", "in"]
     assert lines(design)[0] == ("over", (5, 5), (10, 5))
-    assert are_reported(design.notices, "clipped-away out")
+    assert are_reported(design.notices, "clipped-away out", "clipping-unread in")
     shown = read(body.replace("<svg", '<svg overflow="visible"').format(""))
     assert len(shown.elements) == 2 and not shown.notices
 

@@ -77,6 +77,26 @@ def clip_element(element: Element, region: shapely.Geometry) -> list[Element]:
     return out
 
 
+def reach_beyond_edge_mm(element: Element, region: shapely.Geometry) -> float:
+    """Return how far the mark of a clipped line reaches beyond an edge that cuts it lengthwise, 0 without such an edge.
+
+    element: a part that clip_element returned. Its mark has one width, so it cannot follow an edge along its side.
+    """
+    half = element.stroke_width_mm / 2
+    if not half > 0 or element.fill_rule:
+        return 0.0
+    reach_mm = 0.0
+    for subpath in element.subpaths:
+        points = flattened(subpath.cubics, FLATTENING_TOLERANCE_MM)
+        mark = shapely.LineString(points).buffer(half, cap_style="flat")
+        outside = mark.difference(region)
+        if not subpath.closed:  # an edge across the line cuts off its ends only, at angles of 30 degrees or more
+            outside = outside.difference(shapely.union_all(shapely.buffer(shapely.points(points[[0, -1]]), 2 * half)))
+        if outside.area > half**2:
+            reach_mm = max(reach_mm, *shapely.distance(region, shapely.points(shapely.get_coordinates(outside))))
+    return reach_mm
+
+
 def _region_to_subpaths(region: shapely.Geometry) -> tuple[SubPath, ...]:
     rings = []
     for part in shapely.get_parts(region):

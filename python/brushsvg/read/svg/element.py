@@ -135,9 +135,15 @@ class PaintedElements:
         self.elements += elements
 
     def _clipped(self, node: ET.Element, context: Context, element: Element) -> list[Element]:
-        from ..clipping import clip_element
+        from ..clipping import clip_element, reach_beyond_edge_mm
 
         pieces = clip_element(element, context.clip)
+        if reach_mm := max((reach_beyond_edge_mm(p, context.clip) for p in pieces if p is not element), default=0.0):
+            sentence = (
+                "a clip path, mask or viewport cuts it lengthwise, which is read for shapes only: painted "
+                f"{reach_mm:.2g} mm beyond the edge; make it a shape, in Inkscape with Path > Stroke to Path"
+            )
+            self.notes.add(node, context, sentence, code="clipping-unread")
         if not pieces:
             # Lines are cut where their middle line crosses the edge, so the width may still reach in.
             what = "its middle line" if element.is_stroked else "it"
