@@ -663,6 +663,18 @@ def test_trailing_blanks_are_not_reported_as_a_change(desk, capsys, name):
     assert call(capsys, "check", program, "two.svg")[::2] == (0, [])
 
 
+@pytest.mark.parametrize("name", ["grbl-3axis", "grbl-servo", "axidraw-ebb", "ur5e"])
+def test_a_program_slower_than_the_drawing_may_run(desk, capsys, name):
+    """A speed of --speed that check does not repeat changes the time in the header, and nothing of the paint."""
+    program = f"two{LANGUAGES[name]}"
+    assert call(capsys, "convert", "two.svg", "-o", program, "--cell", name, "--speed", "5")[0] == 0
+    assert call(capsys, "check", program, "two.svg")[::2] == (0, [])
+    text = (desk / program).read_text()
+    (desk / program).write_text(edited(r"time: about ", "time: about 1 h ")(text))
+    status, _, reported = in_json(capsys, "check", program, "two.svg")
+    assert status == 1 and any(agrees(each, "program-changed 1") for _, each in reported), reported
+
+
 STATIONS = [
     ["Tusche gr\u00fcn", "Tusche grun"],
     ["\u58a8", "\u6731"],

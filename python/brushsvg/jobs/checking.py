@@ -343,17 +343,24 @@ def _compare_with_rewritten(
     )
     if not rewritten:
         return rewritten, []
-    least_s = None
-    if speeds is None:  # feeds may have been lowered after the time was written into the header
+    at_own_speeds, least_s, most_s = rewritten, None, None
+    if speeds is not None:  # a program may be slower than the drawing, for example because of another --speed
+        passes = simulated.plan.passes
+        if any(a_pass.speed_mm_s < speed for a_pass, speed in zip(passes, speeds, strict=True)):
+            at_own_speeds = against_regenerated.regenerate_program(
+                simulated, brush, cell, z_offset_mm, header.first_stroke
+            )
+            most_s = duration_s(at_own_speeds)
+    else:  # feeds may have been lowered after the time was written into the header
         usual_mm_s = min(Options.speed_mm_s, rewritten.touching_mm_s)
         fastest = [max(a_pass.speed_mm_s, usual_mm_s) for a_pass in simulated.plan.passes]
         fastest_program = against_regenerated.regenerate_program(
             simulated, brush, cell, z_offset_mm, header.first_stroke, None, fastest
         )
         least_s = duration_s(fastest_program)
-    changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s)
+    changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s, most_s)
     notices = (
-        [Notice("", changed_line, code="program-changed")] if changed_line else pace.stops(program.read, rewritten)
+        [Notice("", changed_line, code="program-changed")] if changed_line else pace.stops(program.read, at_own_speeds)
     )
     return rewritten, notices
 

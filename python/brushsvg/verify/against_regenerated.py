@@ -68,14 +68,19 @@ class HeaderNotes:
 
 
 def differing_line(
-    text: str, read: Readback, program: Program, cell: Cell, least_time_s: float | None = None
+    text: str,
+    read: Readback,
+    program: Program,
+    cell: Cell,
+    least_time_s: float | None = None,
+    most_time_s: float | None = None,
 ) -> str | None:
     """Describe the first line that differs from what brushsvg would write.
 
     Returns None where no line does something else. The notation of numbers does not matter. Places may differ by less
     than a brush shows, feeds may be lower, and lines without effect may be missing or repeated. A servo's paths in
     paint have heights rounded to whole values, so only their ends are compared. least_time_s: duration of the program
-    before its feeds were lowered; None: the feeds are as planned.
+    before its feeds were lowered; most_time_s: its duration at its own, lower speeds; None: the speeds are as planned.
     """
     theirs_text = "".join(text_of(POSTS[cell.language], program))
     regenerated = read_program(theirs_text, POSTS[cell.language].extensions[0], cell)
@@ -88,7 +93,7 @@ def differing_line(
     upright = upright_tool_rotation(cell.tool.spin_deg) if cell.tool else None
     if upright is not None and not read.in_paper_frame:
         upright = program.robot_from_frame[:3, :3] @ upright
-    rules = _ActComparison(cell, _header_ranges(program, least_time_s), upright)
+    rules = _ActComparison(cell, _header_ranges(program, least_time_s, most_time_s), upright)
     if cell.servo:
         both = drop_rounding_lifts(join_lifts(ours), join_lifts(theirs), rules.is_rounding_lift, rules.is_same)
         ours, theirs = map(join_paths, both)
@@ -421,7 +426,7 @@ class _ActComparison:
 _ABOUT_LINE = re.compile(r"\((?:time: about (?:(\d+) h )?(?:(\d+) min ?)?(?:(\d+) s)?|length: (\d+) mm on the paper)\)")
 
 
-def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple, tuple]:
+def _header_ranges(program: Program, least_time_s: float | None, most_time_s: float | None) -> tuple[tuple, tuple]:
     """Return the ranges of length [mm] and time [s] that a header may state.
 
     Each range is (least, most). A header may differ by one unit of its last digit less and two more: circles that were
@@ -435,9 +440,10 @@ def _header_ranges(program: Program, least_time_s: float | None) -> tuple[tuple,
         least_mm, most_mm = projected_length_mm(program) - ends_mm, most_mm + ends_mm
     fewer, more = (least_mm / length_mm, most_mm / length_mm) if length_mm else (1.0, 1.0)
     least_s = time_s if least_time_s is None else min(time_s, least_time_s)
+    most_s = time_s if most_time_s is None else max(time_s, most_time_s)
     return (least_mm, most_mm), (
         least_s * fewer * (1 - TIME_TOLERANCE_SHARE),
-        time_s * more * (1 + TIME_TOLERANCE_SHARE),
+        most_s * more * (1 + TIME_TOLERANCE_SHARE),
     )
 
 
