@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import in_json, is_reported, refused
 from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
@@ -157,6 +157,24 @@ def test_heights_outside_the_servo_table_are_refused(z_offset, height):
         program(plan, brush, CELL, (), Job(z_offset))
     with refused("servo-out-of-range grbl-servo"):
         border((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
+
+
+@pytest.mark.parametrize(("cell", "offset", "widest_mm"), [("grbl-servo", "0", 6.72), ("axidraw-ebb", "-1", 5.88)])
+def test_shapes_and_lines_are_no_wider_than_the_cell_can_press_the_brush(
+    tmp_path, monkeypatch, capsys, cell, offset, widest_mm
+):
+    """Shapes that need a deeper brush than the servo reaches are filled in narrower passes; wider lines are refused."""
+    monkeypatch.chdir(tmp_path)
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="50mm" viewBox="0 0 90 50">{}</svg>'
+    (tmp_path / "shape.svg").write_text(svg.format('<rect id="s" x="30" y="15" width="30" height="20"/>'))
+    (tmp_path / "line.svg").write_text(svg.format('<path id="l" d="M20 20H60" stroke="#000" stroke-width="8"/>'))
+    program = "shape.ebb" if cell == "axidraw-ebb" else "shape.gcode"
+    flags = ("--cell", cell, "--z-offset", offset)
+    status, _, reported = in_json(capsys, "convert", "shape.svg", "-o", program, *flags)
+    assert status == 0 and is_reported(reported, f"width-out-of-reach '[0, {widest_mm}] mm' round-6 {cell}"), reported
+    assert in_json(capsys, "check", program, "shape.svg", "--z-offset", offset)[0] == 0
+    status, _, reported = in_json(capsys, "convert", "line.svg", "-o", program, "--force", *flags)
+    assert status == 1 and is_reported(reported, f"width-out-of-reach 8.000 {widest_mm:.3f} {cell}", "l"), reported
 
 
 def test_the_program_contains_only_words_grbl_knows():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from ...machine.cells.cell import LEAST_SPEED_MM_S
 from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
 from ...machine.program import Job
+from ...machine.workspace_limits import ROUNDING_MM
 from ...model.library import find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper
 from ...planning.refinement import refine_where_better
@@ -83,15 +85,16 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
     notices: the warnings of the drawing; further warnings are added to this list.
     """
     stage("finding strokes")
-    found_strokes, stroke_notices = _find_strokes(design, brush, options)
+    on_cell = _limit_depth(brush, options)
+    found_strokes, stroke_notices = _find_strokes(design, on_cell, options)
     notices += stroke_notices
     if not partly:
-        _refuse_wide_lines(found_strokes, brush)
-    strokes = _limit_widths(found_strokes, brush, options, partly)
+        _refuse_wide_lines(found_strokes, on_cell)
+    strokes = _limit_widths(found_strokes, on_cell, options, partly)
     compensated = make_compensation(brush, design.sheet_mm, options, stage)
     strokes, compensation = _compensate(strokes, compensated, partly)
     if _leads_paint(options):
-        strokes, compensation = _search_strokes(strokes, compensation, brush, compensated, options)
+        strokes, compensation = _search_strokes(strokes, compensation, on_cell, compensated, options)
     notices += strokes.notices
     planned = _refine(
         _plan_strokes(strokes, compensation, brush, compensated, options, stage), brush, compensated, options
@@ -132,6 +135,24 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
 def _leads_paint(options: Options) -> bool:
     """Return whether the tool leads the paint, instead of following the drawn lines."""
     return options.compensation in ("closed", "refined")
+
+
+def _limit_depth(brush, options: Options):
+    """Return the brush as the cell can press it: no deeper than its lowest height, and the end of its servo's table."""
+    cell = options.cell
+    if cell is None or not brush.width_follows_depth():
+        return brush
+    lowest_mm = cell.heights.lowest_mm
+    if cell.servo:
+        lowest_mm = max(lowest_mm, min(height for height, _ in cell.servo.table) - options.z_offset_mm)
+    least_mm, greatest_mm = brush.depth_range_mm
+    deepest_mm = -lowest_mm - ROUNDING_MM
+    if not least_mm < deepest_mm < greatest_mm:
+        return brush
+    limited = copy(brush)
+    limited.depth_range_mm = (least_mm, deepest_mm)
+    limited.name = f"{brush.name} on cell {cell.name}"  # for messages about widths
+    return limited
 
 
 @dataclass(frozen=True)
