@@ -33,7 +33,6 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
     """
     problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
     min_mm_s, max_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SPEED_MM_S), touching_mm_s(brush, cell)
-    owner = f"brush {brush.name}" if max_mm_s == brush.max_speed_mm_s else f"cell {cell.name}"
     for a_pass in passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         if len(poses) == 0:
@@ -55,7 +54,9 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                 notices += _check_pen_height(poses, cell)
         speed = a_pass.speed_mm_s
         if not min_mm_s <= speed <= max_mm_s:
-            sentence = f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:f}, {max_mm_s:.1f}] mm/s of {owner}"
+            least = np.format_float_positional(min_mm_s, trim="-")
+            owner = owner_of_speed_limit(speed, brush, cell)
+            sentence = f"speed {speed:.4g} mm/s is outside the range [{least}, {max_mm_s:.1f}] mm/s of {owner}"
             notices.append(Notice("", sentence, code="speed-out-of-range"))
         problems += [replace(notice, where=a_pass.stroke) for notice in notices]
     for station in cell.stations:
@@ -73,6 +74,14 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
             sentence = f"its wipe goes over the sheet of {width:g} x {height:g} mm"
             problems.append(Notice(station.name, sentence, code="station-on-sheet"))
     return problems
+
+
+def owner_of_speed_limit(speed_mm_s: float, brush, cell: Cell | None) -> str:
+    """Return the brush or the cell whose limit a speed breaks, in words."""
+    if cell is None:
+        return f"brush {brush.name}"
+    is_of_cell = speed_mm_s < LEAST_SPEED_MM_S.get(cell.language, 0.0) or cell.speeds.paint_mm_s < brush.max_speed_mm_s
+    return f"cell {cell.name}" if is_of_cell else f"brush {brush.name}"
 
 
 def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None) -> list[Notice]:

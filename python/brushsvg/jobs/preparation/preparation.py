@@ -18,7 +18,7 @@ from ...machine.cells.cell import LEAST_SPEED_MM_S
 from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
 from ...machine.program import Job
-from ...machine.workspace_limits import ROUNDING_MM
+from ...machine.workspace_limits import ROUNDING_MM, owner_of_speed_limit
 from ...model.library import find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper
 from ...planning.refinement import refine_where_better
@@ -407,8 +407,8 @@ def _check_speed(brush, options: Options) -> None:
         return
     min_mm_s = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
     max_mm_s = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
-    whose = f"brush {brush.name}" if max_mm_s == brush.max_speed_mm_s else f"cell {cell.name}"
     if not min_mm_s <= speed <= max_mm_s:
+        whose = owner_of_speed_limit(speed, brush, cell)
         sentence = f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:g}, {max_mm_s:g}] mm/s of {whose}"
         raise Error(sentence, code="speed-out-of-range")
 
