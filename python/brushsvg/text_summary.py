@@ -14,10 +14,10 @@ MOST_NAMED = 4  # elements with one sentence that are all named: a brush has fou
 def summarize_notices(notices: Iterable[Notice]) -> list[Notice]:
     """Keep a few notices of each kind and count the others.
 
-    The kinds stay in the order in which they first appear.
+    The kinds stay in the order in which they first appear. Equal notices, as on the copies of an element, count once.
     """
     kinds: dict[tuple, list[Notice]] = {}
-    for notice in notices:
+    for notice in dict.fromkeys(notices):
         kinds.setdefault(notice.kind, []).append(notice)
     result = []
     for alike in kinds.values():

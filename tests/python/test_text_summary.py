@@ -18,6 +18,12 @@ def test_few_notices_with_one_code_stay_unchanged():
     assert summarized(reported) == reported
 
 
+def test_equal_notices_are_kept_once():
+    """Copies of an element have its name, so each notice on a copied element was printed once for each copy."""
+    reported = [("text 1", "text is not read"), ("b", "markers are not read")]
+    assert summarized(reported * 5) == reported
+
+
 def test_many_notices_with_one_code_are_counted_at_the_first():
     reported = [("a", "one thing")]
     reported += [(f"p{k}", f"'p{k}' is 1.{k}e-0{k} mm off, x -{k}, range [0, {k}]", "off") for k in range(5)]
@@ -47,7 +53,11 @@ def test_notices_are_grouped_by_code_for_any_sentence():
     (one,) = summarized_notices(reworded)
     assert gives(one.where, "p0", "4") and one.code == "width"
     assert len(summarized_notices([*reworded, notice("q", "wide", "other")])) == 2
-    other_property = [notice("r", "mask is not read", "css-unread", about=name) for name in ("mask", "clip-path") * 3]
+    other_property = [
+        notice(f"r{k}", "mask is not read", "css-unread", about=name)
+        for k in range(3)
+        for name in ("mask", "clip-path")
+    ]
     assert len(summarized_notices(other_property)) == len(other_property)
     without_codes = [Notice(f"p{k}", f"{k} mm") for k in range(5)]
     assert summarized_notices(without_codes) == without_codes, "only what has a code is of a kind"
