@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from diagnostics import gives
+from diagnostics import are_reported, gives, in_json, is_reported
 from svg_text import HEAD, read
 
 from brushsvg import strokes
@@ -89,3 +89,16 @@ def test_preview_writes_editable_strokes(tmp_path, monkeypatch, capsys):
     assert main(["preview", "in.svg", "-o", "out.png", "--show", "strokes", "--editable"]) == 2
     assert not (tmp_path / "none.svg").exists() and not (tmp_path / "out.png").exists()
     assert gives(capsys.readouterr().err.splitlines()[-1], "--editable")
+
+
+def test_editable_strokes_wider_than_the_brush_are_reported(tmp_path, monkeypatch, capsys):
+    """convert fills wide shapes, but refuses wide lines. The drawing of lines was written without a warning."""
+    monkeypatch.chdir(tmp_path)
+    square = '<rect id="square" x="20" y="10" width="20" height="20" fill="red" stroke="none"/>'
+    (tmp_path / "in.svg").write_text(f"{HEAD}{square}{WEDGE}</svg>")
+    words = ("preview", "in.svg", "-o", "out.svg", "--show", "strokes", "--editable")
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0 and are_reported([each for _, each in reported], "width-out-of-reach square 20 8.4] round-6")
+    status, _, reported = in_json(capsys, "convert", "out.svg", "-o", "out.ngc")
+    assert status == 1 and is_reported(reported, "width-out-of-reach 20.000 8.400]", "square"), reported
+    assert in_json(capsys, *words, "--force", "--brush", "rigid")[2] == [], "a pen draws lines of any width as one"

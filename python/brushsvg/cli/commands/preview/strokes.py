@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from ....errors import Error
+from ....errors import Error, Notice
 from ....jobs.choices import make_layout, make_read_options, report_ineffective_flags
+from ....jobs.options import DEFAULT_BRUSH
+from ....model.library import find_brush
 from ....read import read_drawing
 from ....read.layout import arrange
 from ....strokes.extraction import strokes as strokes_of
+from ....strokes.wide_shapes import is_within_reach
 from ...console import refuse_errors, stage, warn
-from ...steps.options import make_choices
+from ...steps.options import apply_drawing_settings, load_brush, make_choices
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 
@@ -26,6 +29,9 @@ def preview_strokes(args) -> None:
                 raise
             strokes, notices = [], [nothing.notice()]
         notices = [*design.notices, *notices]
+        if args.editable:
+            brush_name = apply_drawing_settings(chosen, args.input).brush
+            notices += _report_wide_strokes(strokes, load_brush(brush_name) or find_brush(DEFAULT_BRUSH))
         warn(args.input, notices)
         if args.editable:
             from ....show.editable_svg import lines_svg
@@ -36,3 +42,18 @@ def preview_strokes(args) -> None:
 
             picture = overview(suffix_of(args.output), design, strokes, notices)
     write_outputs(args, {args.output: picture}, len(strokes))
+
+
+def _report_wide_strokes(strokes, brush) -> list[Notice]:
+    """Report strokes that become lines wider than the brush: it fills wide shapes, but convert refuses such lines."""
+    least, greatest = brush.half_width_range_mm()
+    notices = []
+    for stroke in strokes if brush.width_follows_depth() else ():
+        half = max(half for _, half in stroke.half_width)
+        if not is_within_reach(half, greatest):
+            sentence = (
+                f"its line is {2 * half:.3g} mm wide, outside the range [{2 * least:.3g}, {2 * greatest:.3g}] mm of "
+                f"brush {brush.name}, and convert will refuse it: draw narrower lines in its place"
+            )
+            notices.append(Notice(stroke.id, sentence, code="width-out-of-reach"))
+    return notices
