@@ -107,6 +107,16 @@ def test_values_that_are_not_a_single_length_are_damaged(value):
     assert are_reported(design.notices, "stroke-width-invalid") and design.notices[0].damaged
 
 
+def test_an_invalid_width_of_a_line_that_is_not_drawn_is_no_damage():
+    """The SVG files of ezdxf have stroke-width: none for filled shapes, and convert refused all of them."""
+    style = "<style>.shape{stroke:none;stroke-width:none;fill:#000}.line{stroke:#000;stroke-width:none}</style>"
+    square = '<path id="square" class="shape" d="M5 5h9v9h-9z"/>'
+    design = read(style + square)
+    assert design.notices == () and design.elements[0].fill_rule
+    design = read(f'{style}<g class="shape">{square}<path id="line" class="line" d="M5 5h9"/></g>')
+    assert [each.where for each in design.notices if each.code == "stroke-width-invalid"] == ["g 1", "line"]
+
+
 def test_attribute_rule_style_and_important_have_css_precedence():
     body = '<path id="p" d="M0 0H5" stroke-width="2"{}/>'
     assert width("", body.format("")) == 2

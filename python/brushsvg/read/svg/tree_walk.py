@@ -123,6 +123,8 @@ class TreeWalk:
                 )
         rules = self.rules.declarations_for(node, context.copied)
         style, problems = cascade(context.style, node.attrib, rules, context.diagonal)
+        if tag in shapes.TAGS and style.inherited["stroke"] == "none":  # ezdxf writes stroke-width: none next to it
+            problems = [problem for problem in problems if problem.code != "stroke-width-invalid"]
         if context.copied is not None and rules != self.rules.declarations_for(node):
             problems.append(Notice("", _COPY_SENTENCE, code="css-of-copies"))
         if node in self.layer_names and context.copied is None:
