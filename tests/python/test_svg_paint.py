@@ -154,6 +154,19 @@ def test_a_fill_keeps_its_colour_next_to_another_stroke_colour():
     assert [part.colour for part in design.elements[0].by_colour()] == ["#ff0000"]
 
 
+@pytest.mark.parametrize(
+    ("order", "is_on_top"),
+    [("stroke", False), ("markers stroke fill", False), ("markers", True), ("fill stroke", True), ("normal", True)],
+)
+def test_a_stroke_below_its_fill_is_reported(order, is_on_top):
+    """The stroke is painted last, which covers a part of the fill."""
+    shape = '<path id="p" d="M10 10h40v30z" fill="{}" stroke="#00f" stroke-width="4"/>'
+    for fill in ("#f00", "#00f", "none"):
+        design = read(f'<g style="paint-order:{order}">{shape.format(fill)}</g>')
+        expected = ["css-unread paint-order"] if fill == "#f00" and not is_on_top else []
+        assert are_reported(design.notices, *expected), design.notices
+
+
 @pytest.mark.parametrize("clip", ["", 'clip-path="url(#c)"'])
 def test_dashes_around_a_shape_leave_it_whole(clip):
     """Dashes around a shape leave the filled shape whole.

@@ -109,6 +109,10 @@ class PaintedElements:
             self.notes.add(node, context, sentence, code="white-paint")
         # A black fill by default is rarely intended next to a stroke of another colour.
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
+        order = properties["paint-order"].split()
+        if is_two and "stroke" in order and "fill" not in order[: order.index("stroke")]:
+            sentence = "paint-order is not read: its stroke is painted on top of its fill"
+            self.notes.add(node, context, sentence, code="css-unread", about="paint-order")
         if stroke == "none" and "width_mm" in context.settings:
             sentence = "data-brushsvg-width has no effect: it is a filled shape without a stroke"
             self.notes.add(node, context, sentence, code="width-without-effect", about="data-brushsvg-width")

@@ -28,6 +28,7 @@ INHERITED = {
     "clip-rule": "nonzero",
     "color": "#000000",
     "visibility": "visible",
+    "paint-order": "normal",
     "marker-start": "none",
     "marker-mid": "none",
     "marker-end": "none",
