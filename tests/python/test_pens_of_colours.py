@@ -55,7 +55,7 @@ def test_a_job_resumed_after_a_pen_change_does_not_stop_for_it(desk, capsys):
 def test_a_cell_without_pauses_reports_that_colours_are_drawn_as_one(desk, capsys):
     for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
         status, _, reported = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)
-        assert status == 0 and is_reported(reported, "colours-as-one")
+        assert status == 0 and is_reported(reported, "colours-as-one 'convert --per-colour'")
         assert call(capsys, "check", program, "pens.svg")[0] == 0
     one = replace(find_cell("linuxcnc-3axis"), name="one", pause_per_colour=False)
     (desk / "one.toml").write_text(write_cell(one))

@@ -371,7 +371,7 @@ def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[
     if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
         return []
     sentence = f"strokes of several colours are painted with one pen: {reason_for_no_waiting(cell)}"
-    return [Notice("", sentence, code="colours-as-one", advice="--per-colour writes a program for each")]
+    return [Notice("", sentence, code="colours-as-one", advice="convert --per-colour writes a program for each")]
 
 
 def painted_mm(a_pass: _core.Pass) -> float:
