@@ -175,6 +175,9 @@ def test_shapes_and_lines_are_no_wider_than_the_cell_can_press_the_brush(
     assert in_json(capsys, "check", program, "shape.svg", "--z-offset", offset)[0] == 0
     status, _, reported = in_json(capsys, "convert", "line.svg", "-o", program, "--force", *flags)
     assert status == 1 and is_reported(reported, f"width-out-of-reach 8.000 {widest_mm:.3f} {cell}", "l"), reported
+    (tmp_path / "line.svg").write_text(svg.format('<path id="l" d="M20 20H60" stroke="#000" stroke-width=".5"/>'))
+    status, _, reported = in_json(capsys, "convert", "line.svg", "-o", program, "--force", *flags)
+    assert status == 0 and is_reported(reported, f"depth-not-measured '0.84 to {widest_mm:.2g},'", "l"), reported
 
 
 def test_the_program_contains_only_words_grbl_knows():

@@ -106,7 +106,7 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
     unreached, missed, outside = _find_stray_paint(strokes, planned, brush, options)
     notices += (
         *planned.notices,
-        *add_width_advice(planned.painted, planned.done, brush, tried_compensation, line_elements),
+        *add_width_advice(planned.painted, planned.done, on_cell, tried_compensation, line_elements),
         *_report_other_brushes(strokes.targets, brush),
         *notices_of_areas(unreached),
         *notices_of_areas(missed),
@@ -146,11 +146,10 @@ def _limit_depth(brush, options: Options):
     if cell.servo:
         lowest_mm = max(lowest_mm, min(height for height, _ in cell.servo.table) - options.z_offset_mm)
     least_mm, greatest_mm = brush.depth_range_mm
-    deepest_mm = -lowest_mm - ROUNDING_MM
-    if not least_mm < deepest_mm < greatest_mm:
+    if not least_mm + ROUNDING_MM < -lowest_mm < greatest_mm:
         return brush
     limited = copy(brush)
-    limited.depth_range_mm = (least_mm, deepest_mm)
+    limited.depth_range_mm = (least_mm, -lowest_mm - ROUNDING_MM)
     limited.name = f"{brush.name} on cell {cell.name}"  # for messages about widths
     return limited
 

@@ -24,7 +24,8 @@ def add_width_advice(painted, compensation, brush, compensated, line_elements: s
     """
     laws = (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width)
     ranges = [law.calibrated_mm for law in laws if law.calibrated_mm] if brush.width_follows_depth() else []
-    measured = (max(low for low, _ in ranges), min(high for _, high in ranges)) if ranges else None
+    deepest_mm = brush.depth_range_mm[1]
+    measured = (max(low for low, _ in ranges), min(deepest_mm, *(high for _, high in ranges))) if ranges else None
     strokes_and_passes = zip(painted, compensation.plan.passes, strict=True)
     shallow_at_ends = {
         stroke.id
