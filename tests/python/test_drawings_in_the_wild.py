@@ -202,6 +202,7 @@ def clip(clips, body, more=""):
 
 
 CUT = LINE.replace("/>", ' clip-path="url(#Clip)"/>')
+MASKED = LINE.replace("/>", ' mask="url(#m)"/>')
 
 
 def spans(element):
@@ -246,6 +247,26 @@ def test_a_line_that_a_clip_path_cuts_lengthwise_is_reported():
     across = line.format("across", "M0 30h100") + line.format("slanted", "M60 0L100 40") + line.format("in", "M20 40h9")
     design = clip(window, along + across)
     assert are_reported(design.notices, "clipping-unread along '1 mm beyond'", "clipping-unread around '2 mm beyond'")
+
+
+@pytest.mark.parametrize(
+    ("kind", "fill", "is_read"),
+    [
+        ('style="mask-type:alpha"', "#D9D9D9", True),
+        ('mask-type="alpha"', "#000", True),
+        ('class="alpha"', "#D9D9D9", True),
+        ('style="mask-type:luminance"', "#fff", True),
+        ('style="mask-type:luminance"', "#D9D9D9", False),
+        ('style="mask-type:alpha"', "#D9D9D980", False),
+        ('style="mask-type:alpha"', "#fff' fill-opacity='.5", False),
+    ],
+)
+def test_masks_of_opaque_shapes_are_read_for_their_alpha(kind, fill, is_read):
+    """Figma writes each shape that is used as a mask as a grey one whose alpha counts."""
+    shape = f"<rect x='20' width='30' height='60' fill='{fill}' stroke='none'/>"
+    design = read(f'<style>.alpha{{mask-type:alpha}}</style><mask id="m" {kind}>{shape}</mask>{MASKED}')
+    assert np.ravel(spans(design.elements[0])) == pytest.approx([20, 50] if is_read else [10, 70])
+    assert are_reported(design.notices, *([] if is_read else ["clipping-unread line"]))
 
 
 def test_shapes_are_intersected_with_clip_paths():

@@ -102,7 +102,7 @@ class ClipPaths:
     def mask_region(
         self, value: str, context: Context, bounds: Callable[[], tuple[float, float, float, float] | None]
     ) -> shapely.Geometry | None:
-        """Return the visible region of a mask of white and black shapes.
+        """Return the visible region of a mask of white and black shapes, or of opaque ones if its alpha counts.
 
         The parameters, None and ClipPathError are as for region.
         """
@@ -112,7 +112,7 @@ class ClipPaths:
         target = find_referenced(url[1].strip().strip("\"'"), self._by_id) if url else None
         if url and (target is None or local_name(target) != "mask"):
             return None
-        if not url or "mask-type" in target.attrib or "mask-type" in target.get("style", ""):
+        if not url:
             raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
         matrix = context.matrix
         if target.get("maskContentUnits") == "objectBoundingBox":
@@ -121,8 +121,10 @@ class ClipPaths:
         visible = shapely.Polygon()
         inner = context._replace(matrix=matrix)
         style = self._style_of(target, context.diagonal)
+        is_alpha = style.own["mask-type"].lower() == "alpha"
         for shape_style, region in self._shapes(target, inner, style, 0, "fill-rule"):
-            visible = visible.union(region) if _is_white(shape_style) else visible.difference(region)
+            is_visible = _is_white(shape_style, is_alpha)
+            visible = visible.union(region) if is_visible else visible.difference(region)
         if rectangle_region is not None:
             visible = visible.intersection(rectangle_region)
         return self._clip_by_own_path(style, context, visible, 0)
@@ -236,15 +238,18 @@ def _refuse_effects(style: Style) -> None:
         raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
 
 
-def _is_white(style: Style) -> bool:
+def _is_white(style: Style, is_alpha: bool) -> bool:
     """Whether a shape of a mask is white, so that the element is visible there.
 
+    is_alpha: whether the alpha of the mask counts in place of its luminance, so that every opaque colour is as white.
     Raises ClipPathError for a shape that is neither white nor black.
     """
     _refuse_effects(style)
     fill, is_opaque = style.inherited["fill"] or "#000000", style.inherited["fill-opacity"] == "1"
     if fill == "currentcolor":
         fill = style.inherited["color"]
+    if is_alpha and fill.startswith("#") and len(fill) == len("#rrggbb"):
+        fill = "#ffffff"
     if not is_opaque or fill not in ("#ffffff", "#000000") or style.inherited["stroke"] != "none":
         raise ClipPathError(_MASK_UNREAD, code="clipping-unread")
     return fill == "#ffffff"

@@ -39,6 +39,7 @@ OWN = {
     "vector-effect": "none",
     "clip-path": "none",
     "mask": "none",
+    "mask-type": "luminance",
     "filter": "none",
     "overflow": "",
 }
