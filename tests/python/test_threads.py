@@ -1,5 +1,7 @@
 """Several jobs in threads of one process each end as they do alone."""
 
+import subprocess
+import sys
 import threading
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 
@@ -68,3 +70,25 @@ def test_cancelling_one_job_does_not_cancel_the_others(desk):
         cancelled = list(pool.map(given_up, range(3)))
         assert all(cancelled)
         assert [each.result() for each in others] == [alone] * 3
+
+
+ARM_JOBS = """
+import sys, threading
+from concurrent.futures import ThreadPoolExecutor
+import brushsvg
+start = threading.Barrier(4)
+
+def text(cell):
+    start.wait()
+    return brushsvg.convert("line.svg", cell=cell).texts
+
+with ThreadPoolExecutor(4) as pool:
+    a, b, *others = pool.map(text, ["ur5e", "ur5e", "kr6-r900", "kr6-r900"])
+assert a == b and others[0] == others[1]
+"""
+
+
+def test_the_first_jobs_of_a_process_may_be_for_arms_in_threads(desk):
+    """Only a new process shows this: the library that solves the joints fills its tables at the first use."""
+    done = subprocess.run([sys.executable, "-c", ARM_JOBS], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

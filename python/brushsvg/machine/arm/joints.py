@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -40,6 +41,10 @@ def is_installed() -> bool:
     return importlib.util.find_spec("ssik") is not None
 
 
+# ssik fills its tables at the first use. Another thread that uses ssik at that moment finds half of the entries.
+_solver_lock = threading.Lock()
+
+
 @lru_cache(maxsize=8)
 def joints_of(arm: Arm) -> JointSolver:
     """Make the solver for the joint angles of an arm.
@@ -50,7 +55,8 @@ def joints_of(arm: Arm) -> JointSolver:
         import ssik
     except ImportError:
         raise missing_packages_error("the joints of an arm need", "ssik") from None
-    return JointSolver(arm, _solver_of_prebuilt(arm, ssik) if arm.prebuilt else _solver_of_links(arm, ssik))
+    with _solver_lock:
+        return JointSolver(arm, _solver_of_prebuilt(arm, ssik) if arm.prebuilt else _solver_of_links(arm, ssik))
 
 
 def joint_frames_of(arm: Arm, joints_rad: np.ndarray) -> np.ndarray:
