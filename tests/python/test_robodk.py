@@ -3,6 +3,9 @@
 Moves that the post cannot make are refused.
 """
 
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -95,6 +98,12 @@ def test_a_tilted_brush_is_written_as_single_poses():
         ('print("SAVED")', "return", "post-failed 0"),
         ("class RobotPost", "import nowhere\n\n\nclass RobotPost", "post-failed nowhere"),
         ("def ", "de ", "post-failed SyntaxError"),
+        ('file.write("\\n".join', 'file.write("" and "\\n".join', "post-failed ProgSave"),
+        (
+            '.{self.PROG_EXT}", "w") as file:',
+            '.{self.PROG_EXT}", "w", encoding="utf-16") as file:',
+            "post-failed UTF-8",
+        ),
     ],
 )
 def test_a_post_that_fails_is_refused(tmp_path, old, new, expected):
@@ -103,6 +112,25 @@ def test_a_post_that_fails_is_refused(tmp_path, old, new, expected):
     (tmp_path / "post.py").write_text(text.replace(old, new, 1))
     with refused(expected):
         text_for(cell_with(tmp_path / "post.py"))
+
+
+def test_posts_in_threads_leave_the_standard_output_as_it_was(capsys):
+    """Another thread prints while four posts run."""
+    before, is_over = sys.stdout, threading.Event()
+
+    def count_lines() -> int:
+        lines = 0
+        while not is_over.is_set():
+            print("other thread")
+            lines += 1
+        return lines
+
+    with ThreadPoolExecutor(5) as pool:
+        counter = pool.submit(count_lines)
+        texts = list(pool.map(lambda _: text_for(cell_with(POST)), range(12)))
+        is_over.set()
+    assert sys.stdout is before and len(set(texts)) == 1
+    assert capsys.readouterr().out == "other thread\n" * counter.result(), "and nothing of the posts"
 
 
 def test_a_missing_post_and_tables_of_other_languages_are_refused(tmp_path):

@@ -8,9 +8,9 @@ from __future__ import annotations
 import ast
 import contextlib
 import importlib.util
-import io
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -43,7 +43,7 @@ def robodk(program: Program) -> Iterator[str]:
     Raises Error for everything that the post cannot do, and if it logs anything.
     """
     where = program.cell.robodk.post
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+    with tempfile.TemporaryDirectory() as folder, _silence_this_thread():
         try:
             module = _load_post(where)
             post = module.RobotPost(PROGRAM_NAME, program.cell.name, AXIS_COUNT)
@@ -64,8 +64,56 @@ def robodk(program: Program) -> Iterator[str]:
         if len(saved_files) != 1:
             sentence = f"the post {where} has saved {len(saved_files)} files, not one"
             raise Error(sentence, where="robodk.post", code="post-failed")
-        text = saved_files[0].read_bytes().decode("utf-8", "replace")
-    yield text
+        saved = saved_files[0].read_bytes()
+    yield _decode_saved(saved, where)
+
+
+class _OtherThreads:
+    """A standard output that prints the text of all threads but one."""
+
+    stdout = None
+    silent_thread = 0
+
+    def write(self, text: str) -> int:
+        if self.stdout is None or threading.get_ident() == self.silent_thread:
+            return len(text)
+        return self.stdout.write(text)
+
+    def __getattr__(self, name: str):
+        return getattr(self.stdout, name)
+
+
+# sys.stdout and sys.path belong to all threads. Two posts that set and reset them at the same moment would leave the
+# value of the other one behind.
+_post_lock = threading.Lock()
+# There is one such object, and it is never freed: until Python 3.12, print() crashes if another thread frees the
+# object that it prints to.
+_other_threads = _OtherThreads()
+
+
+@contextlib.contextmanager
+def _silence_this_thread() -> Iterator[None]:
+    """Drop what this thread prints. Only one thread at a time can do so."""
+    with _post_lock:
+        _other_threads.stdout, _other_threads.silent_thread = sys.stdout, threading.get_ident()
+        try:
+            with contextlib.redirect_stdout(_other_threads):
+                yield
+        finally:
+            _other_threads.silent_thread = 0
+
+
+def _decode_saved(saved: bytes, where: str) -> str:
+    """Return the text of the saved file. Raises Error if it is empty, or not UTF-8."""
+    if not saved.strip():
+        sentence = f"the post {where} has saved an empty file: let ProgSave write the program"
+        raise Error(sentence, where="robodk.post", code="post-failed")
+    try:
+        return saved.decode()
+    except UnicodeDecodeError as error:
+        line = saved.count(b"\n", 0, error.start) + 1
+        sentence = f"the post {where} has saved line {line} in another encoding than UTF-8: save with encoding='utf-8'"
+        raise Error(sentence, where="robodk.post", code="post-failed") from None
 
 
 def find_sources(where: str) -> list[str]:
