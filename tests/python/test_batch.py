@@ -12,7 +12,7 @@ import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import CancelledError, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -529,6 +529,34 @@ def test_a_lost_worker_is_reported_and_finished_rows_are_kept(desk, monkeypatch)
     with refused("worker-lost"):
         brushsvg.batch(["in/1.svg", "in/2.svg"], "out", jobs=1)
     assert Path("out/programs/1.ngc").exists()
+
+
+class Breaks(ThreadPoolExecutor):
+    """An executor that breaks after the first task, as a pool does whose process dies between two tasks."""
+
+    submitted = 0
+
+    def submit(self, *task):
+        self.submitted += 1
+        if self.submitted > 1:
+            raise BrokenExecutor("broken")
+        return super().submit(*task)
+
+
+def test_a_worker_lost_between_two_drawings_is_reported(desk):
+    with refused("worker-lost in/2.svg"), Breaks(1) as executor:
+        brushsvg.batch(["in/1.svg", "in/2.svg"], "out", executor=executor)
+
+
+@pytest.mark.parametrize("is_file", [True, False])
+def test_a_script_that_runs_again_in_each_worker_gets_one_sentence(desk, is_file):
+    """The script has no `if __name__ == "__main__":`, or comes from the standard input."""
+    script = 'import brushsvg\nbrushsvg.batch(["in/1.svg", "in/2.svg"], "out", jobs=2)\n'
+    Path("script.py").write_text(script)
+    command = [sys.executable, "script.py" if is_file else "-"]
+    done = subprocess.run(command, input=script, capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and done.stderr.count("Traceback") == 1, "none of a worker"
+    assert "ThreadPoolExecutor" in done.stderr.splitlines()[-1] and "__main__" in done.stderr.splitlines()[-1]
 
 
 def test_parquet_contains_the_same_table_as_csv(desk, monkeypatch):

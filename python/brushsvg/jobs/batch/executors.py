@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
@@ -14,22 +15,36 @@ from ...errors import Error, missing_packages_error
 MAX_SCHEDULER_WAIT_S = 10  # how long to wait for an answer of the scheduler, in seconds
 
 
+NO_WORKER = (
+    "no worker process can start, because each one first runs your script again: save it as a file with its calls "
+    'below `if __name__ == "__main__":`, or give batch executor=ThreadPoolExecutor()'
+)
+
+
 @contextmanager
 def start_processes(jobs: int) -> Iterator[Executor]:
     """Yield an executor with this number of processes.
 
     The processes end with the context, even in the middle of their work, and also if this process is killed. For
-    this, each worker holds one end of a pipe, and only this process holds the other end.
+    this, each worker holds one end of a pipe, and only this process holds the other end. A worker that is ready
+    writes into its end.
+
+    Raises Error if no worker can run the user's script. Replaces the Error worker-lost if no worker was ever ready.
     """
+    if getattr(sys.modules["__main__"], "__file__", "") == "<stdin>":
+        raise Error(NO_WORKER, code="worker-lost")
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    worker_end, own_end = context.Pipe(duplex=False)
+    worker_end, own_end = context.Pipe()
     pool = ProcessPoolExecutor(jobs, context, initializer=_end_with_parent, initargs=(worker_end,))
     try:
         yield pool
-    except BaseException:
+    except BaseException as problem:
+        was_ready = own_end.poll()
         own_end.close()
         pool.shutdown(wait=False, cancel_futures=True)
+        if isinstance(problem, Error) and problem.code == "worker-lost" and not was_ready:
+            raise Error(NO_WORKER, code="worker-lost") from None
         raise
     else:
         pool.shutdown()
@@ -38,14 +53,25 @@ def start_processes(jobs: int) -> Iterator[Executor]:
         worker_end.close()
 
 
+def end_repeated_script() -> None:
+    """End this process without a word if it is a worker that runs the user's script before its work.
+
+    The script has no `if __name__ == "__main__":`, so each worker would run the whole batch again. multiprocessing
+    itself recognizes such a process in this way.
+    """
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise SystemExit(1)
+
+
 def _end_with_parent(pipe) -> None:
-    """End this worker process when its parent closes the pipe or dies.
+    """Report that this worker process is ready, and end it when its parent closes the pipe or dies.
 
     Ctrl-C is ignored here, because the parent handles it.
     """
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    pipe.send_bytes(b"ready")
 
     def wait() -> None:
         pipe.poll(None)

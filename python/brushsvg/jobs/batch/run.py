@@ -88,7 +88,7 @@ def batch(
     executor: any executor of concurrent.futures; it receives functions and values that can be pickled, and is not
         shut down.
     jobs: the number of processes if there is no executor, by default one for each processor. A script that starts
-        processes needs `if __name__ == "__main__":`.
+        processes must be a file, and needs `if __name__ == "__main__":`.
     cluster: the address of a Dask scheduler, to use in place of processes. Rows and files are the same in any
         process.
     format: the extension of the programs, by default the first one of the cell's language.
@@ -117,6 +117,8 @@ def batch(
         require_type(cluster, str, "the address of a scheduler")
     if progress is not None:
         require_type(progress, Callable, "a callable, which progress is")
+    if executor is None and cluster is None:
+        executors.end_repeated_script()
     is_cancelled = getattr(cancel, "is_set", cancel) or (lambda: False)
     require_type(is_cancelled, Callable, "a callable or an event, which cancel is")
     if "corrections" in choices:
@@ -242,7 +244,10 @@ def _convert_remaining(
                 except Error as refusal:
                     yield index, TaskResult(None, {}, b"", refusal.where, str(refusal), refusal.code)
                     continue
-                future = executor.submit(convert_task, task)
+                try:
+                    future = executor.submit(convert_task, task)
+                except BrokenExecutor as broken:
+                    raise _make_lost_worker_error(items[index], broken) from None
                 pending[future] = index, len(task.drawing.data)
                 future.add_done_callback(finished.put)
             if not pending:
@@ -264,12 +269,16 @@ def _get_result(future: Future, item: Item, version: str) -> TaskResult:
     try:
         result = future.result()
     except BrokenExecutor as broken:
-        sentence = f"a worker died, over {item.source} or another one; what was done before is kept: {broken}"
-        raise Error(sentence.splitlines()[0], code="worker-lost") from None
+        raise _make_lost_worker_error(item, broken) from None
     if result.version != version:
         sentence = f"the worker has version {result.version} of brushsvg, not {version}"
         raise Error(sentence, code="version-unknown")
     return result
+
+
+def _make_lost_worker_error(item: Item, broken: BrokenExecutor) -> Error:
+    sentence = f"a worker died, over {item.source} or another one; what was done before is kept: {broken}"
+    return Error(sentence.splitlines()[0], code="worker-lost")
 
 
 class _TakenPlaces:
