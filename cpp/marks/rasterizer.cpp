@@ -24,13 +24,20 @@ constexpr Eigen::Index kPixelsAtOnce = 1 << 18;  // size of a part of a picture 
 }  // namespace
 
 std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm) {
-    const double w = std::ceil(window.width_mm * px_per_mm - 1e-9), h = std::ceil(window.height_mm * px_per_mm - 1e-9);
-    if (!(px_per_mm >= kPxPerMm[0] && px_per_mm <= kPxPerMm[1] && w >= 1.0 && h >= 1.0 && w * h <= kMostPixels &&
-          std::abs(window.x_mm) <= kFarthestPaintedMm && std::abs(window.y_mm) <= kFarthestPaintedMm)) {
-        char text[120];
-        std::snprintf(text, sizeof text, "a picture of %.0f x %.0f px cannot be made", w, h);
+    const auto refuse = [](const char* pattern, auto... numbers) {
+        char text[160];
+        std::snprintf(text, sizeof text, pattern, numbers...);
         throw Error("picture-size", text);
-    }
+    };
+    if (!(px_per_mm >= kPxPerMm[0] && px_per_mm <= kPxPerMm[1]))
+        refuse("the scale of the picture, %g px/mm, is outside the range [%g, %g] px/mm", px_per_mm, kPxPerMm[0],
+               kPxPerMm[1]);
+    if (!(std::abs(window.x_mm) <= kFarthestPaintedMm && std::abs(window.y_mm) <= kFarthestPaintedMm))
+        refuse("the corner of the picture, (%g, %g) mm, is outside the range [-%g, %g] mm", window.x_mm, window.y_mm,
+               kFarthestPaintedMm, kFarthestPaintedMm);
+    const double w = std::ceil(window.width_mm * px_per_mm - 1e-9), h = std::ceil(window.height_mm * px_per_mm - 1e-9);
+    if (!(w >= 1.0 && h >= 1.0 && w * h <= kMostPixels))
+        refuse("the picture has %.10g x %.10g px, outside the range of 1 x 1 to %g px in all", w, h, kMostPixels);
     return {Eigen::Index(w), Eigen::Index(h)};
 }
 

@@ -144,6 +144,8 @@ double reported_overlap(const Pass& pass, const Stroke& stroke, const Brush& bru
 }  // namespace
 
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options) {
+    const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
+    if (!anywhere) check_sheet(options.sheet_mm);
     RefinedPass closed;
     CompensateOptions how{Compensation::closed, options.tolerance_mm, {}, options.speed_mm_s};
     how.start = options.start;
@@ -165,7 +167,6 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     const auto stays = [&](const std::array<double, 4>& box, const std::array<double, 4>& before, double reach) {
         return beyond(box, options.sheet_mm) <= std::max(reach, beyond(before, options.sheet_mm));
     };
-    const bool anywhere = options.sheet_mm == std::array<double, 2>{0.0, 0.0};
     // the turned ends are round already
     if (!turned_round(simulate(dense, brush, 0.02, false)).empty()) return closed;
     const Terminal end = stroke.settings.end ? terminal_named(*stroke.settings.end, stroke.id) : options.end;

@@ -37,7 +37,7 @@ struct RefinedPass {
 /// mark overlaps better by the report's own measure and stays in bounds. Its outline must not turn more or have thorns:
 /// a full turn counts as 0.1 of overlap, a thorn as 0.02. Where the whole step is not calm, parts of it are tried, and
 /// then smaller steps. The tracking error is measured from the drawn middle line, which the plan leaves on purpose.
-/// Throws Error as compensate() does.
+/// Throws Error as compensate() does, and for a sheet with a side that is not greater than 0.
 RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions& options = {});
 
 }  // namespace brushsvg::fit

@@ -396,6 +396,8 @@ Ring convex_hull(const Ring& points) {
 }
 
 std::vector<double> clearance(const Rings& rings, const Ring& points) {
+    require_finite(points);
+    for (const Ring& ring : rings) require_finite(ring);
     Rings closed;
     for (const Ring& ring : rings)
         if (ring.rows() > 0) closed.push_back(both(ring, ring.row(0)));
@@ -414,6 +416,9 @@ std::vector<double> first_crossings(const Rings& rings, const Ring& places, cons
     if (ways.rows() != places.rows())
         throw Error("sizes-differ",
                     std::to_string(ways.rows()) + " ways for " + std::to_string(places.rows()) + " places");
+    require_finite(places);
+    require_finite(ways);
+    for (const Ring& ring : rings) require_finite(ring);
     std::vector<double> nearest(std::size_t(places.rows()), std::numeric_limits<double>::infinity());
     for (Eigen::Index k = 0; k < places.rows(); ++k) {
         const Eigen::Vector2d way = ways.row(k).transpose();

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/parallel.hpp"
+#include "base/within.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/error.hpp"
@@ -525,6 +526,7 @@ class Search {
 
 std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                           const ObjectiveWeights& weights, bool are_free) {
+    check(weights);
     std::vector<SearchedShape> found(shapes.size());
     on_all_processors(0, shapes.size(), [&](std::size_t k) {
         found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free);
@@ -534,6 +536,7 @@ std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shape
 
 std::vector<std::vector<UncoveredArea>> uncovered_areas(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                                         double least_share) {
+    require_within(least_share, {0.0, 1.0}, "the least share of a shape's area");
     std::vector<std::vector<UncoveredArea>> found(shapes.size());
     const ObjectiveWeights weights;
     on_all_processors(0, shapes.size(), [&](std::size_t k) {

@@ -8,6 +8,7 @@
 #include "brushsvg/simulate.hpp"
 #include "marks/rasterizer.hpp"
 #include "marks/sweep.hpp"
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -97,6 +98,13 @@ TEST_CASE("bounds contain every ring") {
 TEST_CASE("an impossible picture size is refused") {
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 0, 10}, 20.0), Error);
     CHECK_THROWS_AS(coverage(Rings{}, Window{0, 0, 1e6, 1e6}, 20.0), Error);
+    const double nan = std::nan("");
+    const auto picture = [](const Window& window, double px_per_mm) {
+        return refusal([&] { coverage(Rings{}, window, px_per_mm); });
+    };
+    CHECK(agrees(picture({0, 0, -10, 10}, 20.0), "picture-size", "", {"-200 x 200"}));
+    CHECK(agrees(picture({nan, 0, 10, 10}, 20.0), "picture-size", "", {"corner", "nan"}));
+    CHECK(agrees(picture({0, 0, 10, 10}, nan), "picture-size", "", {"scale", "nan"}));
 }
 
 TEST_CASE("the coverage of overlapping convex pieces is the coverage of their union") {

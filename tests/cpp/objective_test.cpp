@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "brushsvg/error.hpp"
+#include "refusal.hpp"
 
 using namespace brushsvg;
 
@@ -11,6 +14,17 @@ TEST_CASE("the more detail, the less a stroke costs") {
     CHECK(weights_for(Detail::normal).stroke == ObjectiveWeights().stroke);
     CHECK(draft > ObjectiveWeights().stroke);
     CHECK(fine < ObjectiveWeights().stroke);
+}
+
+TEST_CASE("weights and depths outside their ranges are refused") {
+    check(ObjectiveWeights());
+    check(weights_for(Detail::fine));
+    ObjectiveWeights weights;
+    weights.seen_mm = -1.0;
+    CHECK(agrees(refusal([&] { check(weights); }), "out-of-range", "seen_mm", {"-1", "0", "1000"}));
+    weights = {};
+    weights.missing = std::nan("");
+    CHECK(agrees(refusal([&] { check(weights); }), "out-of-range", "missing", {"nan"}));
 }
 
 TEST_CASE("an unknown detail setting is refused") {

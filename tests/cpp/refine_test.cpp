@@ -11,6 +11,7 @@
 #include "brushsvg/target_mark.hpp"
 #include "painted_edge.hpp"
 #include "patch_path.hpp"
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -304,4 +305,15 @@ TEST_CASE("refined plans keep paint and tool on the sheet") {
     const RefinedPass half = refine(s, brush, on_sheet);
     CHECK(painted_bounds(simulate(half.plan.pass, brush), brush)[3] <=
           painted_bounds(simulate(compensate(s, brush).pass, brush), brush)[3] + 1e-9);
+}
+
+TEST_CASE("a sheet without a size is refused, none has no limits") {
+    const Brush brush = shipped("round-6");
+    RefineOptions options;
+    options.iterations = 1;
+    CHECK_FALSE(refusal([&] { refine(line(), brush, options); }));
+    for (const double side : {-3.0, 0.0, std::nan("")}) {
+        options.sheet_mm = {side, 60.0};
+        CHECK(agrees(refusal([&] { refine(line(), brush, options); }), "out-of-range", "sheet_mm"));
+    }
 }

@@ -211,3 +211,14 @@ TEST_CASE("outlines that cross themselves fill both lobes of an eight, and the m
     CHECK(whole == doctest::Approx(112.2570).epsilon(1e-4));        // 10 r^2 sin(36) sin(18) / sin(126)
     CHECK(whole - rays == doctest::Approx(34.6894).epsilon(1e-4));  // the pentagon inside
 }
+
+TEST_CASE("distances and crossings of coordinates that are not finite are refused") {
+    const Ring sound = Ring::Random(4, 2);
+    Ring damaged = sound;
+    damaged(1, 1) = std::nan("");
+    for (const auto& [ring, points] : {std::pair(damaged, sound), std::pair(sound, damaged)}) {
+        CHECK(agrees(refusal([&] { clearance({ring}, points); }), "not-finite", ""));
+        CHECK(agrees(refusal([&] { first_crossings({ring}, points, points); }), "not-finite", ""));
+    }
+    CHECK(agrees(refusal([&] { first_crossings({sound}, sound, damaged); }), "not-finite", ""));
+}

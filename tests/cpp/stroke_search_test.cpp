@@ -3,11 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/region.hpp"
 #include "brushsvg/simulate.hpp"
+#include "refusal.hpp"
 #include "round6.hpp"
 
 using namespace brushsvg;
@@ -122,4 +124,17 @@ TEST_CASE("unpainted areas above a share of the shape are found, the largest fir
     CHECK(found[0][0].mm2 == doctest::Approx(17 * 7).epsilon(0.1));
     CHECK(std::abs(found[0][0].place_mm.x() - 25.5) < 6.0);
     CHECK(uncovered_areas(painted, brush, 0.5)[0].empty());
+}
+
+TEST_CASE("weights and shares that are not possible are refused") {
+    const Brush brush = shipped("round-6");
+    const Rings shape{box(10, 10, 34, 50)};
+    const Stroke stem = straight({13.5, 46.5}, {13.5, 13.5}, 3.5);
+    const std::vector<PaintedShape> painted{{shape, {stem}, {pass_of(stem, brush)}}};
+    ObjectiveWeights weights;
+    weights.seen_mm = -1.0;  // once wrote beyond the end of a picture
+    CHECK(agrees(refusal([&] { search_strokes(painted, brush, weights); }), "out-of-range", "seen_mm"));
+    CHECK(agrees(refusal([&] { uncovered_areas(painted, brush, std::nan("")); }), "out-of-range", ""));
+    weights.seen_mm = 1000.0;
+    CHECK(search_strokes(painted, brush, weights).size() == 1);
 }

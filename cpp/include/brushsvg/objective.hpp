@@ -29,6 +29,9 @@ struct ObjectiveWeights {
     double stroke = 0.1;
 };
 
+/// Throw Error for a weight outside [0, 1e6], or a depth outside [0, 1000] mm.
+void check(const ObjectiveWeights& weights);
+
 /// Level of detail: how small an area of a shape may be to get a stroke of its own.
 enum class Detail { draft, normal, fine };
 inline constexpr std::array<std::pair<std::string_view, Detail>, 3> kDetails{

@@ -43,12 +43,14 @@ Rings pieces_between(const Rings& chain);
 Ring convex_hull(const Ring& points);
 
 /// Return the distance [mm] of each point from the outline, on either side of it.
+///
+/// Throws Error for a coordinate that is not finite.
 std::vector<double> clearance(const Rings& rings, const Ring& points);
 
 /// Return how far ahead of each place an outline is first crossed [mm].
 ///
 /// `ways`: the unit direction in which to look, for each place. Infinite if no outline is crossed. Throws Error if
-/// there are not as many directions as places.
+/// there are not as many directions as places, and for a coordinate that is not finite.
 std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways);
 
 }  // namespace brushsvg

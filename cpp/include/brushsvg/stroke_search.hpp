@@ -43,7 +43,7 @@ struct SearchedShape {
 /// the edge of the shape, from a corner inwards, or across.
 ///
 /// `are_free`: true if strokes may get another path, false if strokes are only added. The result does not depend on the
-/// number of threads.
+/// number of threads. Throws Error as check(weights) does.
 std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                           const ObjectiveWeights& weights = {}, bool are_free = true);
 
@@ -56,7 +56,7 @@ struct UncoveredArea {
 
 /// Find the areas of each shape that its passes leave without paint.
 ///
-/// `least_share`: the least area, as a share of the shape's area. The largest areas are first.
+/// `least_share`: the least area, as a share of the shape's area, from 0 to 1. The largest areas are first.
 std::vector<std::vector<UncoveredArea>> uncovered_areas(const std::vector<PaintedShape>& shapes, const Brush& brush,
                                                         double least_share);
 
