@@ -152,6 +152,8 @@ TEST_CASE("fit_marks refuses invalid sheets") {
         {"a stroke of a kilometre", [](Sheet& s) { s.marks[1].poses_mm(1, 0) = 1e6; }},
         {"no terms", [](Sheet& s) { s.options.half_width_terms = 0; }},
         {"five terms", [](Sheet& s) { s.options.lag_terms = 5; }},
+        {"minus three terms of a ratio", [](Sheet& s) { s.options.widest_terms = -3; }},
+        {"no terms of the other ratio", [](Sheet& s) { s.options.front_terms = 0; }},
         {"no iterations", [](Sheet& s) { s.options.most_iterations = -1; }},
         {"start of nothing", [](Sheet& s) { s.start = MarkLaws{{kNan}, {}, {}}; }},
     };

@@ -77,8 +77,10 @@ void refuse_law_prior(const MarkOptions& options) {
 
 void refuse_what_cannot_be_fitted(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     if (marks.empty()) throw Error("measurement-missing", "there is no painted mark");
-    for (const auto& [terms, name] : {std::pair{options.lag_terms, "lag"}, std::pair{options.tip_gap_terms, "tip_gap"},
-                                      std::pair{options.half_width_terms, "half_width"}})
+    for (const auto& [terms, name] :
+         {std::pair{options.lag_terms, "lag"}, std::pair{options.tip_gap_terms, "tip_gap"},
+          std::pair{options.half_width_terms, "half_width"}, std::pair{options.widest_terms, "widest_terms"},
+          std::pair{options.front_terms, "front_terms"}})
         if (terms < 1 || terms > 4)
             throw Error("law-terms", std::to_string(terms) + " numbers are outside the range [1, 4] for a law", name);
     refuse_options(options);

@@ -66,7 +66,7 @@ struct MarkOptions {
     double deepest_mm = 10.0;  ///< the laws are fitted on [0, deepest]
     /// Coefficients per law, at most four: r = c0 + ..., b and h through 0; h never falls.
     int lag_terms = 4, tip_gap_terms = 1, half_width_terms = 2;
-    int widest_terms = 1, front_terms = 1;  ///< coefficients of the ratios
+    int widest_terms = 1, front_terms = 1;  ///< coefficients of the ratios, one to four
     /// Laws may depart from these coefficients as far as the marks require it, and the intervals include departures.
     bool departing = true;
     Prior widest_per_half{1.8, 0.5};  ///< the shape that the project assumes of round brushes, and round-6's spread
