@@ -3,6 +3,7 @@
 Both return the same brush, the same report and the same refusals.
 """
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -78,6 +79,11 @@ def test_an_unknown_option_is_a_type_error(table):
 
 def test_type_checkers_know_every_option():
     assert [*GivenOptions.__annotations__] == [*CalibrationOptions.__dataclass_fields__]
+
+
+def test_help_lists_every_option():
+    listed = re.findall(r"^ *(\w+):", brushsvg.calibrate.__doc__, re.M)
+    assert listed == ["source", "name", "progress", *CalibrationOptions.__dataclass_fields__]
 
 
 def test_a_list_of_one_file_equals_the_file(table):

@@ -19,13 +19,19 @@ CLASSES = [name for name, _ in inspect.getmembers(_core, inspect.isclass)]
 # A stub cannot express these: classes have pybind11's own metaclass, classes without a constructor accept any
 # arguments in order to refuse them, and only the stub has __all__.
 BEYOND_STUBS = [rf"brushsvg\._core\.({'|'.join(CLASSES)})(\.__init__)?", r"brushsvg\._core(\.lag)?\.__all__"]
-PROGRAM = """import brushsvg
+PROGRAM = """from pathlib import Path
+
+import brushsvg
 
 drawing = brushsvg.read_drawing("a.svg")
 strokes, notices = brushsvg.strokes(drawing)
 brush = brushsvg.find_brush("round-6")
 done = brushsvg.compensate(strokes, brush, drawing.sheet_mm)
 first = done.plan.passes[0]
+made = brushsvg.calibrate(
+    ["a.jpg"], chart=Path("c.json"), brush=Path("b.json"), machine=["axes", "lean"], cell=Path("c.toml")
+)
+made = brushsvg.calibrate(Path("b.jpg"), plan=Path("p.json"), prior=Path("b.json"))
 print(first.poses_mm[:, 2].min(), brush.lag.coefficients[0] + 1.0, done.warnings[0].sentence)
 """
 

@@ -92,8 +92,8 @@ class GivenOptions(TypedDict, total=False):
 
     absolute: bool
     total: bool
-    machine: tuple[str, ...]
-    cell: str | Cell
+    machine: tuple[str, ...] | list[str]
+    cell: str | os.PathLike[str] | Cell
     paint: bool
     aim: Literal["edges", "overlap"]
     chart: str | os.PathLike[str] | Chart
@@ -102,9 +102,9 @@ class GivenOptions(TypedDict, total=False):
     mirrored: bool
     height_mm: float
     spread: str | os.PathLike[str]
-    brush: str | _core.Brush
+    brush: str | os.PathLike[str] | _core.Brush
     plan: str | os.PathLike[str] | _core.Plan
-    prior: str | _core.Brush
+    prior: str | os.PathLike[str] | _core.Brush
 
 
 @dataclass(frozen=True)
@@ -200,7 +200,29 @@ def calibrate(
         one painted chart or job.
     name: the name of the brush, by default the name in the measurements or of the first file.
     progress: called with words on the progress.
-    options: see CalibrationOptions. A Chart replaces its chart.json, and a Plan its plan.json.
+
+    The options for measured numbers:
+    absolute: bool, minimize absolute residuals instead of squares.
+    total: bool, use total least squares for series of angles.
+
+    The options for painted marks and photographs:
+    machine: a list of "lean", "axes", "tilt", "backlash", "field", to estimate as well.
+    cell: a name, path or Cell; only parts of the machine that this cell can undo are estimated.
+    paint: bool, estimate how marks narrow along the way.
+    aim: "edges", "overlap".
+
+    The options for photographs of a chart:
+    chart: the path of its chart.json, or the Chart.
+    bar_mm: the measured length of the printed bar.
+    dpi: the resolution of a flatbed scan without a printed page.
+    mirrored: bool, the photograph was taken through a clear sheet.
+    height_mm: the standard deviation of the height of the paper.
+    spread: the path of a .json of `compare --sheets`.
+    brush: a name, path or Brush, whose lag (for dabs) or outlines (for strokes) are known.
+
+    The options for photographs of a job:
+    plan: the path of the painted plan.json, or the Plan.
+    prior: a name, path or Brush, the brush that painted it.
 
     Raises Error for a file that cannot be read, and for options that contradict each other. Measurements that leave
     a law undetermined, or that no brush can have, also raise Error.
