@@ -108,6 +108,26 @@ def names_in(folder: Path, suffix: str) -> list[str]:
     return sorted(path.stem for path in folder.glob(f"*{suffix}"))
 
 
+def find_file_used_twice(read: Iterable[object], written: Iterable[object]) -> str:
+    """Return the first written path that is also read, or written before; "" if there is none.
+
+    read, written: paths, in any spelling. Everything else, such as None or a Brush, is no path.
+    """
+    used_paths = {_real_path(path) for path in read if isinstance(path, str | os.PathLike)}
+    for path in (path for path in written if isinstance(path, str | os.PathLike)):
+        if _real_path(path) in used_paths:
+            return os.fspath(path)
+        used_paths.add(_real_path(path))
+    return ""
+
+
+def _real_path(path: str | os.PathLike[str]) -> str:
+    try:
+        return os.path.realpath(path)
+    except ValueError:  # no file can have this name, such as one with a NUL
+        return os.fspath(path)
+
+
 def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[str]]) -> None:
     """Write data to all of the paths or to none of them.
 

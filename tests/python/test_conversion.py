@@ -187,6 +187,26 @@ def test_a_refusal_is_one_error_and_writes_nothing(desk, choices, expected):
     )
 
 
+@pytest.mark.parametrize(
+    ("out", "written"),
+    [
+        ("a.ngc", {"picture": "./a.svg"}),
+        ("a.ngc", {"page": Path("link.svg")}),
+        ("a.ngc", {"picture": "new.svg", "page": "below/../new.svg"}),
+        ("new.json", {"report": "new.json"}),
+        ("a.ngc", {"report": "brush.json", "brush": Path("brush.json")}),
+    ],
+)
+def test_a_file_that_is_read_or_written_twice_is_refused(desk, out, written):
+    brushsvg.save_brush(brushsvg.find_brush("round-6"), "brush.json")
+    Path("a.svg").write_text(TWO)
+    Path("link.svg").symlink_to("a.svg")
+    before = {path.name: path.read_bytes() for path in Path().iterdir() if path.is_file()}
+    with refused("options-contradict"):
+        brushsvg.convert("a.svg", out, **written)
+    assert before == {path.name: path.read_bytes() for path in Path().iterdir() if path.is_file()}
+
+
 def test_arrays_are_accepted_like_lists(desk):
     given = {"sheet": (150, 120), "fit": (60, 40), "origin": (30, 35)}
     arrays = {name: np.array(pair) for name, pair in given.items()}

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
 from ..errors import Error, Notice, missing_packages_error, need_number, need_one_of, need_truth, require_type
-from ..files import write_files
+from ..files import find_file_used_twice, write_files
 from ..machine import preflight, writer
 from ..machine.arm.joints import is_installed
 from ..machine.cells.cell import Cell
@@ -110,7 +110,8 @@ def convert(
 ) -> Conversion:
     """Convert a drawing into a plan and a program, as `brushsvg convert` does.
 
-    The files equal those of the command byte for byte. Only the given paths are written: all of them or none.
+    The files equal those of the command byte for byte. Only the given paths are written: all of them or none. Existing
+    files are overwritten, but not the drawing, brush, cell or corrections of the same call.
 
     drawing: a path, any other input of read_drawing, a Design, or a Plan.
     out: the path of a program in the cell's language, or of a plan (.json).
@@ -162,6 +163,10 @@ def convert(
         if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
             sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
             raise Error(sentence, name, code="program-format")
+    read = (drawing, chosen.brush, chosen.cell, chosen.corrections)
+    if twice := find_file_used_twice(read, [out, *paths.values()]):
+        sentence = "this cannot be two files at once: give each file that is read or written a path of its own"
+        raise Error(sentence, file=twice, code="options-contradict")
     require_type(formats, (tuple, list), "a list of extensions, which formats is")
     for extension in formats:
         require_type(extension, str, "an extension, such as '.ngc'")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 
+from ...files import find_file_used_twice
 from ...machine.posts import POSTS
 from ...read import READERS
 
@@ -55,11 +56,8 @@ def check_files(args, read, written) -> None:
     for path, suffixes in (*read, *written):
         if path is not None and suffixes:
             check_extension(args, path, suffixes)
-    named_paths = {os.path.realpath(path) for path, _ in read if path is not None}
-    for path in (path for path, _ in written if path is not None):
-        if os.path.realpath(path) in named_paths:
-            args.parser.error(f"{path} cannot be two files at once")
-        named_paths.add(os.path.realpath(path))
+    if twice := find_file_used_twice([path for path, _ in read], [path for path, _ in written]):
+        args.parser.error(f"{twice} cannot be two files at once")
 
 
 def check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:
