@@ -5,6 +5,7 @@ Any number of processes gives the same rows and files.
 
 import csv
 import json
+import multiprocessing
 import os
 import re
 import signal
@@ -557,6 +558,19 @@ def test_a_script_that_runs_again_in_each_worker_gets_one_sentence(desk, is_file
     done = subprocess.run(command, input=script, capture_output=True, text=True, check=False)
     assert done.returncode == 1 and done.stderr.count("Traceback") == 1, "none of a worker"
     assert "ThreadPoolExecutor" in done.stderr.splitlines()[-1] and "__main__" in done.stderr.splitlines()[-1]
+
+
+def run_batch(_):
+    try:
+        brushsvg.batch(["in/1.svg"], "out", jobs=1)
+    except brushsvg.Error as refusal:
+        return refusal.code, str(refusal)
+
+
+def test_a_process_of_a_pool_cannot_start_workers(desk):
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        code, sentence = pool.map(run_batch, [0])[0]
+    assert code == "worker-lost" and "ThreadPoolExecutor" in sentence
 
 
 def test_parquet_contains_the_same_table_as_csv(desk, monkeypatch):

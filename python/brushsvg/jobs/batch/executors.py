@@ -29,10 +29,15 @@ def start_processes(jobs: int) -> Iterator[Executor]:
     this, each worker holds one end of a pipe, and only this process holds the other end. A worker that is ready
     writes into its end.
 
-    Raises Error if no worker can run the user's script. Replaces the Error worker-lost if no worker was ever ready.
+    Raises Error if this process cannot start workers. Replaces the Error worker-lost if no worker was ever ready.
     """
     if getattr(sys.modules["__main__"], "__file__", "") == "<stdin>":
         raise Error(NO_WORKER, code="worker-lost")
+    if multiprocessing.current_process().daemon:
+        sentence = (
+            "a process of multiprocessing.Pool cannot start worker processes: give batch executor=ThreadPoolExecutor()"
+        )
+        raise Error(sentence, code="worker-lost")
     methods = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     worker_end, own_end = context.Pipe()
