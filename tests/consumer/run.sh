@@ -49,6 +49,14 @@ if command -v pkg-config >/dev/null; then
   (cd "$work/documented" && eval "$(documented "c++ ")")
   "$work/documented/program" "$brush" "$work/two.ngc"
   cmp "$work/one.ngc" "$work/two.ngc"
+  # Debian installs libraries into lib/TRIPLET, one folder deeper than a prefix of its own
+  cmake -S "$source" -B "$work/deb" -G Ninja -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR=lib/triplet >/dev/null
+  mkdir -p "$work/root/usr/lib/triplet/pkgconfig"
+  cp "$work/deb/brushsvg.pc" "$work/root/usr/lib/triplet/pkgconfig"
+  for each in prefix: libdir:/lib/triplet includedir:/include; do
+    found=$(PKG_CONFIG_PATH=$work/root/usr/lib/triplet/pkgconfig pkg-config --variable="${each%:*}" brushsvg)
+    if [ "$(realpath -m "$found")" != "$work/root/usr${each#*:}" ]; then echo "brushsvg.pc: ${each%:*} is $found" >&2; exit 1; fi
+  done
 fi
 cp "$source/tests/consumer/embedded/CMakeLists.txt" "$work/embedded"
 ln -s "$source" "$work/embedded/brushsvg"
