@@ -473,6 +473,16 @@ def test_chart_reports_the_expected_accuracy_of_the_paint(tmp_path, capsys):
     assert halves[1] == pytest.approx(2 * halves[0], rel=0.1)
 
 
+def test_a_chart_of_marks_without_flanks_reports_that_they_do_not_show_paint(tmp_path, capsys):
+    """A brush far wider than it is pressed leaves marks that are shorter than their own ends."""
+    brush = str(tmp_path / "wide.json")
+    numbers = ["--lag-at", "3=15", "--lag-at", "8=20", "--width-at", "3=30", "--width-at", "8=40"]
+    assert main(["brush", "new", "-o", brush, *numbers]) == 0
+    assert main(["chart", "-o", str(tmp_path / "p.json"), "--brush", brush, "--sheet", "a2", "--strokes", "few"]) == 0
+    reported = capsys.readouterr()
+    assert "cannot show whether marks narrow as paint runs out" in reported.out and "at least 7" in reported.out
+
+
 def test_dabs_cannot_measure_paint(tmp_path, capsys):
     assert main(["chart", "-o", str(tmp_path / "p.json"), "--dabs", "--paint"]) == 2
     assert gives(capsys.readouterr().err, "--paint")

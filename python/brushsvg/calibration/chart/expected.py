@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...errors import Error
 from ...model.confidence import law_band
 from ...model.describe import LAWS
 from ..marks.from_marks import expected_brush, expected_machine, expected_marks
 from ..marks.machine_found import PARTS
-from ..marks.paint_found import ExpectedPaint, expected_paint
+from ..marks.paint_found import expected_paint
 
 TABLE_ROWS = 4  # depths in the table of laws
 
@@ -44,10 +45,14 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
     listed = [f"{number.name} +- {number.half:.2g}" for number in machine]
     lines += ["Of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(listed)]
-    return "\n".join([*lines, *_describe_paint(expected_paint(chart.plan, brush, noise_mm, painted)), ""])
+    return "\n".join([*lines, *_describe_paint(chart, brush, noise_mm, painted), ""])
 
 
-def _describe_paint(paint: ExpectedPaint) -> list[str]:
+def _describe_paint(chart, brush, noise_mm: float, painted: list) -> list[str]:
+    try:
+        paint = expected_paint(chart.plan, brush, noise_mm, painted)
+    except Error as error:  # of a brush whose mark is as long as its strokes
+        return [f"This chart cannot show whether marks narrow as paint runs out: {error}"]
     alike = f"depth explains {100 * paint.explained_by_depth:.0f} % of how far each stroke is from the dip"
     if paint.is_refused:
         return [
