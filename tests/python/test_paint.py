@@ -12,6 +12,7 @@ from judge.gcode import run_gcode
 from programs import RUNNABLE, call, forbidden, whole
 
 from brushsvg import _core
+from brushsvg.cli import main
 from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
@@ -21,6 +22,7 @@ from brushsvg.machine.paint_reload import (
     dips_mm,
     load_length_mm,
     painted_mm,
+    report_dry_brush,
     report_long_strokes,
     report_missing_paint,
     split_into_loads,
@@ -499,6 +501,33 @@ def test_a_brush_without_paint_data_is_reported():
     assert not report_missing_paint(brush, cell_with(Reload("length", 200.0)))
     brush.paint = _core.Paint(0.4)
     assert not report_missing_paint(brush, cell)
+
+
+def test_a_brush_that_runs_dry_before_paint_is_fetched_is_reported():
+    """Plans and pictures assume paint to the end of a load."""
+    brush, loads = find_brush("round-6"), whole(plan_of((30, "#000000", ""), (60, "#000000", ""), (30, "#ff0000", "")))
+    brush.paint = _core.Paint(0.4, lasts_mm=50)
+    assert are_reported(report_dry_brush(loads, brush, find_cell()), "paint-runs-out '90 mm' '[0, 50] mm' round-6")
+    by_stroke, by_length = cell_with(Reload("stroke")), cell_with(Reload("length", 500.0))
+    assert are_reported(report_dry_brush(loads, brush, by_stroke), "paint-runs-out '60 mm' '[0, 50] mm' round-6")
+    assert not report_dry_brush(loads, brush, by_stroke, first_stroke=3)
+    assert not report_dry_brush(loads, brush, by_length), "a load ends before the brush runs dry"
+    for paint in (None, _core.Paint(0.4), _core.Paint(0.4, lasts_mm=91)):
+        brush.paint = paint
+        assert not report_dry_brush(loads, brush, find_cell())
+
+
+def test_convert_warns_that_the_brush_runs_dry(tmp_path, capsys):
+    brush = find_brush("round-6")
+    brush.paint = _core.Paint(0.4, lasts_mm=50)
+    (tmp_path / "own.json").write_text(_core.write_brush(brush))
+    (tmp_path / "d.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
+        '<path d="M20 30 h80" stroke="#000" stroke-width="3"/></svg>'
+    )
+    out = str(tmp_path / "d.ngc")
+    assert main(["convert", str(tmp_path / "d.svg"), "-o", out, "--brush", str(tmp_path / "own.json")]) == 0
+    assert "runs dry" in capsys.readouterr().err
 
 
 def test_loads_are_not_split_or_reported_as_strokes():

@@ -23,6 +23,7 @@ from ..machine.motion import duration_s
 from ..machine.paint_reload import (
     PlanInLoads,
     fetched_mm,
+    report_dry_brush,
     report_long_strokes,
     report_missing_paint,
     split_into_loads,
@@ -328,6 +329,7 @@ class SimulatedWork:
             *report_missing_paint(brush, cell),
             *order_notices,
             *report_long_strokes(self.loads, brush, cell),
+            *report_dry_brush(self.loads, brush, cell, first_stroke),
             *pen_notices,
             *field_notices,
             *part_notices,

@@ -189,6 +189,28 @@ def report_long_strokes(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> l
     ]
 
 
+def report_dry_brush(loads: PlanInLoads, brush: _core.Brush, cell: Cell, first_stroke: int = 1) -> list[Notice]:
+    """Report that the hairs run dry before the program fetches paint.
+
+    A cell that counts the painted length fetches paint in time.
+    """
+    if not brush.paint or not brush.paint.lasts_mm or (cell.reload and cell.reload.when == "length"):
+        return []
+    visits_of_loads = station_visits(loads, cell, first_stroke) or ((),) * len(loads.loads)
+    used_mm, longest_mm = 0.0, 0.0
+    for a_pass, visits in list(zip(loads.loads, visits_of_loads, strict=True))[first_stroke - 1 :]:
+        used_mm = painted_mm(a_pass) + (0.0 if visits else used_mm)
+        longest_mm = max(longest_mm, used_mm)
+    if longest_mm <= brush.paint.lasts_mm:
+        return []
+    sentence = (
+        f"{longest_mm:.0f} mm are painted without fetching paint, the range is [0, {brush.paint.lasts_mm:.4g}] mm, "
+        f"after which brush {brush.name} runs dry"
+    )
+    advice = 'fetch paint in time: [reload] of the cell with when = "length", and [[stations]]'
+    return [Notice("", sentence, code="paint-runs-out", advice=advice)]
+
+
 def station_visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
     """Return for each load the stations to visit before it.
 
