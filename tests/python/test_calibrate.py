@@ -97,6 +97,18 @@ def test_a_typing_error_does_not_give_a_negative_lag(tmp_path):
     assert status == 1 or min(find_brush(tmp_path / "b.json").lag(d) for d in np.linspace(0, 7, 99)) > 0
 
 
+def test_values_that_contradict_each_other_are_not_called_usable(tmp_path, capsys):
+    """A lag of 70 mm for 7 mm is a typing error. Two widths leave no interval that could show it."""
+    measured = {"format": "brushsvg/measurements", "version": 1, "depth_range_mm": [0, 5]}
+    measured["lag"] = values([5, 70, 7], [2, 3, 5])
+    measured["width"], measured["tip_gap"] = values([1.6, 5], [2, 5]), values([1, 2], [2, 5])
+    (tmp_path / "m.json").write_text(json.dumps(measured))
+    assert main(["calibrate", str(tmp_path / "m.json"), "-o", str(tmp_path / "b.json")]) == 0
+    verdict, *_, last = capsys.readouterr().out.splitlines()
+    assert verdict.startswith("do not use, because the values of lag scatter by"), verdict
+    assert last.startswith("next: measure lag again"), last
+
+
 DEPTHS = np.arange(1, 11.0)
 ROUND = find_brush("round-6")
 LAG, GAP, WIDEST, HALF = (

@@ -51,7 +51,7 @@ def verdict(against: Iterable[str], but: Iterable[str] = ()) -> str:
 
 def _join_reasons(reasons: list[str]) -> str:
     more = len(reasons) - MAX_REASONS
-    return ", and ".join(reasons[:MAX_REASONS]) + (f" ({more} more reasons below)" if more > 0 else "")
+    return ", and ".join(reasons[:MAX_REASONS]) + (f" ({plural(more, 'more reason')} below)" if more > 0 else "")
 
 
 def overlap_reasons(

@@ -24,10 +24,17 @@ def report(calibration) -> Report:
     without_interval = [
         fitted.name for fitted in calibration.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
     ]
+    scattered = [
+        f"the values of {name} scatter by {rmse_mm:.1f} mm about a law of at most {greatest_mm:.1f} mm"
+        for name, rmse_mm, greatest_mm in _scattered_laws(calibration)
+    ]
     reservations = [
         f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured" if assumed else "",
         f"{plural(outlier_count, 'value')} should be measured again" if outlier_count else "",
-        f"{' and '.join(without_interval)} has too few values for a confidence interval" if without_interval else "",
+        f"{' and '.join(without_interval)} {'has' if len(without_interval) == 1 else 'have'} too few values for a "
+        "confidence interval"
+        if without_interval
+        else "",
         *(notice.sentence for notice in calibration.doubts),
     ]
     lines = [
@@ -42,7 +49,15 @@ def report(calibration) -> Report:
         "",
         *coefficients(brush),
     ]
-    return Report(verdict([], reservations), (*lines, *_suggest_next(calibration)), tuple(details))
+    return Report(verdict(scattered, reservations), (*lines, *_suggest_next(calibration)), tuple(details))
+
+
+def _scattered_laws(calibration) -> list[tuple[str, float, float]]:
+    """Return the name, the RMSE and the greatest value of each law that its own values contradict."""
+    brush = calibration.brush
+    laws = [(fitted.name, getattr(brush, fitted.name)) for fitted in calibration.laws if fitted.fit]
+    sizes = [(name, law.rmse_mm or 0.0, max(abs(law(depth)) for depth in brush.depth_range_mm)) for name, law in laws]
+    return [size for size in sizes if size[1] > size[2]]
 
 
 def _describe_fit(brush, fitted) -> str:
@@ -62,6 +77,8 @@ def _suggest_next(calibration) -> list[str]:
     It is the law with the largest interval for its size, at the depth where the interval is widest.
     """
     brush = calibration.brush
+    if scattered := [name for name, _, _ in _scattered_laws(calibration)]:
+        return [f"next: measure {' and '.join(scattered)} again, since the values contradict each other"]
     if assumed := [fitted.name for fitted in calibration.laws if fitted.fit is None]:
         return [f"next: measure {' and '.join(assumed)}, so far assumed"]
     depths = np.linspace(*brush.depth_range_mm, 101)[1:]
