@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from brushsvg.reporting import label_space
 from brushsvg.reporting.label_space import LEADER_SAMPLES, LabelSpace
 
 WIDTH, HEIGHT, CELL = 240, 160, 2.0
@@ -43,6 +44,24 @@ def test_labels_cover_nothing_if_a_free_candidate_exists(anchors, blocks):
         for box in boxes:
             assert covers(box, marks, before, anchors, np.array(anchor)) != label.is_free
         before.append(label)
+
+
+def test_crowded_labels_compare_few_leaders(monkeypatch):
+    """A chart of 244 strokes took minutes to label, nearly all of them for leaders of boxes on marks."""
+    compared, is_inside = [], label_space._are_points_inside
+
+    def count(points, boxes):
+        found = is_inside(points, boxes)
+        compared.append(found.size)
+        return found
+
+    monkeypatch.setattr(label_space, "_are_points_inside", count)
+    marks = np.zeros((160, 120), bool)
+    marks[::4] = True  # no box is free of marks
+    space = LabelSpace(marks, CELL)
+    for x, y in np.random.default_rng(1).uniform((0, 0), (240, 320), (80, 2)):
+        space.place((x, y), [(60, 10), (30, 10)])
+    assert sum(compared) < 5e7, f"{sum(compared):.3g} comparisons"
 
 
 def covers(box, marks, placed, anchors, anchor) -> bool:

@@ -13,6 +13,7 @@ LABEL_GAP = 0.3  # between an anchor and its label, in label heights
 SEARCH_RINGS = (1.0, 2.0, 4.0, 8.0, 16.0)
 DIRECTIONS = 16  # around an anchor
 LEADER_SAMPLES = 16  # places along a leader that must not be on other labels
+CHUNK = 64  # boxes whose leaders are compared at a time
 LABEL_WEIGHT = 1e3  # cost of an area on other labels, relative to an area on marks
 UP_RIGHT = (1.0, -1.0)
 
@@ -71,11 +72,10 @@ class LabelSpace:
         for limit in dict.fromkeys(min(reach, times * sizes[0][1]) for times in (*SEARCH_RINGS, math.inf)):
             for choice, size in enumerate(sizes):
                 boxes = self._candidates(anchor, np.asarray(size, float), towards, limit)
-                cost, on_labels = self._cost(boxes, anchor)
-                first = int(cost.argmin())
-                if best is None or cost[first] < best[0]:
-                    best = cost[first], boxes[first], choice, on_labels[first]
-                if cost[first] == 0:
+                cost, first, on_labels = self._find_cheapest(boxes, anchor, math.inf if best is None else best[0])
+                if best is None or cost < best[0]:
+                    best = cost, boxes[first], choice, on_labels
+                if cost == 0:
                     break
             if best[0] == 0:
                 break
@@ -109,10 +109,11 @@ class LabelSpace:
         corners = np.clip(corners, low, np.maximum(high - size, low))
         return np.hstack([corners, corners + size])
 
-    def _cost(self, boxes: np.ndarray, anchor) -> tuple[np.ndarray, np.ndarray]:
-        """Return the cost (n,) of what each box covers, 0 for a free box.
+    def _find_cheapest(self, boxes: np.ndarray, anchor, limit: float) -> tuple[float, int, float]:
+        """Return the least cost of what a box covers, the first box with it, and its area on other labels.
 
-        Returns also the area (n,) of other labels in each box.
+        The cost is 0 for a free box. Crossings of leaders take long to find, so they are looked for only at boxes that
+        can still cost less than `limit` and than all others. If there are none, the cost is infinite.
         """
         low = np.minimum(boxes[:, :2].min(axis=0), anchor) - self.radius
         high = np.maximum(boxes[:, 2:].max(axis=0), anchor) + self.radius
@@ -131,11 +132,19 @@ class LabelSpace:
         nearest = np.clip(anchors, boxes[:, None, :2], boxes[:, None, 2:])
         covered = (np.hypot(*np.moveaxis(nearest - anchors, -1, 0)) <= self.radius).sum(axis=1)
         areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
-        covered += _are_points_inside(crossed, boxes).any(axis=0)
-        ends = np.clip(anchor, boxes[:, :2], boxes[:, 2:])
-        leaders = np.linspace(np.broadcast_to(anchor, ends.shape), ends, LEADER_SAMPLES)
-        covered += _are_points_inside(leaders[:, :, None], taken).any(axis=(0, 2))
-        return marks * self.cell**2 + LABEL_WEIGHT * labels + covered * areas, labels
+        covered_areas = marks * self.cell**2 + LABEL_WEIGHT * labels
+        least = covered_areas + covered * areas
+        best, first = math.inf, 0
+        for some in np.split(order := np.argsort(least, kind="stable"), range(CHUNK, len(order), CHUNK)):
+            if best == 0 or least[some[0]] > best or least[some[0]] >= limit:
+                break
+            crossings = _are_points_inside(crossed, boxes[some]).any(axis=0).astype(int)
+            ends = np.clip(anchor, boxes[some, :2], boxes[some, 2:])
+            leaders = np.linspace(np.broadcast_to(anchor, ends.shape), ends, LEADER_SAMPLES)
+            crossings += _are_points_inside(leaders[:, :, None], taken).any(axis=(0, 2))
+            cost = covered_areas[some] + (covered[some] + crossings) * areas[some]
+            best, first = min((best, first), *zip(cost.tolist(), some.tolist(), strict=True))
+        return best, first, float(labels[first])
 
     def _leader(self, anchor, box):
         """Return a line from an anchor to its label, None where they are close."""
@@ -149,5 +158,5 @@ class LabelSpace:
 
 def _are_points_inside(points, boxes) -> np.ndarray:
     """Return which points (..., 2) are inside which boxes (n, 4), as (..., n)."""
-    at = points[..., None, :] if points.ndim == 2 else points
-    return ((at > boxes[:, :2]) & (at < boxes[:, 2:])).all(axis=-1)
+    x, y = (points[..., None, k] if points.ndim == 2 else points[..., k] for k in range(2))
+    return (x > boxes[:, 0]) & (x < boxes[:, 2]) & (y > boxes[:, 1]) & (y < boxes[:, 3])
