@@ -117,6 +117,7 @@ def test_zero_lag_makes_a_pen():
     [
         ([], None, "measurement-missing"),
         ([(3, 7), (8, 2)], None, "width-falls"),
+        ([(0.2, 0.5), (1, 0.3)], None, "law-falls 0.2 1"),
         ([(3, -1)], None, "out-of-range -1"),
         ([(0, 1)], None, "depth-out-of-range 0"),
         ([(3, float("nan"))], None, "out-of-range nan"),
@@ -126,6 +127,13 @@ def test_zero_lag_makes_a_pen():
 def test_impossible_widths_and_depths_are_refused(widths, deepest, expected):
     with refused(expected):
         new_brush("mine", 5.0, widths, deepest)
+
+
+def test_lags_in_the_wrong_order_are_refused():
+    """A line meets any two lags, so the distance from the law does not show it. `calibrate` refuses them, too."""
+    with refused("law-falls 6 2 5", "lag"):
+        new_brush("mine", [(2, 9), (5, 3)], [(2, 2), (5, 5)])
+    assert new_brush("mine", [(2, 6), (5, 5)], [(2, 2), (5, 5)]).lag(5) == pytest.approx(5), "read with a ruler"
 
 
 def test_widths_can_be_read_from_a_table():

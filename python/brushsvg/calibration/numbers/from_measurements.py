@@ -534,7 +534,7 @@ class _LawFitter:
         if law == "lag":
             plausibility.refuse_no_lag(points)
         if law in ("lag", "half_width"):
-            plausibility.refuse_falling(law, points)
+            plausibility.refuse_falling(law, depths, [point.value_mm for point in points], points[0].where)
         degree, remarks = _choose_degree(law, depths)
         widest = law == "tip_to_widest"
         shape = _core.LawShape(

@@ -182,6 +182,8 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
             lags[-1][0],
             code="depth-out-of-range",
         )
+    if depth_count > 1:
+        plausibility.refuse_falling("lag", depths, values, "lag")
     for degree in LAG_DEGREES if depth_count > 1 else (0,):
         if degree > depth_count:
             continue
@@ -251,6 +253,8 @@ def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.
             2 * halves[worst],
             code="width-falls",
         )
+    if depth_count > 1:
+        plausibility.refuse_falling("width", depths, [2 * half for half in halves], "width")
     listed = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
     more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""
     return _core.Profile(

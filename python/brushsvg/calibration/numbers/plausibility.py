@@ -260,13 +260,12 @@ def refuse_halves_as_widths(rows: dict) -> None:
         )
 
 
-def refuse_falling(law: str, points) -> None:
+def refuse_falling(law: str, depths_mm: list[float], values_mm: list[float], where: str) -> None:
     """Raise Error if a law falls with depth.
 
-    A brush that is pressed deeper paints wider and trails more.
+    A brush that is pressed deeper paints wider and trails more. The values are of two depths or more.
     """
-    depths = np.array([point.depth_mm for point in points])
-    values = np.array([point.value_mm for point in points])
+    depths, values = np.array(depths_mm), np.array(values_mm)
     slope, middle = np.polyfit(depths - depths.mean(), values, 1)
     residuals = values - middle - slope * (depths - depths.mean())
     freedom = max(len(values) - 2, 1)
@@ -275,9 +274,9 @@ def refuse_falling(law: str, points) -> None:
     if slope < -3 * error and drop > 0.3 * abs(middle):
         raise Error(
             f"the {law} falls by {drop:.3g} mm from depth {depths.min():g} to {depths.max():g} mm, but a brush that is "
-            "pressed deeper paints wider and trails more: are the rows in the right order, and depths counted from "
+            "pressed deeper paints wider and trails more: are the values in the right order, and depths counted from "
             "first contact down?",
-            points[0].where,
+            where,
             code="law-falls",
         )
 
