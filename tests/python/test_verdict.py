@@ -5,7 +5,13 @@ from dataclasses import replace
 import pytest
 from diagnostics import gives
 
+from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.errors import Notice
+from brushsvg.jobs import outputs
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.prediction import predict_plan_marks
+from brushsvg.jobs.preparation.preparation import prepare
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.reporting.report_text import (
     GOOD,
     GOOD_OVERLAP,
@@ -53,6 +59,7 @@ def known_to(middle_mm):
             for code in ("off-middle-line", "paint-outside")
         ),
         (replace(MADE, assumed=("lag", "width")), BUT, ("lag", "width", "mine")),
+        (replace(MADE, lacks_interval=True), BUT, ("mine", "too few depths")),
         (known_to(UNCERTAIN_MM - 0.01), GOOD, ()),
         (known_to(UNCERTAIN_MM), BUT, ("mine", "1.0 mm")),
         (known_to(None), GOOD, ()),
@@ -61,6 +68,22 @@ def known_to(middle_mm):
 def test_each_reason_changes_the_verdict(made, begins, named):
     assert made.verdict.startswith(begins) and gives(made.verdict, *named)
     assert (made.verdict == GOOD) == (begins == GOOD)
+
+
+@pytest.mark.parametrize(("lags", "expected"), [([(2, 6), (5, 8)], BUT), (6.0, BUT), (0.0, GOOD)])
+def test_a_brush_of_two_measurements_is_not_called_good(lags, expected, tmp_path):
+    """Three measurements have an interval, which may be wide. Two have none, and were called good.
+
+    A pen does not trail. It was to be calibrated, which `calibrate` refuses.
+    """
+    (tmp_path / "d.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'
+        '<path d="M20 30 h50" fill="none" stroke="#000" stroke-width="3"/></svg>'
+    )
+    widths = [(2, 2.0), (5, 5.0)] if lags else [(1, 3.0)]
+    work = prepare(tmp_path / "d.svg", Options(brush=new_brush("mine", lags, widths)))
+    made = outputs.make_report(work, predict_plan_marks(work.plan, work.brush), find_cell())
+    assert made.verdict.startswith(expected), made.verdict
 
 
 def test_the_thresholds_equal_the_documentation():

@@ -186,6 +186,7 @@ def make_report(
         work.unreached,
     )
     rows, total = report.measure(painted)
+    confidence = None if is_tilted_plan else uncertainty(as_run or work.plan, work.brush, marks)
     return report.Report(
         title=work.title,
         brush=work.plan.brush,
@@ -197,7 +198,8 @@ def make_report(
         warnings=tuple(known_warnings),
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
-        confidence=None if is_tilted_plan else uncertainty(as_run or work.plan, work.brush, marks),
+        confidence=confidence,
+        lacks_interval=confidence is None and not is_tilted_plan and not work.brush.is_rigid(),
         is_tilted=is_tilted_plan,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
@@ -207,6 +209,8 @@ def make_report(
 
 
 def list_assumed_laws(brush: _core.Brush) -> tuple[str, ...]:
-    """Return the names of the laws that were never measured."""
+    """Return the names of the laws that were never measured. A pen has none: there is nothing to calibrate."""
+    if brush.is_rigid():
+        return ()
     names_by_law = {"lag": "lag", "half_width": "width"}
     return tuple(name for law, name in names_by_law.items() if getattr(brush, law).assumed)
