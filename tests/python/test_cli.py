@@ -353,9 +353,12 @@ def test_a_plan_keeps_its_brush(desk, capsys):
     assert (status, file) == (1, "mine.json") and agrees(reported, "key-missing format")
     edited_plan(desk, brush="my-brush")
     status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
-    assert status == 1 and agrees(reported, "brush-unknown my-brush")
+    assert status == 1 and agrees(reported, "brush-unknown my-brush '--brush FILE'", "brush")
     status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc", "--brush", "round-6", "--quiet")
     assert status == 0 and agrees(reported, "plan-of-other-brush my-brush round-6", "brush")
+    edited_plan(desk, brush="7/8 inch")  # the name of a brush is no path
+    status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
+    assert (status, file) == (1, "x.json") and agrees(reported, "brush-unknown '7/8 inch'", "brush")
 
 
 @pytest.mark.parametrize(
@@ -574,6 +577,8 @@ def test_brush_commands(desk, capsys):
     assert status == 0
     for words in ("3.1 + 0.86 d + 0.31 d^2 - 0.05 d^3 + 0.0021 d^4", "max(0.126 d, ", "RMSE 0.58", "assumed"):
         assert words in out
+    assert run(capsys, "brush", "new", "-o", "own.json", "--lag", "5", "--width-at", "3=2")[0] == 0
+    assert run(capsys, "brush", "show", "own.json")[1].count("lines 0.0 to") == 1, "the same line was printed twice"
     for name in ("liner-1", "rigid", "round-6", "round-6-angles"):
         assert run(capsys, "brush", "check", str(SHIPPED / f"{name}.json"))[0] == 0
 

@@ -48,7 +48,7 @@ def page(brush: _core.Brush) -> str:
     least, greatest = brush.depth_range_mm
     lines = [
         f"{brush.name}: {one_line(brush)}",
-        reach(brush),
+        *([] if one_line(brush) == reach(brush) else [reach(brush)]),
         f"at most {brush.max_speed_mm_s:g} mm/s",
         "",
         "laws, mm against depth d in mm",

@@ -19,7 +19,7 @@ from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
 from ...machine.program import Job
 from ...machine.workspace_limits import ROUNDING_MM, owner_of_speed_limit
-from ...model.library import find_brush, mistyped_keys
+from ...model.library import brush_names, find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper
 from ...planning.refinement import refine_where_better
 from ...read import layout
@@ -457,6 +457,9 @@ def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> li
 
 
 def _prepare_plan(plan, options: Options) -> Work:
+    if not options.brush and plan.brush not in brush_names() and not plan.brush.endswith(".json"):
+        sentence = f"the plan names brush {plan.brush!r}, which does not come along"
+        raise Error(sentence, "brush", code="brush-unknown", advice="give --brush FILE")
     brush = options.brush or find_brush(plan.brush)
     notices = mistyped_keys(brush) + report_other_brush(plan, brush)
     _check_speed(brush, options)
