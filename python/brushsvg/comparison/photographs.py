@@ -160,7 +160,7 @@ def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, byte
         if overlap < MIN_SAME_SHEET_OVERLAP:
             raise Error(
                 f"its paint overlaps with that of {photos[0][0]} by {overlap:.2f}, less than "
-                f"{MIN_SAME_SHEET_OVERLAP:g}: photographs of one sheet are averaged; compare each sheet by itself",
+                f"{MIN_SAME_SHEET_OVERLAP:g}: photographs of one sheet are averaged; use one command for each sheet",
                 file=name,
                 value=overlap,
                 code="photos-differ",
