@@ -116,6 +116,14 @@ def test_a_chart_is_photographed_from_its_file_and_from_its_value(desk):
         assert brushsvg.calibrate("photo.jpg", chart=chart).brush.lag(4) > 1.05 * chart_brush.lag(4)
 
 
+def test_a_pass_of_one_pose_is_photographed_by_a_machine_with_backlash(desk):
+    plan = brushsvg.convert("word.svg").plan
+    dab = brushsvg.Pass("a", [[40, 40, -2]], 20, "#000000")
+    Path("studio.toml").write_text(STUDIO + "[machine]\nbacklash_mm = [0.3, 0.3]\n", encoding="utf-8")
+    dotted = brushsvg.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, [dab, plan.passes[1]])
+    assert brushsvg.simulate_photo(dotted, studio="studio.toml").stroke_count == 2
+
+
 def test_a_simulated_photograph_refuses_wrong_values(desk):
     with refused("program-format"):
         brushsvg.simulate_photo("word.svg", "photo.png")

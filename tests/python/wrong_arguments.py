@@ -246,7 +246,10 @@ ARGUMENTS = {
     "Brush": [],
     "Cell": [],
     "Compensated": [],
+    "Chart": [],
     "Conversion": [],
+    "SetupProgram": [],
+    "SimulatedPhoto": [],
     "Check": [],
     "BrushCalibration": [],
     "PaintedJob": [],
@@ -293,6 +296,7 @@ ARGUMENTS = {
         [None, "few", "varnish"],
         [5.0, *NUMBERS],
     ],
+    "chart_page": [lambda: charts(), [".svg", ".pdf", *TEXTS]],
     "compensate": [
         lambda: ([each] for each in some_strokes()),
         brushes,
@@ -352,6 +356,10 @@ ARGUMENTS = {
     "read_marks": [lambda: [brushsvg.write_marks(next(marks())), *TEXTS]],
     "read_plan": [lambda: [brushsvg.write_plan(next(plans())), *TEXTS]],
     "save_brush": [brushes, [FOLDER / "b.json", *PATHS]],
+    "setup_border": [lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS], [None, FOLDER / "s.ngc", *PATHS]],
+    "setup_first_run": [lambda: ["linuxcnc-3axis", *NAMES, *cells()], [None, FOLDER / "s.ngc", *PATHS]],
+    "setup_height": [lambda: [None, *NAMES, *cells()], [None, FOLDER / "s.ngc", *PATHS]],
+    "simulate_photo": [lambda: [FOLDER / "d.svg", *designs(), *plans(), *PATHS], [None, FOLDER / "p.jpg", *PATHS]],
     "simulate": [plans, brushes, [0.02, *NUMBERS]],
     "stroke_from_path": [
         ["M0 0 L9 9", "", "M0 0", "M0 0 L1e300 0", *TEXTS, np.zeros((0, 8)), [[NAN] * 8]],
@@ -399,8 +407,13 @@ ARGUMENTS = {
     ],
     "laws.tip_direction": [ANGLES, ANGLES, WAYS, WAYS, WAYS],
     "laws.tip_offset": [ANGLES, WAYS, WAYS],
+    "write_chart": [lambda: charts()],
     "write_program": [[FOLDER / "p.ngc", *PATHS], plans, brushes, ["", *TEXTS], cells],
 }
+
+
+def charts():
+    return [brushsvg.chart(brushsvg.find_brush("round-6"), (250, 180), "few"), next(plans())]
 
 
 def sound_program():

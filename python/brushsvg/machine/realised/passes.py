@@ -81,7 +81,7 @@ def _bent_rows(poses: np.ndarray, lags: np.ndarray) -> np.ndarray:
     length = np.maximum(np.linalg.norm(step, axis=1), 1e-12)
     way = step / length[:, None]
     is_straight = np.linalg.norm(np.diff(way, axis=0), axis=1) < MAX_STRAIGHT_SINE
-    return np.concatenate([[True], ~is_straight, [True]])
+    return np.concatenate([[True], ~is_straight, [True]])[: len(poses)]
 
 
 def split_long_moves(poses: np.ndarray) -> np.ndarray:
