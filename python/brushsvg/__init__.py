@@ -67,7 +67,7 @@ if TYPE_CHECKING:  # the names that the table below imports at run time
 
     __version__: str
 
-_HOME = {
+_HOME = {  # the module of each name; other names are in _core
     "Error": "errors",
     "ReadOptions": "read",
     "read_drawing": "read",
@@ -116,34 +116,7 @@ _HOME = {
     "marks_svg": "show.marks_svg",
     "SimulatedPhoto": "simulated.simulate_photo",
     "simulate_photo": "simulated.simulate_photo",
-} | dict.fromkeys(
-    [
-        "Arc",
-        "Brush",
-        "Compensated",
-        "Footprint",
-        "FootprintTable",
-        "Marks",
-        "Paint",
-        "Pass",
-        "Plan",
-        "Profile",
-        "Settings",
-        "Stroke",
-        "area",
-        "compensate",
-        "coverage",
-        "flatten",
-        "overlap",
-        "simulate",
-        "trace_outlines",
-        "unite",
-        "wanted_outline",
-        "write_marks",
-        "write_plan",
-    ],
-    "_core",
-)
+}
 
 _MODULES = {"laws": "model.laws"}
 
@@ -242,14 +215,14 @@ def __getattr__(name: str):
         value = version("brushsvg")
     elif name in _MODULES:
         value = importlib.import_module(f".{_MODULES[name]}", __name__)
-    elif name in _HOME:
-        value = getattr(importlib.import_module(f".{_HOME[name]}", __name__), name)
+    elif name in __all__:
+        value = getattr(importlib.import_module(f".{_HOME.get(name, '_core')}", __name__), name)
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if core := sys.modules.get(f"{__name__}._core"):
         wrong_types = importlib.import_module(".wrong_types", __name__)
         wrong_types.with_classes_in_words(core)
-        if _HOME.get(name) == "_core" and not isinstance(value, type):
+        if getattr(core, name, None) is value and not isinstance(value, type):
             value = wrong_types.in_words(value)
     globals()[name] = value
     if "IPython" in sys.modules:
