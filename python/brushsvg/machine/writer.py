@@ -158,7 +158,7 @@ def text_of(post: Post, program: Program, suffix: str = "") -> Iterator[str]:
     suffix: extension of the file.
     """
     program = compensate_backlash(program_in_robot_frame(program)) if post.in_robot_frame else program
-    pieces = post.others.get(suffix, post.write)(program)
+    pieces = post.write(program, suffix)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)
 
 

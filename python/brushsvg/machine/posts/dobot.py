@@ -15,17 +15,17 @@ from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
     blends_mm,
+    format_blended_rows,
     join_numbers,
     tool_rotations_at,
     upright_tool_rotation,
     write_sections,
 )
-from .text import format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
 INDEX = 1  # index of the user frame and the tool in the controller's lists; index 0 is the base and the flange
-DOBOT_END = "end: the brush is held up"
 
 
 def dobot(program: Program) -> Iterator[str]:
@@ -52,7 +52,7 @@ def dobot(program: Program) -> Iterator[str]:
         lambda move: _move_lines(move, upright_rotation, cell.blending.step_mm, decimals),
     )
     yield from write_sections(program, words)
-    yield "\n" + comment(DOBOT_END)
+    yield "\n" + comment(PROGRAM_END)
 
 
 def comment(text: str) -> str:
@@ -87,12 +87,9 @@ def _move_lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) 
             options = f"{speed}, {blend % r}" if r > 0 else speed
             yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{options}}})\n"
         return
-    values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
-    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
-        if is_blended[run[0]]:
-            yield from format_rows(f"MovL({point}, {{{speed}, {blend}}})", values[run], decimals)
-        else:
-            yield from format_rows(f"MovL({point}, {{{speed}}})", values[run, :3], decimals)
+    plain = f"MovL({point}, {{{speed}}})", move.points_mm
+    blended = f"MovL({point}, {{{speed}, {blend}}})", np.column_stack([move.points_mm, blends])
+    yield from format_blended_rows(plain, blended, blends, decimals)
 
 
 def _wait_lines(step: Wait) -> str:

@@ -15,13 +15,14 @@ from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
     blends_mm,
+    format_blended_rows,
     format_rounded_down,
     join_numbers,
     tool_rotations_at,
     upright_tool_rotation,
     write_sections,
 )
-from .text import format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, format_rows, plain_text
 from .xarm import NAMES_LETTERS
 
 LINE_LIMIT = 100
@@ -30,7 +31,6 @@ SPEED_DECIMALS = 3
 # Limits of the tool's turn in degrees/s and degrees/s^2. The arm slows down where a plan turns the tool faster.
 TURN_SPEED_LIMITS = "30.000"
 TCP = "brush"
-DOOSAN_END = "end: the brush is held up"
 
 CHECKS = f"""set_tcp("{TCP}")
 tip = get_current_posx(DR_BASE)[0]
@@ -68,7 +68,7 @@ def doosan(program: Program) -> Iterator[str]:
         lambda move: _move_lines(move, upright_rotation, decimals),
     )
     yield from write_sections(program, words)
-    yield "\n" + comment(DOOSAN_END)
+    yield "\n" + comment(PROGRAM_END)
 
 
 def comment(text: str) -> str:
@@ -97,12 +97,9 @@ def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]
             radius = f", radius={format_number(blend, decimals)}" if blend > 0 else ""
             yield f"movel({'tilted' if angles else 'on_paper'}({place}{angles}){radius})\n"
         return
-    values, is_blended = np.column_stack([move.points_mm, blends]), blends > 0
-    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
-        if is_blended[run[0]]:
-            yield from format_rows(f"movel({point}, radius=%.{decimals}f)", values[run], decimals)
-        else:
-            yield from format_rows(f"movel({point})", values[run, :3], decimals)
+    plain = f"movel({point})", move.points_mm
+    blended = f"movel({point}, radius=%.{decimals}f)", np.column_stack([move.points_mm, blends])
+    yield from format_blended_rows(plain, blended, blends, decimals)
 
 
 def _wait_lines(step: Wait) -> str:

@@ -24,7 +24,7 @@ from .script import (
     upright_tool_rotation,
     write_section,
 )
-from .text import STATEMENT_ENDS, format_number, format_rows, plain_text
+from .text import PROGRAM_END, STATEMENT_ENDS, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100  # letters of a remark, which may need several lines
 REMARK_LETTERS = 32  # letters of one line of a remark
@@ -33,7 +33,6 @@ MAIN = "BRUSHSVG"
 INDEX = 1  # number of the user frame, the tool, and the registers that set them
 RISE_REGISTER, HEIGHT_REGISTER = 2, 1  # position register and register that the rise uses
 MAX_TEXT_IN_MEMORY_BYTES = 20_000_000  # larger text is kept in a file
-FANUC_END = "end: the brush is held up"
 
 
 def fanuc(program: Program) -> Iterator[str]:
@@ -44,7 +43,7 @@ def fanuc(program: Program) -> Iterator[str]:
     """
     cell = program.cell
     setup = "".join(map(comment, program.header)) + _setup_lines(program)
-    end = comment(FANUC_END)
+    end = comment(PROGRAM_END)
     points, section_text, calls, names, risen = _ProgramPoints(cell), "", [], None, False
     with SpooledTemporaryFile(MAX_TEXT_IN_MEMORY_BYTES, "w+", encoding="ascii") as held_file:
         for section in program.sections():

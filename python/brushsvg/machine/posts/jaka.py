@@ -20,12 +20,11 @@ from .script import (
     upright_deg,
     write_sections,
 )
-from .text import format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
 SPEED_DECIMALS = 3
-JAKA_END = "end: the brush is held up"
 
 
 def jaka(program: Program) -> Iterator[str]:
@@ -55,7 +54,7 @@ def jaka(program: Program) -> Iterator[str]:
         lambda move: _move_lines(move, turned, upright, acceleration, cell.blending, decimals),
     )
     yield from write_sections(program, words)
-    yield "\n" + comment(JAKA_END)
+    yield "\n" + comment(PROGRAM_END)
 
 
 def comment(text: str) -> str:

@@ -17,6 +17,7 @@ from ..motion import Move, Program, Wait, via_point
 from .script import (
     LanguageWords,
     blends_mm,
+    format_blended_rows,
     format_rounded_down,
     join_numbers,
     name_parts,
@@ -24,7 +25,7 @@ from .script import (
     tool_rotations_at,
     upright_tool_rotation,
 )
-from .text import format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
@@ -33,7 +34,6 @@ MAX_TEXT_IN_MEMORY_BYTES = 20_000_000  # larger text is kept in a file
 MAIN = "brushsvg"
 RISES = "DECL E6POS here\n"
 LINES_AROUND_PART = 3  # lines of a called program in addition to its moves
-KRL_END = "end: the brush is held up"
 
 
 def krl(program: Program) -> Iterator[str]:
@@ -63,7 +63,7 @@ def krl(program: Program) -> Iterator[str]:
         ),
     )
     part_texts = split_into_parts(program, words, LINES_AROUND_PART, rises_again=False)
-    end = comment(KRL_END) + "END\n"
+    end = comment(PROGRAM_END) + "END\n"
     first, second = next(part_texts), next(part_texts, None)
     if second is None:
         yield f"DEF {MAIN}()\n{header}{RISES}{setup}{first}\n{end}"
@@ -116,12 +116,9 @@ def _move_lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
         yield from format_rows(f"CIRC {point}, {point}", values, decimals)
         return
     blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
-    values, is_blended = np.column_stack([blends, move.points_mm]), blends > 0
-    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(is_blended)) + 1):
-        if is_blended[run[0]]:
-            yield from format_rows(f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", values[run], decimals)
-        else:
-            yield from format_rows(f"LIN {point}", values[run, 1:], decimals)
+    plain = f"LIN {point}", move.points_mm
+    blended = f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", np.column_stack([blends, move.points_mm])
+    yield from format_blended_rows(plain, blended, blends, decimals)
 
 
 def _tilted_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:

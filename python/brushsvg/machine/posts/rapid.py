@@ -21,13 +21,12 @@ from .script import (
     upright_tool_rotation,
     write_sections,
 )
-from .text import format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 TURN_DECIMALS = 7  # decimals of quaternions: a tenth of a micrometre at a distance of a metre
 SPEED_DECIMALS = 3
 STRING_LIMIT = 60
-RAPID_END = "end: the brush is held up"
 BRUSH_KG = 0.5  # an assumed weight, because the robot refuses a load of 0
 TOOL_AND_WORK_OBJECT = r"brush\WObj:=paper"
 
@@ -84,7 +83,7 @@ def rapid(program: Program) -> Iterator[str]:
         lambda move: _move_lines(move, upright_rotation, decimals),
     )
     yield from write_sections(program, words)
-    yield "\n" + comment(RAPID_END) + "  ENDPROC\nENDMODULE\n"
+    yield "\n" + comment(PROGRAM_END) + "  ENDPROC\nENDMODULE\n"
 
 
 def comment(text: str) -> str:

@@ -21,7 +21,7 @@ from ..motion import Program
 from ..tool_axes import is_parallel, turned_to
 from ..trajectory import make_timed_sections
 from .script import format_rounded_down, upright_deg
-from .text import plain_text
+from .text import PROGRAM_END, plain_text
 
 LINE_LIMIT = 100
 SECOND_DECIMALS, SPEED_DECIMALS, TURN_DECIMALS = 7, 6, 9
@@ -30,7 +30,6 @@ EXTRA_METRE_DECIMALS = (
 )
 COLUMNS = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,limit_m_s,row"
 ROW_KINDS = ("pose", "way", "rest")  # in the numbering of trajectory
-ROS2_END = "end: the brush is held up"
 MAX_BYTES_IN_MEMORY = 20_000_000
 AXIS_COLUMN = 6  # first column with the brush's axis
 
@@ -44,7 +43,7 @@ def csv(program: Program) -> Iterator[str]:
     for title, table in make_timed_sections(program):
         yield comment(title)
         yield "".join(f"{numbers},{kind}\n" for numbers, kind in _row_lines(table, program.cell))
-    yield comment(ROS2_END)
+    yield comment(PROGRAM_END)
 
 
 def traj(program: Program) -> Iterator[str]:
@@ -58,7 +57,7 @@ def traj(program: Program) -> Iterator[str]:
     for title, table in make_timed_sections(program):
         yield json.dumps([comment(title)[:-1]]) + ",\n"
         yield "".join(f'[{numbers},"{kind}"],\n' for numbers, kind in _row_lines(table, program.cell))
-    yield json.dumps([comment(ROS2_END)[:-1]]) + "]}\n"
+    yield json.dumps([comment(PROGRAM_END)[:-1]]) + "]}\n"
 
 
 def cdr(program: Program) -> Iterator[bytes]:

@@ -13,7 +13,7 @@ from ..cells.cell import MAX_PROGRAM_LINES, Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
 from ..motion import Move, Program, Section, Wait
 from ..tool_axes import is_parallel, turned_to
-from .text import format_number
+from .text import format_number, format_rows
 
 MAX_RISE_MM_S = 50.0
 QUOTE_REPLACEMENTS = {ord('"'): "'", ord("\\"): "/"}  # for letters that would end a text between quotes
@@ -124,6 +124,20 @@ def blends_mm(move: Move, decimals: int, part: float = 1.0) -> np.ndarray:
     blends = np.zeros(len(move.points_mm))
     blends[:-1] = move.blends_mm[:-1]
     return np.floor(blends * part * 10.0**decimals) / 10.0**decimals
+
+
+def format_blended_rows(
+    plain: tuple[str, np.ndarray], blended: tuple[str, np.ndarray], blends: np.ndarray, decimals: int
+):
+    """Yield a line for each point of a move, whose pattern depends on whether the point is blended.
+
+    plain, blended: the pattern of such a line, and the values of all points, see format_rows.
+    blends: blend distance of each point, 0 where it is met exactly.
+    """
+    is_blended = blends > 0
+    for run in np.split(np.arange(len(blends)), np.flatnonzero(np.diff(is_blended)) + 1):
+        pattern, values = blended if is_blended[run[0]] else plain
+        yield from format_rows(pattern, values[run], decimals)
 
 
 def upright_tool_rotation(spin_deg: float) -> np.ndarray:

@@ -13,6 +13,7 @@ BRACKETS = {ord("("): "[", ord(")"): "]"}
 IMMEDIATE_COMMANDS = {ord("!"): ".", ord("?"): ".", ord("%"): ".", ord("~"): "-"}
 STATEMENT_ENDS = {ord(";"): ","}  # ends an instruction of TP and of HP-GL
 QUOTES = {ord('"'): "'"}  # ends a comment of HP-GL
+PROGRAM_END = "end: the brush is held up"  # the last comment of a program
 NAMED = 40  # length of a name that fits in a line of any program
 MAX_ROWS_AT_ONCE = 10_000  # points that become text at once; limits the memory to some megabytes for long strokes
 

@@ -22,7 +22,7 @@ from .script import (
     upright_deg,
     write_sections,
 )
-from .text import format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
@@ -31,7 +31,6 @@ SPEED_DECIMALS = 3
 # the circle or the distance before the corner. brushsvg blends turns of up to 100 degrees. With this fraction, both
 # readings cut the corner by at most the tolerance.
 BLEND_FRACTION = 0.8
-XARM_END = "end: the brush is held up"
 NAMES_LETTERS = re.compile(r"coding(?=[:=])")  # text that Python would read as the encoding of the file
 
 BEFORE = """import sys
@@ -114,7 +113,7 @@ def xarm(program: Program) -> Iterator[str]:
         lambda move: _move_lines(move, upright, decimals),
     )
     yield from write_sections(program, words)
-    yield f"\n{AFTER}" + comment(XARM_END)
+    yield f"\n{AFTER}" + comment(PROGRAM_END)
 
 
 def comment(text: str) -> str:

@@ -6,9 +6,9 @@ Only the statements that brushsvg writes are understood; all others are refused.
 from __future__ import annotations
 
 import codecs
+import importlib
 import re
 import unicodedata
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -198,7 +198,9 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
                 f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
                 code="line-unread",
             )
-    return with_backlash(_READERS[cell.language](text, cell), cell)
+    name = _READERS[cell.language]
+    read = getattr(importlib.import_module(f".{name}", __name__), f"read_{name}")
+    return with_backlash(read(text, cell), cell)
 
 
 _HUGE_NUMBER = re.compile(
@@ -206,95 +208,10 @@ _HUGE_NUMBER = re.compile(
 )  # larger than any place in mm or feed in mm/min, and too large to compute with
 
 
-def _gcode(text: str, cell: Cell) -> Readback:
-    from .gcode import read_gcode
-
-    return read_gcode(text, cell)
-
-
-def _jaka(text: str, cell: Cell) -> Readback:
-    from .jaka import read_jaka
-
-    return read_jaka(text, cell)
-
-
-def _urscript(text: str, cell: Cell) -> Readback:
-    from .urscript import read_urscript
-
-    return read_urscript(text)
-
-
-def _rapid(text: str, cell: Cell) -> Readback:
-    from .rapid import read_rapid
-
-    return read_rapid(text)
-
-
-def _xarm(text: str, cell: Cell) -> Readback:
-    from .xarm import read_xarm
-
-    return read_xarm(text, cell)
-
-
-def _krl(text: str, cell: Cell) -> Readback:
-    from .krl import read_krl
-
-    return read_krl(text, cell)
-
-
-def _dobot(text: str, cell: Cell) -> Readback:
-    from .dobot import read_dobot
-
-    return read_dobot(text, cell)
-
-
-def _fanuc(text: str, cell: Cell) -> Readback:
-    from .fanuc import read_fanuc
-
-    return read_fanuc(text, cell)
-
-
-def _doosan(text: str, cell: Cell) -> Readback:
-    from .doosan import read_doosan
-
-    return read_doosan(text, cell)
-
-
-def _ros2(text: str, cell: Cell) -> Readback:
-    from .ros2 import as_table, read_ros2
-
-    return read_ros2(as_table(text) if text.startswith("{") else text, cell)
-
-
-def _hpgl(text: str, cell: Cell) -> Readback:
-    from .hpgl import read_hpgl
-
-    return read_hpgl(text, cell)
-
-
-def _ebb(text: str, cell: Cell) -> Readback:
-    from .ebb import read_ebb
-
-    return read_ebb(text, cell)
-
-
-_READERS: dict[str, Callable[[str, Cell], Readback]] = {
-    "linuxcnc": _gcode,
-    "grbl": _gcode,
-    "grbl-servo": _gcode,
-    "fluidnc": _gcode,
-    "marlin": _gcode,
-    "marlin-servo": _gcode,
-    "klipper": _gcode,
-    "urscript": _urscript,
-    "jaka": _jaka,
-    "rapid": _rapid,
-    "xarm": _xarm,
-    "krl": _krl,
-    "dobot": _dobot,
-    "fanuc": _fanuc,
-    "doosan": _doosan,
-    "ros2": _ros2,
-    "hpgl": _hpgl,
-    "ebb": _ebb,
+# The module that reads each language. Its function is called read_ and the module's name.
+_READERS = dict.fromkeys(
+    ["linuxcnc", "grbl", "grbl-servo", "fluidnc", "marlin", "marlin-servo", "klipper"], "gcode"
+) | {
+    name: name
+    for name in ["urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "hpgl", "ebb"]
 }

@@ -7,8 +7,9 @@ import re
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.dobot import DOBOT_END, INDEX
+from ...machine.posts.dobot import INDEX
 from ...machine.posts.script import upright_tool_rotation
+from ...machine.posts.text import PROGRAM_END
 from . import Act, Readback
 from .script import Script, read_script
 
@@ -56,7 +57,7 @@ def read_dobot(text: str, cell: Cell) -> Readback:
         remark="-- ",
         lines=_LINES,
         again=re.compile(r"Set|User|Tool|CP|here"),
-        last=(f"-- {DOBOT_END}",),
+        last=(f"-- {PROGRAM_END}",),
         units_mm={"seconds": 1e-3},
         turned_deg=tuple(rotation_deg(upright_tool_rotation(cell.tool.spin_deg)).tolist()),
         rotation=rotation,

@@ -12,8 +12,9 @@ import numpy as np
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, zyz_deg
-from ...machine.posts.doosan import CHECKS, DOOSAN_END, STOPS
+from ...machine.posts.doosan import CHECKS, STOPS
 from ...machine.posts.script import upright_tool_rotation
+from ...machine.posts.text import PROGRAM_END
 from ...machine.posts.xarm import NAMES_LETTERS
 from . import Act, Readback
 from .script import N, Script, read_script
@@ -85,7 +86,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
         remark="# ",
         lines=_LINES,
         again=re.compile(r"set_|paper|tip|flange|here|    (?:here|exit)"),
-        last=(f"# {DOOSAN_END}",),
+        last=(f"# {PROGRAM_END}",),
         units_mm={},
         turned_deg=tuple(zyz_deg(upright_tool_rotation(cell.tool.spin_deg)).tolist()),
         is_indented=True,

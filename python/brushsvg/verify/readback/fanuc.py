@@ -10,8 +10,9 @@ import numpy as np
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.fanuc import FANUC_END, INDEX, MAIN, POINT_DECIMALS, cnt_mm
+from ...machine.posts.fanuc import INDEX, MAIN, POINT_DECIMALS, cnt_mm
 from ...machine.posts.script import upright_tool_rotation
+from ...machine.posts.text import PROGRAM_END
 from . import Readback
 from .script import N, NumberedLines, Script, place, read_script
 
@@ -59,7 +60,7 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
         remark="!",
         lines=_LINES,
         again=re.compile(r"PR\[2\]|R\[1\]"),
-        last=(f"!{FANUC_END}",),
+        last=(f"!{PROGRAM_END}",),
         units_mm={},
         turned_deg=tuple(np.round(rotation_deg(upright_tool_rotation(cell.tool.spin_deg)), POINT_DECIMALS).tolist()),
         rotation=rotation,

@@ -6,7 +6,8 @@ import re
 
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation
-from ...machine.posts.jaka import JAKA_END, upright_deg
+from ...machine.posts.jaka import upright_deg
+from ...machine.posts.text import PROGRAM_END
 from . import Readback
 from .script import N, Script, place, read_script
 
@@ -37,5 +38,5 @@ def read_jaka(text: str, cell: Cell) -> Readback:
     Raises Error with the line for a statement that brushsvg does not write.
     """
     turned = tuple(upright_deg(cell).tolist())
-    script = Script("# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {JAKA_END}",), {}, turned, rotation=rotation)
+    script = Script("# ", _LINES, re.compile(r"set_|\w+ = "), (f"# {PROGRAM_END}",), {}, turned, rotation=rotation)
     return read_script(text, script, Readback())

@@ -7,8 +7,9 @@ import re
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.krl import KRL_END, RISES
+from ...machine.posts.krl import RISES
 from ...machine.posts.script import upright_tool_rotation
+from ...machine.posts.text import PROGRAM_END
 from . import Readback
 from .script import N, NumberedLines, Script, read_script
 
@@ -56,7 +57,7 @@ def read_krl(text: str, cell: Cell) -> Readback:
         remark="; ",
         lines=_LINES,
         again=re.compile(r"\$|bas\(|ptp|here"),
-        last=(f"; {KRL_END}", "END"),
+        last=(f"; {PROGRAM_END}", "END"),
         units_mm={"speed": 1e3, "acceleration": 1e3},
         sets_after=_INITIALISATION,
         turned_deg=tuple(rotation_deg(upright_tool_rotation(cell.tool.spin_deg))[::-1].tolist()),

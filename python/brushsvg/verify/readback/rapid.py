@@ -6,9 +6,9 @@ import re
 
 import numpy as np
 
-from ...machine.cells.cell import LEAST_ACCELERATION_MM_S2
+from ...machine.cells.cell import LEAST_ACCELERATION_MM_S2, Cell
 from ...machine.frames import of_quaternion
-from ...machine.posts.rapid import RAPID_END
+from ...machine.posts.text import PROGRAM_END
 from . import Readback
 from .script import N, Script, place, read_script
 
@@ -64,7 +64,7 @@ _SCRIPT = Script(
         )
     ),
     again=re.compile(r"confl|here := crobt|here\.trans|return"),
-    last=(f"! {RAPID_END}", "ENDPROC", "ENDMODULE"),
+    last=(f"! {PROGRAM_END}", "ENDPROC", "ENDMODULE"),
     units_mm={"more": 1e3, "less": 1e3},
     least=LEAST_ACCELERATION_MM_S2["rapid"],
     any_case=True,
@@ -73,7 +73,7 @@ _SCRIPT = Script(
 )
 
 
-def read_rapid(text: str) -> Readback:
+def read_rapid(text: str, _cell: Cell) -> Readback:
     """Read a RAPID program as steps in the paper frame.
 
     Raises Error with the line for a statement that brushsvg does not write.

@@ -12,8 +12,9 @@ from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import apart_deg, frame_of_pose, of_quaternion, rotation
 from ...machine.header_lines import TILT_LINE
-from ...machine.posts.ros2 import COLUMNS, ROS2_END, flange_from_tip
+from ...machine.posts.ros2 import COLUMNS, flange_from_tip
 from ...machine.posts.script import upright_deg
+from ...machine.posts.text import PROGRAM_END
 from ...machine.tool_axes import turned_on, turned_to
 from . import Act, Readback, Step
 from .script import TILT_TOLERANCE_DEG
@@ -69,6 +70,8 @@ def read_ros2(text: str, cell: Cell) -> Readback:
     Raises Error with the line for a row that brushsvg does not write, for times that do not increase, and for a path
     that is faster than its row allows.
     """
+    if text.startswith("{"):
+        text = as_table(text)
     reader = _RowReader(cell)
     lines = [(number, line.strip(" ")) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ")]
     rows, found = [], [_ROW.fullmatch(line) for _, line in lines]
@@ -92,9 +95,9 @@ def read_ros2(text: str, cell: Cell) -> Readback:
             reader.row(number, next(values), tuple(next(tips)), row[2], next(turns))
         elif line == COLUMNS:
             header_count += 1
-        elif line != f"# {ROS2_END}":
+        elif line != f"# {PROGRAM_END}":
             reader.out.comment(number, line[2:])
-    if not lines or lines[-1][1] != f"# {ROS2_END}" or reader.ways:
+    if not lines or lines[-1][1] != f"# {PROGRAM_END}" or reader.ways:
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     return reader.out
 

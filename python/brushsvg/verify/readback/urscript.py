@@ -7,6 +7,7 @@ import re
 import numpy as np
 
 from ...errors import Error
+from ...machine.cells.cell import Cell
 from ...machine.frames import of_rotation_vector
 from ...machine.posts.urscript import BEGIN, END, NEXT
 from . import Act, Readback, Step, add_circle
@@ -38,7 +39,7 @@ _FRAME_LINE = re.compile(  # the frame around the moves
 )
 
 
-def read_urscript(text: str) -> Readback:
+def read_urscript(text: str, _cell: Cell) -> Readback:
     """Read one or more programs, in sequence, as steps in the paper frame.
 
     Line numbers continue through the programs. Raises Error with the line for a statement that brushsvg does not write.

@@ -8,6 +8,7 @@ import re
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation
+from ...machine.posts.text import PROGRAM_END
 from ...machine.posts.xarm import (
     AFTER,
     BEFORE,
@@ -15,7 +16,6 @@ from ...machine.posts.xarm import (
     NAMES_LETTERS,
     READY,
     TILTED,
-    XARM_END,
     upright_deg,
 )
 from . import Act, Readback
@@ -70,7 +70,7 @@ def read_xarm(text: str, cell: Cell) -> Readback:
         remark="# ",
         lines=_LINES,
         again=re.compile(r"done\(arm\.|arm = |import |from |UPRIGHT = |TOOL = |arrive\(\)$|arm\.disc"),
-        last=(AFTER.splitlines()[-1], f"# {XARM_END}"),
+        last=(AFTER.splitlines()[-1], f"# {PROGRAM_END}"),
         units_mm={},
         turned_deg=tuple(upright_deg(cell).tolist()),
         is_indented=True,
