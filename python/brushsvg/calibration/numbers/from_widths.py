@@ -184,17 +184,15 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
         )
     if depth_count > 1:
         plausibility.refuse_falling("lag", depths, values, "lag")
-    for degree in LAG_DEGREES if depth_count > 1 else (0,):
-        if degree > depth_count:
-            continue
+    shapes = [
         # A degree equal to the number of depths is only needed if a line would be negative at first touch.
-        smoothing = CURVATURE_WEIGHT if degree == depth_count else 0.0
-        shape = _core.LawShape((0.0, deepest), degree, positive=True, smoothing=smoothing)
-        fit = _core.fit_law(depths, values, shape)
-        worst = max(range(len(depths)), key=lambda i: abs(fit.residual_mm[i]))
-        misfit_mm = abs(fit.residual_mm[worst])
-        if misfit_mm <= GOOD_LAG_MISFIT_MM:
-            break
+        _core.LawShape(
+            (0.0, deepest), degree, positive=True, smoothing=CURVATURE_WEIGHT if degree == depth_count else 0.0
+        )
+        for degree in (LAG_DEGREES if depth_count > 1 else (0,))
+        if degree <= depth_count
+    ]
+    fit, worst, misfit_mm = _fit_simplest_law(depths, values, shapes, GOOD_LAG_MISFIT_MM)
     if misfit_mm > MAX_LAG_MISFIT_MM:
         raise Error(
             f"no brush fits these lags: a law over depth differs by {misfit_mm:.1f} mm from the lag "
@@ -204,17 +202,7 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
             values[worst],
             code="law-undetermined",
         )
-    listed = ", ".join(f"{lag:g} mm at depth {depth:g} mm" for depth, lag in lags[:4])
-    more = f" and {len(lags) - 4} more" if len(lags) > 4 else ""
-    return _core.Profile(
-        fit.law.coefficients,
-        calibrated_mm=fit.law.calibrated_mm,
-        source=f"Lags as typed in: {listed}{more}; met to {misfit_mm:.2f} mm.",
-        assumed=depth_count == 1,
-        half_interval_95=fit.law.half_interval_95,
-        rmse_mm=fit.law.rmse_mm,
-        degrees_of_freedom=fit.law.degrees_of_freedom,
-    )
+    return _profile_of_fit(fit, f"Lags as typed in: {_list_pairs(lags)}; met to {misfit_mm:.2f} mm.", depth_count)
 
 
 def _constant_half_width(width: tuple[float, float]) -> _core.Profile:
@@ -229,21 +217,18 @@ def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.
     """
     depths, halves = [depth for depth, _ in widths], [width / 2 for _, width in widths]
     depth_count = len(set(depths))
-    for degree in (2, 3, 8) if depth_count > 1 else (1,):
-        if degree <= 3 and degree > depth_count:
-            continue
-        shape = _core.LawShape(
+    shapes = [
+        _core.LawShape(
             (0.0, deepest),
             degree,
             through_zero=True,
             rising=True,
             smoothing=CURVATURE_WEIGHT if degree > 3 else 0.0,
         )
-        fit = _core.fit_law(depths, halves, shape)
-        worst = max(range(len(depths)), key=lambda i: abs(fit.residual_mm[i]))
-        misfit_mm = abs(fit.residual_mm[worst])
-        if misfit_mm <= GOOD_HALF_WIDTH_MISFIT_MM:
-            break
+        for degree in ((2, 3, 8) if depth_count > 1 else (1,))
+        if degree > 3 or degree <= depth_count
+    ]
+    fit, worst, misfit_mm = _fit_simplest_law(depths, halves, shapes, GOOD_HALF_WIDTH_MISFIT_MM)
     if misfit_mm > MAX_HALF_WIDTH_MISFIT_MM:
         raise Error(
             f"no brush fits these widths: a law that never falls differs by {2 * misfit_mm:.2f} mm from the width "
@@ -255,13 +240,33 @@ def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.
         )
     if depth_count > 1:
         plausibility.refuse_falling("width", depths, [2 * half for half in halves], "width")
-    listed = ", ".join(f"{width:g} mm at depth {depth:g} mm" for depth, width in widths[:4])
-    more = f" and {len(widths) - 4} more" if len(widths) > 4 else ""
+    source = f"Widths as typed in: {_list_pairs(widths)}; met to {2 * misfit_mm:.2f} mm."
+    return _profile_of_fit(fit, f"{source} That the brush touches with no width at depth 0 is assumed.", depth_count)
+
+
+def _fit_simplest_law(depths: list[float], values: list[float], shapes, good_misfit_mm: float):
+    """Fit the first of the shapes whose misfit is good, or the last one.
+
+    Return the fit, the index of the worst value, and its misfit [mm].
+    """
+    for shape in shapes:
+        fit = _core.fit_law(depths, values, shape)
+        misfits_mm = [abs(residual) for residual in fit.residual_mm]
+        if max(misfits_mm) <= good_misfit_mm:
+            break
+    return fit, misfits_mm.index(max(misfits_mm)), max(misfits_mm)
+
+
+def _list_pairs(pairs: list[tuple[float, float]]) -> str:
+    listed = ", ".join(f"{value:g} mm at depth {depth:g} mm" for depth, value in pairs[:4])
+    return listed + (f" and {len(pairs) - 4} more" if len(pairs) > 4 else "")
+
+
+def _profile_of_fit(fit, source: str, depth_count: int) -> _core.Profile:
     return _core.Profile(
         fit.law.coefficients,
         calibrated_mm=fit.law.calibrated_mm,
-        source=f"Widths as typed in: {listed}{more}; met to {2 * misfit_mm:.2f} mm. That the brush touches with no "
-        "width at depth 0 is assumed.",
+        source=source,
         assumed=depth_count == 1,
         half_interval_95=fit.law.half_interval_95,
         rmse_mm=fit.law.rmse_mm,
