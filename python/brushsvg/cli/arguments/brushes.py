@@ -6,22 +6,14 @@ from dataclasses import fields
 
 from ...photo import PHOTOS
 from ...read import READERS
-from . import values
-from .flags import (
-    PROGRAM_HELP,
-    add_explain,
-    add_list_show_check,
-    add_output,
-    add_picture,
-    add_write_options,
-    add_z_offset,
-)
+from ...units import PAPERS_MM
+from . import flags, values
 from .usage_checks import PICTURES, PROGRAMS, check_extension, check_files, check_job, suffix_of
 
 
 def add_chart(commands) -> None:
     chart = commands.add_parser("chart", help="write a chart: the strokes to calibrate a brush with")
-    add_output(chart, f"a plan (.json) or {PROGRAM_HELP}")
+    flags.add_output(chart, f"a plan (.json) or {flags.PROGRAM_HELP}")
     chart.add_argument("--brush", metavar="NAME|FILE", help="the known brush most like yours; default: round-6")
     chart.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     chart.add_argument("--drawing", metavar="FILE", help="take brush and cell from this drawing, unless given")
@@ -29,8 +21,8 @@ def add_chart(commands) -> None:
         "--sheet",
         metavar="WxH",
         type=values.sheet,
-        default=values.SHEETS_MM["a4"],
-        help=f"or {', '.join(values.SHEETS_MM)}; default: a4",
+        default=PAPERS_MM["a4"],
+        help=f"or {', '.join(PAPERS_MM)}; default: a4",
     )
     chart.add_argument(
         "--strokes", choices=("few", "normal", "many"), help="default: as many as the sheet has room for"
@@ -59,9 +51,9 @@ def add_chart(commands) -> None:
         help="standard deviation of a digitized edge, for the confidence intervals to expect of strokes; "
         f"default: {values.EDGE_NOISE_MM:g}",
     )
-    add_z_offset(chart)
-    add_explain(chart, "drawing")
-    add_write_options(chart)
+    flags.add_z_offset(chart)
+    flags.add_explain(chart, "drawing")
+    flags.add_write_options(chart)
     chart.set_defaults(run="chart_file", parser=chart, check=_check_chart)
 
 
@@ -83,7 +75,7 @@ def add_calibrate(commands) -> None:
         nargs="+",
         help=f"what was measured (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
     )
-    add_output(calibrate, "a brush (.json); with --scan, outlines in mm (.json)")
+    flags.add_output(calibrate, "a brush (.json); with --scan, outlines in mm (.json)")
     calibrate.add_argument(
         "--scan",
         action="store_true",
@@ -151,9 +143,9 @@ def add_calibrate(commands) -> None:
         help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
         "brushsvg setup height; default: 0.3, as by eye",
     )
-    add_picture(calibrate, "the brush laws, data and residuals")
+    flags.add_picture(calibrate, "the brush laws, data and residuals")
     calibrate.add_argument("--details", action="store_true", help="print all tables of the report")
-    add_write_options(calibrate)
+    flags.add_write_options(calibrate)
     calibrate.set_defaults(run="calibrate_file", parser=calibrate, check=_check_calibrate)
 
 
@@ -261,11 +253,11 @@ def _refuse_heic(args, photos: list[str]) -> None:
 
 
 def add_brush(commands) -> None:
-    subcommands = add_list_show_check(
+    subcommands = flags.add_list_show_check(
         commands, "brush", "list, show, check, draw and create brushes", "laws and ranges", "brush.json"
     )
     new = subcommands.add_parser("new", help="write a brush file from a few numbers; asks for them if you give none")
-    add_output(new, "the brush file (.json); its name becomes the brush's name")
+    flags.add_output(new, "the brush file (.json); its name becomes the brush's name")
     new.add_argument(
         "--lag",
         metavar="MM",
@@ -292,12 +284,12 @@ def add_brush(commands) -> None:
     new.add_argument("--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width")
     new.add_argument("--like", metavar="BRUSH", help="take all laws from this one, a name or a brush.json, as assumed")
     new.add_argument("--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it")
-    add_write_options(new)
+    flags.add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = subcommands.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
     plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
-    add_output(plot, "a picture (.svg .png)")
-    add_write_options(plot)
+    flags.add_output(plot, "a picture (.svg .png)")
+    flags.add_write_options(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)
 
 

@@ -7,24 +7,7 @@ from __future__ import annotations
 
 from ...photo import PHOTOS
 from ...read import READERS
-from . import values
-from .flags import (
-    add_choices,
-    add_corrections,
-    add_input,
-    add_job_options,
-    add_margin_strokes,
-    add_order,
-    add_output,
-    add_picture,
-    add_quiet,
-    add_report,
-    add_script,
-    add_speed,
-    add_write_options,
-    add_z_offset,
-    list_output_formats,
-)
+from . import flags, values
 from .usage_checks import (
     DRAWINGS,
     PICTURES,
@@ -40,24 +23,24 @@ from .usage_checks import (
 
 def add_convert(commands) -> None:
     convert = commands.add_parser("convert", help="turn a drawing into a robot program")
-    add_input(convert)
-    add_output(convert, list_output_formats())
-    add_choices(convert)
-    add_speed(convert)
-    add_job_options(convert)
-    add_corrections(convert)
-    add_margin_strokes(convert)
+    flags.add_input(convert)
+    flags.add_output(convert, flags.list_output_formats())
+    flags.add_choices(convert)
+    flags.add_speed(convert)
+    flags.add_job_options(convert)
+    flags.add_corrections(convert)
+    flags.add_margin_strokes(convert)
     convert.add_argument(
         "--per-colour",
         action="store_true",
         help="write a program for each colour, the lightest first: OUT-1-ffd400.EXT, OUT-2-1a237e.EXT ...",
     )
-    add_picture(convert, "what will be painted")
+    flags.add_picture(convert, "what will be painted")
     convert.add_argument(
         "--page", metavar="FILE", help="also write the page to paint on, with markers for compare (.pdf .svg)"
     )
     convert.add_argument("--report", metavar="FILE", help="also write the report (.txt .json .csv)")
-    add_write_options(convert)
+    flags.add_write_options(convert)
     convert.set_defaults(run="convert_file", parser=convert, check=_check_convert)
 
 
@@ -89,7 +72,7 @@ def add_batch(commands) -> None:
         help=f"drawings ({' '.join(READERS)}), folders of them, patterns with *, lists (.txt, a path on each line); "
         "brushsvg.toml near the first one serves all",
     )
-    add_output(batch, "a folder for programs, pictures and tables")
+    flags.add_output(batch, "a folder for programs, pictures and tables")
     batch.add_argument("--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)")
     batch.add_argument("--font", metavar="FILE", help="of --words, as for brushsvg text")
     batch.add_argument("--size", metavar="MM", type=values.width, help="of the em of --font; default: 20")
@@ -101,12 +84,12 @@ def add_batch(commands) -> None:
         "--cluster", metavar="ADDRESS", help="of a scheduler of Dask's, whose workers do it (tcp://host:8786)"
     )
     batch.add_argument("--parquet", action="store_true", help="also write the table as table.parquet")
-    add_choices(batch)
+    flags.add_choices(batch)
     batch.set_defaults(project_near="inputs")
-    add_speed(batch)
-    add_z_offset(batch)
-    add_order(batch)
-    add_quiet(batch)
+    flags.add_speed(batch)
+    flags.add_z_offset(batch)
+    flags.add_order(batch)
+    flags.add_quiet(batch)
     batch.set_defaults(run="batch_files", parser=batch, check=_check_batch)
 
 
@@ -136,12 +119,12 @@ def add_compare(commands) -> None:
         nargs="+",
         help=f"of the painted page of `convert --page` ({' '.join(PHOTOS)})",
     )
-    add_input(compare)
-    add_choices(compare)
-    add_corrections(compare)
-    add_margin_strokes(compare)
-    add_output(compare, "the figures and the corrections for the next sheet (.json), or the report (.txt)", False)
-    add_picture(compare, "the paint, the drawing and the prediction; with --sheets the spread", ".png")
+    flags.add_input(compare)
+    flags.add_choices(compare)
+    flags.add_corrections(compare)
+    flags.add_margin_strokes(compare)
+    flags.add_output(compare, "the figures and the corrections for the next sheet (.json), or the report (.txt)", False)
+    flags.add_picture(compare, "the paint, the drawing and the prediction; with --sheets the spread", ".png")
     compare.add_argument(
         "--corrected-cell",
         metavar="FILE",
@@ -158,8 +141,8 @@ def add_compare(commands) -> None:
         action="store_true",
         help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
     )
-    add_report(compare)
-    add_write_options(compare)
+    flags.add_report(compare)
+    flags.add_write_options(compare)
     compare.set_defaults(run="compare_files", parser=compare, check=_check_compare)
 
 
@@ -183,11 +166,11 @@ def add_simulate_photo(commands) -> None:
     simulate = commands.add_parser(
         "simulate-photo", help="render a photograph of the painted job, to try `compare` without a robot"
     )
-    add_input(simulate)
-    add_output(simulate, "a photograph (.jpg)")
-    add_choices(simulate)
-    add_corrections(simulate)
-    add_margin_strokes(simulate)
+    flags.add_input(simulate)
+    flags.add_output(simulate, "a photograph (.jpg)")
+    flags.add_choices(simulate)
+    flags.add_corrections(simulate)
+    flags.add_margin_strokes(simulate)
     simulate.add_argument(
         "--studio",
         metavar="FILE",
@@ -197,7 +180,7 @@ def add_simulate_photo(commands) -> None:
         "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
     )
     simulate.add_argument("--seed", metavar="N", type=values.count, default=1, help="of chance; default: 1")
-    add_write_options(simulate)
+    flags.add_write_options(simulate)
     simulate.set_defaults(run="simulate_photo_file", parser=simulate, check=_check_simulate_photo)
 
 
@@ -214,8 +197,8 @@ def _check_simulate_photo(args) -> None:
 
 def add_preview(commands) -> None:
     preview = commands.add_parser("preview", help="show what will be painted, and how close it is to the drawing")
-    add_input(preview)
-    add_output(
+    flags.add_input(preview)
+    flags.add_output(
         preview,
         "a picture (.png .svg), a page that plays the motion (.html), or marks (.json); default: print the report",
         False,
@@ -227,8 +210,8 @@ def add_preview(commands) -> None:
         help="draw the paint; the paint and the path of the tool; the strokes read from the drawing; or missing and "
         "surplus paint, with the report; default: paint",
     )
-    add_choices(preview, several_brushes=True)
-    add_speed(preview)
+    flags.add_choices(preview, several_brushes=True)
+    flags.add_speed(preview)
     preview.add_argument(
         "--band", action="store_true", help="also draw the 95 %% confidence band of the edges of the paint"
     )
@@ -244,8 +227,8 @@ def add_preview(commands) -> None:
         help="with .html: how much faster than the robot the page begins; default: 1",
     )
     preview.add_argument("--all-brushes", action="store_true", help="report one line for each brush, the best first")
-    add_report(preview)
-    add_write_options(preview)
+    flags.add_report(preview)
+    flags.add_write_options(preview)
     preview.set_defaults(parser=preview, check=_check_preview)
 
 
@@ -292,7 +275,7 @@ def _select_preview(args) -> str:
 def add_text(commands) -> None:
     text = commands.add_parser("text", help="write a text in a font as a drawing")
     text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
-    add_output(text, "a drawing (.svg)")
+    flags.add_output(text, "a drawing (.svg)")
     text.add_argument(
         "--font",
         metavar="FILE",
@@ -304,8 +287,8 @@ def add_text(commands) -> None:
     text.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )
-    add_script(text, "how the letters are written")
-    add_write_options(text)
+    flags.add_script(text, "how the letters are written")
+    flags.add_write_options(text)
     text.set_defaults(run="text_file", parser=text, check=_check_text)
 
 

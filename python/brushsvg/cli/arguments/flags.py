@@ -140,12 +140,7 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
         add("--brush", metavar="NAME|FILE", help=default)
     add("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     add_layout(command)
-    add_colour(command)
-    add_wide(command)
-    add_corners(command)
-    add_detail(command)
-    add_script(command)
-    add_join(command)
+    add_stroke_choices(command)
     add(
         "--compensation",
         choices=("none", "constant", "closed", "refined"),
@@ -175,15 +170,6 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add_explain(command)
 
 
-def add_colour(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--colour",
-        metavar="COLOUR",
-        type=values.colour,
-        help="paint the strokes of this colour: #1a237e, red",
-    )
-
-
 def add_speed(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--speed",
@@ -191,6 +177,35 @@ def add_speed(command: argparse.ArgumentParser) -> None:
         metavar="MM/S",
         type=values.paint_speed,
         help="painting speed, within the limits of brush and cell; default: the drawing's, or 20",
+    )
+
+
+def add_stroke_choices(command: argparse.ArgumentParser) -> None:
+    """Add the choices of strokes that depend on neither brush nor compensation."""
+    add = command.add_argument
+    add(
+        "--colour",
+        metavar="COLOUR",
+        type=values.colour,
+        help="paint the strokes of this colour: #1a237e, red",
+    )
+    add_wide(command)
+    add(
+        "--corners",
+        choices=("auto", "turn"),
+        help="corners: the brush turns in place; default: auto, it is lifted where that is better",
+    )
+    add(
+        "--detail",
+        choices=("draft", "normal", "fine"),
+        help="filled shapes: how small a corner gets a stroke of its own; default: normal",
+    )
+    add_script(command)
+    add(
+        "--join",
+        action="store_true",
+        default=None,
+        help="paint lines that meet end to end, in one colour and width, as one",
     )
 
 
@@ -203,37 +218,12 @@ def add_wide(command: argparse.ArgumentParser) -> None:
     )
 
 
-def add_corners(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--corners",
-        choices=("auto", "turn"),
-        help="corners: the brush turns in place; default: auto, it is lifted where that is better",
-    )
-
-
-def add_detail(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--detail",
-        choices=("draft", "normal", "fine"),
-        help="filled shapes: how small a corner gets a stroke of its own; default: normal",
-    )
-
-
 def add_script(command: argparse.ArgumentParser, what: str = "filled shapes: how they are written") -> None:
     command.add_argument(
         "--script",
         choices=SCRIPTS,
         help=f"{what}; arabic: from right to left, bodies before dots; devanagari: the headline last; default: auto, "
         "as the characters of a text say",
-    )
-
-
-def add_join(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--join",
-        action="store_true",
-        default=None,
-        help="paint lines that meet end to end, in one colour and width, as one",
     )
 
 

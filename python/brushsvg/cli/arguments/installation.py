@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .flags import add_output, add_write_options
+from . import flags
 from .usage_checks import check_files
 
 DEMO_PICTURE = "brushsvg-demo.png"
@@ -10,9 +10,9 @@ DEMO_PICTURE = "brushsvg-demo.png"
 
 def add_demo(commands) -> None:
     demo = commands.add_parser("demo", help="paint a word that comes with brushsvg, and show the picture")
-    add_output(demo, f"the picture (.png); default: {DEMO_PICTURE}", False)
+    flags.add_output(demo, f"the picture (.png); default: {DEMO_PICTURE}", False)
     demo.add_argument("--no-open", action="store_true", help="do not open the picture in a viewer")
-    add_write_options(demo)
+    flags.add_write_options(demo)
     demo.set_defaults(run="demo_picture", parser=demo, check=_check_demo)
 
 

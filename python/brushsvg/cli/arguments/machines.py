@@ -2,29 +2,7 @@
 
 from __future__ import annotations
 
-from . import values
-from .flags import (
-    PROGRAM_HELP,
-    add_choices,
-    add_colour,
-    add_corners,
-    add_corrections,
-    add_detail,
-    add_explain,
-    add_input,
-    add_join,
-    add_layout,
-    add_list_show_check,
-    add_margin_strokes,
-    add_output,
-    add_picture,
-    add_report,
-    add_script,
-    add_speed,
-    add_wide,
-    add_write_options,
-    add_z_offset,
-)
+from . import flags, values
 from .usage_checks import DRAWINGS, PICTURES, PROGRAMS, check_drawing, check_extension, check_files
 
 
@@ -40,11 +18,11 @@ def add_setup(commands) -> None:
 def _add_first_run(commands) -> None:
     first = commands.add_parser("first-run", help="write a safe first program for a new machine")
     first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
-    add_output(first, PROGRAM_HELP)
+    flags.add_output(first, flags.PROGRAM_HELP)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     first.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
-    add_explain(first, None)
-    add_write_options(first)
+    flags.add_explain(first, None)
+    flags.add_write_options(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
 
 
@@ -54,12 +32,12 @@ def _check_first_run(args) -> None:
 
 def _add_border(commands) -> None:
     border = commands.add_parser("border", help="write a run around the job in the air, at safe height")
-    add_input(border)
-    add_output(border, PROGRAM_HELP)
-    add_choices(border)
-    add_z_offset(border)
-    add_margin_strokes(border)
-    add_write_options(border)
+    flags.add_input(border)
+    flags.add_output(border, flags.PROGRAM_HELP)
+    flags.add_choices(border)
+    flags.add_z_offset(border)
+    flags.add_margin_strokes(border)
+    flags.add_write_options(border)
     border.set_defaults(run="border_file", parser=border, check=_check_border)
 
 
@@ -70,7 +48,7 @@ def _check_border(args) -> None:
 
 def _add_height(commands) -> None:
     height = commands.add_parser("height", help="write strokes that show how high the paper is")
-    add_output(height, PROGRAM_HELP)
+    flags.add_output(height, flags.PROGRAM_HELP)
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
     height.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
@@ -91,8 +69,8 @@ def _add_height(commands) -> None:
         help="height of the last stroke; default: -1",
     )
     height.add_argument("--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1")
-    add_explain(height, None)
-    add_write_options(height)
+    flags.add_explain(height, None)
+    flags.add_write_options(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
 
 
@@ -114,25 +92,20 @@ def _check_inkscape(args) -> None:
 
 def add_check(commands) -> None:
     check = commands.add_parser("check", help="read a program back, simulate it, and compare it with its drawing")
-    check.add_argument("program", metavar="PROGRAM", help=PROGRAM_HELP)
+    check.add_argument("program", metavar="PROGRAM", help=flags.PROGRAM_HELP)
     check.add_argument("input", metavar="IN", nargs="?", help="the drawing, or plan (.json), that it should paint")
     check.add_argument("--brush", metavar="NAME|FILE", help="default: the one that the program names")
     check.add_argument("--cell", metavar="NAME|FILE", help="default: the one that the program names")
-    add_layout(check)
-    add_colour(check)
-    add_wide(check)
-    add_corners(check)
-    add_detail(check)
-    add_script(check)
-    add_join(check)
-    add_speed(check)
-    add_corrections(check)
+    flags.add_layout(check)
+    flags.add_stroke_choices(check)
+    flags.add_speed(check)
+    flags.add_corrections(check)
     check.add_argument("--z-offset", metavar="MM", type=values.height, help="default: the one that the program names")
     check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
-    add_picture(check, "what will be painted")
-    add_explain(check)
-    add_report(check)
-    add_write_options(check)
+    flags.add_picture(check, "what will be painted")
+    flags.add_explain(check)
+    flags.add_report(check)
+    flags.add_write_options(check)
     check.set_defaults(
         run="check_file",
         parser=check,
@@ -161,9 +134,9 @@ def _check_check(args) -> None:
 
 def add_cell(commands) -> None:
     about = "list, show, check and create cells: machines with their limits"
-    subcommands = add_list_show_check(commands, "cell", about, "heights, speeds and limits", "cell.toml")
+    subcommands = flags.add_list_show_check(commands, "cell", about, "heights, speeds and limits", "cell.toml")
     new = subcommands.add_parser("new", help="write a cell file for you to edit")
-    add_output(new, "a cell file (.toml); its name becomes the cell's name")
+    flags.add_output(new, "a cell file (.toml); its name becomes the cell's name")
     new.add_argument("--like", metavar="NAME|FILE", help="the cell to start from; default: linuxcnc-3axis")
     new.add_argument(
         "--taught",
@@ -173,7 +146,7 @@ def add_cell(commands) -> None:
         help="three or four times: the tip at the sheet's lower left corner, along its lower edge, along its "
         "left edge, and anywhere else on it, each just touching, in the robot's frame",
     )
-    add_write_options(new)
+    flags.add_write_options(new)
     new.set_defaults(run="cell_new", parser=new, check=_check_cell_new)
     _add_cell_place(subcommands)
 
@@ -182,11 +155,11 @@ def _add_cell_place(subcommands) -> None:
     place = subcommands.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
     place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
-    add_output(place, "a picture of the table (.png .svg)", False)
+    flags.add_output(place, "a picture of the table (.png .svg)", False)
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
-    add_layout(place)
-    add_wide(place)
-    add_write_options(place)
+    flags.add_layout(place)
+    flags.add_wide(place)
+    flags.add_write_options(place)
     place.set_defaults(run="cell_place", parser=place, check=_check_cell_place)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 
 from ...jobs.project import NAME
-from . import values
-from .flags import add_speed, add_write_options
+from ...units import PAPERS_MM
+from . import flags, values
 
 
 def add_init(commands) -> None:
@@ -26,10 +26,10 @@ def add_init(commands) -> None:
         "--sheet",
         metavar="WxH",
         type=_check_sheet,
-        help=f"the paper: {', '.join(values.SHEETS_MM)}, or its size; default: asks",
+        help=f"the paper: {', '.join(PAPERS_MM)}, or its size; default: asks",
     )
-    add_speed(init)
-    add_write_options(init)
+    flags.add_speed(init)
+    flags.add_write_options(init)
     init.set_defaults(run="init_project", parser=init, check=_check_init)
 
 

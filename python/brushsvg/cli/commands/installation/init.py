@@ -13,6 +13,7 @@ from ....jobs.project import NAME, write_project
 from ....machine.cells.cell_file import DEFAULT_CELL, cell_names, find_cell
 from ....machine.posts import POSTS
 from ....model.library import brush_names, find_brush
+from ....units import PAPERS_MM
 from ...arguments import values
 from ...console import RefusedError, print_text, refuse_errors, say
 from ...steps.ask_measurements import can_answer
@@ -47,7 +48,7 @@ def init_project(args) -> None:
                 _read_brush,
             )
         if paper is None:
-            say(f"Papers: {', '.join(values.SHEETS_MM)}, or a size such as 300x200mm")
+            say(f"Papers: {', '.join(PAPERS_MM)}, or a size such as 300x200mm")
             paper = _ask(f"Paper [{DEFAULT_PAPER}]: ", DEFAULT_PAPER, folder, _read_paper)
         if speed is None:
             speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, _read_speed)
