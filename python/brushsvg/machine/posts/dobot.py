@@ -10,18 +10,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import rotation_deg
-from ..motion import Move, Program, Wait, via_point
+from ..motion import Move, Program, Wait
 from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
+    PointWords,
     blends_mm,
-    format_blended_rows,
     join_numbers,
-    tool_rotations_at,
     upright_tool_rotation,
+    write_points,
     write_sections,
 )
-from .text import PROGRAM_END, format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
@@ -71,25 +71,13 @@ def _rise_lines(height: str, speed_mm_s: float) -> str:
 
 def _move_lines(move: Move, upright: np.ndarray, step_mm: float, decimals: int) -> Iterator[str]:
     speed = f"speed = {round_down_speed_mm_s(move.speed_mm_s)}"
-    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
-    if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from format_rows(f"Arc({point}, {point}, {{{speed}}})", values, decimals)
-        return
-    blends = np.zeros(len(move.points_mm))
-    if move.blends_mm is not None:
-        blends = np.floor(blends_mm(move, decimals) / step_mm + 1e-9) * step_mm
-    blend = "r = %.0f" if step_mm == 1 else f"r = %.{decimals}f"
-    if move.axes is not None:
-        for point, turned, r in zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True):
-            place = join_numbers(point, decimals)
-            angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
-            options = f"{speed}, {blend % r}" if r > 0 else speed
-            yield f"MovL({'tilted' if angles else 'on_paper'}({place}{angles}), {{{options}}})\n"
-        return
-    plain = f"MovL({point}, {{{speed}}})", move.points_mm
-    blended = f"MovL({point}, {{{speed}, {blend}}})", np.column_stack([move.points_mm, blends])
-    yield from format_blended_rows(plain, blended, blends, decimals)
+    words = PointWords(
+        lambda turned: join_numbers(rotation_deg(turned), DEGREE_DECIMALS),
+        lambda place, blend: f"MovL({place}, {{{speed}{', r = ' if blend else ''}{blend}}})",
+        lambda place: f"Arc({place}, {place}, {{{speed}}})",
+    )
+    blends = np.floor(blends_mm(move, decimals) / step_mm + 1e-9) * step_mm
+    yield from write_points(move, upright, words, decimals, blends, blends > 0, "%.0f" if step_mm == 1 else "")
 
 
 def _wait_lines(step: Wait) -> str:

@@ -10,19 +10,19 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import zyz_deg
-from ..motion import Move, Program, Wait, via_point
+from ..motion import Move, Program, Wait
 from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
+    PointWords,
     blends_mm,
-    format_blended_rows,
     format_rounded_down,
     join_numbers,
-    tool_rotations_at,
     upright_tool_rotation,
+    write_points,
     write_sections,
 )
-from .text import PROGRAM_END, format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, plain_text
 from .xarm import NAMES_LETTERS
 
 LINE_LIMIT = 100
@@ -84,22 +84,13 @@ def _rise_lines(height: str, speed_mm_s: float) -> str:
 
 def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     yield _speed_line(move.speed_mm_s)
-    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
-    if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from format_rows(f"movec({point}, {point})", values, decimals)
-        return
-    blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
-    if move.axes is not None:
-        for point, turned, blend in zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True):
-            place = join_numbers(point, decimals)
-            angles = "" if turned is None else f", {join_numbers(zyz_deg(turned), DEGREE_DECIMALS)}"
-            radius = f", radius={format_number(blend, decimals)}" if blend > 0 else ""
-            yield f"movel({'tilted' if angles else 'on_paper'}({place}{angles}){radius})\n"
-        return
-    plain = f"movel({point})", move.points_mm
-    blended = f"movel({point}, radius=%.{decimals}f)", np.column_stack([move.points_mm, blends])
-    yield from format_blended_rows(plain, blended, blends, decimals)
+    words = PointWords(
+        lambda turned: join_numbers(zyz_deg(turned), DEGREE_DECIMALS),
+        lambda place, blend: f"movel({place}{', radius=' if blend else ''}{blend})",
+        lambda place: f"movec({place}, {place})",
+    )
+    blends = blends_mm(move, decimals)
+    yield from write_points(move, upright, words, decimals, blends, blends > 0)
 
 
 def _wait_lines(step: Wait) -> str:

@@ -11,16 +11,18 @@ import numpy as np
 
 from ..cells.cell import Blending
 from ..frames import rotation, rotation_deg
-from ..motion import Move, Program, Wait, via_point
+from ..motion import Move, Program, Wait
 from .script import (
     LanguageWords,
+    PointWords,
+    blends_mm,
     format_rounded_down,
     join_numbers,
-    tool_rotations_at,
     upright_deg,
+    write_points,
     write_sections,
 )
-from .text import PROGRAM_END, format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
@@ -80,25 +82,15 @@ def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals
 def _move_lines(
     move: Move, turned: str, upright: np.ndarray, acceleration: str, blending: Blending, decimals: int
 ) -> Iterator[str]:
-    speed = _speed_text(move.speed_mm_s)
-    pose = f"[%.{decimals}f, %.{decimals}f, %.{decimals}f, {turned}]"
-    if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        pattern = f"via = {pose}\nto = {pose}\nmovc(via, to, 0, {speed}, {acceleration}, 0)"
-        yield from format_rows(pattern, values, decimals)
-        return
-    cut_mm = np.zeros(len(move.points_mm))
-    if move.blends_mm is not None:
-        cut_mm[:-1] = np.minimum(move.blends_mm[:-1], blending.tolerance_mm)
-    values = np.column_stack([move.points_mm, np.floor(cut_mm * 10.0**decimals) / 10.0**decimals])
-    if move.axes is not None:
-        for row, rotation_there in zip(values, tool_rotations_at(move, upright), strict=True):
-            angles = turned if rotation_there is None else join_numbers(rotation_deg(rotation_there), DEGREE_DECIMALS)
-            yield f"to = [{join_numbers(row[:3], decimals)}, {angles}]\n"
-            yield f"movl(to, 0, {speed}, {acceleration}, {format_number(row[3], decimals)})\n"
-        return
-    pattern = f"to = {pose}\nmovl(to, 0, {speed}, {acceleration}, %.{decimals}f)"
-    yield from format_rows(pattern, values, decimals)
+    run = f"0, {_speed_text(move.speed_mm_s)}, {acceleration}"
+    words = PointWords(
+        lambda tilted: join_numbers(rotation_deg(tilted), DEGREE_DECIMALS),
+        lambda place, blend: f"to = {place}\nmovl(to, {run}, {blend})",
+        lambda place: f"via = {place}\nto = {place}\nmovc(via, to, {run}, 0)",
+        lambda place, angles: f"[{place}, {angles or turned}]",
+    )
+    cut_mm = np.minimum(blends_mm(move, decimals), np.floor(blending.tolerance_mm * 10.0**decimals) / 10.0**decimals)
+    yield from write_points(move, upright, words, decimals, cut_mm, np.full(len(cut_mm), True))
 
 
 def _wait_lines(step: Wait) -> str:

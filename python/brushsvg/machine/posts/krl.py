@@ -13,19 +13,19 @@ from tempfile import SpooledTemporaryFile
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
-from ..motion import Move, Program, Wait, via_point
+from ..motion import Move, Program, Wait
 from .script import (
     LanguageWords,
+    PointWords,
     blends_mm,
-    format_blended_rows,
     format_rounded_down,
     join_numbers,
     name_parts,
     split_into_parts,
-    tool_rotations_at,
     upright_tool_rotation,
+    write_points,
 )
-from .text import PROGRAM_END, format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
@@ -53,14 +53,11 @@ def krl(program: Program) -> Iterator[str]:
         setup += "$ORI_TYPE = #VAR\n"  # #CONSTANT, set by an earlier program, would keep the tool's orientation
     setup += f"PTP $AXIS_ACT\n$ACC.CP = {acceleration}\n"
     upright = upright_tool_rotation(cell.tool.spin_deg)
-    turned = _abc_text(rotation_deg(upright))
     words = LanguageWords(
         comment,
         lambda speed: _rise_lines(format_number(program.rise_mm, decimals), speed),
         _wait_lines,
-        lambda move: (
-            _move_lines(move, turned, decimals) if move.axes is None else _tilted_lines(move, upright, decimals)
-        ),
+        lambda move: _move_lines(move, upright, decimals),
     )
     part_texts = split_into_parts(program, words, LINES_AROUND_PART, rises_again=False)
     end = comment(PROGRAM_END) + "END\n"
@@ -108,34 +105,17 @@ def _rise_lines(height: str, speed_mm_s: float) -> str:
     )
 
 
-def _move_lines(move: Move, turned: str, decimals: int) -> Iterator[str]:
+def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     yield _speed_line(move.speed_mm_s)
-    point = f"{{X %.{decimals}f, Y %.{decimals}f, Z %.{decimals}f, {turned}}}"
-    if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from format_rows(f"CIRC {point}, {point}", values, decimals)
-        return
-    blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
-    plain = f"LIN {point}", move.points_mm
-    blended = f"$APO.CDIS = %.{decimals}f\nLIN {point} C_DIS", np.column_stack([blends, move.points_mm])
-    yield from format_blended_rows(plain, blended, blends, decimals)
-
-
-def _tilted_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush.
-
-    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
-    moves.
-    """
-    yield _speed_line(move.speed_mm_s)
-    blends = np.zeros(len(move.points_mm)) if move.blends_mm is None else blends_mm(move, decimals)
     upright_angles = _abc_text(rotation_deg(upright))
-    rows_of = zip(move.points_mm, tool_rotations_at(move, upright), blends.tolist(), strict=True)
-    for point, turned, blend in rows_of:
-        x, y, z = join_numbers(point, decimals).split(", ")
-        angles = upright_angles if turned is None else _abc_text(rotation_deg(turned))
-        place = f"{{X {x}, Y {y}, Z {z}, {angles}}}"
-        yield (f"$APO.CDIS = {format_number(blend, decimals)}\nLIN {place} C_DIS\n" if blend > 0 else f"LIN {place}\n")
+    words = PointWords(
+        lambda turned: _abc_text(rotation_deg(turned)),
+        lambda place, blend: f"$APO.CDIS = {blend}\nLIN {place} C_DIS" if blend else f"LIN {place}",
+        lambda place: f"CIRC {place}, {place}",
+        lambda place, angles: _pose_text(place, angles or upright_angles),
+    )
+    blends = blends_mm(move, decimals)
+    yield from write_points(move, upright, words, decimals, blends, blends > 0)
 
 
 def _wait_lines(step: Wait) -> str:
@@ -149,8 +129,12 @@ def _speed_line(speed_mm_s: float) -> str:
 
 
 def _frame_text(frame: np.ndarray, decimals: int) -> str:
-    x, y, z = join_numbers(frame[:3, 3], decimals).split(", ")
-    return f"{{X {x}, Y {y}, Z {z}, {_abc_text(rotation_deg(frame[:3, :3]))}}}"
+    return _pose_text(join_numbers(frame[:3, 3], decimals), _abc_text(rotation_deg(frame[:3, :3])))
+
+
+def _pose_text(place: str, angles: str) -> str:
+    x, y, z = place.split(", ")
+    return f"{{X {x}, Y {y}, Z {z}, {angles}}}"
 
 
 def _abc_text(about_xyz_deg: np.ndarray) -> str:

@@ -10,18 +10,19 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, quaternion
-from ..motion import Move, Program, Wait, via_point
+from ..motion import Move, Program, Wait
 from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
+    PointWords,
     blends_mm,
     format_rounded_down,
     join_numbers,
-    tool_rotations_at,
     upright_tool_rotation,
+    write_points,
     write_sections,
 )
-from .text import PROGRAM_END, format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, plain_text
 
 LINE_LIMIT = 100
 TURN_DECIMALS = 7  # decimals of quaternions: a tenth of a micrometre at a distance of a metre
@@ -103,35 +104,15 @@ def _rise_lines(height_mm: float, speed_mm_s: float, decimals: int) -> str:
 
 def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     speed = f"mm_s({format_rounded_down(move.speed_mm_s, SPEED_DECIMALS)})"
-    point = f"on_paper(%.{decimals}f, %.{decimals}f, %.{decimals}f)"
-    if move.arc is not None:
-        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
-        yield from format_rows(f"    MoveC {point}, {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", values, decimals)
-        return
-    if move.axes is not None:
-        yield from _tilted_lines(move, upright, speed, decimals)
-        return
-    if move.blends_mm is None:
-        yield from format_rows(f"    MoveL {point}, {speed}, fine, {TOOL_AND_WORK_OBJECT};", move.points_mm, decimals)
-        return
-    values = np.column_stack([move.points_mm, blends_mm(move, decimals)])
-    yield from format_rows(
-        f"    MoveL {point}, {speed}, within(%.{decimals}f), {TOOL_AND_WORK_OBJECT};", values, decimals
+    words = PointWords(
+        _quaternion_text,
+        lambda place, blend: (
+            f"    MoveL {place}, {speed}, {f'within({blend})' if blend else 'fine'}, {TOOL_AND_WORK_OBJECT};"
+        ),
+        lambda place: f"    MoveC {place}, {place}, {speed}, fine, {TOOL_AND_WORK_OBJECT};",
     )
-
-
-def _tilted_lines(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush.
-
-    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
-    moves.
-    """
-    blends = None if move.blends_mm is None else blends_mm(move, decimals)
-    for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):
-        place = join_numbers(point, decimals)
-        place = f"on_paper({place})" if turned is None else f"tilted({place}, {_quaternion_text(turned)})"
-        zone = "fine" if blends is None else f"within({format_number(blends[k], decimals)})"
-        yield f"    MoveL {place}, {speed}, {zone}, {TOOL_AND_WORK_OBJECT};\n"
+    has_blends = np.full(len(move.points_mm), move.blends_mm is not None)
+    yield from write_points(move, upright, words, decimals, blends_mm(move, decimals), has_blends)
 
 
 def _wait_lines(step: Wait) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..cells.cell import MAX_PROGRAM_LINES, Cell, robot_from_paper
 from ..frames import rotation, rotation_deg
-from ..motion import Move, Program, Section, Wait
+from ..motion import Move, Program, Section, Wait, via_point
 from ..tool_axes import is_parallel, turned_to
 from .text import format_number, format_rows
 
@@ -117,27 +117,78 @@ def join_numbers(values, decimals: int) -> str:
 def blends_mm(move: Move, decimals: int, part: float = 1.0) -> np.ndarray:
     """Return how far [mm] before each point of a move its blend begins, (n,).
 
-    The distances are rounded down. The last point has no blend, because the next move may turn back.
+    The distances are rounded down. They are 0 for a move without blends, and at the last point, because the next move
+    may turn back.
 
     part: fraction of the blend distance to use.
     """
     blends = np.zeros(len(move.points_mm))
-    blends[:-1] = move.blends_mm[:-1]
+    if move.blends_mm is not None:
+        blends[:-1] = move.blends_mm[:-1]
     return np.floor(blends * part * 10.0**decimals) / 10.0**decimals
 
 
-def format_blended_rows(
-    plain: tuple[str, np.ndarray], blended: tuple[str, np.ndarray], blends: np.ndarray, decimals: int
-):
-    """Yield a line for each point of a move, whose pattern depends on whether the point is blended.
+def place_on_paper(place: str, angles: str) -> str:
+    """Return a call of the function that makes a pose on the paper, with an upright or a tilted brush."""
+    return f"tilted({place}, {angles})" if angles else f"on_paper({place})"
 
-    plain, blended: the pattern of such a line, and the values of all points, see format_rows.
-    blends: blend distance of each point, 0 where it is met exactly.
+
+class PointWords(NamedTuple):
+    """Functions that write the points of a move in one language.
+
+    angles: writes the tool's rotation (3, 3).
+    line: writes the line to a place with the distance of its blend, which is "" where the place is met exactly.
+    circle: writes a circle through two places of the given pattern.
+    place: writes a place from its coordinates "x, y, z" and its angles, which are "" where the brush is upright.
     """
-    is_blended = blends > 0
+
+    angles: Callable[[np.ndarray], str]
+    line: Callable[[str, str], str]
+    circle: Callable[[str], str] | None = None
+    place: Callable[[str, str], str] = place_on_paper
+
+
+def write_points(
+    move: Move,
+    upright: np.ndarray,
+    words: PointWords,
+    decimals: int,
+    blends: np.ndarray,
+    is_blended: np.ndarray,
+    blend_pattern: str = "",
+) -> Iterator[str]:
+    """Yield the lines to the points of a move.
+
+    If the move tilts the brush, each line has the tool's orientation at its end. Where the brush is upright, the lines
+    are those of other moves.
+
+    upright: (3, 3) rotation of the tool with an upright brush.
+    blends, is_blended: (n,) distance of each point's blend, and whether its line names the distance.
+    blend_pattern: how a distance is written, by default as a coordinate.
+    """
+    number = f"%.{decimals}f"
+    blend_pattern = blend_pattern or number
+    point = words.place(", ".join([number] * 3), "")
+    if move.arc is not None:
+        values = np.array([[*via_point(move.points_mm), *move.points_mm[-1]]])
+        yield from format_rows(words.circle(point), values, decimals)
+        return
+    if move.axes is not None:
+        rotations = tool_rotations_at(move, upright)
+        for place, turned, blend, names_blend in zip(move.points_mm, rotations, blends, is_blended, strict=True):
+            text = words.place(join_numbers(place, decimals), "" if turned is None else words.angles(turned))
+            yield words.line(text, blend_pattern % blend if names_blend else "") + "\n"
+        return
+    plain, blended = words.line(point, ""), words.line(point, blend_pattern)
+    columns = [move.points_mm, blends]
+    if "%" in blended[: blended.index(point)]:
+        columns.reverse()  # the language names the blend before the place
+    values = np.column_stack(columns)
     for run in np.split(np.arange(len(blends)), np.flatnonzero(np.diff(is_blended)) + 1):
-        pattern, values = blended if is_blended[run[0]] else plain
-        yield from format_rows(pattern, values[run], decimals)
+        if is_blended[run[0]]:
+            yield from format_rows(blended, values[run], decimals)
+        else:
+            yield from format_rows(plain, move.points_mm[run], decimals)
 
 
 def upright_tool_rotation(spin_deg: float) -> np.ndarray:

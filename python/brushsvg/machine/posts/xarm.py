@@ -15,14 +15,15 @@ from ..motion import Move, Program, Wait
 from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,
+    PointWords,
     blends_mm,
     format_rounded_down,
     join_numbers,
-    tool_rotations_at,
     upright_deg,
+    write_points,
     write_sections,
 )
-from .text import PROGRAM_END, format_number, format_rows, plain_text
+from .text import PROGRAM_END, format_number, plain_text
 
 LINE_LIMIT = 100
 DEGREE_DECIMALS = 4
@@ -122,29 +123,13 @@ def comment(text: str) -> str:
 
 def _move_lines(move: Move, upright: np.ndarray, decimals: int) -> Iterator[str]:
     speed = format_rounded_down(move.speed_mm_s, SPEED_DECIMALS)
-    point = f"go(%.{decimals}f, %.{decimals}f, %.{decimals}f, {speed}"
-    if move.axes is not None:
-        yield from _tilted_lines(move, upright, speed, decimals)
-        return
-    if move.blends_mm is None:
-        yield from format_rows(f"{point}, None)", move.points_mm, decimals)
-        return
-    values = np.column_stack([move.points_mm, blends_mm(move, decimals, BLEND_FRACTION)])
-    yield from format_rows(f"{point}, %.{decimals}f)", values, decimals)
-
-
-def _tilted_lines(move: Move, upright: np.ndarray, speed: str, decimals: int) -> Iterator[str]:
-    """Yield the lines of a move that tilts the brush.
-
-    Each line has the tool's orientation at its end. At points where the brush is upright, the lines are those of other
-    moves.
-    """
-    blends = None if move.blends_mm is None else blends_mm(move, decimals, BLEND_FRACTION)
-    for k, (point, turned) in enumerate(zip(move.points_mm, tool_rotations_at(move, upright), strict=True)):
-        place = join_numbers(point, decimals)
-        radius = "None" if blends is None else format_number(blends[k], decimals)
-        angles = "" if turned is None else f", {join_numbers(rotation_deg(turned), DEGREE_DECIMALS)}"
-        yield f"{'lean' if angles else 'go'}({place}{angles}, {speed}, {radius})\n"
+    words = PointWords(
+        lambda turned: join_numbers(rotation_deg(turned), DEGREE_DECIMALS),
+        lambda place, blend: f"{place}, {speed}, {blend or None})",
+        place=lambda place, angles: f"lean({place}, {angles}" if angles else f"go({place}",
+    )
+    has_blends = np.full(len(move.points_mm), move.blends_mm is not None)
+    yield from write_points(move, upright, words, decimals, blends_mm(move, decimals, BLEND_FRACTION), has_blends)
 
 
 def _wait_lines(step: Wait) -> str:
