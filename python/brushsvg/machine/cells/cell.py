@@ -364,23 +364,12 @@ class Cell:
     stations: tuple[Station, ...] = ()
 
 
+_REQUIRED_TYPES = (Paper, Heights, Speeds, Blending, Workspace)
+_OPTIONAL_TYPES = (Tool, Servo, Pen, Motors, Contact, Reload, Machine, RoboDK, Arm)
 TABLES = {
-    "paper": Paper,
-    "heights": Heights,
-    "speeds": Speeds,
-    "blending": Blending,
-    "workspace": Workspace,
-    "tool": Tool,
-    "servo": Servo,
-    "pen": Pen,
-    "motors": Motors,
-    "contact": Contact,
-    "reload": Reload,
-    "machine": Machine,
-    "robodk": RoboDK,
-    "arm": Arm,
-}
-OPTIONAL_TABLES = ("tool", "servo", "pen", "motors", "contact", "reload", "machine", "robodk", "arm")
+    table.__name__.lower(): table for table in _REQUIRED_TYPES + _OPTIONAL_TYPES
+}  # by the name of the field of Cell
+OPTIONAL_TABLES = tuple(table.__name__.lower() for table in _OPTIONAL_TYPES)
 REQUIRED_TABLES = {
     "grbl-servo": ("servo",),
     "ebb": ("servo", "motors"),
