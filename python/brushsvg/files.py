@@ -56,10 +56,12 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     raise Error(sentence, file=os.fspath(path), code="file-unreadable")
 
 
-def toml_document(text: str, kind: str) -> dict:
-    """Parse the text of a TOML file, and raise Error if it is invalid.
+def toml_document(text: str, kind: str, version: int, format_is_missing: str = "{} is missing") -> dict:
+    """Parse the text of a TOML file, and return its content without the keys format and version.
 
-    kind: the word before "file" in messages. A key of more than MOST_PARTS parts is refused as well.
+    kind: the word before "file" in messages, and the second word of the format. format_is_missing: what the message
+    says of the missing line. Raises Error if the file is invalid or of another format or version. A key of more than
+    MOST_PARTS parts is refused as well.
     """
     # The quantifiers are possessive and a match begins only at the beginning of a word. So a long word is
     # read once, and not again from each of its letters.
@@ -67,11 +69,19 @@ def toml_document(text: str, kind: str) -> dict:
         sentence = f"a key of more than {MOST_PARTS} parts: {found[0][:20]!r} ..."
         raise Error(f"the {kind} file is not TOML of ours: {sentence}", code="not-toml")
     try:
-        return tomllib.loads(text)
+        content = tomllib.loads(text)
     except ValueError as problem:  # also raised for a whole number with thousands of digits
         raise Error(f"the {kind} file is not TOML: {str(problem)[:200]}", code="not-toml") from None
     except RecursionError:
         raise Error(f"the {kind} file is not TOML: its lists nest too deep", code="not-toml") from None
+    format_ = f"brushsvg/{kind}"
+    if content.pop("format", None) != format_:
+        says = format_is_missing.format(f'format = "{format_}"')
+        raise Error(f"the file is not a {kind}: {says}", "format", code="format-unknown")
+    if (found_version := content.pop("version", None)) != version or isinstance(found_version, bool):
+        sentence = f"version {repr(found_version)[:40]} of the {kind} file is not known; known: {version}"
+        raise Error(sentence, "version", code="version-unknown")
+    return content
 
 
 def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.PathLike[str]) -> Path:
@@ -92,14 +102,15 @@ def find_file(kind: str, shipped: Path, suffix: str, name_or_path: str | os.Path
         f"{kind} {name_or_path!r} is not known{did_you_mean(name_or_path, names)} Known are {known}, and any file "
         f"that ends in {suffix}",
         code=f"{kind}-unknown",
-        advice=f"{own} is in this folder: give its name with the ending" if _is_file(own) else "",
+        advice=f"{own} is in this folder: give its name with the ending" if is_file(own) else "",
     )
 
 
-def _is_file(path: str) -> bool:
+def is_file(path: str) -> bool:
+    """Return whether a path is a file; False for a name that no file can have."""
     try:
         return os.path.isfile(path)
-    except ValueError:  # a name that no file can have
+    except ValueError:
         return False
 
 

@@ -141,12 +141,7 @@ def read_studio(data: bytes) -> Studio:
         text = data.decode("utf-8")
     except UnicodeDecodeError as problem:
         raise Error(f"the studio file is not TOML: {str(problem)[:200]}", code="not-toml") from None
-    document = toml_document(text, "studio")
-    if document.pop("format", None) != FORMAT:
-        raise Error(f'the file is not a studio: format = "{FORMAT}" is missing', "format", code="format-unknown")
-    if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
-        sentence = f"version {repr(version)[:40]} of the studio file is not known; known: {VERSION}"
-        raise Error(sentence, "version", code="version-unknown")
+    document = toml_document(text, "studio", VERSION)
     for name in document:
         if name not in TABLE_TYPES:
             sentence = f"a studio has no table {name[:40]}; known: {', '.join(TABLE_TYPES)}"

@@ -100,7 +100,8 @@ def read_project(path: str | os.PathLike[str]) -> Project:
         if len(data) > MAX_BYTES:
             sentence = f"a project file has at most {MAX_BYTES} bytes, this one has {len(data)}"
             raise Error(sentence, value=len(data), range=(0, MAX_BYTES), code="file-too-large")
-        settings = _read_settings(toml_document(_decode_text(data), "project"), os.path.dirname(path))
+        document = toml_document(_decode_text(data), "project", VERSION, "it lacks the line {}")
+        settings = _read_settings(document, os.path.dirname(path))
     except Error as refusal:
         refusal.file = path
         raise
@@ -168,13 +169,6 @@ def _decode_text(data: bytes) -> str:
 def _read_settings(document: dict, folder: str) -> dict[str, object]:
     from ..choices import Choices, check_choices
 
-    if document.pop("format", None) != FORMAT:
-        sentence = f'the file is not a project: it lacks the line format = "{FORMAT}"'
-        raise Error(sentence, where="format", code="format-unknown")
-    version = document.pop("version", None)
-    if version != VERSION or isinstance(version, bool):
-        sentence = f"version {repr(version)[:40]} of the project file is not known; known: {VERSION}"
-        raise Error(sentence, where="version", code="version-unknown")
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):
         raise Error("defaults is written as a table, [defaults]", where="defaults", code="wrong-type")

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 
 from ...errors import Error, need_number, require_type
+from ...files import is_file
 from ...suggestions import did_you_mean
 from ...units import length_mm, number, paper_mm, size_mm
 
@@ -96,7 +97,7 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
         return text
     if text.endswith(suffix) or "/" in text or os.sep in text:
         path = os.path.join(folder, os.path.expanduser(text))
-        if _is_file(path):
+        if is_file(path):
             return path
         raise Error(
             f"{kind} {text[:80]!r} is a file that does not exist; looked for {path}",
@@ -106,7 +107,7 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
         )
     file_name = f"{text}{suffix}"
     advice = (
-        f"{file_name} is in this folder: write it with its ending" if _is_file(os.path.join(folder, file_name)) else ""
+        f"{file_name} is in this folder: write it with its ending" if is_file(os.path.join(folder, file_name)) else ""
     )
     raise Error(
         f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "
@@ -115,10 +116,3 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
         code=f"{kind}-unknown",
         advice=advice,
     )
-
-
-def _is_file(path: str) -> bool:
-    try:
-        return os.path.isfile(path)
-    except ValueError:  # a name that no file can have
-        return False

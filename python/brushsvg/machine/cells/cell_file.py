@@ -61,15 +61,7 @@ def parse_cell(text: str) -> Cell:
 
     Raises Error that names the key if a key is missing, unknown or out of range.
     """
-    document = toml_document(text, "cell")
-    if document.pop("format", None) != FORMAT:
-        raise Error(f'the file is not a cell: format = "{FORMAT}" is missing', where="format", code="format-unknown")
-    if (version := document.pop("version", None)) != VERSION or isinstance(version, bool):
-        raise Error(
-            f"version {repr(version)[:40]} of the cell file is not known; known: {VERSION}",
-            where="version",
-            code="version-unknown",
-        )
+    document = toml_document(text, "cell", VERSION)
     parts = {name: document.pop(name) for name in TABLES if name in document}
     stations = document.pop("stations", [])
     if not isinstance(stations, list):
