@@ -6,7 +6,6 @@ Laws that nobody measured are assumed, and the brush says so.
 from __future__ import annotations
 
 import json
-import math
 
 from ... import _core
 from ...errors import Error, as_listed, as_number, need_number, require_type
@@ -51,13 +50,17 @@ def new_brush(
     need_fits()
     require_type(name, str, "the name of a brush")
     lag_mm, widths_mm = as_listed(lag_mm), as_listed(widths_mm)
-    lags = sorted(_check_lags(lag_mm)) if isinstance(lag_mm, (list, tuple)) else []
+    lags = []
+    if isinstance(lag_mm, (list, tuple)):
+        lags = sorted(_need_pairs(lag_mm, "lag", "one is needed, for example 6 mm at depth 4 mm", may_touch=True))
     lag_mm = 0.0 if lags else need_number(lag_mm, "the lag [mm]", -MAX_NUMBER, MAX_NUMBER)
     is_pen = not lags and lag_mm == 0
     speed_mm_s = need_number(speed_mm_s, "the speed [mm/s]", -MAX_NUMBER, MAX_NUMBER)
     if depth_max_mm is not None:
         depth_max_mm = need_number(depth_max_mm, "the greatest depth [mm]", -MAX_NUMBER, MAX_NUMBER)
-    widths = _sorted_widths(widths_mm)
+    require_type(widths_mm, (list, tuple), "a list of (depth, width)")
+    needed = "at least one is needed, for example 5 mm at depth 4 mm"
+    widths = sorted(_need_pairs(widths_mm, "width", needed, may_touch=False))
     if not is_pen:
         plausibility.refuse_width(*widths[-1])
     deepest = widths[-1][0] if depth_max_mm is None else depth_max_mm
@@ -107,59 +110,29 @@ def outlines_assumed(source: str) -> str:
     return json.dumps({"footprints": {"source": f"Assumed: {source}", "assumed": True}})
 
 
-def _sorted_widths(widths_mm: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    require_type(widths_mm, (list, tuple), "a list of (depth, width)")
-    widths_mm = _need_pairs(widths_mm, "width")
-    if not widths_mm:
-        raise Error(
-            "there is no width: at least one is needed, for example 5 mm at depth 4 mm",
-            "width",
-            code="measurement-missing",
-        )
-    for depth, width in widths_mm:
-        if not (math.isfinite(depth) and 0 < depth <= MAX_LENGTH_MM):
-            raise Error(
-                f"the depth {depth:g} mm of a width is outside the range (0, {MAX_LENGTH_MM:g}] mm",
-                "width",
-                depth,
-                code="depth-out-of-range",
-            )
-        if not (math.isfinite(width) and 0 < width <= MAX_LENGTH_MM):
-            raise Error(
-                f"the width {width:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm",
-                "width",
-                width,
-                code="out-of-range",
-            )
-    return sorted(widths_mm)
+def _need_pairs(pairs, what: str, needed: str, may_touch: bool) -> list[tuple[float, float]]:
+    """Return (depth, value) pairs as floats; raise Error for pairs that no brush can have.
 
-
-def _need_pairs(pairs, what: str) -> list[tuple[float, float]]:
+    needed: words for the error if there is no pair. may_touch: whether a depth may be 0, where the brush just touches.
+    """
     checked = []
     for pair in pairs:
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
             raise Error(f"{str(pair)[:40]} is no (depth, {what}) in mm", what, code="wrong-type")
         depth, value = (as_number(number, f"a depth or a {what} in mm") for number in pair)
         checked.append((depth, value))
+    if not checked:
+        raise Error(f"there is no {what}: {needed}", what, code="measurement-missing")
+    for depth, value in checked:
+        if not 0 <= depth <= MAX_LENGTH_MM or (depth == 0 and not may_touch):
+            depths = f"{'[' if may_touch else '('}0, {MAX_LENGTH_MM:g}] mm"
+            sentence = f"the depth {depth:g} mm of a {what} is outside the range {depths}"
+            raise Error(sentence, what, depth, code="depth-out-of-range")
+        if not 0 < value <= MAX_LENGTH_MM:
+            place = f" at depth {depth:g} mm" if may_touch else ""
+            sentence = f"the {what} {value:g} mm{place} is outside the range (0, {MAX_LENGTH_MM:g}] mm"
+            raise Error(sentence, what, value, code="out-of-range")
     return checked
-
-
-def _check_lags(pairs) -> list[tuple[float, float]]:
-    pairs = _need_pairs(pairs, "lag")
-    if not pairs:
-        raise Error(
-            "there is no lag: one is needed, for example 6 mm at depth 4 mm",
-            "lag",
-            code="measurement-missing",
-        )
-    for depth, lag in pairs:
-        if not (math.isfinite(depth) and 0 <= depth <= MAX_LENGTH_MM):
-            sentence = f"the depth {depth:g} mm of a lag is outside the range [0, {MAX_LENGTH_MM:g}] mm"
-            raise Error(sentence, "lag", depth, code="depth-out-of-range")
-        if not (math.isfinite(lag) and 0 < lag <= MAX_LENGTH_MM):
-            sentence = f"the lag {lag:g} mm at depth {depth:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm"
-            raise Error(sentence, "lag", lag, code="out-of-range")
-    return pairs
 
 
 def _constant_lag(lag_mm: float) -> _core.Profile:
