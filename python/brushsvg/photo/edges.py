@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 
 from ..errors import Error
+from ..geometry.polylines import lengths
+from ..geometry.rings import signed_area
 from .flatten import Flat
 from .mask_contours import mask_outlines
 from .photo import LIGHT, grey_light, refuse_grainy
@@ -484,7 +486,7 @@ def outlines_of(amount, is_own, is_foreign, usual: float, px_per_mm: float, left
     near = cv2.dilate(np.uint8(is_own), ellipse) == 1
     amount = np.where(near & ~is_foreign, amount, 0.0)
     rings = mask_outlines(amount, level, 1.0 / px_per_mm, left_top_mm, MIN_PART_MM2)
-    sizes = [_signed_area(ring) for ring in rings]
+    sizes = [signed_area(ring) for ring in rings]
     least = MIN_PART_SHARE * max(sizes, default=0.0)
     return [_smooth_ring(ring) for ring, size in zip(rings, sizes, strict=True) if size >= least or size < 0]
 
@@ -507,18 +509,13 @@ def _longest_side(rings: list[np.ndarray]) -> float:
     return float(np.ptp(np.vstack(rings), axis=0).max())
 
 
-def _signed_area(ring: np.ndarray) -> float:
-    x, y = ring.T
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-
-
 def _smooth_ring(ring: np.ndarray) -> np.ndarray:
     """Resample a ring evenly and smooth it.
 
     Points are OUTLINE_STEP_MM apart, each averaged over OUTLINE_MEAN_MM of the outline.
     """
     closed = np.vstack([ring, ring[:1]])
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+    at = lengths(closed)
     oversampling = 4
     count = max(12, round(at[-1] / OUTLINE_STEP_MM)) * oversampling
     places = np.arange(count) * at[-1] / count

@@ -248,36 +248,32 @@ def _path_data(points: np.ndarray) -> str:
 def _write_png(canvas: _Canvas) -> bytes:
     import cv2  # takes a tenth of a second, and an SVG does not need it
 
-    shape = (round(canvas.height), round(canvas.width))
-    image = np.full((*shape, 3), _bgr(PAPER), np.uint8)
+    from .png_canvas import SUB_PIXEL_BITS, bgr, blank_canvas, encode_png, write_text
+
+    image = blank_canvas((round(canvas.height), round(canvas.width)), PAPER)
     for kind, *item in canvas.items:
         if kind == "area":
             _fill_area(image, *item)
         elif kind == "line":
             points, colour, width = item
-            fixed = np.round((points - 0.5) * 16).astype(np.int32).reshape(-1, 1, 2)
-            cv2.polylines(image, [fixed], False, _bgr(colour), max(1, round(width)), cv2.LINE_AA, 4)
+            fixed = np.round((points - 0.5) * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
+            cv2.polylines(image, [fixed], False, bgr(colour), max(1, round(width)), cv2.LINE_AA, SUB_PIXEL_BITS)
         else:
             (x, y), words, colour, size = item
-            cv2.putText(image, words, (round(x), round(y)), _bgr(colour), cv2.FontFace("sans"), size, 400)
-    return cv2.imencode(".png", image)[1].tobytes()
+            write_text(image, words, (round(x), round(y)), size, 400, colour)
+    return encode_png(image)
 
 
 def _fill_area(image: np.ndarray, rings, colour: str, opacity: float) -> None:
     import cv2
+
+    from .png_canvas import SUB_PIXEL_BITS, blend
 
     points = np.vstack(rings)
     height, width = image.shape[:2]
     x0, y0 = np.clip(np.floor(points.min(axis=0)), 0, (width - 1, height - 1)).astype(int)
     x1, y1 = np.clip(np.ceil(points.max(axis=0)) + 1, (x0 + 1, y0 + 1), (width, height)).astype(int)
     mask = np.zeros((y1 - y0, x1 - x0), np.uint8)
-    fixed = [np.round((ring - (x0 + 0.5, y0 + 0.5)) * 16).astype(np.int32) for ring in rings]
-    cv2.fillPoly(mask, fixed, 255, cv2.LINE_AA, 4)
-    rows, columns = np.divmod(np.flatnonzero(mask), mask.shape[1])
-    share = (mask[rows, columns] / 255.0 * opacity)[:, None]
-    pixels = image[y0 + rows, x0 + columns]
-    image[y0 + rows, x0 + columns] = np.round(pixels * (1 - share) + np.array(_bgr(colour)) * share)
-
-
-def _bgr(colour: str) -> tuple[int, int, int]:
-    return int(colour[5:7], 16), int(colour[3:5], 16), int(colour[1:3], 16)
+    fixed = [np.round((ring - (x0 + 0.5, y0 + 0.5)) * 2**SUB_PIXEL_BITS).astype(np.int32) for ring in rings]
+    cv2.fillPoly(mask, fixed, 255, cv2.LINE_AA, SUB_PIXEL_BITS)
+    blend(image[y0:y1, x0:x1], mask / 255.0 * opacity, colour)

@@ -6,7 +6,7 @@ All arguments and results can be pickled.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from importlib import metadata
 
 from ... import _core
@@ -144,18 +144,9 @@ def _convert(task: Task) -> TaskResult:
     )
     cell_notices = conversion.list_cell_notices(simulated.cell) if simulated.is_program else []
     notices = (*simulated.work.notices, *simulated.remarks(), *cell_notices)
+    measured = {item.name: getattr(total, item.name) for item in fields(Figures) if hasattr(total, item.name)}
     figures = Figures(
-        len(simulated.work.plan.passes),
-        total.poses,
-        simulated.time_s(),
-        total.overlap,
-        total.centre_mean_mm,
-        total.centre_largest_mm,
-        total.width_error_mm,
-        total.widths_out_of_reach,
-        total.drawn_mm,
-        total.painted_mm,
-        len(notices),
+        strokes=len(simulated.work.plan.passes), time_s=simulated.time_s(), warnings=len(notices), **measured
     )
     picture = outputs.overlap_picture(".png", simulated.work, simulated.marks, PICTURE_LONG_SIDE_PX)
     return TaskResult(figures, texts, picture, notices=notices, suffix=suffix)

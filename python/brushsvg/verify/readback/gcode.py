@@ -59,16 +59,7 @@ LASTING_MODES = {
 }  # modes that end no motion
 # Grbl answers these codes with an error, and senders then stop with the brush pressed.
 UNKNOWN_TO_GRBL = {"G64", "G90.1"}
-PRINTER_WORDS = {
-    "G0": "XYZF",
-    "G1": "XYZF",
-    "G2": "XYZIJF",
-    "G3": "XYZIJF",
-    "G4": "P",
-    "G21": "",
-    "G90": "",
-    "M400": "",
-}
+PRINTER_WORDS = MOTION_WORDS | {"G4": "P", "G21": "", "G90": "", "M400": ""}
 REQUIRED_MODES = {"G21": "millimetres", "G90": "absolute places"}
 
 
