@@ -11,6 +11,7 @@ import importlib.util
 import math
 import os
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from numbers import Real
 
@@ -103,6 +104,12 @@ class Notice:
 
 def join_advice(sentence: str, advice: str) -> str:
     return f"{sentence}; {advice}" if advice else sentence
+
+
+def list_first(names: Sequence[str], most: int) -> str:
+    """Return the first names for a sentence, with the number of the others."""
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def format_value(number: float) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from ..calibration.chart.page import bar_rings, label_box
 from ..errors import Error, Notice
 from ..geometry.rings import centroid
-from ..photo.edges import StrokeBox, paint_seen
+from ..photo.edges import StrokeBox, paint_seen, printed_pixels
 from ..photo.flatten import Flat, flatten
 from ..photo.markers import Printed, View, find_view
 from ..photo.photo import read_photo, refuse_twice
@@ -196,10 +196,7 @@ def _read_photo(
         box_ring(*ring.min(axis=0) - PRINT_MARGIN_MM, *ring.max(axis=0) + PRINT_MARGIN_MM) for ring in page.ticks
     ]
     printed_rings += [box_ring(*label_box(label)) for label in printed.labels]
-    print_ = np.zeros(flat.pixels.shape[:2], np.uint8)
-    for ring in printed_rings:
-        cv2.fillPoly(print_, [np.round(flat.to_px(ring)).astype(np.int32)], 1)
-    return flat, view, paint_seen(flat, print_, stroke_boxes)
+    return flat, view, paint_seen(flat, printed_pixels(flat, printed_rings), stroke_boxes)
 
 
 def _sheet_paint(paint, flat: Flat, page: JobPage, canvas: Canvas) -> np.ndarray:

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..errors import list_first
 from .design import Design, Element, Notice, SubPath
 
 SAME_PLACE_MM = 1e-3  # places that differ by less are the same; no robot places a brush this precisely
@@ -33,8 +34,7 @@ def remove_duplicates(design: Design) -> Design:
     if not duplicates:
         return design
     count = "1 element is" if len(duplicates) == 1 else f"{len(duplicates)} elements are"
-    named = ", ".join(duplicates[:3]) + (f" and {len(duplicates) - 3} more" if len(duplicates) > 3 else "")
-    sentence = f"{count} exactly on another and would be painted twice: left out, {named}"
+    sentence = f"{count} exactly on another and would be painted twice: left out, {list_first(duplicates, 3)}"
     notice = Notice("drawing", sentence, code="drawn-twice")
     return replace(design, elements=tuple(kept), notices=(*design.notices, notice))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import Error, Notice
+from ..errors import Error, Notice, list_first
 from ..geometry.cubics import extremes
 from .design import Design, Element, SubPath
 
@@ -162,9 +162,7 @@ def _find_layer(name: str, paths: list[str]) -> str:
                 where="layer",
                 code="layer-ambiguous",
             )
-    available = ", ".join(paths[:_MAX_NAMED_LAYERS]) + (
-        f" and {len(paths) - _MAX_NAMED_LAYERS} more" if len(paths) > _MAX_NAMED_LAYERS else ""
-    )
+    available = list_first(paths, _MAX_NAMED_LAYERS)
     raise Error(
         f"there is no layer {name!r}; there are: {available or 'none'}",
         where="layer",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..errors import list_first
 from .design import Design, Element, Notice
 from .layout import bounds_mm
 
@@ -24,11 +25,8 @@ def keep_on_page(
         return tuple(elements), []
     kept = [element for element, inside in zip(elements, is_on, strict=True) if inside]
     removed = [element.id for element, inside in zip(elements, is_on, strict=True) if not inside]
-    names = ", ".join(removed[:_MAX_NAMED_ELEMENTS]) + (
-        f" and {len(removed) - _MAX_NAMED_ELEMENTS} more" if len(removed) > _MAX_NAMED_ELEMENTS else ""
-    )
     count = "1 element is" if len(removed) == 1 else f"{len(removed)} elements are"
-    sentence = f"{count} off the page and left out: {names}"
+    sentence = f"{count} off the page and left out: {list_first(removed, _MAX_NAMED_ELEMENTS)}"
     advice = "move them onto the page to paint them, or make the page larger"
     return tuple(kept), [Notice("svg", sentence, code="off-page", advice=advice)]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..errors import require_type
+from ..errors import list_first, require_type
 from ..read.design import Notice
 from .corners import begin_amid_side
 
@@ -50,8 +50,8 @@ def join_lines(strokes: list) -> tuple[list, list[Notice]]:
                 chain.add(lines[other], at_end)
         joined_strokes.append(chain.stroke() if names else stroke)
         if names:
-            listed = ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
-            notices.append(Notice(stroke.id, f"joined with {listed}, which meet it end to end", code="lines-joined"))
+            sentence = f"joined with {list_first(names, 3)}, which meet it end to end"
+            notices.append(Notice(stroke.id, sentence, code="lines-joined"))
     return joined_strokes, notices
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ... import _core, json_fields
-from ...errors import Error
+from ...errors import Error, list_first
 from ...geometry import polylines
 
 # Greatest distance of a mark from its stroke. Lag, shift of the sheet and displacement together are shorter.
@@ -75,11 +75,9 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
     for i, (stroke, outline) in enumerate(rows):
         where = f"marks[{i}]"
         if stroke not in passes:
-            raise Error(
-                f"there is no stroke {stroke[:60]!r} in the plan; it has {_list_some(list(passes))}",
-                where,
-                code="stroke-unknown",
-            )
+            listed = list_first([name[:60] for name in passes], 5)
+            sentence = f"there is no stroke {stroke[:60]!r} in the plan; it has {listed}"
+            raise Error(sentence, where, code="stroke-unknown")
         if stroke in used_strokes:
             raise Error(
                 f"stroke {stroke[:60]!r} has two marks: join their outlines to one",
@@ -199,10 +197,6 @@ def _orient_rings(rings: list[np.ndarray]) -> list[np.ndarray]:
     Outer rings are counter-clockwise, holes clockwise.
     """
     return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
-
-
-def _list_some(names: list[str]) -> str:
-    return ", ".join(name[:60] for name in names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
 def middle(points: np.ndarray) -> np.ndarray:

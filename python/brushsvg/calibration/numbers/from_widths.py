@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 
 from ... import _core
-from ...errors import Error, as_listed, as_number, need_number, require_type
+from ...errors import Error, as_listed, as_number, list_first, need_number, require_type
 from ...model import footprint_shapes
 from ...model.laws.fitted import need_fits
 from . import plausibility
@@ -231,8 +231,7 @@ def _fit_simplest_law(depths: list[float], values: list[float], shapes, good_mis
 
 
 def _list_pairs(pairs: list[tuple[float, float]]) -> str:
-    listed = ", ".join(f"{value:g} mm at depth {depth:g} mm" for depth, value in pairs[:4])
-    return listed + (f" and {len(pairs) - 4} more" if len(pairs) > 4 else "")
+    return list_first([f"{value:g} mm at depth {depth:g} mm" for depth, value in pairs], 4)
 
 
 def _profile_of_fit(fit, source: str, depth_count: int) -> _core.Profile:

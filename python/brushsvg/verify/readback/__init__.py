@@ -149,6 +149,10 @@ def add_circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, spe
     steps.append(Step(number, False, *end.tolist(), speed_mm_s, 0.0, place, (via,)))
 
 
+def unread_error(number: int, line: str) -> Error:
+    return Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
+
+
 def text_of_file(data: bytes) -> str:
     """Decode the bytes of a program.
 

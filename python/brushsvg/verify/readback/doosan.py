@@ -15,9 +15,9 @@ from ...machine.frames import rotation, zyz_deg
 from ...machine.posts.doosan import CHECKS, STOPS
 from ...machine.posts.script import upright_tool_rotation
 from ...machine.posts.text import PROGRAM_END
-from ...machine.posts.xarm import NAMES_LETTERS
 from . import Act, Readback
 from .script import N, Script, read_script
+from .xarm import refuse_other_encoding
 
 
 def _point(names: str) -> str:
@@ -73,10 +73,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
 
     Raises Error with the line for a statement that brushsvg does not write.
     """
-    for number, line in enumerate(text.splitlines()[:2], 1):
-        if NAMES_LETTERS.search(line):
-            sentence = f"line {number}: {line[:60]!r} makes Python decode the program with another encoding"
-            raise Error(sentence, code="line-unread")
+    refuse_other_encoding(text)
     try:
         ast.parse(text)
     except (SyntaxError, ValueError) as mistake:

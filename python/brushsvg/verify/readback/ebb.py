@@ -11,7 +11,7 @@ from ...machine.cells.cell import Cell, mm_from_steps, unit_mm
 from ...machine.cells.cell_check import MOST_STEPS_S
 from ...machine.posts.ebb import EBB_END, HOME, comment
 from ...machine.posts.gcode_servo import height_at
-from . import Act, Readback, ReadSection, Step
+from . import Act, Readback, ReadSection, Step, unread_error
 
 _FEED = re.compile(r"# feed (\d{1,7}\.\d) mm/min")
 _SM = re.compile(r"SM,(\d{1,8}),(-?\d{1,8})(?:,(-?\d{1,8}))?", re.IGNORECASE)
@@ -56,7 +56,7 @@ class _Reader:
 
     def line(self, number: int, line: str) -> None:
         if self.ended:
-            raise _unread_error(number, line)
+            raise unread_error(number, line)
         if line.startswith("#"):
             self._remark(number, line)
         elif found := _SM.fullmatch(line):
@@ -69,7 +69,7 @@ class _Reader:
             self.ready.append(line)
             self.out.acts.append(Act(number, "text", line))
         else:
-            raise _unread_error(number, line)
+            raise unread_error(number, line)
 
     def _remark(self, number: int, line: str) -> None:
         if found := _FEED.fullmatch(line):
@@ -77,7 +77,7 @@ class _Reader:
             return
         text = line.removeprefix("# ")
         if comment(text).rstrip("\n") != line:
-            raise _unread_error(number, line)
+            raise unread_error(number, line)
         if text == HOME:
             self.is_home = True
             self.out.sections.append(ReadSection(text, number))
@@ -85,7 +85,7 @@ class _Reader:
         elif text == EBB_END:
             self.ended = True
             if self.pending_value is not None or not self.is_home:
-                raise _unread_error(number, line)
+                raise unread_error(number, line)
         else:
             self.out.comment(number, text)
 
@@ -97,7 +97,7 @@ class _Reader:
     def _set_servo(self, number: int, line: str, value: int, pin: int, wait_ms: int) -> None:
         self._check_ready(number, line)
         if pin != self.cell.motors.servo_pin or self.pending_value is not None:
-            raise _unread_error(number, line)
+            raise unread_error(number, line)
         if not self.value_range[0] <= value <= self.value_range[-1]:
             raise Error(
                 f"line {number}: {line!r} is outside the range [{self.value_range[0]}, {self.value_range[-1]}] "
@@ -147,7 +147,7 @@ class _Reader:
             raise Error(f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete")
         if not steps_1 and not steps_2:
             if self.pending_value is not None:
-                raise _unread_error(number, line)
+                raise unread_error(number, line)
             self._wait(number, time_ms)
             return
         if self.pending_value is not None:
@@ -173,7 +173,3 @@ class _Reader:
         self._step(number, time_ms / 1e3)
         at_most = (self.feed_mm_s, speed_mm_s, 1e3 * self.unit_mm / time_ms)
         self.out.acts.append(Act(number, "way", "", self._place(), at_most, (float(self.value),)))
-
-
-def _unread_error(number: int, line: str) -> Error:
-    return Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")

@@ -13,7 +13,7 @@ from ...machine.frames import rotation, rotation_deg
 from ...machine.posts.fanuc import INDEX, MAIN, POINT_DECIMALS, cnt_mm
 from ...machine.posts.script import upright_tool_rotation
 from ...machine.posts.text import PROGRAM_END
-from . import Readback
+from . import Readback, unread_error
 from .script import N, NumberedLines, Script, place, read_script
 
 _C = rf"(?:{N}|\({N}\))"
@@ -129,7 +129,7 @@ def _split_programs(text: str) -> dict[str, tuple[NumberedLines, NumberedLines]]
         elif part == "points":
             programs[name][1].append((number, line))
         else:
-            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
+            raise unread_error(number, line)
     if part != "out":
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     return programs

@@ -8,7 +8,7 @@ import re
 from ...errors import Error
 from ...machine.cells.cell import UNITS_MM, Cell
 from ...machine.posts.hpgl import CM_S, HELD_UP, comment
-from . import Act, Readback, Step
+from . import Act, Readback, Step, unread_error
 
 _CODE = re.compile(
     r"(IN|PU|PD|PA|PR|SP(-?0|\d{1,2}|)|VS(0{0,2}[1-9]\d{0,2})|P[AUD](-?\d{1,7}),(-?\d{1,7})) *;?",
@@ -43,13 +43,13 @@ class _Reader:
     def line(self, number: int, line: str) -> None:
         if comment_match := _COMMENT.fullmatch(line):
             if comment(comment_match[1]).strip() != line:
-                raise _unread_error(number, line)
+                raise unread_error(number, line)
             self.ended = self.ended or comment_match[1] == HELD_UP
             if comment_match[1] != HELD_UP:
                 self.out.comment(number, comment_match[1])
             return
         if not (found := _CODE.fullmatch(line)):
-            raise _unread_error(number, line)
+            raise unread_error(number, line)
         word, pen, speed, x, y = found.groups()
         word = word.upper()
         if not self.is_ready and word != "IN":
@@ -58,7 +58,7 @@ class _Reader:
             if word.startswith("PA"):
                 self.is_relative = False
             elif self.is_relative:
-                raise _unread_error(number, line)
+                raise unread_error(number, line)
             else:
                 self._lift(number, line, word.startswith("PD"))
             self._go(number, line, int(x), int(y))
@@ -75,7 +75,7 @@ class _Reader:
             self._lift(number, line, word == "PD")
         elif word == "IN":
             if self.is_down:
-                raise _unread_error(number, line)
+                raise unread_error(number, line)
             if not self.is_ready:
                 self.out.acts.append(Act(number, "text", word))
             self.is_ready, self.is_relative, self.speed_mm_s = True, False, 0.0
@@ -104,7 +104,3 @@ class _Reader:
         self.out.section().steps.append(Step(number, rapid, *self.place, height_mm, speed_mm_s))
         at_most = (math.inf if rapid else speed_mm_s,)
         self.out.acts.append(Act(number, "move", "", (*self.place, height_mm), at_most, (0.0,)))
-
-
-def _unread_error(number: int, line: str) -> Error:
-    return Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")

@@ -16,7 +16,7 @@ from ...machine.posts.ros2 import COLUMNS, flange_from_tip
 from ...machine.posts.script import upright_deg
 from ...machine.posts.text import PROGRAM_END
 from ...machine.tool_axes import turned_on, turned_to
-from . import Act, Readback, Step
+from . import Act, Readback, Step, unread_error
 from .script import TILT_TOLERANCE_DEG
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
@@ -42,7 +42,7 @@ def as_table(text: str) -> str:
         raise Error(f"it is no JSON: {mistake}", code="line-unread") from None
     lines = text.splitlines()
     if lines[0].rstrip(" ") != _FIRST_JSON_LINE:
-        raise Error(f"line 1: {lines[0][:60]!r} is not a line that brushsvg writes", code="line-unread")
+        raise unread_error(1, lines[0])
     return "\n".join(["", *(_table_line(line.strip(" ")) for line in lines[1:])]) + "\n"
 
 
@@ -79,8 +79,7 @@ def read_ros2(text: str, cell: Cell) -> Readback:
         if row:
             rows.append([float(value) for value in row[1].split(",")])
         elif not line.startswith("# ") and line != COLUMNS:
-            sentence = f"line {number}: {line[:60]!r} is not a line that brushsvg writes"
-            raise Error(sentence, code="line-unread")
+            raise unread_error(number, line)
     numbers = [number for (number, _), row in zip(lines, found, strict=True) if row]
     is_tilted = any(line == f"# {TILT_LINE}" for _, line in lines)
     places, turned = _tips_and_rotations(np.array(rows).reshape(-1, 9), numbers, cell, is_tilted)

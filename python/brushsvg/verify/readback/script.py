@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import Error
-from . import Act, Readback, Step, add_circle
+from . import Act, Readback, Step, add_circle, unread_error
 
 NumberedLines = list[tuple[int, str]]  # lines of a program with their numbers
 N = r"[-+]?(?:\d+\.?\d*|\.\d+)"
@@ -102,7 +102,7 @@ class _Reader:
                     line = line[: found.start("turned")]  # the rotation was checked
                 getattr(self, f"_{kind}")(number, line, values)
                 return
-        raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
+        raise unread_error(number, line)
 
     def _comment(self, number: int, text: str) -> None:
         if self.fold_case(self.script.remark + text) in map(self.fold_case, self.script.last):

@@ -10,7 +10,7 @@ from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import of_rotation_vector
 from ...machine.posts.urscript import BEGIN, END, NEXT
-from . import Act, Readback, Step, add_circle
+from . import Act, Readback, Step, add_circle, unread_error
 from .script import NumberedLines
 
 _N = r"-?(?:\d+\.?\d*|\.\d+)"
@@ -89,7 +89,7 @@ def read_urscript(text: str, _cell: Cell) -> Readback:
             is_first = all(act.text.startswith("(") for act in out.acts)  # remarks may precede it
             out.acts.insert(0 if is_first else len(out.acts), Act(number, "text", line))
         else:
-            raise Error(f"line {number}: {line[:60]!r} is not a line that brushsvg writes", code="line-unread")
+            raise unread_error(number, line)
     if not has_paper:
         raise Error("the line that sets the paper is missing", code="program-cut-short")
     code = [line for _, line in lines if not line.startswith("# ")]

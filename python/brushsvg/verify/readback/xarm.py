@@ -57,15 +57,20 @@ _ANY_ORDER = (
 )
 
 
+def refuse_other_encoding(text: str) -> None:
+    """Raise Error for a line from which Python would read the encoding of a program."""
+    for number, line in enumerate(text.splitlines()[:2], 1):  # Python looks for an encoding in two lines only
+        if NAMES_LETTERS.search(line):
+            sentence = f"line {number}: {line[:60]!r} makes Python decode the program with another encoding"
+            raise Error(sentence, code="line-unread")
+
+
 def read_xarm(text: str, cell: Cell) -> Readback:
     """Read an xArm program as steps in the robot frame.
 
     Raises Error with the line for a statement that brushsvg does not write.
     """
-    for number, line in enumerate(text.splitlines()[:2], 1):  # Python looks for an encoding in two lines only
-        if NAMES_LETTERS.search(line):
-            sentence = f"line {number}: {line[:60]!r} makes Python decode the program with another encoding"
-            raise Error(sentence, code="line-unread")
+    refuse_other_encoding(text)
     script = Script(
         remark="# ",
         lines=_LINES,
