@@ -11,7 +11,8 @@ import importlib.util
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from numbers import Real
 
@@ -100,6 +101,16 @@ class Notice:
     def kind(self) -> tuple[str, str, bool]:
         """The key that alike notices share, so that they can be reported as one."""
         return (self.code, self.about, self.damaged) if self.code else ("", self.sentence, self.damaged)
+
+
+@contextmanager
+def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
+    """Let errors inside name this file, unless they name another one."""
+    try:
+        yield
+    except Error as problem:
+        problem.file = problem.file or os.fspath(file)
+        raise
 
 
 def join_advice(sentence: str, advice: str) -> str:

@@ -56,6 +56,17 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     raise Error(sentence, file=os.fspath(path), code="file-unreadable")
 
 
+def decode_text(data: bytes, what: str, code: str, file: str | None = None) -> str:
+    """Decode the content of a file; raise Error if it is not UTF-8.
+
+    what: the expected content in words.
+    """
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise Error(f"the file is not {what}: it is not text in UTF-8", file=file, code=code) from None
+
+
 def toml_document(text: str, kind: str, version: int, format_is_missing: str = "{} is missing") -> dict:
     """Parse the text of a TOML file, and return its content without the keys format and version.
 

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field, replace
 import numpy as np
 
 from .. import _core, json_fields
-from ..errors import Error
+from ..errors import Error, name_file_in_errors
 from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
@@ -232,7 +232,7 @@ def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
     Raises Error, with the path in `file` and the key in `where`, when a value is damaged or when the file has no
     corrections.
     """
-    try:
+    with name_file_in_errors(path):
         content = json_fields.document(read_bytes(path), FORMAT)
         sha256, planned = (_read_sha256(content, key) for key in ("brush_sha256", "plan_brush_sha256"))
         of_brush = {"brush_sha256": sha256, "replanned": bool(planned) and planned != sha256}
@@ -242,9 +242,6 @@ def read_sheet_before(path: str | os.PathLike[str]) -> SheetBefore:
             found += _read_corrections(after_cell, f"{RESIDUAL_KEY}.", of_brush)
         if not found:
             raise Error(_explain_no_corrections(content["strokes"]), "strokes", code="corrections-missing")
-    except Error as refusal:
-        refusal.file = os.fspath(path)
-        raise
     return SheetBefore(found, _read_displacements_mm(content["strokes"]))
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core, json_fields
-from ..errors import Error
+from ..errors import Error, name_file_in_errors
 from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
@@ -328,9 +328,6 @@ def read_displacement_mm(path: str) -> float:
 
     Raises Error with the file and the key.
     """
-    try:
+    with name_file_in_errors(path):
         content = json_fields.document(read_bytes(path), FORMAT)
         return json_fields.number(content.get("displacement_mm"), "displacement_mm", 1e-3, 10.0)
-    except Error as refusal:
-        refusal.file = path
-        raise

@@ -35,13 +35,13 @@ from ..calibration.prior import update_report
 from ..calibration.prior.from_prior import other_brush, refuse_learned, with_lineage
 from ..comparison.learning import learn
 from ..comparison.repeats import read_displacement_mm
-from ..errors import Error, Notice, need_number, need_one_of, need_truth, require_type
+from ..errors import Error, Notice, name_file_in_errors, need_number, need_one_of, need_truth, require_type
 from ..files import read_bytes
 from ..machine.cells.cell import Cell
 from ..model.plot import brush_picture
 from ..reporting.report_text import Report
 from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
-from .choices import load_brush, load_cell, name_file_in_errors
+from .choices import load_brush, load_cell
 from .json_files import read_plan
 from .machine_parts import select_correctable_parts
 

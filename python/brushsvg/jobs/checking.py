@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
 from ..comparison.corrections import is_corrected
-from ..errors import Error, Notice, require_type
+from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
@@ -51,7 +51,6 @@ from .choices import (
     load_brush,
     load_cell,
     make_options,
-    name_file_in_errors,
     path_of,
     report_ineffective_flags,
     suffix_of,

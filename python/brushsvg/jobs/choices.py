@@ -6,14 +6,23 @@ Choices come from flags, from keywords, and from the drawing itself.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from typing import TypedDict
 
 from .. import _core
 from ..comparison.corrections import SheetBefore, read_sheet_before
-from ..errors import Error, Notice, need_number, need_numbers, need_one_of, need_truth, require_type
+from ..errors import (
+    Error,
+    Notice,
+    name_file_in_errors,
+    need_number,
+    need_numbers,
+    need_one_of,
+    need_truth,
+    require_type,
+)
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..machine.posts import GCODE
@@ -265,16 +274,6 @@ def suffix_of(source) -> str:
 def path_of(source) -> str:
     """Return the path of a source, or "" if the source is not a path."""
     return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
-
-
-@contextmanager
-def name_file_in_errors(file: str | os.PathLike[str]) -> Iterator[None]:
-    """Let errors inside name this file, unless they name another one."""
-    try:
-        yield
-    except Error as problem:
-        problem.file = problem.file or os.fspath(file)
-        raise
 
 
 def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:

@@ -34,7 +34,7 @@ from ..comparison.job_page import JobPage, job_page
 from ..comparison.next_corrections import find_growing_displacements, next_corrections
 from ..comparison.photographs import Compared, Comparison, TargetStroke, compare_photos, of_drawing
 from ..comparison.picture import comparison_png
-from ..errors import Error, Notice, require_type
+from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import read_bytes
 from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cells.cell_file import own_name, parse_cell, write_cell
@@ -50,7 +50,6 @@ from .choices import (
     fill_from_drawing,
     load_sheet_before,
     make_options,
-    name_file_in_errors,
     path_of,
     report_ineffective_flags,
 )

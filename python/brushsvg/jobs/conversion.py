@@ -13,7 +13,16 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
-from ..errors import Error, Notice, missing_packages_error, need_number, need_one_of, need_truth, require_type
+from ..errors import (
+    Error,
+    Notice,
+    missing_packages_error,
+    name_file_in_errors,
+    need_number,
+    need_one_of,
+    need_truth,
+    require_type,
+)
 from ..files import find_file_used_twice, write_files
 from ..machine import preflight, writer
 from ..machine.arm.joints import is_installed
@@ -43,7 +52,6 @@ from .choices import (
     choose_margin_strokes,
     fill_from_drawing,
     make_options,
-    name_file_in_errors,
     path_of,
     refuse_ends_without_effect,
     report_ineffective_flags,

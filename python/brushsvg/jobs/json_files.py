@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 
 from .. import _core
-from ..errors import Error
-from ..files import read_bytes
+from ..errors import name_file_in_errors
+from ..files import decode_text, read_bytes
 
 
 def read_plan(path: str | os.PathLike[str]) -> _core.Plan:
@@ -27,12 +27,6 @@ def read_marks(path: str | os.PathLike[str]) -> _core.Marks:
 def _read_json_file(parse, contents_name: str, path: str | os.PathLike[str]):
     if isinstance(path, str) and path.lstrip().startswith("{"):
         return parse(path)
-    try:
-        return parse(read_bytes(path).decode("utf-8"))
-    except UnicodeDecodeError:
-        raise Error(
-            f"the file is not {contents_name}: it is not text in UTF-8", file=os.fspath(path), code="not-json"
-        ) from None
-    except Error as refusal:
-        refusal.file = os.fspath(path)
-        raise
+    text = decode_text(read_bytes(path), contents_name, "not-json", os.fspath(path))
+    with name_file_in_errors(path):
+        return parse(text)

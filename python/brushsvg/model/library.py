@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error, Notice, require_type
+from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import find_file, names_in, read_bytes, write_files
 from ..suggestions import nearest_name
 
@@ -53,11 +53,8 @@ def find_brush(name_or_path: str | os.PathLike[str]) -> _core.Brush:
     cannot be read and a brush that is refused. The latter two have the file in `file`, the last the key in `where`.
     """
     path = find_file("brush", SHIPPED, ".json", name_or_path)
-    try:
+    with name_file_in_errors(path):
         return parse_brush(read_bytes(path))
-    except Error as refusal:
-        refusal.file = str(path)
-        raise
 
 
 def parse_brush(data: bytes) -> _core.Brush:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Unpack
 
 from ... import _core
-from ...errors import Error, need_number, need_one_of, need_truth, require_type
+from ...errors import Error, name_file_in_errors, need_number, need_one_of, need_truth, require_type
 from ...files import find_file, read_bytes, write_files
 from ...machine.cells import cell_file
 from ...machine.cells.cell_file import write_cell
@@ -214,12 +214,9 @@ def _make_batch_settings(chosen: Choices, format: str, order: str, lenient: bool
 def _read_brush_to_send(brush) -> SentBrush:
     if isinstance(brush, _core.Brush):
         return SentBrush(_core.write_brush(brush).encode(), brush.sha256)
-    try:
+    with name_file_in_errors(brush):
         data = read_bytes(find_file("brush", library.SHIPPED, ".json", brush))
         library.parse_brush(data)
-    except Error as refusal:
-        refusal.file = refusal.file or os.fspath(brush)
-        raise
     return SentBrush(data, sha256(data))
 
 

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...errors import Error, require_type
-from ...files import read_bytes, toml_document
+from ...files import decode_text, read_bytes, toml_document
 from ...suggestions import did_you_mean
 from .values import name_or_path, read_value
 
@@ -100,7 +100,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
         if len(data) > MAX_BYTES:
             sentence = f"a project file has at most {MAX_BYTES} bytes, this one has {len(data)}"
             raise Error(sentence, value=len(data), range=(0, MAX_BYTES), code="file-too-large")
-        document = toml_document(_decode_text(data), "project", VERSION, "it lacks the line {}")
+        document = toml_document(decode_text(data, "a project", "not-toml"), "project", VERSION, "it lacks the line {}")
         settings = _read_settings(document, os.path.dirname(path))
     except Error as refusal:
         refusal.file = path
@@ -156,14 +156,6 @@ def write_project(
         line("detail", None, "fine"),
     ]
     return "\n".join([*lines, ""])
-
-
-def _decode_text(data: bytes) -> str:
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        sentence = "the file is not a project: it is not text in UTF-8"
-        raise Error(sentence, code="not-toml") from None
 
 
 def _read_settings(document: dict, folder: str) -> dict[str, object]:

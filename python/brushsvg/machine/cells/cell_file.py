@@ -9,8 +9,8 @@ import textwrap
 from dataclasses import fields
 from pathlib import Path
 
-from ...errors import Error, format_value, require_type
-from ...files import find_file, names_in, read_bytes, toml_document
+from ...errors import Error, format_value, name_file_in_errors, require_type
+from ...files import decode_text, find_file, names_in, read_bytes, toml_document
 from .cell import OPTIONAL_TABLES, TABLES, Cell, Entry, Station, entries_of, required_keys_of, tables_of
 from .cell_check import check
 
@@ -46,14 +46,9 @@ def read_cell(path: str | os.PathLike[str]) -> Cell:
 
     Raises Error if the cell is refused, with the path in `file` and the key in `where`.
     """
-    data = read_bytes(path)
-    try:
-        return parse_cell(data.decode("utf-8"))
-    except UnicodeDecodeError:
-        raise Error("the file is not a cell: it is not text in UTF-8", file=str(path), code="not-toml") from None
-    except Error as refusal:
-        refusal.file = str(path)
-        raise
+    text = decode_text(read_bytes(path), "a cell", "not-toml", os.fspath(path))
+    with name_file_in_errors(path):
+        return parse_cell(text)
 
 
 def parse_cell(text: str) -> Cell:
