@@ -73,9 +73,8 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
         )
     unit = unit or default_unit
     length = value * MM_PER[unit]
-    return (
-        float(f"{length:.15g}") if unit in ("in", "pt", "pc") else length
-    )  # 8.5in are 215.9 mm, not 215.89999999999998
+    # 8.5in are 215.9 mm, not 215.89999999999998.
+    return float(f"{length:.15g}") if unit in ("in", "pt", "pc") else length
 
 
 def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:

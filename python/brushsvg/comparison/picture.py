@@ -19,11 +19,7 @@ from .photographs import EDGE_LEVEL, Comparison, TargetStroke
 LONG_SIDE_PX = 2400
 # Colours as (blue, green, red).
 TARGET_COLOUR, PREDICTED_COLOUR, TEXT_COLOUR = (190, 190, 190), (40, 40, 220), (30, 30, 30)
-FONT, LETTER_PX, LINE_PX = (
-    cv2.FONT_HERSHEY_SIMPLEX,
-    22,
-    2,
-)  # font, height of its letters at size 1, line width
+FONT, LETTER_PX, LINE_PX = (cv2.FONT_HERSHEY_SIMPLEX, 22, 2)  # font, height of its letters at size 1, line width
 NUMBER_SIZE, RING_PX = 1.3, 18  # font size of the numbers, radius of the rings around places
 MARGIN_PX = 90
 ROW_PX = 40

@@ -16,12 +16,8 @@ from .repeats import Repeats, bins_of
 
 PREDICTED_COLOUR = "#c0392b"
 PAINT_PX_PER_MM = 4.0  # resolution of the drawn paint
-LEGEND_BELOW = {
-    "fontsize": 7,
-    "loc": "upper center",
-    "bbox_to_anchor": (0.5, -0.1),
-    "ncols": 3,
-}  # place of a legend below its axes, clear of the bars
+# Place of a legend below its axes, clear of the bars.
+LEGEND_BELOW = {"fontsize": 7, "loc": "upper center", "bbox_to_anchor": (0.5, -0.1), "ncols": 3}
 MAX_BARS = 30  # largest number of strokes; of more, those with the largest spread are drawn
 
 

@@ -35,35 +35,16 @@ from .options import Options
 
 GCODE_FLAGS = ("pen", "paper-z", "skip-region", "skip-comment")
 LAYOUT_FLAGS = (
-    "sheet",
-    "units",
-    "select",
-    "layer",
-    "background",
+    *"sheet units select layer background".split(),
     *GCODE_FLAGS,
-    "width",
-    "fit",
-    "scale",
-    "origin",
-    "as",
+    *"width fit scale origin as".split(),
 )
 # The name of the choice that a flag makes, where both names differ.
 CHOICE_BY_FLAG = {"as": "paths_as", "speed": "paint_speed", "z-offset": "z_offset", "paper-z": "paper_z"} | {
     name: name.replace("-", "_") for name in ("skip-region", "skip-comment", "margin-strokes")
 }
-PLANNING_FLAGS = (
-    "wide",
-    "corners",
-    "detail",
-    "script",
-    "join",
-    "compensation",
-    "lag",
-    "tolerance",
-    "terminals",
-    "start",
-    "end",
-    "margin-strokes",
+PLANNING_FLAGS = tuple(
+    "wide corners detail script join compensation lag tolerance terminals start end margin-strokes".split()
 )
 TERMINALS = ("auto", "round", "butt", "pointed")
 CHOICE_RANGES = {  # equal to the range of the flag; lengths in mm, speed in mm/s

@@ -248,9 +248,8 @@ def check_first_rise(
     places = [place for place in np.asarray(places, dtype=float).reshape(-1, 3) if np.isfinite(place).all()]
     notices: list[Notice] = []
     for place in places:
-        if not find_broken_limits(
-            make_paths([[place]]), frame, cell, None, slack_mm
-        ):  # otherwise the place itself is reported
+        # Otherwise the place itself is reported.
+        if not find_broken_limits(make_paths([[place]]), frame, cell, None, slack_mm):
             notices += find_broken_limits(
                 make_paths([[place, (*place[:2], float(height_mm))]]), frame, cell, None, slack_mm
             )

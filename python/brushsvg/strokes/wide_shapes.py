@@ -167,10 +167,7 @@ def _fill_in_passes(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
         filling = _choose_passes(shape, strokes, brush)
         for k in shape.wide if filling else ():
             passes = [_make_pass(strokes[k], line, lane) for lane, line in enumerate(filling, start=1)]
-            how, filling = (
-                "painted in passes side by side",
-                [],
-            )  # the first stroke of the shape has all passes
+            how, filling = ("painted in passes side by side", [])  # the first stroke of the shape has all passes
             if passes:
                 its_targets = [
                     passes[0].replaced(wanted_mm=shape.first_share(passes[:1], passes)),

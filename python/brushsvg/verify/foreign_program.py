@@ -22,11 +22,8 @@ from ..read.gcode.pen import pen_kind, read_pen
 from ..read.gcode.toolpaths import CHORD_MM, Way, ways_and_end
 
 SHEET_MARGIN_MM = 20.0
-Z_CELL, SERVO_VALUE_CELL, SERVO_ANGLE_CELL = (
-    "linuxcnc-3axis",
-    "grbl-servo",
-    "marlin-servo",
-)  # cells that brushsvg ships
+# Cells that brushsvg ships.
+Z_CELL, SERVO_VALUE_CELL, SERVO_ANGLE_CELL = ("linuxcnc-3axis", "grbl-servo", "marlin-servo")
 Lift = Callable[[float | None], float]
 ADVICE_BY_SIDE = dict.fromkeys(("left", "lower"), "its zero is the sheet's lower left corner: move the program's lines")
 ADVICE_BY_SIDE |= dict.fromkeys(("right", "upper"), "give the sheet's size with --sheet WxH")

@@ -314,9 +314,8 @@ def _track_of_section(section: ReadSection, frame: np.ndarray, here: np.ndarray 
     steps, back = section.steps, np.linalg.inv(frame)
     ends = transform_points(back, np.array([(step.x, step.y, step.z) for step in steps], dtype=float).reshape(-1, 3))
     known = np.flatnonzero(~np.isnan(ends).any(axis=1))  # the other steps go straight up, from any place
-    stays = (np.diff(ends[known], axis=0) == 0).all(
-        axis=1
-    )  # a repeated line does not move the tool, except for its blend
+    # A repeated line does not move the tool, except for its blend.
+    stays = (np.diff(ends[known], axis=0) == 0).all(axis=1)
     does = [
         steps[k].centre is not None
         or steps[k].blend_mm > 0
@@ -514,9 +513,8 @@ def _check_moves(
     sideways[0] |= here is None
     touches, is_low = low <= paper_mm + slack, low < safe - slack
     careless = rapid & is_low & (touches | sideways)
-    goes = (
-        (track.points[:, :2] != before[:, :2]).any(axis=1) if cell.servo else True
-    )  # a servo uses no feed while it stands
+    # A servo uses no feed while it stands.
+    goes = (track.points[:, :2] != before[:, :2]).any(axis=1) if cell.servo else True
     fast = touches & ~rapid & goes & (speed > limit + 1e-6)
     travels = sideways & is_low & (high > paper_mm + slack) & (not section.title.startswith("paint: "))
     for k in np.flatnonzero(careless | fast | travels):

@@ -17,12 +17,7 @@ from ..dabs.dab_outlines import Dab
 from ..marks.mark_input import DAB as KIND
 
 # Effects of the sheet or the tool, which are equal for all headings, can be separated from the footprint.
-HEADINGS_DEG = (
-    0.0,
-    180.0,
-    90.0,
-    270.0,
-)
+HEADINGS_DEG = (0.0, 180.0, 90.0, 270.0)
 MIN_DEPTH_SHARE = 0.2  # least depth as a share of the greatest; below it, outlines shrink in proportion to depth
 MIN_HALF_WIDTH_MM = 0.5  # least half width of the shallowest dab; narrower dabs look like splashes
 # Length of the run as a share of the lag. With a larger share, a brush that trails a little less than expected is

@@ -43,15 +43,7 @@ LETTER_WIDTH_MM = 1.4  # mean width of a letter of a label
 QUIET = 1 / 6  # width of the white zone around a marker, as a share of its side: more than a module
 MARKERS = (8.0, 20.0)  # least and greatest side of a marker [mm]
 # Positions that are tried for the markers at the left and right, as shares of the sheet height.
-MARKER_HEIGHT_SHARES = (
-    0.5,
-    0.45,
-    0.55,
-    0.4,
-    0.6,
-    0.35,
-    0.65,
-)
+MARKER_HEIGHT_SHARES = (0.5, 0.45, 0.55, 0.4, 0.6, 0.35, 0.65)
 BETWEEN = 5.0  # an edge gets a marker in its middle if it is at least this many marker sides long
 TICK_MM = 2.2  # height of the ends of the bar
 # A chart uses eight of a thousand markers. The group of eight depends on the chart, so that charts are not confused.

@@ -23,10 +23,7 @@ from ...photo.whole_page import refuse_cropped, refuse_unsure
 from .layout import Chart
 from .page import bar_rings, label_box
 
-PAGE_SCALE_RANGE = (
-    0.9,
-    1.1,
-)  # scales of the page that --bar corrects; beyond them, strokes meet labels and markers
+PAGE_SCALE_RANGE = (0.9, 1.1)  # scales of the page that --bar corrects; beyond them, strokes meet labels and markers
 MARKER_MARGIN = 1 / 5  # margin around a marker for blur, as a share of its side
 # Standard deviation of a common shift of all edges of a picture. Dark paint is 0.02 to 0.08 px outward. Yellow paint,
 # for which JPEG keeps one colour for four pixels, is 0.11 to 0.19 px outward. With 0.2, the lag of a narrow brush had
@@ -43,9 +40,8 @@ DISPLACED_PAGE_CODES = ("photo-paint-elsewhere", "photo-covered", "mark-missing"
 # Least visible difference between the scale of the paint and of its page. Brushes that trail differently scatter the
 # scale that strokes show.
 MIN_VISIBLE_SCALE_CHANGE = 0.01
-MAX_SHEET_DIFFERENCE_MM = (
-    0.15  # largest rms distance between photographs of one flat sheet; a second painted sheet differs more
-)
+# Largest rms distance between photographs of one flat sheet; a second painted sheet differs more.
+MAX_SHEET_DIFFERENCE_MM = 0.15
 
 
 @dataclass(frozen=True)
@@ -105,9 +101,8 @@ def read_chart_photos(
             try:
                 reads.append(_read_photo(chart, page, stroke_boxes, pixels, view, fine))
             except Error as refusal:
-                if (
-                    refusal.code not in DISPLACED_PAGE_CODES or reads
-                ):  # all photographs of one sheet have the same place
+                # All photographs of one sheet have the same place.
+                if refusal.code not in DISPLACED_PAGE_CODES or reads:
                     raise
                 page = _moved_page(chart, page, size, stroke_boxes, pixels, view, refusal)
                 view = _find_view(pixels, page.printed, mirrored)

@@ -28,10 +28,7 @@ from .stray_marks import MAX_RESIDUAL_SIGMAS, MAX_STRAY_SHARE, Stray, find_stray
 LAG_TERMS, GAP_TERMS, HALF_TERMS = 4, 1, 2  # coefficients per law if the depths allow as many
 OUTLINE_COUNT = 10  # number of footprint outlines, evenly spaced in depth
 MIN_RATIO_TO_HALF_WIDTH = 0.1  # least ratio of widest section and front to the half width, as in the fit
-ROUND_TAIL = (
-    1.0,
-    0.4,
-)  # distance from tip to widest section with a round tail, in half widths: mean and sigma
+ROUND_TAIL = (1.0, 0.4)  # distance from tip to widest section with a round tail, in half widths: mean and sigma
 MAX_OUTLYING_SHARE = 0.2  # a mark with a larger share of outlying points does not count for the choice of the tail
 MIN_CHI_SQUARE = 4.0  # chi-square by which one tail must fit better than the other to be chosen
 # A law is undetermined if its 95 % interval exceeds this share of its value and this length [mm], at this share of

@@ -26,10 +26,7 @@ SETTLED_SIGMAS = 0.3
 # width law outside the family looks like paint that runs out.
 MIN_UNEXPLAINED_SHARE = 0.45
 MAX_RESIDUAL_SIGMAS = 4.0  # standard deviations of the edges
-FLANK_RANGE_HALF_WIDTHS = (
-    0.5,
-    1.5,
-)  # half widths from the middle: flanks, without the paint of ends and crossings
+FLANK_RANGE_HALF_WIDTHS = (0.5, 1.5)  # half widths from the middle: flanks, without the paint of ends and crossings
 STEP_MM = 0.5  # spacing of the places along a stroke
 RATE_STEP_SIGMAS = 3.0  # standard deviations between two rates whose effects on the fit are compared
 MIN_KEPT_SHARE = 0.2  # least share of a rate error that the fit leaves in the residuals

@@ -22,10 +22,8 @@ FOUND_COLOUR, PREDICTED_COLOUR, STRAY_COLOUR, TEXT_COLOUR = (
 LETTER_MM, FOUND_MM, PREDICTED_MM, HALO_MM = 2.0, 0.2, 0.08, 0.3
 FONT, FONT_PX = cv2.FONT_HERSHEY_SIMPLEX, 22  # the font, and the height of its letters at size 1
 CELLS_PER_MM = 4.0  # resolution of the grid that keeps labels clear of marks
-MAX_BRIGHTNESS_SHARE, BRIGHTNESS_WINDOW_MM = (
-    0.95,
-    25.0,
-)  # a place darker than this share of the median brightness around it is paint or print
+# A place darker than this share of the median brightness around it is paint or print.
+MAX_BRIGHTNESS_SHARE, BRIGHTNESS_WINDOW_MM = (0.95, 25.0)
 # Least resolution of the drawn picture. In a coarser one, letters are illegible and two lines merge.
 MIN_PX_PER_MM = 14.0
 PIXEL_FRACTIONS = 16  # fractions of a pixel in the coordinates of polylines

@@ -16,9 +16,8 @@ from ...errors import Error
 # 1e-4 lags of the line. Before the corner, and from 12 lags beyond it, the line is straight.
 LINE_PLACES_LAGS = np.concatenate([np.arange(0.0, 4.0, 0.03), np.arange(4.0, 12.1, 0.25)])
 MAX_LINE_POINTS = 500  # points used of one line, evenly chosen
-MAX_LAG_UNCERTAINTY = (
-    0.5  # largest standard deviation of the lag, relative to the lag; a line that ends too early exceeds it
-)
+# Largest standard deviation of the lag, relative to the lag; a line that ends too early exceeds it.
+MAX_LAG_UNCERTAINTY = 0.5
 MIN_SIGN_EVIDENCE = 16.0  # times the variance by which one sign of e must fit better to exclude the other
 # Cubature points for noise of standard deviation 1 in x and y: the rule of 2 n points, plus the same points turned by
 # 45 degrees. Averages are exact up to the third power.

@@ -39,10 +39,7 @@ MIN_WIDEST_PER_HALF_WIDTH = 0.3
 SUM_KINDS = ("angular", "straight", "side_view", "video")  # these measure r + b and neither length alone
 KINDS_FROM_TOUCH = ("side_view", "video")  # these count from first touch
 OUTLINE_COUNT = 10  # number of footprint outlines, evenly spaced in depth
-TURN_SUMS = (
-    {"lag": 1},
-    {"lag": 1, "tip_gap": 1, "tip_to_widest": -1},
-)  # the two lengths of a Turn: r and r - e
+TURN_SUMS = ({"lag": 1}, {"lag": 1, "tip_gap": 1, "tip_to_widest": -1})  # the two lengths of a Turn: r and r - e
 MAX_SIGN_ROUNDS = 5  # rounds in which the signs of e may change for centre lines
 MAX_GAUSS_NEWTON_STEPS = 20  # Gauss-Newton steps
 READING_ERROR_MM = 0.01  # nobody reads points more exactly, so lines that fit better than this are equally certain
@@ -415,9 +412,8 @@ class _LawFitter:
         return row.numbers["value_mm"]
 
     def _build_readings(self, laws, points: dict[str, list[Point]], rows: list[Row]) -> list[Reading]:
-        line_rows = {
-            row.where for row in rows if row.kind == "centre_line"
-        }  # their lag is added below, together with their sum
+        # Their lag is added below, together with their sum.
+        line_rows = {row.where for row in rows if row.kind == "centre_line"}
         out = []
         for law in laws:
             for point in points[law]:

@@ -24,9 +24,8 @@ GOOD_HALF_WIDTH_MISFIT_MM, MAX_HALF_WIDTH_MISFIT_MM = 0.05, 0.5
 # come closer also bends where nobody measured.
 GOOD_LAG_MISFIT_MM, MAX_LAG_MISFIT_MM = 0.3, 1.0
 LAG_DEGREES = (1, 2, 3)
-CURVATURE_WEIGHT = (
-    1e-3  # weight of a law's curvature against the data: small, so it only decides what the data leave open
-)
+# Weight of a law's curvature against the data: small, so it only decides what the data leave open.
+CURVATURE_WEIGHT = 1e-3
 OUTLINE_COUNT = 10  # number of outlines, evenly spaced in depth
 MAX_LENGTH_MM = 1000.0
 MAX_NUMBER = 1e9  # a larger number is a mistake; the closer limits are those of brushes

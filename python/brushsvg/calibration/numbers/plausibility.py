@@ -155,9 +155,8 @@ def find_outliers_of_kinds(
     included. freedom: degrees of freedom of that scatter.
     """
     free_share = np.maximum(spare, 1e-9)
-    internal_residuals = residual_mm / (
-        scatter_mm * np.sqrt(free_share)
-    )  # in least squares its square is at most the degrees of freedom
+    # In least squares its square is at most the degrees of freedom.
+    internal_residuals = residual_mm / (scatter_mm * np.sqrt(free_share))
     outliers = {}
     for k, (t, degrees) in enumerate(zip(internal_residuals, freedom, strict=True)):
         if degrees < 3.0:
@@ -417,9 +416,8 @@ def _find_odd_lags(fitted) -> list[Notice]:
     if len(fitted.points) >= 4 and not fitted.outliers and rmse is not None and rmse > 0.25 * mean:
         sentence = f"the lag scatters by {rmse:.2g} mm round a mean of {mean:.2g} mm: are the rows in the right order?"
         notices.append(Notice("lag", sentence, code="law-scatters"))
-    scatter_mm = 1.48 * float(
-        np.median(np.abs(fitted.fit.residual_mm))
-    )  # a median, so one bad reading hardly changes it
+    # A median, so one bad reading hardly changes it.
+    scatter_mm = 1.48 * float(np.median(np.abs(fitted.fit.residual_mm)))
     depths = sorted({point.depth_mm for point in fitted.points})
     read = [np.mean([point.value_mm for point in fitted.points if point.depth_mm == depth]) for depth in depths]
     for k in range(len(depths) - 1):

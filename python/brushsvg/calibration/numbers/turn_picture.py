@@ -20,12 +20,7 @@ MIN_BRANCH_SHARE = 0.8
 # Half widths that are removed at either end, because the skeleton of a stroke bends towards the corners of its ends.
 TRIMMED_HALF_WIDTHS = 1.5
 MIN_LIGHT_DIFFERENCE = 0.1  # least difference of light between paint and paper
-_DIRECTIONS = {
-    "right": (1, 0),
-    "left": (-1, 0),
-    "up": (0, 1),
-    "down": (0, -1),
-}  # direction of the second line, y up
+_DIRECTIONS = {"right": (1, 0), "left": (-1, 0), "up": (0, 1), "down": (0, -1)}  # direction of the second line, y up
 
 
 def centre_line(data: bytes, mm_per_px: float, corner_px, towards: str = "right", where: str = "") -> np.ndarray:

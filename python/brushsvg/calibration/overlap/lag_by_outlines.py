@@ -182,9 +182,8 @@ class _Edges:
         """
         expected, fit = self.made.expected, self.made.fit
         noise = max(MIN_NOISE_MM, 1.4826 * float(np.median(np.abs(distances))))
-        weight = np.clip(
-            1 - (distances / (MAX_RESIDUAL_SIGMAS * noise)) ** 2, 0.0, 1.0
-        )  # square root of Tukey's weight
+        # Square root of Tukey's weight.
+        weight = np.clip(1 - (distances / (MAX_RESIDUAL_SIGMAS * noise)) ** 2, 0.0, 1.0)
         point_sigma = noise * np.sqrt(fit.samples / max(fit.effective_samples, 1.0))
         first = slopes.shape[1] - 1 - displaced.size
         prior_rows = np.zeros((1 + displaced.size, slopes.shape[1]))

@@ -14,12 +14,7 @@ from pathlib import Path
 SHIPPED = Path(__file__).parents[2] / "data"
 SUFFIXES = {"brush": ".json", "cell": ".toml"}
 # What an option with this dest names.
-KIND_BY_DEST = {
-    "brush": "brush",
-    "true_brush": "brush",
-    "prior": "brush",
-    "cell": "cell",
-}
+KIND_BY_DEST = {"brush": "brush", "true_brush": "brush", "prior": "brush", "cell": "cell"}
 
 
 def complete(parser: argparse.ArgumentParser) -> None:

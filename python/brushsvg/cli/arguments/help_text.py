@@ -33,14 +33,7 @@ RARE_OPTIONS = {
     ).split()
 }
 # Options that are common in convert and rare in other commands.
-COMMON_IN_CONVERT = {
-    "--explain",
-    "--wide",
-    "--detail",
-    "--terminals",
-    "--scale",
-    "--speed",
-}
+COMMON_IN_CONVERT = {f"--{name}" for name in "explain wide detail terminals scale speed".split()}
 # A command with more options than this shows its rare options only with --help-all.
 MAX_UNGROUPED_OPTIONS = 12
 

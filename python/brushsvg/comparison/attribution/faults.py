@@ -27,12 +27,8 @@ from .model import BRUSH, MACHINE, PAPER, SHEET, FaultModel, Number
 
 OWN_PLACE, MISSING_PAINT = "each stroke's own place", "missing paint"
 CAUSES = (SHEET, MACHINE, PAPER, BRUSH, OWN_PLACE, MISSING_PAINT)
-SEARCH_DISTANCES_MM = (
-    2.5,
-    1.2,
-    0.8,
-    0.8,
-)  # search distances for edges: the first finds the edges of a brush that is 20 % off
+# Search distances for edges: the first finds the edges of a brush that is 20 % off.
+SEARCH_DISTANCES_MM = (2.5, 1.2, 0.8, 0.8)
 OWN_PLACE_SIGMAS_MM = (0.02, 0.2, 1.0)  # standard deviation of own places: smallest, initial, largest
 EDGE_SIGMA_MM = 0.03  # standard deviation of the common offset of edges by their reading
 MIN_EDGE_SIGMA_MM = 0.01  # smallest standard deviation of edges: no photograph is read better
@@ -45,9 +41,8 @@ MIN_STROKES, MAX_STROKES = 3, 40
 HUBER_TUNING = 1.345  # constant of Huber's weights
 DRAWS = 200
 MAX_PX_PER_MM = 8.0
-MAX_INSEPARABLE_SHARE = (
-    0.3  # remaining share of a cause's variance once another is known, below which both are hard to separate
-)
+# Remaining share of a cause's variance once another is known, below which both are hard to separate.
+MAX_INSEPARABLE_SHARE = 0.3
 MODEL_EDGE_ERROR_MM = 0.04  # uncertainty of the model's edges relative to the paint
 MIN_DOUBT_MM = 0.05  # uncertainty of edges: a smaller one does not matter
 

@@ -366,9 +366,8 @@ class Cell:
 
 _REQUIRED_TYPES = (Paper, Heights, Speeds, Blending, Workspace)
 _OPTIONAL_TYPES = (Tool, Servo, Pen, Motors, Contact, Reload, Machine, RoboDK, Arm)
-TABLES = {
-    table.__name__.lower(): table for table in _REQUIRED_TYPES + _OPTIONAL_TYPES
-}  # by the name of the field of Cell
+# By the name of the field of Cell.
+TABLES = {table.__name__.lower(): table for table in _REQUIRED_TYPES + _OPTIONAL_TYPES}
 OPTIONAL_TABLES = tuple(table.__name__.lower() for table in _OPTIONAL_TYPES)
 REQUIRED_TABLES = {
     "grbl-servo": ("servo",),
@@ -386,12 +385,7 @@ NO_BACKLASH_REASONS = dict.fromkeys(  # languages for which backlash is not comp
 LEAST_BACKLASH_MM = 0.01
 LEAST_ACCELERATION_MM_S2 = {"rapid": 100.0}  # the smallest value that PathAccLim accepts
 # Lowest speed of a line. All speeds of a program are whole multiples of it.
-LEAST_SPEED_MM_S = {
-    "dobot": 1.0,
-    "fanuc": 1.0,
-    "hpgl": 10.0,
-    "ebb": 0.1,
-}
+LEAST_SPEED_MM_S = {"dobot": 1.0, "fanuc": 1.0, "hpgl": 10.0, "ebb": 0.1}
 MIN_SERVO_SPEED_MM_S = 1 / 60  # grbl replaces a lower feed by this one
 UNITS_MM = {"hpgl": 0.025}  # size of a whole unit in languages without fractions
 # Firmware that divides circles into lines, if it supports circles at all.

@@ -18,13 +18,7 @@ from .gcode import DIALECTS, HELD_UP, MODE_WORDS, grbl_comment, write_wait
 from .text import MAX_ROWS_AT_ONCE, feed_of_speed_mm_min, format_number, format_rows
 
 # In these moves the lift goes at the programmed speed. In the air it moves at once.
-TOUCHING_MEANINGS = (
-    "land",
-    "paint",
-    "lift",
-    "dip",
-    "wipe",
-)
+TOUCHING_MEANINGS = ("land", "paint", "lift", "dip", "wipe")
 
 
 def grbl_servo(program: Program) -> Iterator[str]:

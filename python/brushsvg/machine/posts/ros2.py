@@ -25,9 +25,8 @@ from .text import PROGRAM_END, plain_text
 
 LINE_LIMIT = 100
 SECOND_DECIMALS, SPEED_DECIMALS, TURN_DECIMALS = 7, 6, 9
-EXTRA_METRE_DECIMALS = (
-    5  # more decimals of metres than of millimetres: the tip's places are on a grid, the flange's are not
-)
+# More decimals of metres than of millimetres: the tip's places are on a grid, the flange's are not.
+EXTRA_METRE_DECIMALS = 5
 COLUMNS = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,limit_m_s,row"
 ROW_KINDS = ("pose", "way", "rest")  # in the numbering of trajectory
 MAX_BYTES_IN_MEMORY = 20_000_000

@@ -58,9 +58,8 @@ def urscript(program: Program) -> Iterator[str]:
         lambda step: _wait_lines(step, contact is not None),
         lambda move: _move_lines(move, upright, acceleration, decimals),
     )
-    around = (BEGIN + header + setup + END).count(
-        "\n"
-    ) + 2  # two more lines: the number of the part, and the number of the next part
+    # Two more lines: the number of the part, and the number of the next part.
+    around = (BEGIN + header + setup + END).count("\n") + 2
     for count, moves in enumerate(split_into_parts(program, words, around, rises_again=True), 1):
         if count > 1:
             yield f'  textmsg("{NEXT} {count}")\n{END}'

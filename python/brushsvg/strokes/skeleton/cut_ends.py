@@ -56,9 +56,8 @@ def _run_last_to_cut(chain: list[Piece], rings: list[np.ndarray]) -> list[Piece]
     joined_line = np.vstack([before.line, last.line[1:] if is_shared else last.line])
     line = run_to_cut(joined_line, rings)
     is_flick = length(last.line[:, :2]) < MAX_FLICK_LENGTH * last.line[-1, 2]
-    if line is joined_line or (
-        len(line) > len(before.line) + 1 and not is_flick
-    ):  # the hook leaves a corner of the last piece
+    # The hook leaves a corner of the last piece.
+    if line is joined_line or (len(line) > len(before.line) + 1 and not is_flick):
         return chain
     merged = replace(
         before,
@@ -83,9 +82,8 @@ def run_to_cut(line: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
     halves = back[:, 2]
     is_over = (along > MAX_HOOK_LENGTH * np.maximum(halves, halves[0])) | (along[-1] < along + halves)
     ways_mm = back[:, :2] - rows_further_back[:, :2]
-    is_level = (
-        (halves > 0) & ways_mm.any(axis=1) & (rows_further_back[:, 2] <= (1 + MAX_GROWTH) * halves)
-    )  # there is no way where the line returns to the same place
+    # There is no way where the line returns to the same place.
+    is_level = (halves > 0) & ways_mm.any(axis=1) & (rows_further_back[:, 2] <= (1 + MAX_GROWTH) * halves)
     is_level[is_over.argmax() if is_over.any() else len(back) :] = False
     (level_rows,) = is_level.nonzero()
     axes = ways_mm[level_rows] / np.hypot(*ways_mm[level_rows].T)[:, None]
@@ -139,9 +137,8 @@ def _has_straight_sides(
     left = _left_of(ahead)
     for side in (-1, 1):
         on_mm = (to_cut_mm + slope * side * CUT_HALF_SPAN * half) * SIDE_SHARES
-        at = (
-            here + on_mm[:, None] * ahead + 0.7 * half * side * left
-        )  # inside of the shape, on either side of a slanted cut
+        # Inside of the shape, on either side of a slanted cut.
+        at = here + on_mm[:, None] * ahead + 0.7 * half * side * left
         side_mm = np.array(_core.first_crossings(rings, at, np.tile(side * left, (len(at), 1))))
         if (np.abs(side_mm - 0.3 * half) > MAX_SIDE_DEVIATION * half).any():
             return False

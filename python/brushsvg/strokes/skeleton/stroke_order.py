@@ -26,10 +26,8 @@ POINTS_PER_STROKE = 24
 # Strokes ordered at once; longer groups are parted, since the work grows with the square.
 MAX_STROKES_AT_ONCE = 48
 BEAM_WIDTH = 8
-TOUCH_SHARE, NEAR_SHARE = (
-    0.04,
-    0.1,
-)  # distances at which strokes touch, and are near, as shares of the size of the group
+# Distances at which strokes touch, and are near, as shares of the size of the group.
+TOUCH_SHARE, NEAR_SHARE = (0.04, 0.1)
 SOFT_CUT, SOFT_CUT_WIDTH = 0.12, 0.05  # overlap of two halves at which a cut counts half, and its scale
 SCRIPT_FLAGS = {"latin": -1.0, "devanagari": -1.0, "cjk": 1.0}  # 0.0: unknown
 

@@ -191,9 +191,8 @@ def _reverse_hairlines(pieces: list[Piece]) -> list[Piece]:
     for piece in steep:
         beginning[piece.ends[0]].append(piece)
         ending[piece.ends[1]].append(piece)
-        if piece.line[-1, 0] - piece.line[0, 0] < MIN_RIGHT_PER_RISE * (
-            piece.line[0, 1] - piece.line[-1, 1]
-        ):  # not the falling line of an M
+        # Not the falling line of an M.
+        if piece.line[-1, 0] - piece.line[0, 0] < MIN_RIGHT_PER_RISE * (piece.line[0, 1] - piece.line[-1, 1]):
             for crossing in piece.through:
                 passing[crossing].append(piece)
 

@@ -207,9 +207,8 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     return with_backlash(read(text, cell), cell)
 
 
-_HUGE_NUMBER = re.compile(
-    r"(?<![\d.])0*[1-9]\d{9,}"
-)  # larger than any place in mm or feed in mm/min, and too large to compute with
+# Larger than any place in mm or feed in mm/min, and too large to compute with.
+_HUGE_NUMBER = re.compile(r"(?<![\d.])0*[1-9]\d{9,}")
 
 
 # The module that reads each language. Its function is called read_ and the module's name.

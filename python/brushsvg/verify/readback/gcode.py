@@ -19,44 +19,14 @@ _VALUE = r"(?:[GM]-?|[A-FH-LN-Z][+-]?)(?:\d+\.?\d*|\.\d+)"
 _CODE = re.compile(rf"(?:{_VALUE}(?: +|$))+")
 _WORD = re.compile(r"([A-Z])([+-]?(?:\d+\.?\d*|\.\d+))")
 _END = re.compile(r"M(?:0?2|30)")
-MOTION_WORDS = {
-    "G0": "XYZF",
-    "G1": "XYZF",
-    "G2": "XYZIJF",
-    "G3": "XYZIJF",
-}  # motion codes, and the words that may follow them
-REPLACED_MODES = {
-    "G18": ["G17"],
-    "G19": ["G17"],
-    "G90.1": ["G91.1"],
-    "G61": ["G64"],
-    "G64": ["G61"],
-}  # the modes that each mode replaces
+# Motion codes, and the words that may follow them.
+MOTION_WORDS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZIJF", "G3": "XYZIJF"}
+# The modes that each mode replaces.
+REPLACED_MODES = {"G18": ["G17"], "G19": ["G17"], "G90.1": ["G91.1"], "G61": ["G64"], "G64": ["G61"]}
 MODES = {"G17", "G40", "G80", "G91.1", "G94", "G61", "G18", "G19", "G90.1"}
-EXCLUSIVE_CODES = {
-    "G0",
-    "G1",
-    "G2",
-    "G3",
-    "G4",
-    "G64",
-    "G61",
-    "M0",
-    "M2",
-    "M3",
-    "M5",
-}  # codes that must be the only G or M code of their line
-LASTING_MODES = {
-    "G17",
-    "G18",
-    "G19",
-    "G21",
-    "G40",
-    "G90",
-    "G90.1",
-    "G91.1",
-    "G94",
-}  # modes that end no motion
+# Codes that must be the only G or M code of their line.
+EXCLUSIVE_CODES = set("G0 G1 G2 G3 G4 G64 G61 M0 M2 M3 M5".split())
+LASTING_MODES = set("G17 G18 G19 G21 G40 G90 G90.1 G91.1 G94".split())  # modes that end no motion
 # Grbl answers these codes with an error, and senders then stop with the brush pressed.
 UNKNOWN_TO_GRBL = {"G64", "G90.1"}
 PRINTER_WORDS = MOTION_WORDS | {"G4": "P", "G21": "", "G90": "", "M400": ""}

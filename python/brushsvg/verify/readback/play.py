@@ -69,9 +69,8 @@ class _BacklashAxes:
         if (np.abs(self.far_side - self.slide) > self.near_mm).any():
             self.unsure.add(step.line)
         places = [(*slide.tolist(), float(commanded[2])), *((each.x, each.y, each.z) for each in steps)]
-        is_move = (
-            bool((commanded[:2] != self.commanded[:2]).any()) or self.stood
-        )  # a step also counts as a move if the tool stood on the step before
+        # A step also counts as a move if the tool stood on the step before.
+        is_move = bool((commanded[:2] != self.commanded[:2]).any()) or self.stood
         stay = [is_move and before == after for before, after in pairwise(places)]
         goes, stands = (
             [each for each, stays in zip(steps, stay, strict=True) if stays == which] for which in (False, True)

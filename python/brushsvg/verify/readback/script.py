@@ -127,9 +127,8 @@ class _Reader:
             self._check_upright(number, line, [float(value) for value in re.findall(N, turned)])
         if turned := texts.pop("turned", ""):
             values = [float(value) for value in re.findall(N, turned)]
-            is_end = kind == "move" or (
-                kind == "sets" and "x" in texts
-            )  # destination of a move that is in another line
+            # Destination of a move that is in another line.
+            is_end = kind == "move" or (kind == "sets" and "x" in texts)
             if is_end and self.script.rotation and self.out.tilts:
                 self.turned = self._rotation(number, line, values)
             else:
