@@ -157,11 +157,8 @@ def need_number(value, what: str, least: float, greatest: float) -> float:
     """Return a value as a float; raise Error unless it is a number in the range."""
     number = as_number(value, f"a number, which {what} is")
     if not least <= number <= greatest:
-        raise Error(
-            f"{what}, {number:g}, is outside the range [{least:g}, {greatest:g}]",
-            range=(least, greatest),
-            code="out-of-range",
-        )
+        sentence = f"{what}, {number:g}, is outside the range [{least:g}, {greatest:g}]"
+        raise Error(sentence, range=(least, greatest), code="out-of-range")
     return number
 
 
@@ -181,10 +178,8 @@ def need_truth(value, what: str) -> None:
     """
     is_numpy_bool = getattr(getattr(value, "dtype", None), "kind", "") == "b" and value.ndim == 0
     if not (isinstance(value, bool) or is_numpy_bool):
-        raise Error(
-            f"{type(value).__name__} {str(value)[:40]!r} is not True or False, which {what} is",
-            code="wrong-type",
-        )
+        sentence = f"{type(value).__name__} {str(value)[:40]!r} is not True or False, which {what} is"
+        raise Error(sentence, code="wrong-type")
 
 
 def as_listed(value):

@@ -195,11 +195,8 @@ def write_files(files: Mapping[str | os.PathLike[str], bytes | str | Iterable[st
     except Error:  # from the data, which may be produced while it is written
         raise
     except (OSError, ValueError) as problem:  # ValueError: a name that no file can have
-        raise Error(
-            f"the file cannot be written: {system_reason(problem)}",
-            file=os.fspath(path),
-            code="file-unwritable",
-        ) from None
+        sentence = f"the file cannot be written: {system_reason(problem)}"
+        raise Error(sentence, file=os.fspath(path), code="file-unwritable") from None
     finally:
         for left in staged.values():
             Path(left).unlink(missing_ok=True)

@@ -29,11 +29,8 @@ def document(data: str | bytes, format_: str, version: int = 1) -> dict:
         raise Error(f'the file does not say "format": "{format_}"{other}', "format", code="format-unknown")
     found = content.get("version")
     if found != version or isinstance(found, bool):
-        raise Error(
-            f"version {found!r:.40} of {format_} is not known; known is {version}",
-            "version",
-            code="version-unknown",
-        )
+        sentence = f"version {found!r:.40} of {format_} is not known; known is {version}"
+        raise Error(sentence, "version", code="version-unknown")
     return content
 
 
@@ -77,12 +74,8 @@ def number(value, where: str, least: float = -math.inf, greatest: float = math.i
         with suppress(OverflowError):  # an integer that is too large for a float
             found = float(value)
             if not least <= found <= greatest:
-                raise Error(
-                    f"{found:g} is outside the range [{least:g}, {greatest:g}]",
-                    where,
-                    found,
-                    code="out-of-range",
-                )
+                sentence = f"{found:g} is outside the range [{least:g}, {greatest:g}]"
+                raise Error(sentence, where, found, code="out-of-range")
             return found
     raise Error(f"{value!r:.24} is not a finite number", where, code="not-a-number")
 

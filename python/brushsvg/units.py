@@ -67,10 +67,8 @@ def length_mm(text: str, default_unit: str = "mm") -> float:
     if unit == "%":
         raise Error(f"{_shown(text)} is a percentage, but there is nothing to take it of", code="not-a-length")
     if unit in _OF_FONT:
-        raise Error(
-            f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q",
-            code="not-a-length",
-        )
+        sentence = f"{_shown(text)} is in sizes of a font, but there is no font; use one of mm cm in pt pc px Q"
+        raise Error(sentence, code="not-a-length")
     unit = unit or default_unit
     length = value * MM_PER[unit]
     # 8.5in are 215.9 mm, not 215.89999999999998.

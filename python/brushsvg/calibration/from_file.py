@@ -61,30 +61,22 @@ def fit_measurements(
     name = contents.name or name or stem
     if contents.marks is None:
         if machine:
-            raise Error(
-                "--machine needs painted marks: measured numbers say nothing of the machine",
-                code="options-contradict",
-            )
+            sentence = "--machine needs painted marks: measured numbers say nothing of the machine"
+            raise Error(sentence, code="options-contradict")
         if paint:
-            raise Error(
-                "--paint needs painted marks: measured numbers say nothing of the order they were painted in",
-                code="options-contradict",
-            )
+            sentence = "--paint needs painted marks: measured numbers say nothing of the order they were painted in"
+            raise Error(sentence, code="options-contradict")
         if aim == "overlap":
-            raise Error(
-                "--aim overlap needs painted marks: measured numbers have no outlines that could overlap",
-                code="options-contradict",
-            )
+            sentence = "--aim overlap needs painted marks: measured numbers have no outlines that could overlap"
+            raise Error(sentence, code="options-contradict")
         _read_pictures(contents, read)
         return calibrate_measured(contents, name, bool(absolute), bool(total))
     painted = read_painted(contents.plan, contents.marks, read)
     options = options_for(contents.expected)
     ask_for(options, machine)
     if paint and aim == "overlap":
-        raise Error(
-            "--paint is found by edges: with --aim overlap marks do not narrow along the way",
-            code="options-contradict",
-        )
+        sentence = "--paint is found by edges: with --aim overlap marks do not narrow along the way"
+        raise Error(sentence, code="options-contradict")
     fit = calibrate_paint if paint else calibrate_marks
     calibration = fit(painted, name, contents.depth_range_mm, contents.max_speed_mm_s, options)
     return by_overlap(calibration, progress or (lambda text: None)) if aim == "overlap" else calibration
@@ -94,10 +86,8 @@ def _to_json(measured: dict) -> bytes:
     try:
         return json.dumps({"format": FORMAT, "version": 1} | measured, default=_to_plain_value).encode()
     except (TypeError, ValueError, RecursionError):
-        raise Error(
-            "measurements are numbers, texts, lists and dicts, as docs/reference/measurements.md has them",
-            code="wrong-type",
-        ) from None
+        sentence = "measurements are numbers, texts, lists and dicts, as docs/reference/measurements.md has them"
+        raise Error(sentence, code="wrong-type") from None
 
 
 def _to_plain_value(value):

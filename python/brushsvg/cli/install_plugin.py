@@ -39,11 +39,8 @@ def install_inkscape(zipped: str | None = None, source: Path = SOURCE) -> Path:
             (folder / name).write_bytes(data)
         (folder / NOTE).write_bytes(os.fsencode(f"{note}\n") if note else b"")
     except OSError as problem:
-        raise Error(
-            f"cannot be written: {(problem.strerror or str(problem)).lower()}",
-            file=str(folder),
-            code="file-unwritable",
-        ) from None
+        sentence = f"cannot be written: {(problem.strerror or str(problem)).lower()}"
+        raise Error(sentence, file=str(folder), code="file-unwritable") from None
     return folder
 
 
@@ -63,11 +60,8 @@ def remove_inkscape() -> Path:
         if not any(folder.iterdir()):
             folder.rmdir()
     except OSError as problem:
-        raise Error(
-            f"cannot be deleted: {(problem.strerror or str(problem)).lower()}",
-            file=str(folder),
-            code="file-unwritable",
-        ) from None
+        sentence = f"cannot be deleted: {(problem.strerror or str(problem)).lower()}"
+        raise Error(sentence, file=str(folder), code="file-unwritable") from None
     return folder
 
 
@@ -120,10 +114,7 @@ def _read_zip(path: str) -> dict[str, bytes]:
                 raise Error(f"it holds more than {_MAX_UNZIPPED_BYTES} bytes", file=path, code="file-too-large")
             return {names[each.filename]: file.read(each) for each in members}
     except OSError as problem:
-        raise Error(
-            f"the file cannot be read: {(problem.strerror or str(problem)).lower()}",
-            file=path,
-            code="file-unreadable",
-        ) from None
+        sentence = f"the file cannot be read: {(problem.strerror or str(problem)).lower()}"
+        raise Error(sentence, file=path, code="file-unreadable") from None
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError):
         raise Error("this is not a zip that can be read", file=path, code="plugin-zip") from None

@@ -41,11 +41,8 @@ def offset_edges(a_pass, by_mm: float, brush):
 def refuse_width(a_pass, by_mm: float, brush) -> None:
     """Raise Error where the brush cannot paint a stroke wider by by_mm per edge."""
     if not brush.width_follows_depth():
-        raise Error(
-            f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected",
-            a_pass.stroke,
-            code="width-correction-refused",
-        )
+        sentence = f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected"
+        raise Error(sentence, a_pass.stroke, code="width-correction-refused")
     half_mm, (least, deepest) = _mean_half_width_mm(a_pass, brush), measured_depths_mm(brush)
     low, high = 2 * float(brush.half_width(least)), 2 * float(brush.half_width(deepest))
     widest_mm = 2 * float(brush.half_width(-np.array(a_pass.poses_mm)[:, 2]).max())
@@ -53,14 +50,11 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
     target_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
     if low <= target_mm <= high or half_mm <= 0:
         return
-    raise Error(
+    sentence = (
         f"with its width corrected by {2 * by_mm:+.2f} mm it would be {target_mm:.2f} mm wide, outside the range "
-        f"[{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured: its width is not corrected",
-        a_pass.stroke,
-        target_mm,
-        (low, high),
-        code="width-correction-refused",
+        f"[{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured: its width is not corrected"
     )
+    raise Error(sentence, a_pass.stroke, target_mm, (low, high), code="width-correction-refused")
 
 
 def measured_depths_mm(brush) -> tuple[float, float]:

@@ -158,13 +158,11 @@ def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, byte
     for (name, _), each in zip(photos[1:], painted[1:], strict=True):
         overlap = _overlap(painted[0] > EDGE_LEVEL, each > EDGE_LEVEL)
         if overlap < MIN_SAME_SHEET_OVERLAP:
-            raise Error(
+            sentence = (
                 f"its paint overlaps with that of {photos[0][0]} by {overlap:.2f}, less than "
-                f"{MIN_SAME_SHEET_OVERLAP:g}: photographs of one sheet are averaged; use one command for each sheet",
-                file=name,
-                value=overlap,
-                code="photos-differ",
+                f"{MIN_SAME_SHEET_OVERLAP:g}: photographs of one sheet are averaged; use one command for each sheet"
             )
+            raise Error(sentence, file=name, value=overlap, code="photos-differ")
 
 
 def _as_job_error(refusal: Error, name: str) -> Error:
@@ -293,13 +291,11 @@ def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
 
 def _refuse_other_job(overlap: float, name: str) -> None:
     if overlap < MIN_OVERLAP:
-        raise Error(
+        sentence = (
             f"the paint overlaps with what was predicted by {overlap:.2f}, less than {MIN_OVERLAP:g}: is this the "
-            "painted page of this job?",
-            file=name,
-            value=overlap,
-            code="photo-of-another-job",
+            "painted page of this job?"
         )
+        raise Error(sentence, file=name, value=overlap, code="photo-of-another-job")
 
 
 def _missing_mark_notices(found: list[_LocatedStroke]) -> list[Notice]:

@@ -165,11 +165,8 @@ def check_program(
             ("brush", header.brush, brush_names()),
         ):
             if getattr(chosen, kind) is None and name not in names:
-                raise Error(
-                    f"the program names {kind} {name!r}, which does not come along",
-                    code=f"{kind}-unknown",
-                    advice=f"give --{kind} FILE",
-                )
+                sentence = f"the program names {kind} {name!r}, which does not come along"
+                raise Error(sentence, code=f"{kind}-unknown", advice=f"give --{kind} FILE")
         tolerance_mm = header.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
         cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
         brush = load_brush(chosen.brush) or find_brush(header.brush)
@@ -204,26 +201,19 @@ class _OwnProgram:
 def _read_with_called_files(path: str, suffix: str, text: str) -> str:
     """Return the text of a program and of the files that it calls, next to it."""
     if suffix == ".robodk":
-        raise Error(
-            "what a post of RoboDK's kind writes is in a language of its own, which is not read back",
-            code="program-format",
-        )
+        sentence = "what a post of RoboDK's kind writes is in a language of its own, which is not read back"
+        raise Error(sentence, code="program-format")
     if suffix == ".cdr":
-        raise Error(
-            "a serialized message says nothing of brush and paper: check the .csv of the same job",
-            code="program-format",
-        )
+        sentence = "a serialized message says nothing of brush and paper: check the .csv of the same job"
+        raise Error(sentence, code="program-format")
     if suffix == ".traj":
         text = as_table(text)
     post = parted_post(suffix)
     part = re.fullmatch(r"(.+)-part\d+", Path(path).stem)
     if post and part and any(name.startswith("-part") for name in post.called(text)):
         first = Path(path).with_name(part[1] + suffix).name
-        raise Error(
-            "this is one part of a job in several files",
-            code="program-cut-short",
-            advice=f"check {first}, which reads all of them",
-        )
+        sentence = "this is one part of a job in several files"
+        raise Error(sentence, code="program-cut-short", advice=f"check {first}, which reads all of them")
     called = called_programs(path, text, lambda file: text_of_file(read_bytes(file)))
     return "".join([text, *called.values()])
 
@@ -250,10 +240,8 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
     with name_file_in_errors(program.path):
         sheet_mm = work.plan.sheet_mm if work else chosen.sheet or header.sheet_mm
         if sheet_mm is None:
-            raise Error(
-                "its header does not say how large the sheet is: give --sheet or the drawing",
-                code="sheet-unknown",
-            )
+            sentence = "its header does not say how large the sheet is: give --sheet or the drawing"
+            raise Error(sentence, code="sheet-unknown")
         simulated = simulate_program.simulate_program(read, brush, cell, sheet_mm, z_offset_mm)
     warn(program.path, _report_offset(z_offset_mm))
     with name_file_in_errors(program.path):
@@ -465,11 +453,8 @@ def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -
     header, source = program.header, chosen.input
     if header.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with name_file_in_errors(program.path):
-            raise Error(
-                "its strokes were moved by corrections, which are not known here",
-                code="corrections-missing",
-                advice="give --corrections FILE",
-            )
+            sentence = "its strokes were moved by corrections, which are not known here"
+            raise Error(sentence, code="corrections-missing", advice="give --corrections FILE")
     if suffix_of(source) != ".json":
         with name_file_in_errors(path_of(source)):
             wide = chosen.wide or settings_in(source).get("wide")

@@ -232,11 +232,8 @@ def read_colour(text: str) -> str:
 
     colour = parse_colour(text.strip())
     if colour is None or not colour.startswith("#"):
-        raise Error(
-            f"{text[:24]!r} is not a colour; write for example #1a237e or red",
-            "colour",
-            code="colour-invalid",
-        )
+        sentence = f"{text[:24]!r} is not a colour; write for example #1a237e or red"
+        raise Error(sentence, "colour", code="colour-invalid")
     return colour[:7]
 
 
@@ -270,13 +267,11 @@ def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:
         settings = {name: value for name, value in settings.items() if name not in ("start", "end")}
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
         if getattr(chosen, kind) is None and settings.get(kind, names[0]) not in names:
-            raise Error(
+            sentence = (
                 f"data-brushsvg-{kind} asks for {kind} {settings[kind]!r}, which does not come along"
-                f"{did_you_mean(settings[kind], names)} Known are {', '.join(names)}",
-                where="svg",
-                code=f"{kind}-unknown",
-                advice=f"give --{kind}",
+                f"{did_you_mean(settings[kind], names)} Known are {', '.join(names)}"
             )
+            raise Error(sentence, where="svg", code=f"{kind}-unknown", advice=f"give --{kind}")
     filled = replace(chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None})
     refuse_ends_without_effect(replace(chosen, compensation=filled.compensation))
     return filled

@@ -369,11 +369,8 @@ def _plotter_pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tu
     for a_pass in loads.loads[first_stroke - 1 :]:
         colour = a_pass.colour.lower() or colours[0]
         if colour not in colours:
-            raise Error(
-                f"no pen of cell {cell.name} has colour {colour}; there are {', '.join(colours)}",
-                a_pass.stroke,
-                code="colour-not-served",
-            )
+            sentence = f"no pen of cell {cell.name} has colour {colour}; there are {', '.join(colours)}"
+            raise Error(sentence, a_pass.stroke, code="colour-not-served")
         visits_of_loads.append((pen(colour),) if colour != last_colour else ())
         last_colour = colour
     return tuple(visits_of_loads)
@@ -430,8 +427,5 @@ def _find_station(a_pass, cell: Cell) -> Station:
         if not station.colours:
             return station
     served = ", ".join(colour for station in stations for colour in station.colours)
-    raise Error(
-        f"no station of cell {cell.name} has paint of colour {colour or 'none'}; there are {served}",
-        a_pass.stroke,
-        code="colour-not-served",
-    )
+    sentence = f"no station of cell {cell.name} has paint of colour {colour or 'none'}; there are {served}"
+    raise Error(sentence, a_pass.stroke, code="colour-not-served")

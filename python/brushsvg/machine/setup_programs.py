@@ -64,10 +64,8 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
     start = (width - LANE_SPACING_MM - LAST_STROKE_MM, LANE_SPACING_MM)
     if start[0] < used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + LANE_SPACING_MM:
         room_mm = used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + 2 * LANE_SPACING_MM + LAST_STROKE_MM
-        raise Error(
-            f"the sheet is {width:g} mm wide, less than the {room_mm:g} mm that a first run needs on it",
-            code="strokes-out-of-range",
-        )
+        sentence = f"the sheet is {width:g} mm wide, less than the {room_mm:g} mm that a first run needs on it"
+        raise Error(sentence, code="strokes-out-of-range")
     depth_mm = min(ONE_STROKE_DEPTH_MM, brush.depth_range_mm[1], -cell.heights.lowest_mm)
     ends = (start, (start[0] + LAST_STROKE_MM, start[1]))
 
@@ -205,10 +203,8 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
         raise Error(sentence, code="pen-depth")
     if lowest_mm < cell.heights.lowest_mm or -lowest_mm > brush.depth_range_mm[1]:
         min_mm = max(cell.heights.lowest_mm, -brush.depth_range_mm[1])
-        raise Error(
-            f"height {lowest_mm:g} mm is outside the range [{min_mm:g}, {highest_mm:g}] mm of brush and cell",
-            code="height-out-of-range",
-        )
+        sentence = f"height {lowest_mm:g} mm is outside the range [{min_mm:g}, {highest_mm:g}] mm of brush and cell"
+        raise Error(sentence, code="height-out-of-range")
     starts = _stroke_starts(len(heights), sheet_mm)
     safe_mm = cell.heights.safe_mm
     clearance_mm = slow_below_mm(highest_mm, cell)
@@ -296,10 +292,8 @@ def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np
     """
     count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
     if not 2 <= count <= 100:
-        raise Error(
-            f"from {highest_mm:g} to {lowest_mm:g} mm by {step_mm:g} mm are {count} strokes, not 2 to 100",
-            code="strokes-out-of-range",
-        )
+        sentence = f"from {highest_mm:g} to {lowest_mm:g} mm by {step_mm:g} mm are {count} strokes, not 2 to 100"
+        raise Error(sentence, code="strokes-out-of-range")
     return highest_mm - step_mm * np.arange(count)
 
 
@@ -314,10 +308,8 @@ def _stroke_starts(count: int, sheet_mm) -> list[tuple[float, float]]:
     columns = int((width - LANE_SPACING_MM) // pitch)
     if rows * columns < count:
         room = max(rows * columns, 0)
-        raise Error(
-            f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}",
-            code="strokes-out-of-range",
-        )
+        sentence = f"the sheet of {width:g} x {height:g} mm has room for {room} strokes, not for {count}"
+        raise Error(sentence, code="strokes-out-of-range")
     return [(LANE_SPACING_MM + pitch * (k // rows), height - LANE_SPACING_MM * (1 + k % rows)) for k in range(count)]
 
 

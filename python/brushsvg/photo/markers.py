@@ -188,10 +188,8 @@ def _find_chart_markers(pixels: np.ndarray, light: np.ndarray, printed: Printed)
         )
     mirrored = [number for number, _ in detect_markers(pixels[:, ::-1], printed.dictionary)]
     if len(set(mirrored) & set(printed.corners_mm)) >= MIN_MARKERS:
-        raise Error(
-            "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back",
-            code="photo-mirrored",
-        )
+        sentence = "the picture is mirrored: turn off the mirroring of the camera, or flip the picture back"
+        raise Error(sentence, code="photo-mirrored")
     if not found:
         _refuse_poor_picture(light, 0)
         raise Error(
@@ -263,13 +261,11 @@ def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
     if not count:
         refuse_dark_paper(float(np.quantile(light[::7, ::7], 0.8)))
     if (white := white_share(light)) > TOO_WHITE:
-        raise Error(
+        sentence = (
             f"{few}, and {100 * white:.0f} % of the brightest parts are as white as can be: the picture is "
-            "overexposed; take it with less light, without glare, or with the exposure turned down",
-            value=white,
-            code="photo-overexposed",
-            advice="" if count else ADVICE_FOR_UNPRINTED,
+            "overexposed; take it with less light, without glare, or with the exposure turned down"
         )
+        raise Error(sentence, value=white, code="photo-overexposed", advice="" if count else ADVICE_FOR_UNPRINTED)
     if (edge_width_px := blur_px(light)) > MAX_EDGE_SHARE * max(light.shape):
         raise Error(
             f"{few}, and edges go over {edge_width_px:.0f} pixels, more than "
@@ -373,10 +369,8 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
     to_unit = np.array([[1 / size, 0, -centre[0] / size], [0, 1 / size, -centre[1] / size], [0, 0, 1]])
     start, _ = cv2.findHomography((mm - centre) / size, (px - middle) / radius)
     if start is None:
-        raise Error(
-            "the markers are on one line in the picture: photograph the page from above",
-            code="photo-markers-missing",
-        )
+        sentence = "the markers are on one line in the picture: photograph the page from above"
+        raise Error(sentence, code="photo-markers-missing")
     unknowns = np.concatenate([start.ravel()[:8] / start[2, 2], np.zeros(len(DISTORTION_SIGMA))])
 
     def view(u: np.ndarray) -> View:

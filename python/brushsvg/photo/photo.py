@@ -82,10 +82,8 @@ def read_photo(data: bytes) -> np.ndarray:
             code="photo-damaged",
         )
     if pixels is None and IMAGE_SIGNATURES.match(data):
-        raise Error(
-            "the picture cannot be read: it is damaged, cut short, too large or of an unusual kind",
-            code="photo-damaged",
-        )
+        sentence = "the picture cannot be read: it is damaged, cut short, too large or of an unusual kind"
+        raise Error(sentence, code="photo-damaged")
     if pixels is None:
         raise Error(f"this is no picture that can be read; known are {' '.join(PHOTOS)}", code="photo-format")
     if pixels.shape[0] * pixels.shape[1] > MAX_PIXELS:

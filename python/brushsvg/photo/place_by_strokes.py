@@ -60,16 +60,11 @@ def find_scan_view(
         )
     if min(pixels.shape[:2]) < px_per_mm * MIN_SHEET_MM:
         height, width = (side_px / px_per_mm for side_px in pixels.shape[:2])
-        raise Error(
-            f"at {dpi:g} dpi the picture is {width:.2g} x {height:.2g} mm large: no sheet is",
-            value=dpi,
-            code="scan-resolution",
-        )
+        sentence = f"at {dpi:g} dpi the picture is {width:.2g} x {height:.2g} mm large: no sheet is"
+        raise Error(sentence, value=dpi, code="scan-resolution")
     if len({number for number, _ in detect_markers(pixels, dictionary)}) >= MIN_MARKERS:
-        raise Error(
-            "the scan shows a chart's printed markers, which give its place better than --dpi: leave --dpi out",
-            code="scan-with-markers",
-        )
+        sentence = "the scan shows a chart's printed markers, which give its place better than --dpi: leave --dpi out"
+        raise Error(sentence, code="scan-with-markers")
     if px_per_mm > MAX_PX_PER_MM:
         size = MAX_PX_PER_MM / px_per_mm
         pixels = cv2.resize(pixels, None, fx=size, fy=size, interpolation=cv2.INTER_AREA)
@@ -110,10 +105,8 @@ def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: 
     expected = sorted(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0))
     rows, columns = np.flatnonzero(paint.any(axis=1)), np.flatnonzero(paint.any(axis=0))
     if not len(rows):
-        raise Error(
-            "no paint is found on the scan: is it the painted sheet, and clear of the glass's edges?",
-            code="photo-without-paint",
-        )
+        sentence = "no paint is found on the scan: is it the painted sheet, and clear of the glass's edges?"
+        raise Error(sentence, code="photo-without-paint")
     painted_mm = sorted(np.array([np.ptp(rows) + 1, np.ptp(columns) + 1]) / COARSE_PX_PER_MM)
     size = math.sqrt(painted_mm[0] * painted_mm[1] / (expected[0] * expected[1]))
     if not SIZE_RANGE[0] < size < SIZE_RANGE[1]:
@@ -157,10 +150,8 @@ def _match_turn_and_shift(paint: np.ndarray, paths_mm: list[np.ndarray]) -> tupl
         ]
         best[is_mirrored] = max(tried, key=lambda each: each[0])
     if best[True][0] > MIN_MIRRORED_RATIO * best[False][0]:
-        raise Error(
-            "the scan is mirrored: turn off the mirroring of the scanner's program, or flip the picture back",
-            code="photo-mirrored",
-        )
+        sentence = "the scan is mirrored: turn off the mirroring of the scanner's program, or flip the picture back"
+        raise Error(sentence, code="photo-mirrored")
     _, shift, turn = best[False]
     return turn, shift
 

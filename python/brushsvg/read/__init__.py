@@ -199,10 +199,8 @@ def _load_source(path) -> tuple:
             if os.path.isdir(path):
                 raise Error("this is a directory, not a file", file=os.fspath(path), code="file-unreadable")
             known = ", ".join(READERS)
-            raise Error(
-                f"{extension or 'no extension'} is not a drawing format that is read; known: {known}",
-                code="drawing-format",
-            )
+            sentence = f"{extension or 'no extension'} is not a drawing format that is read; known: {known}"
+            raise Error(sentence, code="drawing-format")
         return reader, read_bytes(path)
     loaded = _load_open_document(path)
     if loaded is None:

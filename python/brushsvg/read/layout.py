@@ -105,11 +105,8 @@ def _fitting_scale(lines: np.ndarray, marks: np.ndarray, fit_mm: tuple[float, fl
     room = np.array(fit_mm) - (margin if keeps_width else 0.0)
     growing = size if keeps_width else size + margin
     if (room <= 0).any():
-        raise Error(
-            f"strokes {margin.max():.4g} mm wide do not fit {fit_mm[0]:g} x {fit_mm[1]:g} mm",
-            where="fit",
-            code="drawing-does-not-fit",
-        )
+        sentence = f"strokes {margin.max():.4g} mm wide do not fit {fit_mm[0]:g} x {fit_mm[1]:g} mm"
+        raise Error(sentence, where="fit", code="drawing-does-not-fit")
     with np.errstate(divide="ignore"):
         scale = float((room / growing).min())
     if not math.isfinite(scale):
@@ -157,17 +154,11 @@ def _find_layer(name: str, paths: list[str]) -> str:
             return matching[0]
         if matching:
             listed = ", ".join(map(repr, matching[:_MAX_NAMED_LAYERS]))
-            raise Error(
-                f"{name!r} names {len(matching)} layers: {listed}; write the whole name",
-                where="layer",
-                code="layer-ambiguous",
-            )
+            sentence = f"{name!r} names {len(matching)} layers: {listed}; write the whole name"
+            raise Error(sentence, where="layer", code="layer-ambiguous")
     available = list_first(paths, _MAX_NAMED_LAYERS)
-    raise Error(
-        f"there is no layer {name!r}; there are: {available or 'none'}",
-        where="layer",
-        code="layer-unknown",
-    )
+    sentence = f"there is no layer {name!r}; there are: {available or 'none'}"
+    raise Error(sentence, where="layer", code="layer-unknown")
 
 
 def _explain_empty_layer(design: Design, path: str, is_chosen) -> str:

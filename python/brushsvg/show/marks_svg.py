@@ -60,10 +60,8 @@ def marks_svg(
         require_type(text, str, f"a text, which {what} is")
     _need_outlines(marks)
     if tracking_errors and len(tracking_errors) != len(marks.passes):
-        raise Error(
-            f"tracking_errors has {len(tracking_errors)} entries, not {len(marks.passes)}, one for each pass",
-            code="sizes-differ",
-        )
+        sentence = f"tracking_errors has {len(tracking_errors)} entries, not {len(marks.passes)}, one for each pass"
+        raise Error(sentence, code="sizes-differ")
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{height:g}mm" '
         f'viewBox="0 0 {width:g} {height:g}"' + (f" data-made={quoted(made)}" if made else "") + ">",
@@ -100,20 +98,16 @@ def check_picture(
     require_type(marks, _core.Marks, "marks, as simulate returns them")
     width, height = need_numbers(sheet_mm, "sheet_mm", 2, 0.0, 1e6)
     if not min(width, height) > 0:
-        raise Error(
-            f"a sheet of {width:g} x {height:g} mm cannot be drawn: both sides must be within (0, 1e6] mm",
-            code="out-of-range",
-        )
+        sentence = f"a sheet of {width:g} x {height:g} mm cannot be drawn: both sides must be within (0, 1e6] mm"
+        raise Error(sentence, code="out-of-range")
     require_type(colours, (list, tuple), "a list of colours, one for each pass")
     for colour in colours:
         require_type(colour, str, "a colour, as #1a237e")
     if band is not None and not (hasattr(band, "rings") and hasattr(band, "words")):
         raise Error(f"{type(band).__name__} {str(band)[:40]!r} is not a band with rings and words", code="wrong-type")
     if len(colours) != len(marks.passes):
-        raise Error(
-            f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}",
-            code="wrong-type",
-        )
+        sentence = f"a colour is needed for each of {len(marks.passes)} passes, not {len(colours)}"
+        raise Error(sentence, code="wrong-type")
     return width, height
 
 
@@ -137,11 +131,8 @@ def _need_outlines(marks: _core.Marks) -> None:
     if not any(trace.outline_mm for trace in marks.passes) and any(
         (trace.depth_mm > 0).any() for trace in marks.passes
     ):
-        raise Error(
-            "the marks have no outlines that could be drawn: call trace_outlines(marks, brush) first",
-            "marks",
-            code="nothing-to-show",
-        )
+        sentence = "the marks have no outlines that could be drawn: call trace_outlines(marks, brush) first"
+        raise Error(sentence, "marks", code="nothing-to-show")
 
 
 def travels(toolpath_mm: Sequence[np.ndarray]) -> list[np.ndarray]:

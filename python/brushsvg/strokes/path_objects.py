@@ -120,20 +120,14 @@ def _need_height(page_height_mm) -> float | None:
 def _read_text(text: str, id: str) -> tuple[np.ndarray, bool]:
     commands, damaged_at = parse_path(text)
     if len(commands) >= MOST_COMMANDS:
-        raise Error(
-            f"the path data have {MOST_COMMANDS} commands or more: no stroke has",
-            where=id,
-            code="list-too-long",
-        )
+        sentence = f"the path data have {MOST_COMMANDS} commands or more: no stroke has"
+        raise Error(sentence, where=id, code="list-too-long")
     if damaged_at is not None:
         raise Error(f"the path data are damaged at {snippet(text, damaged_at)}", where=id, code="geometry-damaged")
     line = trace(commands, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0), 1.0)
     if line.beyond is not None:
-        raise Error(
-            f"the path data go beyond 1e6 mm at {snippet(text, line.beyond)}",
-            where=id,
-            code="geometry-out-of-range",
-        )
+        sentence = f"the path data go beyond 1e6 mm at {snippet(text, line.beyond)}"
+        raise Error(sentence, where=id, code="geometry-out-of-range")
     if len(line.subpaths) != 1:
         count = len(line.subpaths) or "no"
         raise Error(f"the path has {count} unbroken lines: a stroke is one", where=id, code="wrong-type")
@@ -151,11 +145,8 @@ def _read_array(path, id: str) -> np.ndarray:
         raise _not_cubics_error(id) from None
     broken = [k for k in range(1, len(cubics)) if not _meets(cubics[k - 1, 3], cubics[k, 0])]
     if broken:
-        raise Error(
-            f"cubic {broken[0] + 1} does not begin where the one before it ends: a stroke is one line",
-            where=id,
-            code="wrong-type",
-        )
+        sentence = f"cubic {broken[0] + 1} does not begin where the one before it ends: a stroke is one line"
+        raise Error(sentence, where=id, code="wrong-type")
     return cubics
 
 
@@ -181,13 +172,8 @@ def _need_short_list(path, id: str, levels: int = 3) -> int:
             if count > _core.MOST_ENTRIES:
                 break
     if count > _core.MOST_ENTRIES:
-        raise Error(
-            f"a list of {count} entries is longer than any that is read, {_core.MOST_ENTRIES}",
-            where=id,
-            value=count,
-            range=(0, _core.MOST_ENTRIES),
-            code="list-too-long",
-        )
+        sentence = f"a list of {count} entries is longer than any that is read, {_core.MOST_ENTRIES}"
+        raise Error(sentence, where=id, value=count, range=(0, _core.MOST_ENTRIES), code="list-too-long")
     return count
 
 

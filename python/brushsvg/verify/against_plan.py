@@ -37,10 +37,8 @@ def with_plan(
     """
     first, count = first_stroke, len(expected.loads)
     if first > count:
-        raise Error(
-            f"the program goes on with stroke {first}, the drawing has strokes 1 to {count}",
-            code="stroke-unknown",
-        )
+        sentence = f"the program goes on with stroke {first}, the drawing has strokes 1 to {count}"
+        raise Error(sentence, code="stroke-unknown")
     due = expected.loads[first - 1 :]
     partners, problems = _match_passes_to_loads(ran.plan.passes, due)
     rows = zip(ran.plan.passes, ran.lines, partners, strict=True)

@@ -165,10 +165,8 @@ def _touches_to_passes(ways: list[Way], cell: Cell) -> tuple[list, list[Notice]]
             elif not way.rapid and not np.array_equal(start[:2], end[:2]):
                 if way.speed_mm_s <= 0:
                     feed = f"a feed of {60 * way.speed_mm_s:g} mm/min while the brush touches"
-                    raise Error(
-                        f"line {way.line}: {feed}: an F above 0 must stand before it",
-                        code="speed-out-of-range",
-                    )
+                    sentence = f"line {way.line}: {feed}: an F above 0 must stand before it"
+                    raise Error(sentence, code="speed-out-of-range")
                 speeds.append(way.speed_mm_s)
             if end[2] > 0:
                 finish_pass()

@@ -255,10 +255,8 @@ def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
                 continue
             if (title := _comparable_title(section.title)) not in by_title:
                 name = _section_name(section)
-                raise Error(
-                    f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits",
-                    code="station-unknown",
-                )
+                sentence = f"line {section.line}: cell {cell.name} has no station {name!r}, which the program visits"
+                raise Error(sentence, code="station-unknown")
             pending_stations.append(by_title[title])
         elif _match_stroke_title(section):
             visits.append(tuple(pending_stations))

@@ -33,13 +33,11 @@ def dab_depths(brush, count: int, deepest_mm: float) -> list[float]:
     """
     deepest = min(brush.depth_range_mm[1], deepest_mm)
     if not brush.half_width(deepest) > 1.2 * MIN_HALF_WIDTH_MM:
-        raise Error(
+        sentence = (
             f"dabs of brush {brush.name} are {2 * brush.half_width(deepest):.2g} mm wide at depth {deepest:g} mm, "
-            f"outlines can be read of those wider than {2.4 * MIN_HALF_WIDTH_MM:g} mm",
-            "brush",
-            2 * brush.half_width(deepest),
-            code="out-of-range",
+            f"outlines can be read of those wider than {2.4 * MIN_HALF_WIDTH_MM:g} mm"
         )
+        raise Error(sentence, "brush", 2 * brush.half_width(deepest), code="out-of-range")
     least = max(brush.depth_range_mm[0], MIN_DEPTH_SHARE * deepest)
     if brush.half_width(least) < MIN_HALF_WIDTH_MM:
         least = brush.depth_for_half_width(MIN_HALF_WIDTH_MM)

@@ -183,20 +183,14 @@ def chart(
     need_one_of(strokes, (None, *DEPTH_COUNTS), "how many strokes")
     deepest_mm = need_number(deepest_mm, "how deep the machine reaches [mm]", 0.0, math.inf)
     if brush.is_rigid():
-        raise Error(
-            f"brush {brush.name} is a pen: it has no lag that could be calibrated",
-            "brush",
-            code="lag-not-calibrated",
-        )
+        sentence = f"brush {brush.name} is a pen: it has no lag that could be calibrated"
+        raise Error(sentence, "brush", code="lag-not-calibrated")
     side = _marker_side(sheet_mm)
     margins = side + QUIET * side + 2 * EDGE_MM  # space of the edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - margins
     if min(room) <= 2 * (side + QUIET * side):
-        raise Error(
-            f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners",
-            "sheet",
-            code="sheet-too-small",
-        )
+        sentence = f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners"
+        raise Error(sentence, "sheet", code="sheet-too-small")
     best, marker_gap = None, None
     for depths, repeats in [(DEPTH_COUNTS[strokes], 1)] if strokes else _dab_choices() if dabs else _depth_choices():
         if dabs:

@@ -249,21 +249,16 @@ def _page_scale(chart: Chart, bar_mm: float | None) -> float:
     if bar_mm is None:
         return 1.0
     if chart.bar is None:
-        raise Error(
-            "this chart.json has no bar to measure: print a page of today's `brushsvg chart`",
-            "bar",
-            code="bar-missing",
-        )
+        sentence = "this chart.json has no bar to measure: print a page of today's `brushsvg chart`"
+        raise Error(sentence, "bar", code="bar-missing")
     size = bar_mm / chart.bar.length_mm
     if not PAGE_SCALE_RANGE[0] <= size <= PAGE_SCALE_RANGE[1]:
-        raise Error(
+        sentence = (
             f"the bar measures {bar_mm:g} mm instead of {chart.bar.length_mm:g} mm, the range is "
             f"[{PAGE_SCALE_RANGE[0] * chart.bar.length_mm:g}, {PAGE_SCALE_RANGE[1] * chart.bar.length_mm:g}] mm: print "
-            "the page again, at 100 %",
-            "bar",
-            bar_mm,
-            code="page-scale",
+            "the page again, at 100 %"
         )
+        raise Error(sentence, "bar", bar_mm, code="page-scale")
     return size
 
 

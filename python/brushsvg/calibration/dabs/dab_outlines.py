@@ -146,14 +146,12 @@ def average_dabs(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
     shapes = _group_by_depth(patch_dabs, (lambda depth: 0.0) if is_even else across)
     turned = _heading_difference_mm(shapes)
     if turned > MAX_HEADING_DIFFERENCE_MM:
-        raise Error(
+        sentence = (
             f"dabs of different headings differ by {turned:.2f} mm (rms over their outlines), "
             f"{MAX_HEADING_DIFFERENCE_MM:g} is the most: their shape does not turn with the brush, so no one outline "
-            "is it; is the tool upright, and do the bristles grow straight?",
-            "dabs",
-            turned,
-            code="dabs-turned",
+            "is it; is the tool upright, and do the bristles grow straight?"
         )
+        raise Error(sentence, "dabs", turned, code="dabs-turned")
     finished = tuple(shape.finish(slid_mm(shape.seen[0].dab), is_even) for shape in shapes)
     return Outlines(finished, sheet.shift_mm, sheet.turn_rad, sheet.middle_mm, turned, is_even, tuple(remarks))
 
@@ -184,13 +182,11 @@ def _refuse_too_few(depths: list[float], dabs: list[Dab], remarks: list[Notice])
         if len(names) >= MIN_DABS_PER_DEPTH:
             continue
         listed = "; ".join(f"{remark.where}: {remark.sentence}" for remark in remarks[:4])
-        raise Error(
+        sentence = (
             f"{len(names)} dabs are left at depth {depth:g} mm, at least {MIN_DABS_PER_DEPTH} are needed: paint the "
-            f"page again with more paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})",
-            f"{depth:g} mm",
-            len(names),
-            code="dabs-too-few",
+            f"page again with more paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})"
         )
+        raise Error(sentence, f"{depth:g} mm", len(names), code="dabs-too-few")
 
 
 def _outer_ring(dab: Dab) -> np.ndarray:

@@ -82,13 +82,11 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
     least, deepest = before.depth_range_mm
     for dab in dabs:
         if not least <= dab.depth_mm <= deepest + 1e-6:
-            raise Error(
+            sentence = (
                 f"the dab was pressed {dab.depth_mm:g} mm, brush {before.name} may be pressed {least:g} to "
-                f"{deepest:g} mm",
-                dab.name,
-                dab.depth_mm,
-                code="depth-out-of-range",
+                f"{deepest:g} mm"
             )
+            raise Error(sentence, dab.name, dab.depth_mm, code="depth-out-of-range")
     lag_differences = {
         dab.name: dab.run_mm / before.lag.extrapolated(dab.depth_mm) - 1
         for dab in dabs
@@ -97,28 +95,24 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
     worst = max(lag_differences, key=lambda name: abs(lag_differences[name]), default=None)
     if worst is None or abs(lag_differences[worst]) > MAX_LAG_DIFFERENCE:
         dab = next(dab for dab in dabs if worst in (None, dab.name))
-        raise Error(
+        sentence = (
             f"the tool ran {dab.run_mm:.1f} mm while it was pressed, brush {before.name} lags "
             f"{before.lag.extrapolated(dab.depth_mm):.1f} mm there, more than {100 * MAX_LAG_DIFFERENCE:g} % off: "
-            "make the page of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it",
-            dab.name,
-            dab.run_mm,
-            code="dabs-of-another-brush",
+            "make the page of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it"
         )
+        raise Error(sentence, dab.name, dab.run_mm, code="dabs-of-another-brush")
 
 
 def _refuse_falling(shapes: tuple[Shape, ...]) -> None:
     half = [_greatest_half_width(shape) for shape in shapes]
     for k in range(1, len(half)):
         if half[k] < half[k - 1] - MAX_HALF_WIDTH_FALL_MM:
-            raise Error(
+            sentence = (
                 f"dabs at depth {shapes[k].depth_mm:g} mm are {2 * half[k]:.2f} mm wide, those at "
                 f"{shapes[k - 1].depth_mm:g} mm {2 * half[k - 1]:.2f} mm: a brush that is pressed deeper does not get "
-                "narrower; was there paint on it all the time?",
-                f"{shapes[k].depth_mm:g} mm",
-                2 * half[k],
-                code="width-falls",
+                "narrower; was there paint on it all the time?"
             )
+            raise Error(sentence, f"{shapes[k].depth_mm:g} mm", 2 * half[k], code="width-falls")
 
 
 def _greatest_half_width(shape: Shape) -> float:
@@ -191,13 +185,11 @@ def _fit_law(law: str, values: np.ndarray, range_mm, terms: int = 0):
         if (np.abs(misfits) <= tolerance).all():
             break
     if abs(misfits[worst]) > MAX_MISFIT_MM:
-        raise Error(
+        sentence = (
             f"no law of {law.replace('_', ' ')} over depth runs within {MAX_MISFIT_MM:g} mm of what the dabs show: at "
-            f"depth {depths[worst]:g} mm it is {misfits[worst]:.2f} mm off; look at the outlines (--marks-picture)",
-            law,
-            misfits[worst],
-            code="law-undetermined",
+            f"depth {depths[worst]:g} mm it is {misfits[worst]:.2f} mm off; look at the outlines (--marks-picture)"
         )
+        raise Error(sentence, law, misfits[worst], code="law-undetermined")
     return fit
 
 

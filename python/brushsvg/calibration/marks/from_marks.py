@@ -93,11 +93,8 @@ def calibrate_marks(
     need_fits()
     least, deepest = depth_range_mm or (0.0, painted.deepest_mm)
     if painted.deepest_mm > deepest:
-        raise Error(
-            f"the plan goes {painted.deepest_mm:g} mm deep, beyond the depth range [{least:g}, {deepest:g}] mm",
-            "depth_range_mm",
-            code="depth-out-of-range",
-        )
+        sentence = f"the plan goes {painted.deepest_mm:g} mm deep, beyond the depth range [{least:g}, {deepest:g}] mm"
+        raise Error(sentence, "depth_range_mm", code="depth-out-of-range")
     if deepest > MAX_DEPTH_PER_MEASURED * painted.deepest_mm:
         raise Error(
             f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
@@ -156,14 +153,12 @@ def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale |
     allowed = math.floor(MAX_STRAY_SHARE * len(painted.marks))
     if len(astray) > allowed:
         refuse_scale(scale)
-        raise Error(
+        sentence = (
             f"{len(astray)} of {len(painted.marks)} marks are not where or what the others say, the range is "
             f"[0, {allowed}]: {', '.join(stray.mark.stroke for stray in astray)}; is anything on the page, is the "
-            "paint smeared, is it the page on which this chart was painted, and is its bar as long as it says?",
-            "marks",
-            len(astray),
-            code="marks-outlying",
+            "paint smeared, is it the page on which this chart was painted, and is its bar as long as it says?"
         )
+        raise Error(sentence, "marks", len(astray), code="marks-outlying")
 
 
 def _change_of_fit_with_tail(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
@@ -558,11 +553,8 @@ def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     for law, share, value in find_undetermined_laws(brush):
         if share > MAX_UNDETERMINED_SHARE:
             advice = fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
-            raise Error(
-                f"these marks do not determine the {law.replace('_', ' ')}: {value}: {advice}",
-                law,
-                code="law-undetermined",
-            )
+            sentence = f"these marks do not determine the {law.replace('_', ' ')}: {value}: {advice}"
+            raise Error(sentence, law, code="law-undetermined")
 
 
 def find_undetermined_laws(brush: _core.Brush) -> list[tuple[str, float, str]]:

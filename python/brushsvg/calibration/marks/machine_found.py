@@ -58,19 +58,13 @@ def refuse_unknown_parts(machine) -> None:
     known = ", ".join(PARTS)
     if isinstance(machine, str):
         example = f"({machine!r},)" if machine in PARTS else repr(tuple(PARTS)[:2])
-        raise Error(
-            f"machine must be a tuple of names (known: {known}), not the text {machine[:40]!r}. Write {example}",
-            "machine",
-            code="wrong-type",
-        )
+        sentence = f"machine must be a tuple of names (known: {known}), not the text {machine[:40]!r}. Write {example}"
+        raise Error(sentence, "machine", code="wrong-type")
     require_type(machine, (tuple, list, set, frozenset), f"a tuple of names (known: {known})")
     for part in machine:
         if not (isinstance(part, str) and part in PARTS):
-            raise Error(
-                f"{str(part)[:40]!r} is no part of a machine (known: {known})",
-                "machine",
-                code="choice-unknown",
-            )
+            sentence = f"{str(part)[:40]!r} is no part of a machine (known: {known})"
+            raise Error(sentence, "machine", code="choice-unknown")
 
 
 def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:

@@ -79,11 +79,8 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
             sentence = f"there is no stroke {stroke[:60]!r} in the plan; it has {listed}"
             raise Error(sentence, where, code="stroke-unknown")
         if stroke in used_strokes:
-            raise Error(
-                f"stroke {stroke[:60]!r} has two marks: join their outlines to one",
-                where,
-                code="stroke-twice",
-            )
+            sentence = f"stroke {stroke[:60]!r} has two marks: join their outlines to one"
+            raise Error(sentence, where, code="stroke-twice")
         used_strokes.add(stroke)
         rings = [_read_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
         if not rings:
@@ -181,13 +178,10 @@ def _read_ring(points, where: str) -> np.ndarray:
     if not np.isfinite(ring).all():
         raise Error("a coordinate is not a finite number", where, code="not-finite")
     if (farthest := float(np.abs(ring).max())) > MAX_COORDINATE_MM:
-        raise Error(
-            f"a coordinate of {farthest:.4g} mm is outside the range "
-            f"[-{MAX_COORDINATE_MM:g}, {MAX_COORDINATE_MM:g}] mm",
-            where,
-            farthest,
-            code="out-of-range",
+        sentence = (
+            f"a coordinate of {farthest:.4g} mm is outside the range [-{MAX_COORDINATE_MM:g}, {MAX_COORDINATE_MM:g}] mm"
         )
+        raise Error(sentence, where, farthest, code="out-of-range")
     return ring
 
 
@@ -231,11 +225,8 @@ def _refuse_other_frames(found: list) -> None:
             np.hypot(*(points - planned - np.median(points - planned, axis=0)).T)
         )
         if rigid(flipped) < 0.3 * rigid(marked) and rigid(marked) > 10.0:
-            raise Error(
-                "the sheet of the marks stands upside down: y must go up, from the lower left corner",
-                "marks",
-                code="marks-displaced",
-            )
+            sentence = "the sheet of the marks stands upside down: y must go up, from the lower left corner"
+            raise Error(sentence, "marks", code="marks-displaced")
     if own_distances.max() <= MAX_MARK_DISTANCE_MM and len(found) < 2:
         return
     _refuse_moved_sheet(planned, marked)
@@ -348,11 +339,8 @@ def depths_painted(ways: list[np.ndarray]) -> int:
 def _refuse_uninformative(ways: list[np.ndarray]) -> None:
     count = depths_painted(ways)
     if count == 0:
-        raise Error(
-            f"no stroke is painted for more than {MIN_PAINTED_MM:g} mm at any depth: paint longer ones",
-            "plan",
-            code="depths-too-few",
-        )
+        sentence = f"no stroke is painted for more than {MIN_PAINTED_MM:g} mm at any depth: paint longer ones"
+        raise Error(sentence, "plan", code="depths-too-few")
     if count == 1:
         raise Error(
             "all was painted at one depth: how lag and width change with depth takes strokes at two depths or more, "

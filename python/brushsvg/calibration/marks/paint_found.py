@@ -68,13 +68,11 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     sigma /= _share_in_residuals(rate_errors[0], rate_errors[-1])
     deviations = _core.deviations_of_95(freedom)
     if rate < -MAX_WIDENING_PER_M and rate + deviations * sigma < 0:
-        raise Error(
+        sentence = (
             f"marks get wider by {-rate:.2g} +- {deviations * sigma:.2g} per metre along the job: was paint fetched in "
-            "between?",
-            "paint",
-            rate,
-            code="paint-undetermined",
+            "between?"
         )
+        raise Error(sentence, "paint", rate, code="paint-undetermined")
     if rate < 0:  # the marks do not narrow, so the interval must include 0
         sigma, rate, fresh = max(sigma, -rate / deviations), 0.0, painted
     calibration = calibrate_marks(

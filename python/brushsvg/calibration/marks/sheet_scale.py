@@ -88,8 +88,5 @@ def refuse_scale(scale: SheetScale | None) -> None:
             code="marks-scaled",
         )
     if scale.is_off(scale.both):
-        raise Error(
-            f"the sheet is {scale.describe(scale.both)} than the plan. {REMEDY}",
-            "marks",
-            code="marks-scaled",
-        )
+        sentence = f"the sheet is {scale.describe(scale.both)} than the plan. {REMEDY}"
+        raise Error(sentence, "marks", code="marks-scaled")

@@ -178,13 +178,11 @@ def read_turn(points_mm, where: str = "") -> Turn:
     turning = share * lag
     covariance, rmse = _covariance_and_rmse(best, freedom)
     if rmse > MAX_MISFIT_PER_LAG * lag:
-        raise Error(
+        sentence = (
             f"the points are {rmse:.2g} mm off any brush's turn, which would have a lag of {lag:.3g} mm: the corner of "
-            "the handle is (0, 0), its second line goes along x",
-            where,
-            rmse,
-            code="not-a-turn",
+            "the handle is (0, 0), its second line goes along x"
         )
+        raise Error(sentence, where, rmse, code="not-a-turn")
     if np.sqrt(covariance[0, 0]) > MAX_LAG_UNCERTAINTY * lag or lag > 15.0 * reach:
         raise Error(
             f"the points leave the lag open, {lag:.2g} +- {np.sqrt(covariance[0, 0]):.2g} mm: follow the line farther "

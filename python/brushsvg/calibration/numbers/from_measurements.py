@@ -113,11 +113,8 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
     points, remarks = _collect_points(measured, total, turns)
     fitter.fit("half_width", points)
     if "half_width" not in fitter.fitted:
-        raise Error(
-            "no width was measured: add half_width or width, one row per depth",
-            "half_width",
-            code="measurement-missing",
-        )
+        sentence = "no width was measured: add half_width or width, one row per depth"
+        raise Error(sentence, "half_width", code="measurement-missing")
     fitter.fit("tip_to_widest", points)
     fitter.fit("tip_gap", points)
     fitter.fit("lag", points)
@@ -125,11 +122,8 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
         fitter.weigh_angles(points, total)
     fitter.fit_sums(points)
     if "lag" not in fitter.fitted:
-        raise Error(
-            "no lag was measured: add lag, centre_line, angles or angular, one row per depth",
-            "lag",
-            code="measurement-missing",
-        )
+        sentence = "no lag was measured: add lag, centre_line, angles or angular, one row per depth"
+        raise Error(sentence, "lag", code="measurement-missing")
     brush = fitter.brush(name or measured.name or "measured")
     laws = tuple(fitter.fitted.get(law, Fitted(law, (), None)) for law in LAWS)
     plausibility.refuse_inconsistent_laws(brush)
@@ -371,22 +365,17 @@ class _LawFitter:
         depths = np.array([point.depth_mm for point in points])
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
         if law in ("lag", "tip_gap") and fit.held and mean < -half:
-            raise Error(
+            sentence = (
                 f"the {law} is {mean:.3g} mm on the mean of {len(points)} values, the others taken away; it cannot be "
-                "negative",
-                points[0].where,
-                mean,
-                code="law-negative",
+                "negative"
             )
+            raise Error(sentence, points[0].where, mean, code="law-negative")
 
     def _refuse_lag_from_touch(self, law: str) -> None:
         kind = next((kind for kind in KINDS_FROM_TOUCH if self.measured.rows.get(kind)), None)
         if law == "lag" and kind:
-            raise Error(
-                f"{kind} needs the lag at depth 0: add rows of lag, angles or centre_line",
-                kind,
-                code="measurement-missing",
-            )
+            sentence = f"{kind} needs the lag at depth 0: add rows of lag, angles or centre_line"
+            raise Error(sentence, kind, code="measurement-missing")
 
     def _sum(self, row: Row) -> float:
         """Return r + b [mm] at the depth of a row.

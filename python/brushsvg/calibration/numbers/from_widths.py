@@ -147,13 +147,11 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
     depths, values = [depth for depth, _ in lags], [lag for _, lag in lags]
     depth_count = len(set(depths))
     if lags[-1][0] > deepest:
-        raise Error(
+        sentence = (
             f"the depth {lags[-1][0]:g} mm of a lag is outside the range [0, {deepest:g}] mm of the widths: give the "
-            "greatest depth, or a width there",
-            "lag",
-            lags[-1][0],
-            code="depth-out-of-range",
+            "greatest depth, or a width there"
         )
+        raise Error(sentence, "lag", lags[-1][0], code="depth-out-of-range")
     if depth_count > 1:
         plausibility.refuse_falling("lag", depths, values, "lag")
     shapes = [
@@ -166,14 +164,12 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
     ]
     fit, worst, misfit_mm = _fit_simplest_law(depths, values, shapes, GOOD_LAG_MISFIT_MM)
     if misfit_mm > MAX_LAG_MISFIT_MM:
-        raise Error(
+        sentence = (
             f"no brush fits these lags: a law over depth differs by {misfit_mm:.1f} mm from the lag "
             f"{values[worst]:g} mm at depth {depths[worst]:g} mm, outside the range "
-            f"[0, {MAX_LAG_MISFIT_MM:g}] mm: are they in the right order?",
-            "lag",
-            values[worst],
-            code="law-undetermined",
+            f"[0, {MAX_LAG_MISFIT_MM:g}] mm: are they in the right order?"
         )
+        raise Error(sentence, "lag", values[worst], code="law-undetermined")
     return _profile_of_fit(fit, f"Lags as typed in: {_list_pairs(lags)}; met to {misfit_mm:.2f} mm.", depth_count)
 
 
@@ -202,14 +198,12 @@ def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.
     ]
     fit, worst, misfit_mm = _fit_simplest_law(depths, halves, shapes, GOOD_HALF_WIDTH_MISFIT_MM)
     if misfit_mm > MAX_HALF_WIDTH_MISFIT_MM:
-        raise Error(
+        sentence = (
             f"no brush fits these widths: a law that never falls differs by {2 * misfit_mm:.2f} mm from the width "
             f"{2 * halves[worst]:g} mm at depth {depths[worst]:g} mm, outside the range "
-            f"[0, {2 * MAX_HALF_WIDTH_MISFIT_MM:g}] mm: are they in the right order?",
-            "width",
-            2 * halves[worst],
-            code="width-falls",
+            f"[0, {2 * MAX_HALF_WIDTH_MISFIT_MM:g}] mm: are they in the right order?"
         )
+        raise Error(sentence, "width", 2 * halves[worst], code="width-falls")
     if depth_count > 1:
         plausibility.refuse_falling("width", depths, [2 * half for half in halves], "width")
     source = f"Widths as typed in: {_list_pairs(widths)}; met to {2 * misfit_mm:.2f} mm."

@@ -90,11 +90,8 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         sentence = "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
         raise Error(sentence, code="measurement-missing")
     if depths[-1] <= MIN_GREATEST_DEPTH_MM:
-        raise Error(
-            f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres",
-            "depth_mm",
-            code="depth-out-of-range",
-        )
+        sentence = f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres"
+        raise Error(sentence, "depth_mm", code="depth-out-of-range")
     measurements.depths_mm.extend(depths)
     return measurements
 
@@ -110,12 +107,8 @@ def read_widths(text: str) -> list[tuple[float, float]]:
     for where, row in _read_table_rows(text, ("depth_mm", "width_mm"), numbers=("depth_mm", "width_mm")):
         for name, value in row.items():
             if not 0 < value <= MAX_LENGTH_MM:
-                raise Error(
-                    f"{value:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm",
-                    f"{where}, {name}",
-                    value,
-                    code="out-of-range",
-                )
+                sentence = f"{value:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm"
+                raise Error(sentence, f"{where}, {name}", value, code="out-of-range")
         pairs.append((row["depth_mm"], row["width_mm"]))
     return pairs
 
@@ -126,11 +119,8 @@ def _read_table(text: str) -> Measurements:
         kind = row.pop("kind")
         if kind not in _TABLE_KINDS:
             other = "; it has several numbers a row, so write a JSON file" if kind in KINDS or kind in _READERS else ""
-            raise Error(
-                f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE_KINDS)}{other}",
-                where,
-                code="measurement-kind",
-            )
+            sentence = f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE_KINDS)}{other}"
+            raise Error(sentence, where, code="measurement-kind")
         rows.setdefault(kind, []).extend(_read_row(kind, row, where))
     return Measurements(rows)
 
@@ -227,11 +217,8 @@ def _refuse_row_in_other_unit(line: dict, where: str) -> None:
     """Raise Error for a row whose cell in a column of units is not mm."""
     for name, cell in line.items():
         if name and name.lower() in ("unit", "units") and (cell or "").strip() not in ("", "mm"):
-            raise Error(
-                f"the unit {cell.strip()[:20]!r} is not mm: write all lengths in mm, an inch as 25.4",
-                where,
-                code="not-millimetres",
-            )
+            sentence = f"the unit {cell.strip()[:20]!r} is not mm: write all lengths in mm, an inch as 25.4"
+            raise Error(sentence, where, code="not-millimetres")
 
 
 def _refuse_surplus(line: dict, where: str, separator: str) -> None:
@@ -263,20 +250,13 @@ def _read_json(text: str) -> Measurements:
     if depth_range is not None:
         depth_range = json_fields.numbers(depth_range, "depth_range_mm", 2)
         if not 0 <= depth_range[0] < depth_range[1] <= MAX_LENGTH_MM:
-            raise Error(
-                f"[{depth_range[0]:g}, {depth_range[1]:g}] mm must rise within [0, {MAX_LENGTH_MM:g}] mm",
-                "depth_range_mm",
-                code="depth-out-of-range",
-            )
+            sentence = f"[{depth_range[0]:g}, {depth_range[1]:g}] mm must rise within [0, {MAX_LENGTH_MM:g}] mm"
+            raise Error(sentence, "depth_range_mm", code="depth-out-of-range")
     speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
     if not SPEED_RANGE_MM_S[0] <= speed <= SPEED_RANGE_MM_S[1]:
         slowest, fastest = SPEED_RANGE_MM_S
-        raise Error(
-            f"{speed:g} mm/s is outside the range [{slowest:g}, {fastest:g}] mm/s",
-            "max_speed_mm_s",
-            speed,
-            code="out-of-range",
-        )
+        sentence = f"{speed:g} mm/s is outside the range [{slowest:g}, {fastest:g}] mm/s"
+        raise Error(sentence, "max_speed_mm_s", speed, code="out-of-range")
     if "marks" not in content:
         if misplaced := [key for key in _MARK_KEYS if key in content]:
             raise Error("this says something of marks, and there are none", misplaced[0], code="measurements-mixed")
@@ -332,13 +312,11 @@ def _read_row(kind: str, row: dict, where: str) -> list[Row]:
 
 def _refuse_depth(depth_mm: float, where: str) -> None:
     if not 0 < depth_mm <= MAX_LENGTH_MM:
-        raise Error(
+        sentence = (
             f"the depth {depth_mm:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm: depths count down from first "
-            "contact, in millimetres",
-            where,
-            depth_mm,
-            code="depth-out-of-range",
+            "contact, in millimetres"
         )
+        raise Error(sentence, where, depth_mm, code="depth-out-of-range")
 
 
 def _read_points(values, where: str) -> tuple[tuple[float, ...], ...]:
@@ -373,12 +351,8 @@ def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
             raise Error("points_mm and picture exclude each other", where, code="options-contradict")
         points = _read_points(row["points_mm"], f"{where}.points_mm")
         if len(points) < MIN_LINE_POINTS:
-            raise Error(
-                f"a centre line of {len(points)} points shows no turn: give {MIN_LINE_POINTS} or more",
-                f"{where}.points_mm",
-                len(points),
-                code="measurement-missing",
-            )
+            sentence = f"a centre line of {len(points)} points shows no turn: give {MIN_LINE_POINTS} or more"
+            raise Error(sentence, f"{where}.points_mm", len(points), code="measurement-missing")
         return [Row(kind, where, depth, {"points_mm": points})]
     if not isinstance(row["picture"], str):
         raise Error("this must be the path of a picture", f"{where}.picture", code="wrong-type")
@@ -427,11 +401,8 @@ def _video(kind: str, row: dict, where: str) -> list[Row]:
         if depth > 0:
             rows.append(Row(kind, f"{where}, frame {i}", depth, {"value_mm": sign * (apart[i] - at_touch)}))
     if not rows:
-        raise Error(
-            "the ferrule never comes lower than at first touch: z counts upwards, in mm",
-            f"{where}.ferrule_mm",
-            code="measurement-missing",
-        )
+        sentence = "the ferrule never comes lower than at first touch: z counts upwards, in mm"
+        raise Error(sentence, f"{where}.ferrule_mm", code="measurement-missing")
     return rows
 
 

@@ -53,21 +53,17 @@ def count_distinct_depths(depths_mm: list[float]) -> int:
 def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
     """Raise Error for angles of a drag that are in radians or in the wrong order."""
     if alpha0_deg < MIN_ALPHA0_DEG:
-        raise Error(
+        sentence = (
             f"the series starts {alpha0_deg:g} degrees from the motion, less than the {MIN_ALPHA0_DEG:g} that can be "
-            "read: turn by 90 degrees before the drag; are these radians?",
-            where,
-            alpha0_deg,
-            code="angles-in-radians",
+            "read: turn by 90 degrees before the drag; are these radians?"
         )
+        raise Error(sentence, where, alpha0_deg, code="angles-in-radians")
     if alpha_deg and max(alpha_deg) < math.pi:
-        raise Error(
+        sentence = (
             f"no angle after the first is greater than {max(alpha_deg):.3g} degrees, which nobody can read: are these "
-            "radians?",
-            where,
-            max(alpha_deg),
-            code="angles-in-radians",
+            "radians?"
         )
+        raise Error(sentence, where, max(alpha_deg), code="angles-in-radians")
     if len(s_mm) == len(alpha_deg) and len(s_mm) > 1:
         first, last = int(np.argmin(s_mm)), int(np.argmax(s_mm))
         if alpha_deg[last] > alpha_deg[first] + MAX_ANGLE_GROWTH_DEG:
@@ -224,11 +220,8 @@ def refuse_extrapolation(law: str, deepest_mm: float, range_mm: tuple[float, flo
 def refuse_no_lag(points) -> None:
     """Raise Error if all lags are 0: a pen needs no calibration."""
     if not any(point.value_mm for point in points):
-        raise Error(
-            "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new -o with.json --lag 0",
-            points[0].where,
-            code="pen-without-lag",
-        )
+        sentence = "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new -o with.json --lag 0"
+        raise Error(sentence, points[0].where, code="pen-without-lag")
 
 
 def refuse_halves_as_widths(rows: dict) -> None:
@@ -322,30 +315,24 @@ def refuse_inconsistent_laws(brush) -> None:
     lag, gap, widest, half = (law(depth) for law in (brush.lag, brush.tip_gap, brush.tip_to_widest, brush.half_width))
     refuse_width(depth, 2 * half)
     if not LAG_PER_HALF_WIDTH[0] <= lag / half <= LAG_PER_HALF_WIDTH[1]:
-        raise Error(
+        sentence = (
             f"the lag is {lag:.3g} mm and the width {2 * half:.3g} mm at depth {depth:g} mm: all lengths count in "
-            "millimetres; for a pen that does not trail take brushsvg brush new --lag 0",
-            "lag",
-            lag,
-            code="not-millimetres",
+            "millimetres; for a pen that does not trail take brushsvg brush new --lag 0"
         )
+        raise Error(sentence, "lag", lag, code="not-millimetres")
     if not brush.tip_to_widest.assumed and widest > lag + gap:
-        raise Error(
+        sentence = (
             f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, further than the tool, "
-            f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres",
-            "tip_to_widest",
-            widest,
-            code="not-millimetres",
+            f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres"
         )
+        raise Error(sentence, "tip_to_widest", widest, code="not-millimetres")
     length = float(np.max(brush.footprints.dragged[-1].outline_mm[:, 0]))
     if not brush.tip_gap.assumed and gap > 1.5 * length:
-        raise Error(
+        sentence = (
             f"the tip gap is {gap:.3g} mm at depth {depth:g} mm, the footprint {length:.3g} mm long: the centre of "
-            "friction must be in it; measure the gap from the tip of the footprint, in millimetres",
-            "tip_gap",
-            gap,
-            code="not-millimetres",
+            "friction must be in it; measure the gap from the tip of the footprint, in millimetres"
         )
+        raise Error(sentence, "tip_gap", gap, code="not-millimetres")
 
 
 def refuse_undetermined_law(brush, fitted) -> None:

@@ -86,13 +86,11 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
         if last_change < SETTLED_MM:
             break
     else:
-        raise Error(
+        sentence = (
             f"by the outlines of brush {own.name} the lag does not settle, its last change was {last_change:.2f} mm: "
-            "are strokes and dabs of one brush?",
-            "lag",
-            last_change,
-            code="law-undetermined",
+            "are strokes and dabs of one brush?"
         )
+        raise Error(sentence, "lag", last_change, code="law-undetermined")
     # The lag has at least as many coefficients as the tip gap, because an error of the tip gap changes the lag by the
     # opposite amount.
     lag = _add_polynomials(_add_polynomials(fitted_lag, to_law @ lag_changes), np.zeros(len(own.tip_gap.coefficients)))
@@ -281,13 +279,11 @@ def refuse_assumed(own: _core.Brush) -> None:
 def _refuse_shallow(own: _core.Brush, deepest_mm: float) -> None:
     least, deepest = own.depth_range_mm
     if deepest_mm > deepest + 1e-6:
-        raise Error(
+        sentence = (
             f"the strokes were painted {deepest_mm:g} mm deep, brush {own.name} may be pressed {least:g} to "
-            f"{deepest:g} mm: its dabs must be as deep as the strokes",
-            "depth_range_mm",
-            deepest_mm,
-            code="depth-out-of-range",
+            f"{deepest:g} mm: its dabs must be as deep as the strokes"
         )
+        raise Error(sentence, "depth_range_mm", deepest_mm, code="depth-out-of-range")
 
 
 def _refuse_changed_lag(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -> None:
@@ -295,14 +291,12 @@ def _refuse_changed_lag(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -
     share = np.abs(new - fitted) / np.maximum(fitted, fitted.max() / 4)
     worst = int(share.argmax())
     if share[worst] > MAX_LAG_CHANGE or polyval(np.append(0.0, depths), lag).min() < 0:
-        raise Error(
+        sentence = (
             f"by the outlines of brush {own.name} the lag at depth {depths[worst]:.3g} mm would be {new[worst]:.1f} mm "
             f"where it is {fitted[worst]:.1f} mm by the marks alone, more than {100 * MAX_LAG_CHANGE:g} % off: are "
-            "strokes and dabs of one brush?",
-            "lag",
-            float(new[worst]),
-            code="dabs-of-another-brush",
+            "strokes and dabs of one brush?"
         )
+        raise Error(sentence, "lag", float(new[worst]), code="dabs-of-another-brush")
 
 
 def _with_lag(own: _core.Brush, lag, name: str) -> _core.Brush:

@@ -115,11 +115,8 @@ def known_laws(brush: _core.Brush) -> KnownLaws:
     """
     depths = _sample_depths(brush)
     if max(brush.lag(d) for d in depths) <= 0:
-        raise Error(
-            f"brush {brush.name} does not trail: nothing of it is learnt from marks",
-            "lag",
-            code="pen-without-lag",
-        )
+        sentence = f"brush {brush.name} does not trail: nothing of it is learnt from marks"
+        raise Error(sentence, "lag", code="pen-without-lag")
     fitted_laws = laws_of(brush)
     laws = _core.MarkLaws(
         fitted_laws.lag,

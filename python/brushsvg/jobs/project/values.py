@@ -109,10 +109,8 @@ def name_or_path(kind: str, text: str, folder: str) -> str:
     advice = (
         f"{file_name} is in this folder: write it with its ending" if is_file(os.path.join(folder, file_name)) else ""
     )
-    raise Error(
+    sentence = (
         f"{kind} {text[:80]!r} is not known{did_you_mean(text, names)} Known are {', '.join(names)}, and any file that "
-        f"ends in {suffix}",
-        where=kind,
-        code=f"{kind}-unknown",
-        advice=advice,
+        f"ends in {suffix}"
     )
+    raise Error(sentence, where=kind, code=f"{kind}-unknown", advice=advice)

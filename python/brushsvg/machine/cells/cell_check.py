@@ -55,11 +55,8 @@ def check(cell: Cell) -> None:
     """
     heights = cell.heights
     if not heights.clearance_mm <= heights.safe_mm:
-        raise Error(
-            f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}",
-            where="heights.clearance_mm",
-            code="cell-heights",
-        )
+        sentence = f"clearance_mm {heights.clearance_mm:g} must not be above safe_mm {heights.safe_mm:g}"
+        raise Error(sentence, where="heights.clearance_mm", code="cell-heights")
     _check_tables(cell)
     min_mm_s2 = LEAST_ACCELERATION_MM_S2.get(cell.language, 0.0)
     if cell.speeds.acceleration_mm_s2 < min_mm_s2:
@@ -110,11 +107,8 @@ def _check_tables(cell: Cell) -> None:
 def _check_contact(cell: Cell) -> None:
     used_key = CONTACT_KEYS.get(cell.language)
     if used_key is None:
-        raise Error(
-            f"language {cell.language!r} has no word for contact: what stops its arm is set on the controller",
-            where="contact",
-            code="cell-contact",
-        )
+        sentence = f"language {cell.language!r} has no word for contact: what stops its arm is set on the controller"
+        raise Error(sentence, where="contact", code="cell-contact")
     for key in CONTACT_KEYS.values():
         if bool(getattr(cell.contact, key)) != (key == used_key):
             says = "needs" if key == used_key else "does not use"
@@ -166,11 +160,8 @@ def _check_own_keys(cell: Cell) -> None:
         if table and getattr(table, entry) != getattr(type(table), entry) and cell.language != language:
             raise Error(f"language {cell.language!r} {why}", where=key, code="key-unused")
     if cell.arc_segment_mm and cell.language not in ARCS_IN_SEGMENTS:
-        raise Error(
-            f"language {cell.language!r} makes no lines of circles",
-            where="arc_segment_mm",
-            code="key-unused",
-        )
+        sentence = f"language {cell.language!r} makes no lines of circles"
+        raise Error(sentence, where="arc_segment_mm", code="key-unused")
     if cell.language == "fanuc" and not re.fullmatch(FANUC_CONFIGURATION_PATTERN, cell.tool.configuration):
         raise Error(
             f"{cell.tool.configuration[:40]!r} is no configuration as the pendant shows it, such as "
@@ -201,17 +192,11 @@ def _check_speeds(cell: Cell) -> None:
 
 def _check_paper(cell: Cell) -> None:
     if cell.paper.taught_mm and len(cell.paper.taught_mm) not in (3, 4):
-        raise Error(
-            f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4",
-            where="paper.taught_mm",
-            code="paper-taught",
-        )
+        sentence = f"{len(cell.paper.taught_mm)} points were taught, not 3 or 4"
+        raise Error(sentence, where="paper.taught_mm", code="paper-taught")
     if cell.paper.taught_mm and (any(cell.paper.origin_mm) or any(cell.paper.rotation_deg)):
-        raise Error(
-            "the paper has both a pose and taught points: one must go",
-            where="paper.taught_mm",
-            code="paper-taught",
-        )
+        sentence = "the paper has both a pose and taught points: one must go"
+        raise Error(sentence, where="paper.taught_mm", code="paper-taught")
     try:
         tilt_deg = normal_tilt_deg(robot_from_paper(cell))
     except Error as refusal:
@@ -232,11 +217,8 @@ def _check_paper(cell: Cell) -> None:
 def _check_workspace(cell: Cell) -> None:
     box_mm, reach_mm = cell.workspace.box_mm, cell.workspace.reach_mm
     if box_mm and not all(low < high for low, high in zip(*box_mm, strict=True)):
-        raise Error(
-            "the first corner must be the lower one in x, y and z",
-            where="workspace.box_mm",
-            code="cell-workspace",
-        )
+        sentence = "the first corner must be the lower one in x, y and z"
+        raise Error(sentence, where="workspace.box_mm", code="cell-workspace")
     for number, corners in enumerate(cell.workspace.keep_out_mm, 1):
         if not all(low < high for low, high in zip(*corners, strict=True)):
             sentence = f"box {number}: the first corner must be the lower one in x, y and z"
@@ -365,19 +347,13 @@ def _check_servo(cell: Cell) -> None:
     frame = robot_from_paper(cell)
     is_level = abs(frame[2, 3]) < 1e-9 and normal_tilt_deg(frame) < 1e-9
     if not is_level:
-        raise Error(
-            "a servo's heights are those over the paper: it must be level, at z 0",
-            where="paper",
-            code="paper-tilted",
-        )
+        sentence = "a servo's heights are those over the paper: it must be level, at z 0"
+        raise Error(sentence, where="paper", code="paper-tilted")
     table = np.array(cell.servo.table)
     steps = np.diff(table, axis=0)
     if len(table) < 2 or not ((steps[:, 0] > 0).all() or (steps[:, 0] < 0).all()):
-        raise Error(
-            "at least two heights are needed, steadily rising or falling",
-            where="servo.table",
-            code="servo-table",
-        )
+        sentence = "at least two heights are needed, steadily rising or falling"
+        raise Error(sentence, where="servo.table", code="servo-table")
     if not ((steps[:, 1] > 0).all() or (steps[:, 1] < 0).all()):
         raise Error("the values must steadily rise or fall with the height", where="servo.table", code="servo-table")
     if (table[:, 1] < 0).any():
@@ -415,11 +391,8 @@ def _check_corrections(cell: Cell) -> None:
     min_mm = min_backlash_mm(cell)
     for value in cell.machine.backlash_mm:
         if 0 < value < min_mm:
-            raise Error(
-                f"backlash_mm {value:g} is neither 0 nor in the range [{min_mm:g}, 3] mm",
-                where="machine.backlash_mm",
-                code="cell-machine",
-            )
+            sentence = f"backlash_mm {value:g} is neither 0 nor in the range [{min_mm:g}, 3] mm"
+            raise Error(sentence, where="machine.backlash_mm", code="cell-machine")
 
 
 def _check_map(map_mm: tuple) -> None:
@@ -432,28 +405,19 @@ def _check_map(map_mm: tuple) -> None:
     missing = [(x, y) for y in ys for x in xs if (x, y) not in set(places)]
     if missing:
         x, y = missing[0]
-        raise Error(
-            f"no height is given at x {x:g}, y {y:g} mm, one of {len(xs)} x {len(ys)} places of a grid",
-            where=where,
-            code="cell-machine",
-        )
+        sentence = f"no height is given at x {x:g}, y {y:g} mm, one of {len(xs)} x {len(ys)} places of a grid"
+        raise Error(sentence, where=where, code="cell-machine")
     if min(len(xs), len(ys)) < 2:
         raise Error(f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine")
     for axis, lines in (("x", xs), ("y", ys)):
         for before, after in pairwise(lines):
             if after - before < MIN_GRID_SPACING_MM:
-                raise Error(
-                    f"{axis} {before:g} and {after:g} mm are less than {MIN_GRID_SPACING_MM:g} mm apart",
-                    where=where,
-                    code="cell-machine",
-                )
+                sentence = f"{axis} {before:g} and {after:g} mm are less than {MIN_GRID_SPACING_MM:g} mm apart"
+                raise Error(sentence, where=where, code="cell-machine")
     for x, y, height in map_mm:
         if abs(height) > MAX_MAP_MM:
-            raise Error(
-                f"{height:g} mm at x {x:g}, y {y:g} mm is outside the range [{-MAX_MAP_MM:g}, {MAX_MAP_MM:g}] mm",
-                where=where,
-                code="cell-machine",
-            )
+            sentence = f"{height:g} mm at x {x:g}, y {y:g} mm is outside the range [{-MAX_MAP_MM:g}, {MAX_MAP_MM:g}] mm"
+            raise Error(sentence, where=where, code="cell-machine")
 
 
 def _check_field(machine: Machine) -> None:
@@ -481,11 +445,8 @@ def _check_paint(cell: Cell) -> None:
             if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
                 raise Error(f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid")
         if station.by_hand and (station.depth_mm or station.wipe_mm or station.stir_mm):
-            raise Error(
-                "with by_hand a person loads the brush: depth_mm, wipe_mm and stir_mm must go",
-                where=where,
-                code="cell-station",
-            )
+            sentence = "with by_hand a person loads the brush: depth_mm, wipe_mm and stir_mm must go"
+            raise Error(sentence, where=where, code="cell-station")
         if not station.by_hand and not station.depth_mm and station.name != getattr(cell.reload, "wash", None):
             raise Error("depth_mm 0 takes no paint", where=where, code="cell-station")
     if cell.stations and not cell.reload:
@@ -493,11 +454,8 @@ def _check_paint(cell: Cell) -> None:
     if not cell.reload:
         return
     if cell.reload.when not in RELOAD_OCCASIONS:
-        raise Error(
-            f"{cell.reload.when!r} is none of {', '.join(RELOAD_OCCASIONS)}",
-            where="reload.when",
-            code="cell-reload",
-        )
+        sentence = f"{cell.reload.when!r} is none of {', '.join(RELOAD_OCCASIONS)}"
+        raise Error(sentence, where="reload.when", code="cell-reload")
     if not cell.stations:
         raise Error("there is no station to reload at", where="reload", code="cell-reload")
     if cell.reload.when == "length" and not cell.reload.every_mm > 2 * cell.reload.backtrack_mm:
@@ -527,11 +485,8 @@ def _check_station_heights(station: Station, cell: Cell, where: str) -> None:
         )
     bottom = station.surface_mm - station.depth_mm
     if bottom < cell.heights.lowest_mm:
-        raise Error(
-            f"the tip goes to {bottom:g} mm in the paint, below lowest_mm {cell.heights.lowest_mm:g}",
-            where=where,
-            code="cell-station",
-        )
+        sentence = f"the tip goes to {bottom:g} mm in the paint, below lowest_mm {cell.heights.lowest_mm:g}"
+        raise Error(sentence, where=where, code="cell-station")
     for point in station.wipe_mm:
         if not station.rim_mm <= point[2] <= cell.heights.safe_mm:
             raise Error(

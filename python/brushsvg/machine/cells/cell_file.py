@@ -96,11 +96,8 @@ def _read_table(table, values, where: str) -> dict:
         raise Error(f"{where} must be a table", where=where, code="wrong-type")
     for key in values:
         if key not in entries_by_key:
-            raise Error(
-                f"a cell has no key {prefix}{key}; known here: {', '.join(entries_by_key)}",
-                where=prefix + key,
-                code="key-unknown",
-            )
+            sentence = f"a cell has no key {prefix}{key}; known here: {', '.join(entries_by_key)}"
+            raise Error(sentence, where=prefix + key, code="key-unknown")
     for key in required_keys_of(table):
         if key not in values:
             raise Error(f"the cell file lacks the key {prefix}{key}", where=prefix + key, code="key-missing")
@@ -135,11 +132,8 @@ def _read_number(entry: Entry, value, where: str):
         expected = "a whole number" if entry.kind == "whole" else "a finite number"
         raise Error(f"{where} must be {expected}, not {str(value)[:40]}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
-        raise Error(
-            f"{where} {format_value(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]",
-            where=where,
-            code="out-of-range",
-        )
+        sentence = f"{where} {format_value(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]"
+        raise Error(sentence, where=where, code="out-of-range")
     return value if entry.kind == "whole" else float(value)
 
 
@@ -149,11 +143,8 @@ def _read_rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
         sentence = f"{where} has {len(value)} rows, more than {MAX_ROWS}"
         raise Error(sentence, where=where, code="out-of-range")
     if not isinstance(value, list) or (count is not None and len(value) != count):
-        raise Error(
-            f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}",
-            where=where.partition("[")[0],
-            code="wrong-type",
-        )
+        sentence = f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}"
+        raise Error(sentence, where=where.partition("[")[0], code="wrong-type")
     if len(shape) == 1:
         return tuple(_read_number(entry, item, where) for item in value)
     rows = enumerate(value)

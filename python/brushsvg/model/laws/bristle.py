@@ -98,10 +98,8 @@ def bristle(
         tip = (slope, f + slope, loaded.deriv()(1.0) * f + loaded(1.0) * slope)
     products = whole[0] * tip[1], whole[1] * tip[0]
     if abs(products[0] - products[1]) <= MIN_DETERMINANT * (abs(products[0]) + abs(products[1])):
-        raise Error(
-            "with w'''(1) = 0 this bristle has no solution, or more than one; ask for a tip free of shear",
-            code="bristle-undetermined",
-        )
+        sentence = "with w'''(1) = 0 this bristle has no solution, or more than one; ask for a tip free of shear"
+        raise Error(sentence, code="bristle-undetermined")
     root = np.linalg.solve([whole[:2], tip[:2]], [-whole[2], -tip[2]])
     moment = loaded + root[0] + root[1] * line
     return Bristle((moment * pliancy).integ(2, lbnd=0.0), moment)

@@ -145,10 +145,8 @@ def follow(
     tcp = numbers(tcp_mm, "a place of the TCP [mm]", -FARTHEST_MM, FARTHEST_MM)
     depth = numbers(depth_mm, "the depth [mm]", 0.0, DEEPEST_MM)
     if tcp.ndim != 2 or tcp.shape[1] != 2 or depth.ndim > 1:
-        raise Error(
-            f"places of shape {tcp.shape} and depths of shape {depth.shape} are not (n, 2) and (n,)",
-            code="sizes-differ",
-        )
+        sentence = f"places of shape {tcp.shape} and depths of shape {depth.shape} are not (n, 2) and (n,)"
+        raise Error(sentence, code="sizes-differ")
     depth = np.full(len(tcp), depth) if depth.ndim == 0 else depth
     contact = None
     if contact_mm is not None:

@@ -29,21 +29,13 @@ def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
         raise Error(f"{what} is no number and no array of them", code="wrong-type")
     array = array.astype(float)
     if np.ma.is_masked(array):
-        raise Error(
-            f"{what} has masked entries, outside the range [{least:g}, {greatest:g}] as NaN is: leave them out",
-            value=np.nan,
-            range=(least, greatest),
-            code="out-of-range",
-        )
+        sentence = f"{what} has masked entries, outside the range [{least:g}, {greatest:g}] as NaN is: leave them out"
+        raise Error(sentence, value=np.nan, range=(least, greatest), code="out-of-range")
     array = np.asarray(array)
     outside = array[~((array >= least) & (array <= greatest))]
     if outside.size:
-        raise Error(
-            f"{what}, {outside[0]:g}, is outside the range [{least:g}, {greatest:g}]",
-            value=float(outside[0]),
-            range=(least, greatest),
-            code="out-of-range",
-        )
+        sentence = f"{what}, {outside[0]:g}, is outside the range [{least:g}, {greatest:g}]"
+        raise Error(sentence, value=float(outside[0]), range=(least, greatest), code="out-of-range")
     return array
 
 

@@ -268,11 +268,8 @@ class EntityWalk:
         columns = dxf.get("column_count", 1) if dxf.get("column_spacing", 0.0) else 1
         rows, columns = max(rows, 1), max(columns, 1)
         if rows * columns > _MAX_ENTITIES:
-            raise Error(
-                f"{rows} rows of {columns} columns are more than {_MAX_ENTITIES} entities",
-                where=_top_level_name(name),
-                code="drawing-too-large",
-            )
+            sentence = f"{rows} rows of {columns} columns are more than {_MAX_ENTITIES} entities"
+            raise Error(sentence, where=_top_level_name(name), code="drawing-too-large")
         if rows == columns == 1:
             return [("", np.zeros(3))]
         turn = math.radians(dxf.get("rotation", 0.0))
@@ -287,11 +284,8 @@ class EntityWalk:
 
     def _check_depth(self, name: str, place: _Placement) -> None:
         if len(place.blocks) >= _MAX_BLOCK_DEPTH:
-            raise Error(
-                f"blocks are nested more than {_MAX_BLOCK_DEPTH} deep",
-                where=_top_level_name(name),
-                code="drawing-too-large",
-            )
+            sentence = f"blocks are nested more than {_MAX_BLOCK_DEPTH} deep"
+            raise Error(sentence, where=_top_level_name(name), code="drawing-too-large")
 
     def _add_piece(self, entity, kind: str, name: str, pen: Pen, place: _Placement, lines: list[Curve]) -> None:
         fill_rule = "nonzero" if kind in _TEXT_TYPES else "evenodd" if kind in dxf_curves.FILLED_TYPES else ""
@@ -299,11 +293,8 @@ class EntityWalk:
         for line in lines:
             self._cubics += len(line.cubics)
             if self._cubics > _MAX_CUBICS:
-                raise Error(
-                    f"the drawing unfolds to more than {_MAX_CUBICS} curves",
-                    where=_top_level_name(name),
-                    code="drawing-too-large",
-                )
+                sentence = f"the drawing unfolds to more than {_MAX_CUBICS} curves"
+                raise Error(sentence, where=_top_level_name(name), code="drawing-too-large")
             cubics = line.cubics @ place.mm_from_block[:3, :3] + place.mm_from_block[3, :3]
             widths = None if line.widths is None else place.widths_mm(line, entity.dxf.extrusion.normalize())
             if not (

@@ -157,11 +157,8 @@ class TextConverter:
         self._letters_left -= len(text)
         if self._letters_left < 0:
             where = name.partition("/")[0]
-            raise Error(
-                f"the drawing's text unfolds to more than {_MAX_LETTERS} letters",
-                where=where,
-                code="drawing-too-large",
-            )
+            sentence = f"the drawing's text unfolds to more than {_MAX_LETTERS} letters"
+            raise Error(sentence, where=where, code="drawing-too-large")
 
 
 _STACKED_SENTENCE = "its letters one below the other are not read: they are set in a line"

@@ -49,11 +49,8 @@ def find_unit(document, requested: str | None) -> tuple[float, list[Notice]]:
     name, drawn = _UNITS.get(document.header.get("$INSUNITS", 0), ("", None))
     if requested is None:
         if drawn is None:
-            raise Error(
-                "the drawing does not say its unit: give --units mm or --units in",
-                where="$INSUNITS",
-                code="unit-unknown",
-            )
+            sentence = "the drawing does not say its unit: give --units mm or --units in"
+            raise Error(sentence, where="$INSUNITS", code="unit-unknown")
         return drawn, []
     unit_name, unit_mm = _REQUESTED_UNITS[requested]
     if drawn is None or drawn == unit_mm:

@@ -35,10 +35,8 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     """
     text = data.decode("utf-8-sig", errors="replace")
     if is_ours(text):
-        raise Error(
-            "brushsvg wrote this program: its ways lead a brush and are no drawing; convert the drawing",
-            code="program-ours",
-        )
+        sentence = "brushsvg wrote this program: its ways lead a brush and are no drawing; convert the drawing"
+        raise Error(sentence, code="program-ours")
     all_ways = read_moves(text)
     pen = read_pen(all_ways, options.pen, options.paper_z_mm) if all_ways else None
     if pen and pen.share < MIN_READ_SHARE and options.pen is None and options.paper_z_mm is None:

@@ -214,11 +214,8 @@ class PaintedElements:
     def _trace_geometry(self, node, tag: str, attributes, context: Context, greatest: float) -> tuple[SubPath, ...]:
         self.path_data_length += len(attributes.get("d", "")) + len(attributes.get("points", ""))
         if self.path_data_length > _MAX_PATH_DATA:
-            raise Error(
-                f"the drawing has more than {_MAX_PATH_DATA} characters of path data",
-                self.notes.label(node),
-                code="drawing-too-large",
-            )
+            sentence = f"the drawing has more than {_MAX_PATH_DATA} characters of path data"
+            raise Error(sentence, self.notes.label(node), code="drawing-too-large")
         try:
             commands = shapes.shape_commands(tag, attributes, context.viewport, context.em_px)
             if not commands:

@@ -18,10 +18,8 @@ def select_elements(root: ET.Element, text: str) -> set[ET.Element]:
     tree = Tree(root)
     selectors = tree.compile_selectors(tinycss2.parse_component_value_list(text))
     if not selectors:
-        raise Error(
-            f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path",
-            code="selector-invalid",
-        )
+        sentence = f"{text[:60]!r} is not a CSS selector; write for example #signature or g.ink path"
+        raise Error(sentence, code="selector-invalid")
     found = {node for node, wrapped in tree.nodes.items() if any(selector.test(wrapped) for selector in selectors)}
     if not found:
         raise Error(f"selector {text[:60]!r} matches no element of the drawing", code="selector-matches-nothing")

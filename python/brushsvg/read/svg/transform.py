@@ -69,10 +69,8 @@ def parse_transform(text: str) -> Matrix:
         counts, make = FUNCTIONS.get(call[1], ((), None)) if call else ((), None)
         values = parse_numbers(call[2].strip()) if call else None
         if values is None or len(values) not in counts or not all(map(math.isfinite, values)):
-            raise Error(
-                f"transform is damaged at character {position + 1}: found {snippet(text, position)}",
-                code="transform-unread",
-            )
+            sentence = f"transform is damaged at character {position + 1}: found {snippet(text, position)}"
+            raise Error(sentence, code="transform-unread")
         matrix = multiply(matrix, make(*values))
         separator = _SEPARATOR.match(text, call.end())
         position = separator.end() if separator else call.end()

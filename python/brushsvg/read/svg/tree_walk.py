@@ -116,11 +116,8 @@ class TreeWalk:
         if context.copied is not None:
             self.copies += 1
             if self.copies > _MAX_COPIES:
-                raise Error(
-                    f"use copies more than {_MAX_COPIES} elements",
-                    where=self.notes.label(node),
-                    code="drawing-too-large",
-                )
+                sentence = f"use copies more than {_MAX_COPIES} elements"
+                raise Error(sentence, where=self.notes.label(node), code="drawing-too-large")
         rules = self.rules.declarations_for(node, context.copied)
         style, problems = cascade(context.style, node.attrib, rules, context.diagonal)
         if tag in shapes.TAGS and style.inherited["stroke"] == "none":  # ezdxf writes stroke-width: none next to it

@@ -125,13 +125,8 @@ def read_page(
         notices.append(Notice("svg", f"the drawing has {reason}, {width:.6g} x {height:.6g} mm", code="size-assumed"))
     for name, value in (("width", width), ("height", height)):
         if not 0 < value <= MAX_COORDINATE_MM:
-            raise Error(
-                f"the page's {name} {value:.6g} mm is outside the range (0, {MAX_COORDINATE_MM:.0f}] mm",
-                where="svg",
-                value=value,
-                range=(0.0, MAX_COORDINATE_MM),
-                code="out-of-range",
-            )
+            sentence = f"the page's {name} {value:.6g} mm is outside the range (0, {MAX_COORDINATE_MM:.0f}] mm"
+            raise Error(sentence, where="svg", value=value, range=(0.0, MAX_COORDINATE_MM), code="out-of-range")
     if box is None:
         px = MM_PER["px"]
         page_from_user, viewport = (px, 0.0, 0.0, px, 0.0, 0.0), (width / px, height / px)

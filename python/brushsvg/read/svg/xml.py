@@ -85,10 +85,8 @@ def parse_xml(data: bytes) -> Document:
         if system_id is not None:
             raise Error(f"{position()}: entity {name!r} is in another file, which is not read", code="xml-entity")
         if is_parameter or re.search("&[^#]", value):
-            raise Error(
-                f"{position()}: entity {name!r} is built from other entities, which is refused",
-                code="xml-entity",
-            )
+            sentence = f"{position()}: entity {name!r} is built from other entities, which is refused"
+            raise Error(sentence, code="xml-entity")
         limit_growth("entities", data.count(b"&") * len(value))
 
     def attribute_default(_element, _name, _type, default, _required) -> None:
@@ -98,13 +96,11 @@ def parse_xml(data: bytes) -> Document:
 
     def limit_growth(content: str, length: int) -> None:
         if length > EXPANSION_LIMIT:
-            raise Error(
+            sentence = (
                 f"{position()}: the document's {content} could grow to {length} characters, "
-                f"beyond the limit of {EXPANSION_LIMIT}",
-                value=length,
-                range=(0, EXPANSION_LIMIT),
-                code="xml-entity",
+                f"beyond the limit of {EXPANSION_LIMIT}"
             )
+            raise Error(sentence, value=length, range=(0, EXPANSION_LIMIT), code="xml-entity")
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda tag: builder.end(qualified(tag))
@@ -166,10 +162,8 @@ def _unpack(data: bytes) -> bytes:
     except zlib.error:
         raise Error("the file is compressed (SVGZ), but what it holds is damaged", code="svgz-damaged") from None
     if len(plain) > _MAX_UNPACKED_BYTES:
-        raise Error(
-            f"the file is compressed (SVGZ) and unpacks to more than {_MAX_UNPACKED_BYTES} bytes",
-            code="file-too-large",
-        )
+        sentence = f"the file is compressed (SVGZ) and unpacks to more than {_MAX_UNPACKED_BYTES} bytes"
+        raise Error(sentence, code="file-too-large")
     if not unpacking.eof:
         raise Error("the file is compressed (SVGZ) and cut short", code="svgz-damaged")
     return plain

@@ -214,14 +214,11 @@ def _refuse_undefined_sizes(face: hb.Face) -> None:
     head, hhea, hmtx = (face.reference_table(tag).data or b"" for tag in ("head", "hhea", "hmtx"))
     units = int.from_bytes(head[18:20], "big") if len(head) >= 20 else None
     if units is None or not _UNITS_PER_EM_RANGE[0] <= units <= _UNITS_PER_EM_RANGE[1]:
-        raise Error(
+        sentence = (
             f"this is a damaged font: units per em, {'missing' if units is None else units}, is outside the range "
-            f"[{_UNITS_PER_EM_RANGE[0]}, {_UNITS_PER_EM_RANGE[1]}]",
-            "head",
-            units,
-            _UNITS_PER_EM_RANGE,
-            code="font-damaged",
+            f"[{_UNITS_PER_EM_RANGE[0]}, {_UNITS_PER_EM_RANGE[1]}]"
         )
+        raise Error(sentence, "head", units, _UNITS_PER_EM_RANGE, code="font-damaged")
     widths = int.from_bytes(hhea[34:36], "big") if len(hhea) >= 36 else 0
     if not 0 < 4 * widths <= len(hmtx):
         there, expected = min(widths, len(hmtx) // 4), widths or face.glyph_count
@@ -259,10 +256,8 @@ class _CubicPen(BasePen):
 def _unpack(data: bytes) -> bytes:
     """Return a font as HarfBuzz reads it: a WOFF font is decompressed."""
     if data.startswith(b"wOF2"):
-        raise Error(
-            "WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress",
-            code="font-unknown",
-        )
+        sentence = "WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress"
+        raise Error(sentence, code="font-unknown")
     if not data.startswith(b"wOFF"):
         return data
     try:
@@ -291,11 +286,6 @@ def _inflated_length(packed: bytes, limit: int) -> int:
     except zlib.error:
         return len(packed)  # WOFF stores a table uncompressed if compression would not shrink it
     if length > limit:
-        raise Error(
-            f"the font unpacks to more than {_MAX_UNPACKED_BYTES} bytes",
-            "",
-            length,
-            (0, _MAX_UNPACKED_BYTES),
-            code="file-too-large",
-        )
+        sentence = f"the font unpacks to more than {_MAX_UNPACKED_BYTES} bytes"
+        raise Error(sentence, "", length, (0, _MAX_UNPACKED_BYTES), code="file-too-large")
     return length

@@ -43,21 +43,13 @@ def svg_document(
     ]
     count = sum(len(subpath.cubics) for glyph, _ in placed for subpath in glyph.subpaths)
     if count > _MAX_CUBICS:
-        raise Error(
-            f"the text takes {count} curves, beyond the limit of {_MAX_CUBICS}",
-            "",
-            count,
-            (0, _MAX_CUBICS),
-            code="text-too-long",
-        )
+        sentence = f"the text takes {count} curves, beyond the limit of {_MAX_CUBICS}"
+        raise Error(sentence, "", count, (0, _MAX_CUBICS), code="text-too-long")
     lower, upper = _curve_extents(placed)
     size = upper - lower + width_mm
     if not (size < MAX_COORDINATE_MM).all():
-        raise Error(
-            f"the text is {size.max():.4g} mm long, beyond the range [0, 1e6] mm",
-            "text",
-            code="text-too-long",
-        )
+        sentence = f"the text is {size.max():.4g} mm long, beyond the range [0, 1e6] mm"
+        raise Error(sentence, "text", code="text-too-long")
     if sheet_mm is None:
         sheet = np.ceil((size + 2 * _MARGIN_MM) * 1e4 - 1e-3) / 1e4
     else:

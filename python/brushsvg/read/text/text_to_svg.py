@@ -85,13 +85,8 @@ def text_svg(
 def _checked(name: str, value: float, maximum: float, unit: str = "") -> float:
     number = as_number(value, f"a number, which {name} is")
     if not 0 < number <= maximum:
-        raise Error(
-            f"{name} {number:g}{unit} is outside the range (0, {maximum:g}]{unit}",
-            "",
-            number,
-            (0, maximum),
-            code="out-of-range",
-        )
+        sentence = f"{name} {number:g}{unit} is outside the range (0, {maximum:g}]{unit}"
+        raise Error(sentence, "", number, (0, maximum), code="out-of-range")
     return number
 
 
@@ -163,7 +158,5 @@ def _find_font_module(font: bytes):
         return outline_font
     if font.lstrip(b"\xef\xbb\xbf\xff\xfe\0 \t\r\n").startswith(b"<"):
         return svg_font
-    raise Error(
-        "this is not a font that can be read: known are SVG fonts (.svg), TrueType and OpenType",
-        code="font-unknown",
-    )
+    sentence = "this is not a font that can be read: known are SVG fonts (.svg), TrueType and OpenType"
+    raise Error(sentence, code="font-unknown")

@@ -31,17 +31,13 @@ def filled_rings(element: Element) -> list[np.ndarray]:
     tails = np.vstack(outlines)
     heads = np.vstack([np.roll(ring, -1, axis=0) for ring in outlines])
     if (crossings := _estimate_crossings(tails, heads)) > _MAX_CROSSINGS:
-        raise Error(
-            f"its outline crosses itself about {crossings:.2g} times, more than {_MAX_CROSSINGS}",
-            code="outline-too-complex",
-        )
+        sentence = f"its outline crosses itself about {crossings:.2g} times, more than {_MAX_CROSSINGS}"
+        raise Error(sentence, code="outline-too-complex")
     low, high = np.minimum(tails, heads), np.maximum(tails, heads)
     from_left = np.argsort(low[:, 0])
     if (pairs := _count_compared_pairs(low[from_left], high[from_left])) > _MAX_PAIRS:
-        raise Error(
-            f"its outline is too dense: {pairs:.2g} pairs of edges side by side, more than {_MAX_PAIRS:.2g}",
-            code="outline-too-complex",
-        )
+        sentence = f"its outline is too dense: {pairs:.2g} pairs of edges side by side, more than {_MAX_PAIRS:.2g}"
+        raise Error(sentence, code="outline-too-complex")
     return _core.fill([ring for ring in outlines if len(ring) >= 3], element.fill_rule or "evenodd")
 
 

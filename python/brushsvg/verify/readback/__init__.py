@@ -198,10 +198,8 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
         if (found := _HUGE_NUMBER.search(line)) and not line.lstrip(" ").startswith(
             ("(", "#", "!", ";", "--", ": !", "popup", "TPWrite", "stop(", "print(", "tp_popup(", 'CO "')
         ):
-            raise Error(
-                f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes",
-                code="line-unread",
-            )
+            sentence = f"line {number}: {found[0][:30]!r} is larger than any number that brushsvg writes"
+            raise Error(sentence, code="line-unread")
     name = _READERS[cell.language]
     read = getattr(importlib.import_module(f".{name}", __name__), f"read_{name}")
     return with_backlash(read(text, cell), cell)

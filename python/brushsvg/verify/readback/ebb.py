@@ -33,10 +33,8 @@ def read_ebb(text: str, cell: Cell) -> Readback:
     if not reader.ended:
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     if any(reader.steps):
-        raise Error(
-            "its steps do not lead back to where it began: a line was lost, or changed",
-            code="line-incomplete",
-        )
+        sentence = "its steps do not lead back to where it began: a line was lost, or changed"
+        raise Error(sentence, code="line-incomplete")
     return reader.out
 
 
@@ -165,10 +163,8 @@ class _Reader:
         way_mm = float(np.linalg.norm(self.mm_from_steps @ (steps_1, steps_2)))
         speed_mm_s = 1e3 * way_mm / time_ms
         if speed_mm_s > self.feed_mm_s * (1 + 1e-9) + 1e-9:
-            raise Error(
-                f"line {number}: speed {speed_mm_s:.1f} mm/s, its limit {self.feed_mm_s:.1f} mm/s",
-                code="speed-out-of-range",
-            )
+            sentence = f"line {number}: speed {speed_mm_s:.1f} mm/s, its limit {self.feed_mm_s:.1f} mm/s"
+            raise Error(sentence, code="speed-out-of-range")
         self.steps = [self.steps[0] + steps_1, self.steps[1] + steps_2]
         self._step(number, time_ms / 1e3)
         at_most = (self.feed_mm_s, speed_mm_s, 1e3 * self.unit_mm / time_ms)

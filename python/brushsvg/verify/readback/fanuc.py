@@ -82,10 +82,8 @@ def _instructions_in_order(text: str, cell: Cell) -> NumberedLines:
             lines.append((number, line))
             continue
         if call[1] not in programs or call[1] in called:
-            raise Error(
-                f"line {number}: it calls {call[1]!r}, which is missing or was called before",
-                code="line-unread",
-            )
+            sentence = f"line {number}: it calls {call[1]!r}, which is missing or was called before"
+            raise Error(sentence, code="line-unread")
         called.append(call[1])
         lines += _resolve_points(*programs[call[1]], cell)
     if uncalled := [name for name in programs if name not in called]:

@@ -108,10 +108,8 @@ class _Reader:
         # grbl drops blanks before it counts letters.
         size = len(line) if self.dialect.counts_blanks else len(line.replace(" ", ""))
         if size > self.dialect.longest:
-            raise Error(
-                f"line {number} has {size} letters, the controller reads no more than {self.dialect.longest}",
-                code="line-unread",
-            )
+            sentence = f"line {number} has {size} letters, the controller reads no more than {self.dialect.longest}"
+            raise Error(sentence, code="line-unread")
 
     def _read_printer_line(self, number: int, line: str) -> None:
         """Read a line for the firmware of a printer.
@@ -188,17 +186,13 @@ class _Reader:
         if first not in self.words:
             raise Error(f"line {number}: {line[:40]!r} is not a line that brushsvg writes", code="line-unread")
         if len(values) + len(set(codes)) + len(idle) != len(words) or not set(values) <= set(self.words[first]):
-            raise Error(
-                f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write",
-                code="line-unread",
-            )
+            sentence = f"line {number}: {line[:40]!r} has a word twice, or one that brushsvg does not write"
+            raise Error(sentence, code="line-unread")
         if self.servo:
             self._check_servo_held(number, line, first, codes)
         if first == "G64" and "G21" not in self.seen:
-            raise Error(
-                f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres",
-                code="mode-missing",
-            )
+            sentence = f"line {number}: {line[:40]!r} stands before G21: nothing says that its number is millimetres"
+            raise Error(sentence, code="mode-missing")
         if values and first != "G64" and self.out.modes is None:
             self.out.modes = frozenset(self.seen)
         if first in MOTION_WORDS or not first:
@@ -225,10 +219,8 @@ class _Reader:
         Without G1, grbl switches the servo off, and the brush falls.
         """
         if first == "G0" or ("G80" in codes and "G1" in self.seen):
-            raise Error(
-                f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall",
-                code="line-unread",
-            )
+            sentence = f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall"
+            raise Error(sentence, code="line-unread")
 
     def _comment(self, number: int, line: str, text: str) -> None:
         """Read a comment.
@@ -236,10 +228,8 @@ class _Reader:
         Raises Error for a comment that brushsvg would write differently, and for one that the firmware acts on.
         """
         if (plain := self.dialect.comment(text).rstrip("\n")) != line:
-            raise Error(
-                f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}",
-                code="line-unread",
-            )
+            sentence = f"line {number}: {line[:40]!r}: in this language brushsvg would write {plain[:40]!r}"
+            raise Error(sentence, code="line-unread")
         if self.dialect.acts and re.match(self.dialect.acts, text, re.IGNORECASE):
             raise Error(f"line {number}: {line[:40]} is a comment that {self.firmware} acts on", code="line-unread")
         self.out.comment(number, text)
@@ -291,10 +281,8 @@ class _Reader:
             centre = (self.at["X"] + values["I"], self.at["Y"] + values["J"], turn)
             radii = [math.dist(centre[:2], end) for end in ((self.at["X"], self.at["Y"]), (values["X"], values["Y"]))]
             if abs(radii[0] - radii[1]) > max(self.dialect.radii_mm, 4 * self.unit_mm):
-                raise Error(
-                    f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre",
-                    code="line-incomplete",
-                )
+                sentence = f"line {number}: {line[:40]!r} is a circle whose ends are not equally far from its centre"
+                raise Error(sentence, code="line-incomplete")
         if (code != "G0" or not self.dialect.has_blocks) and not self.feed_mm_s > 0:
             raise Error(f"line {number}: {line[:40]!r} has no feed", code="line-incomplete")
         rapid = code == "G0" and self.dialect.has_blocks
@@ -341,8 +329,6 @@ class _Reader:
         known = [row[1] for row in self.servo.table]
         low, high = round(min(known)), round(max(known))
         if not low <= value <= high:
-            raise Error(
-                f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo",
-                code="servo-out-of-range",
-            )
+            sentence = f"line {number}: S{value:g} is outside the range [{low}, {high}] of the cell's servo"
+            raise Error(sentence, code="servo-out-of-range")
         return self.height_at(value)

@@ -48,10 +48,8 @@ def read_header(text: str) -> ProgramHeader:
     header = _header_lines(text)
     if missing := [word for word in ("title", "brush", "cell") if word not in header]:
         lost = "" if len(missing) == 3 else ", or a line was lost"
-        raise Error(
-            f"its header does not name {' and '.join(missing)}: brushsvg did not write this program{lost}",
-            code="header-damaged",
-        )
+        sentence = f"its header does not name {' and '.join(missing)}: brushsvg did not write this program{lost}"
+        raise Error(sentence, code="header-damaged")
     sheet = _numbers_in(header, "sheet", r"(\S+) x (\S+) mm", (1e-3, 1e6))
     paper = _numbers_in(header, "paper", r"(\S+) mm against the cell's", (-20.0, 20.0))
     resumed = _numbers_in(header, "resumed", r"from stroke (\d+)", (1, 1e6))
@@ -116,10 +114,8 @@ def _numbers_in(header: dict[str, str], word: str, pattern: str, bounds: tuple[f
         raise _damaged_error(word, header[word]) from None
     for value in numbers:
         if not bounds[0] <= value <= bounds[1]:
-            raise Error(
-                f"{word} in its header: {value:g} is outside the range [{bounds[0]:g}, {bounds[1]:g}]",
-                code="header-damaged",
-            )
+            sentence = f"{word} in its header: {value:g} is outside the range [{bounds[0]:g}, {bounds[1]:g}]"
+            raise Error(sentence, code="header-damaged")
     return numbers
 
 

@@ -84,10 +84,8 @@ def _lines_in_order(text: str) -> NumberedLines:
             lines.append((number, line))
             continue
         if call[1] not in uncalled:
-            raise Error(
-                f"line {number}: it calls {call[1]!r}, which is missing or was called before",
-                code="line-unread",
-            )
+            sentence = f"line {number}: it calls {call[1]!r}, which is missing or was called before"
+            raise Error(sentence, code="line-unread")
         part = uncalled.pop(call[1])
         if len(uncalled) + 1 == len(others) and part[1:2] and part[1][1].strip(" ").lower() == _RISE_DECLARATION:
             lines.insert(next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1))

@@ -179,10 +179,8 @@ class _Reader:
 
     def _blended(self, number: int, line: str, values: dict) -> None:
         if "blend" not in self.held:
-            raise Error(
-                f"line {number}: {line[:60]!r} cuts a corner, and no line before says how far",
-                code="line-incomplete",
-            )
+            sentence = f"line {number}: {line[:60]!r} cuts a corner, and no line before says how far"
+            raise Error(sentence, code="line-incomplete")
         self._move(number, line, {**values, "blend": self.held["blend"]})
 
     def _circle(self, number: int, line: str, values: dict) -> None:

@@ -72,10 +72,8 @@ def cell_place(args) -> None:
     cell = load_exact_cell(args.input)
     with refuse_errors(args.input):
         if cell.arm is None:
-            raise Error(
-                f"cell {cell.name} has no table arm: nobody knows what its machine reaches",
-                code="arm-missing",
-            )
+            sentence = f"cell {cell.name} has no table arm: nobody knows what its machine reaches"
+            raise Error(sentence, code="arm-missing")
         joints = joints_of(cell.arm)
     if args.drawing:
         work = prepare(make_choices(args, input=args.drawing, cell=args.input), cell)

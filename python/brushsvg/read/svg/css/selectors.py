@@ -23,11 +23,8 @@ class _StepBudget:
     def spend(self, steps: int) -> None:
         self.left -= steps
         if self.left < 0:
-            raise Error(
-                "its CSS selectors take too long on a drawing of this size",
-                where="style",
-                code="css-too-complex",
-            )
+            sentence = "its CSS selectors take too long on a drawing of this size"
+            raise Error(sentence, where="style", code="css-too-complex")
 
 
 class _CountingNode(ElementWrapper):

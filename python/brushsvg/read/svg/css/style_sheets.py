@@ -36,11 +36,8 @@ class StyleSheets:
         self._tree = Tree(root) if sheets else None
         texts = ["".join(sheet.itertext()) for sheet in sheets]
         if (length := sum(map(len, texts))) > TEXT_LIMIT:
-            raise Error(
-                f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}",
-                where="style",
-                code="css-too-complex",
-            )
+            sentence = f"its CSS of {length} characters is beyond the limit of {TEXT_LIMIT}"
+            raise Error(sentence, where="style", code="css-too-complex")
         for text in texts:
             self._add_rules(tinycss2.parse_stylesheet(text, True, True))
 

@@ -65,10 +65,8 @@ def css_transform(text: str, box: Callable[[], ReferenceBox], em_px: float) -> M
         words = [word.strip() for word in call[2].split(",")] if call else []
         kinds = _ARGUMENT_KINDS.get(name, ())
         if not kinds or not (len(words) == len(kinds) or (len(kinds) == 2 and len(words) == 1)):
-            raise Error(
-                f"transform is not read from character {position + 1} on: found {snippet(text, position)}",
-                code="transform-unread",
-            )
+            sentence = f"transform is not read from character {position + 1} on: found {snippet(text, position)}"
+            raise Error(sentence, code="transform-unread")
         matrix = multiply(matrix, _MATRIX_MAKERS[name](*_values(words, kinds, box, em_px)))
         position = call.end()
     return matrix
@@ -136,10 +134,8 @@ def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) 
             return float(match[1]) * _DEGREES[match[2].lower()]
         if _BARE_NUMBER.fullmatch(word) and float(word) == 0:
             return 0.0
-        raise Error(
-            f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg",
-            code="transform-unread",
-        )
+        sentence = f"transform: {word[:24]!r} is not an angle as CSS writes it, for example 30deg"
+        raise Error(sentence, code="transform-unread")
     match = _NUMBER_OR_PERCENTAGE.fullmatch(word)
     if not match or (match[2] and kind == "number"):
         raise Error(f"transform: {word[:24]!r} is not a number", code="transform-unread")
@@ -148,8 +144,6 @@ def _value(word: str, kind: str, box: Callable[[], ReferenceBox], em_px: float) 
 
 def _length(word: str, percent_of: float, is_css: bool, em_px: float) -> float:
     if is_css and _BARE_NUMBER.fullmatch(word) and float(word) != 0:
-        raise Error(
-            f"transform: {word[:24]!r} has no unit, which CSS asks for: write {word[:24]}px",
-            code="transform-unread",
-        )
+        sentence = f"transform: {word[:24]!r} has no unit, which CSS asks for: write {word[:24]}px"
+        raise Error(sentence, code="transform-unread")
     return length_px(word, percent_of, em_px)
