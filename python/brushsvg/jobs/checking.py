@@ -401,10 +401,8 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
     work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
     with name_file_in_errors(program.path):
         if header.border_mm:
-            sheet_mm, z_offset_mm = (
-                work.plan.sheet_mm if work else header.sheet_mm,
-                program.z_offset_mm(chosen),
-            )
+            sheet_mm = work.plan.sheet_mm if work else header.sheet_mm
+            z_offset_mm = program.z_offset_mm(chosen)
             outcome = setup_programs.look_at_border(text, read, header, brush, cell, sheet_mm, z_offset_mm)
             problems = [*outcome.problems, *(_compare_border(header, work, stage) if work else [])]
             return Check(

@@ -241,10 +241,8 @@ def station_visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tup
             or _needs_paint(a_pass, last_pass, used_mm + length_mm, cell.reload, loads.lasts_mm)
         )
         if last_pass is not None and not is_new_colour and number != first_stroke:
-            wash_stations, station = (
-                [shorten_visit(candidate) for candidate in wash_stations if cell.reload.rinse],
-                shorten_visit(station),
-            )
+            wash_stations = [shorten_visit(candidate) for candidate in wash_stations if cell.reload.rinse]
+            station = shorten_visit(station)
         elif not is_new_colour:
             wash_stations = []
         visits_of_loads.append((*wash_stations, station) if is_fetching else ())

@@ -319,10 +319,8 @@ def _locate_edge(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
     places = (at[:, None] + across[:, None] * outward).astype(np.float32)
     profiles = cv2.remap(light, places[..., 0], places[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     end = max(2, count // 6)
-    black, white = (
-        np.median(profiles[:, :end], axis=1, keepdims=True),
-        np.median(profiles[:, -end:], axis=1, keepdims=True),
-    )
+    black = np.median(profiles[:, :end], axis=1, keepdims=True)
+    white = np.median(profiles[:, -end:], axis=1, keepdims=True)
     share = (profiles - black) / np.maximum(white - black, 1e-3)
     step = across[1] - across[0]
     offset = reach - step * (share.sum(axis=1) - 0.5 * (share[:, 0] + share[:, -1]))

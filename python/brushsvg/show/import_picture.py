@@ -21,14 +21,12 @@ from ..reporting.label_space import LabelSpace
 from ..text_summary import summarize_notices
 from .stroke_labels import LABEL_CELL_PX, Run, group_runs, mark_cells, start_direction, width_text
 
-PAPER, SHEET, SHEET_EDGE, TEXT, MUTED_TEXT, SHAPE_FILL = (
-    "#f3f1ec",
-    "#ffffff",
-    "#c9c7c0",
-    "#22252b",
-    "#6d717a",
-    "#d9d7d0",
-)
+PAPER = "#f3f1ec"
+SHEET = "#ffffff"
+SHEET_EDGE = "#c9c7c0"
+TEXT = "#22252b"
+MUTED_TEXT = "#6d717a"
+SHAPE_FILL = "#d9d7d0"
 WARNING = "#b3401f"
 INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c2185b", "#5d6d1e")
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20

@@ -346,10 +346,8 @@ def _max_distance_mm(points: np.ndarray, path: np.ndarray) -> float:
     starts, ends = (path[:-1], path[1:]) if len(path) > 1 else (path, path)
     boxes = range(0, len(starts), BOX_SIZE)
     box_ends = [np.vstack([starts[k : k + BOX_SIZE], ends[k : k + BOX_SIZE]]) for k in boxes]
-    lows, highs = (
-        np.array([box.min(axis=0) for box in box_ends]),
-        np.array([box.max(axis=0) for box in box_ends]),
-    )
+    lows = np.array([box.min(axis=0) for box in box_ends])
+    highs = np.array([box.max(axis=0) for box in box_ends])
     box_of = np.arange(len(starts)) // BOX_SIZE
     farthest, here = 0.0, 0
     for first in range(0, len(points), BOX_SIZE):

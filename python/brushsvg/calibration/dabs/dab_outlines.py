@@ -232,10 +232,8 @@ def _fit_sheet(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab
     """
     while True:
         depths = sorted({dab.depth_mm for dab in dabs})
-        found, place = (
-            np.array([_centroid(_outer_ring(dab)) for dab in dabs]),
-            np.array([dab.place_mm for dab in dabs]),
-        )
+        found = np.array([_centroid(_outer_ring(dab)) for dab in dabs])
+        place = np.array([dab.place_mm for dab in dabs])
         columns = np.zeros((len(dabs), 2, 3 + 2 * len(depths)))
         columns[:, :, :2] = np.eye(2)
         arm = found - place.mean(axis=0)

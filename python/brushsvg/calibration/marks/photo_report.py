@@ -12,12 +12,10 @@ from ...reporting.report_text import format_overlap
 from .mark_report import predict_outlines, to_sheet_frame
 
 # Colours as blue, green, red.
-FOUND_COLOUR, PREDICTED_COLOUR, STRAY_COLOUR, TEXT_COLOUR = (
-    (60, 160, 40),
-    (40, 40, 220),
-    (0, 140, 255),
-    (90, 60, 20),
-)
+FOUND_COLOUR = (60, 160, 40)
+PREDICTED_COLOUR = (40, 40, 220)
+STRAY_COLOUR = (0, 140, 255)
+TEXT_COLOUR = (90, 60, 20)
 # Height of letters, widths of found and predicted lines, and width of the white border around letters.
 LETTER_MM, FOUND_MM, PREDICTED_MM, HALO_MM = 2.0, 0.2, 0.08, 0.3
 FONT, FONT_PX = cv2.FONT_HERSHEY_SIMPLEX, 22  # the font, and the height of its letters at size 1

@@ -68,20 +68,16 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
     at = np.linspace(0.0, calibration.painted.deepest_mm, terms + 1)[1:]
     to_law = np.linalg.inv(np.vander(at, terms, increasing=True))
     lag_changes = np.zeros(terms)
-    height, displaced = (
-        calibration.fit.height_mm,
-        np.array([residual.displacement_mm for residual in calibration.fit.marks]),
-    )
+    height = calibration.fit.height_mm
+    displaced = np.array([residual.displacement_mm for residual in calibration.fit.marks])
     for _ in range(MAX_ROUNDS):
         distances, slopes = edges.distances_and_slopes(
             _add_polynomials(fitted_lag, to_law @ lag_changes), to_law, height, displaced
         )
         change, covariance, noise = edges.solve_step(distances, slopes, height, displaced)
-        lag_changes, height, displaced = (
-            lag_changes + change[:terms],
-            height + change[terms],
-            displaced + change[terms + 1 :].reshape(-1, 2),
-        )
+        lag_changes = lag_changes + change[:terms]
+        height = height + change[terms]
+        displaced = displaced + change[terms + 1 :].reshape(-1, 2)
         last_change = float(np.abs(polyval(depths, to_law @ change[:terms])).max())
         if last_change < SETTLED_MM:
             break

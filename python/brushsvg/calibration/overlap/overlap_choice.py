@@ -144,11 +144,9 @@ def _search_without_parts(
     parts = 2 if len(marks) >= MIN_MARKS_FOR_TWO_PARTS else 3
     if len(marks) < MIN_MARKS:
         return {}
-    edges, part, middle = (
-        _edge_options(options, round_tail),
-        np.arange(len(marks)) % parts,
-        mean_place(targets),
-    )
+    edges = _edge_options(options, round_tail)
+    part = np.arange(len(marks)) % parts
+    middle = mean_place(targets)
     by_kind: dict[str, list[_PartResult]] = {}
     for k in range(parts):
         kept_targets = [item for item, at in zip(targets, part, strict=True) if at != k]

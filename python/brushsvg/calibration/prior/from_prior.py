@@ -292,17 +292,13 @@ def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], n
             law,
             _choose_law(getattr(brush, law), getattr(updated_brush, law), law in learned, painted, brush.name),
         )
-    updated_brush.kind, updated_brush.max_speed_mm_s, updated_brush.paint_depth_mm = (
-        brush.kind,
-        brush.max_speed_mm_s,
-        brush.paint_depth_mm,
-    )
+    updated_brush.kind = brush.kind
+    updated_brush.max_speed_mm_s = brush.max_speed_mm_s
+    updated_brush.paint_depth_mm = brush.paint_depth_mm
     updated_brush.covariance = _join_covariance(brush, updated_brush, learned, brush_covariance, fitted).tolist()
-    updated_brush.extra, updated_brush.footprints, updated_brush.paint = (
-        brush.extra,
-        brush.footprints,
-        brush.paint,
-    )
+    updated_brush.extra = brush.extra
+    updated_brush.footprints = brush.footprints
+    updated_brush.paint = brush.paint
     known_mm = {law: max(painted.deepest_mm, fitted_down_to_mm(brush, law)) for law in LAWS if law in learned}
     before_mm = learned_of(brush).get("deepest_mm")
     before_mm = before_mm if isinstance(before_mm, dict) else {}

@@ -132,10 +132,8 @@ def known_laws(brush: _core.Brush) -> KnownLaws:
     for law, place in numbers_of().items():
         coefficients = places(brush)[law]
         if np.any(file_covariance[coefficients, coefficients]):
-            how[law], block = (
-                "the covariance in its file",
-                _form_covariance(brush, law, depths, laws.widest_per_half),
-            )
+            how[law] = "the covariance in its file"
+            block = _form_covariance(brush, law, depths, laws.widest_per_half)
         elif law == "tip_to_widest":
             half = _core.deviations_of_95() * RATIO_SIGMA
             how[law] = f"nothing it says: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip (95 %)"

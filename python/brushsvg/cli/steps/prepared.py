@@ -82,10 +82,8 @@ def prepare_and_simulate(
         except Error as refusal:
             if not tilted or refusal.code != "tilt-unsupported":
                 raise
-            tilt_notices, loads = (
-                [replace(refusal.notice(), refused=True)],
-                PlanInLoads(tuple(work.plan.sheet_mm), ()),
-            )
+            tilt_notices = [replace(refusal.notice(), refused=True)]
+            loads = PlanInLoads(tuple(work.plan.sheet_mm), ())
         if at_loads:
             marks = prediction.predict_plan_marks(loads.as_plan(), brush, outlines, stage, whole, cell)
         else:

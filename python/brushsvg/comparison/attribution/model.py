@@ -71,10 +71,8 @@ class FaultModel:
         deepest_lag = self.brush.lag(deepest)
         deepest_half_width = self.brush.half_width(deepest)
         law_sigmas = {law: self._law_sigma(law) for law in ("lag", "half_width")} if self.learned else {}
-        lag_step, width_step = (
-            min(0.1, 0.15 / max(deepest_lag, 0.5)),
-            min(0.1, 0.1 / max(deepest_half_width, 0.5)),
-        )
+        lag_step = min(0.1, 0.15 / max(deepest_lag, 0.5))
+        width_step = min(0.1, 0.1 / max(deepest_half_width, 0.5))
         return (
             Number(SHEET, "shift in x", "mm", 2.0, 0.1),
             Number(SHEET, "shift in y", "mm", 2.0, 0.1),
@@ -116,18 +114,14 @@ class FaultModel:
         Strokes that would not be painted are left out.
         """
         shift, turn = fault_values[:2], np.radians(fault_values[2])
-        scale, skew, lean, backlash = (
-            1 + fault_values[3:5],
-            fault_values[5],
-            fault_values[6:8],
-            fault_values[8:10],
-        )
-        height, tilt, lag, width = (
-            fault_values[10],
-            fault_values[11:13],
-            fault_values[13:15],
-            fault_values[15:17],
-        )
+        scale = 1 + fault_values[3:5]
+        skew = fault_values[5]
+        lean = fault_values[6:8]
+        backlash = fault_values[8:10]
+        height = fault_values[10]
+        tilt = fault_values[11:13]
+        lag = fault_values[13:15]
+        width = fault_values[15:17]
         middle = self.middle_mm
         machine = Machine(
             tuple(lean.tolist()),

@@ -224,10 +224,8 @@ class EntityWalk:
             self._leave_out(pen.layer, pen.hidden, pen.layer, code="hidden")
             return
         shown_here = [attribute for attribute in insert.attribs if not attribute.is_invisible]
-        attributes, cells = (
-            [_attribute_text_entity(attribute) for attribute in shown_here],
-            self._insert_cells(insert, name),
-        )
+        attributes = [_attribute_text_entity(attribute) for attribute in shown_here]
+        cells = self._insert_cells(insert, name)
         for suffix, shift in cells if attributes else ():
             shifted = replace(place, mm_from_block=_translation(shift) @ place.mm_from_block)
             self._walk_parts(attributes, name + suffix, pen, shifted)

@@ -81,10 +81,8 @@ def pen_kind(all_ways: list[Way]) -> str:
     if all(way.power is None for way in all_ways):
         return "z"
     is_sideways = [bool(np.ptp(way.points_mm[:, :2], axis=0).any()) for way in all_ways]
-    changes_z, changes_servo = (
-        _count_changes(_sideways_heights(all_ways, is_sideways)),
-        _count_changes(_servo_values(all_ways, is_sideways)),
-    )
+    changes_z = _count_changes(_sideways_heights(all_ways, is_sideways))
+    changes_servo = _count_changes(_servo_values(all_ways, is_sideways))
     return "z" if changes_z >= max(changes_servo, 1) else "servo"
 
 

@@ -162,13 +162,11 @@ def _length_cause(place: _StrokePlace) -> Cause | None:
 
 def _path_cause(place: _StrokePlace) -> Cause | None:
     """Return the cause if the footprint cannot follow a corner, end or bend."""
-    line, brush, half, s_mm, is_open = (
-        place.line,
-        place.brush,
-        place.half_mm,
-        place.s_mm,
-        not place.stroke.closed,
-    )
+    line = place.line
+    brush = place.brush
+    half = place.half_mm
+    s_mm = place.s_mm
+    is_open = not place.stroke.closed
     turn_deg = _sharpest_corner_deg(line, s_mm, max(place.footprint_mm, 2 * half), place.stroke.closed)
     if turn_deg > MIN_CORNER_DEG:
         return Cause(f"a corner of {turn_deg:.0f} degrees, sharper than the footprint", code="sharp-corner")

@@ -156,10 +156,8 @@ def _all_effects(plan, brush, marks):
             for law, part in at.items()
         ]
     )
-    factor, steps = (
-        deviations[:, None] * _covariance_factor(covariance),
-        _covariance_factor(covariance[lag, lag]),
-    )
+    factor = deviations[:, None] * _covariance_factor(covariance)
+    steps = _covariance_factor(covariance[lag, lag])
     # The independent directions of all laws, in steps of the lag.
     mixing = np.linalg.pinv(steps) @ factor[lag]
     sides = [_lag_steps(brush, step / scale[lag]) for step in steps.T]

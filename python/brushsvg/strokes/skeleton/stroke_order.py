@@ -123,10 +123,8 @@ def _find_contacts(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     distances = distances.reshape(count, count, -1)
     nearest, distance = distances.argmin(axis=2), distances.min(axis=2)
     touch = np.exp(-((distance / TOUCH_SHARE) ** 2))
-    along_a, along_b = (
-        nearest // POINTS_PER_STROKE / (POINTS_PER_STROKE - 1),
-        nearest % POINTS_PER_STROKE / (POINTS_PER_STROKE - 1),
-    )
+    along_a = nearest // POINTS_PER_STROKE / (POINTS_PER_STROKE - 1)
+    along_b = nearest % POINTS_PER_STROKE / (POINTS_PER_STROKE - 1)
     relations = [touch, touch * along_a, touch * along_b, np.exp(-distance / NEAR_SHARE)]
     connected = distance < 1.125 * TOUCH_SHARE
     for _ in range(int(np.ceil(np.log2(count)))):  # paths of twice the length each time

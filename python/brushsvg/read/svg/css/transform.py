@@ -44,10 +44,8 @@ _MATRIX_MAKERS = {name.lower(): make for name, (_, make) in FUNCTIONS.items()} |
     "scaley": lambda y: (1.0, 0.0, 0.0, y, 0.0, 0.0),
     "skew": lambda x, y=0.0: (1.0, FUNCTIONS["skewY"][1](y)[1], FUNCTIONS["skewX"][1](x)[2], 1.0, 0.0, 0.0),
 }
-_X_KEYWORDS, _Y_KEYWORDS = (
-    {"left": 0.0, "center": 0.5, "right": 1.0},
-    {"top": 0.0, "center": 0.5, "bottom": 1.0},
-)
+_X_KEYWORDS = {"left": 0.0, "center": 0.5, "right": 1.0}
+_Y_KEYWORDS = {"top": 0.0, "center": 0.5, "bottom": 1.0}
 _NO_TRANSFORM = ("none", "initial", "unset", "revert")
 
 
