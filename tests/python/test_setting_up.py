@@ -81,6 +81,23 @@ def test_setup_programs_refuse_wrong_values(desk):
         brushsvg.setup_first_run("grbl-3axis", 3)
 
 
+def test_nothing_that_is_read_is_replaced(desk):
+    pen = "G21\nG90\nG0 Z5\nG0 X20 Y20\nG1 Z-1 F300\nG1 X60 Y20 F600\nG0 Z5\nM2\n"
+    Path("pen.gcode").write_text(pen, encoding="utf-8")
+    calls = (
+        lambda: brushsvg.setup_border("pen.gcode", desk / "pen.gcode", cell="grbl-3axis", width=3),
+        lambda: brushsvg.setup_height("grbl-3axis", "pen.gcode", brush="pen.gcode"),
+        lambda: brushsvg.simulate_photo("word.svg", "word.jpg", true_brush="word.jpg"),
+    )
+    for call in calls:
+        with refused("options-contradict"):
+            call()
+    assert Path("pen.gcode").read_text(encoding="utf-8") == pen
+    for nowhere in ("", "program"):
+        with refused("program-format"):
+            brushsvg.setup_height("grbl-3axis", nowhere)
+
+
 def test_python_makes_the_same_chart_as_the_command(desk):
     own = written(
         *("chart", "-o", "own.ngc", "--sheet", "250x180", "--strokes", "few"),

@@ -23,6 +23,7 @@ from ..errors import (
     need_truth,
     require_type,
 )
+from ..files import find_file_used_twice
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from ..machine.posts import GCODE
@@ -252,6 +253,17 @@ def suffix_of(source) -> str:
 def path_of(source) -> str:
     """Return the path of a source, or "" if the source is not a path."""
     return os.fspath(source) if isinstance(source, str | os.PathLike) else ""
+
+
+def refuse_file_used_twice(chosen: Choices, written: Iterable[object], more_read: Iterable[object] = ()) -> None:
+    """Raise Error if a written file is also read, or written twice.
+
+    written, more_read: paths; everything else, such as None or a Brush, is no path.
+    """
+    read = (chosen.input, chosen.brush, chosen.cell, chosen.corrections, *more_read)
+    if twice := find_file_used_twice(read, written):
+        sentence = "this cannot be two files at once: give each file that is read or written a path of its own"
+        raise Error(sentence, file=twice, code="options-contradict")
 
 
 def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:

@@ -23,7 +23,7 @@ from ..errors import (
     need_truth,
     require_type,
 )
-from ..files import find_file_used_twice, write_files
+from ..files import write_files
 from ..machine import preflight, writer
 from ..machine.arm.joints import is_installed
 from ..machine.cells.cell import Cell
@@ -54,6 +54,7 @@ from .choices import (
     make_options,
     path_of,
     refuse_ends_without_effect,
+    refuse_file_used_twice,
     report_ineffective_flags,
     suffix_of,
 )
@@ -172,10 +173,7 @@ def convert(
         if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
             sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
             raise Error(sentence, name, code="program-format")
-    read = (drawing, chosen.brush, chosen.cell, chosen.corrections)
-    if twice := find_file_used_twice(read, [out, *paths.values()]):
-        sentence = "this cannot be two files at once: give each file that is read or written a path of its own"
-        raise Error(sentence, file=twice, code="options-contradict")
+    refuse_file_used_twice(chosen, [out, *paths.values()])
     require_type(formats, (tuple, list), "a list of extensions, which formats is")
     for extension in formats:
         require_type(extension, str, "an extension, such as '.ngc'")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
-from ..errors import Notice, need_number, require_type
+from ..errors import Notice, name_file_in_errors, need_number, require_type
 from ..files import write_files
 from ..machine import header_lines, preflight, setup_programs, writer
 from ..machine.cells.cell import Cell
@@ -29,8 +29,8 @@ from .choices import (
     load_brush,
     load_cell,
     make_options,
-    name_file_in_errors,
     path_of,
+    refuse_file_used_twice,
     report_ineffective_flags,
     suffix_of,
 )
@@ -78,7 +78,8 @@ def setup_border(
 
     Raises Error for a drawing that cannot be painted, and if the tool would leave the workspace.
     """
-    return _write(out, lambda path, warn: make_border(make_choices(drawing, choices), path, warn=warn))
+    chosen = make_choices(drawing, choices)
+    return _write(chosen, out, lambda path, warn: make_border(chosen, path, warn=warn))
 
 
 def setup_first_run(
@@ -100,7 +101,7 @@ def setup_first_run(
     Raises Error if the machine cannot wait for a person, or would leave the workspace or the sheet.
     """
     chosen = check_choices(Choices(cell=cell, brush=brush, sheet=sheet))
-    return _write(out, lambda path, warn: make_first_run(chosen, path, warn))
+    return _write(chosen, out, lambda path, warn: make_first_run(chosen, path, warn))
 
 
 def setup_height(
@@ -129,29 +130,32 @@ def setup_height(
         need_number(lowest, "lowest [mm]", *HEIGHT_RANGE_MM),
         need_number(step, "step [mm]", *STEP_RANGE_MM),
     )
-    return _write(out, lambda path, warn: make_height(chosen, heights_mm, path, warn))
+    return _write(chosen, out, lambda path, warn: make_height(chosen, heights_mm, path, warn))
 
 
-def _write(out, make: Callable[[str, Warn], SetupProgram]) -> SetupProgram:
+def _write(
+    chosen: Choices, out: str | os.PathLike[str] | None, make: Callable[[str | None, Warn], SetupProgram]
+) -> SetupProgram:
     """Make a program, write it if it has a path, and add the notices."""
     if out is not None:
         require_type(out, (str, os.PathLike), "a path, which out is")
-    path, notices = "" if out is None else os.fspath(out), []
+    refuse_file_used_twice(chosen, [out])
+    path, notices = None if out is None else os.fspath(out), []
     made = make(path, lambda _, some: notices.extend(some))
-    if path:
+    if path is not None:
         write_files({path: made.text})
     return replace(made, notices=tuple(notices))
 
 
 def make_border(
     chosen: Choices,
-    path: str,
+    path: str | None,
     stage: Callable[[str], object] = lambda text: None,
     warn: Warn = lambda file, notices: None,
 ) -> SetupProgram:
     """Make the border of a job, and report notices with their file as soon as they are known.
 
-    path: the path of the program; its extension by default is that of the cell.
+    path: the path of the program; None for a program with the extension of the cell.
     """
     file = path_of(chosen.input)
     with name_file_in_errors(file):
@@ -177,7 +181,7 @@ def make_border(
     return SetupProgram(text, duration_s(program))
 
 
-def make_first_run(chosen: Choices, path: str, warn: Warn = lambda file, notices: None) -> SetupProgram:
+def make_first_run(chosen: Choices, path: str | None, warn: Warn = lambda file, notices: None) -> SetupProgram:
     """Make the first program of a machine, with the default heights, and report notices.
 
     chosen: cell, brush and sheet.
@@ -195,7 +199,7 @@ def make_first_run(chosen: Choices, path: str, warn: Warn = lambda file, notices
 
 
 def make_height(
-    chosen: Choices, heights_mm: tuple[float, float, float], path: str, warn: Warn = lambda file, notices: None
+    chosen: Choices, heights_mm: tuple[float, float, float], path: str | None, warn: Warn = lambda file, notices: None
 ) -> SetupProgram:
     """Make strokes at heights from the first to the last, by a step, and report notices.
 
@@ -216,10 +220,10 @@ def _load_cell_and_brush(chosen: Choices) -> tuple[Cell, _core.Brush]:
     return cell, load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
 
 
-def _find_post(path: str, cell: Cell) -> tuple[str, Post]:
+def _find_post(path: str | None, cell: Cell) -> tuple[str, Post]:
     """Return the extension of a program, and the post that writes it."""
-    suffix = suffix_of(path) or default_suffix(cell)
-    with name_file_in_errors(path):
+    suffix = default_suffix(cell) if path is None else suffix_of(path)
+    with name_file_in_errors(path or ""):
         return suffix, writer.post_for(suffix, cell)
 
 

@@ -15,7 +15,7 @@ from .. import _core
 from ..calibration.chart.file import is_chart, read_chart
 from ..calibration.chart.layout import Chart
 from ..comparison.job_page import JobPage, job_page
-from ..errors import Error, Notice, need_number, require_type
+from ..errors import Error, Notice, name_file_in_errors, need_number, require_type
 from ..files import read_bytes, write_files
 from ..jobs.choices import (
     ChoiceKeywords,
@@ -24,8 +24,8 @@ from ..jobs.choices import (
     fill_from_drawing,
     load_brush,
     make_options,
-    name_file_in_errors,
     path_of,
+    refuse_file_used_twice,
     report_ineffective_flags,
     suffix_of,
 )
@@ -93,6 +93,7 @@ def simulate_photo(
     seed = int(need_number(seed, "seed", 1, 1e8))
     chart = drawing if isinstance(drawing, Chart) else None
     chosen = make_choices(chart.plan if chart else drawing, choices)
+    refuse_file_used_twice(chosen, [out], [studio, true_brush])
     notices: list[Notice] = []
     made = photograph_job(
         chosen, chart, studio, true_brush, seed, progress or (lambda text: None), lambda _, some: notices.extend(some)
