@@ -144,6 +144,16 @@ def test_reaching_the_depth_limit_is_reported_once(tmp_path):
     assert is_reported(shallow.notices, "paint-runs-out round-6 '7 mm'")
 
 
+@pytest.mark.parametrize(("offset_mm", "deepest_mm"), [(0.0, "8"), (-2.2, "7.8")])
+def test_strokes_are_pressed_as_deep_as_the_cell_allows(tmp_path, offset_mm, deepest_mm):
+    """The servo's table ends at -10 mm, and lower paper brings its end closer. lowest_mm is -8."""
+    lines = "".join(f'<path d="M20,{30 + 30 * k} h140" stroke="#000" stroke-width="6"/>' for k in range(5))
+    drawn = f'<svg xmlns="http://www.w3.org/2000/svg" width="210mm" height="200mm" viewBox="0 0 210 200">{lines}</svg>'
+    work = prepared(tmp_path, 3.0, find_cell("grbl-servo"), drawn=drawn, z_offset_mm=offset_mm)
+    assert is_reported(work.notices, f"paint-runs-out round-6 grbl-servo '{deepest_mm} mm'"), work.notices
+    assert not simulate_and_check(work, ".gcode", Job(offset_mm)).problems
+
+
 @pytest.mark.parametrize(("order", "first"), [("nearest", 1), ("drawn", 31)])
 def test_another_order_and_a_resumed_job_are_reported(tmp_path, order, first):
     work = prepared(tmp_path, 0.2)

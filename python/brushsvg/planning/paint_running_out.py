@@ -51,16 +51,15 @@ def pressed_deeper(
     done,
     compensated: Callable,
     fetched_mm: Callable[[_core.Plan], list[list[float]]],
-    lowest_mm: float,
 ) -> Pressed:
     """Widen strokes by as much as their marks narrow since the last dip.
 
-    A brush with `paint` is pressed deeper for it. It stays within the depths that were measured, down to lowest_mm.
+    A brush with `paint` is pressed deeper for it. It stays within its depth range and the depths that were measured.
 
     painted, targets: strokes and their targets; done: the compensation of the strokes as they are painted freshly
     dipped; compensated: compensates strokes; fetched_mm: gives the places of a plan at which paint is fetched.
     """
-    deepest_mm, half_mm = _find_greatest_depth(brush, lowest_mm)
+    deepest_mm, half_mm = _find_greatest_depth(brush)
     shares = None
     for _ in range(MAX_ROUNDS):
         marks = _core.simulate(done.plan, brush)
@@ -84,10 +83,10 @@ def _are_shares_similar(before: np.ndarray, shares: np.ndarray) -> bool:
     return float(np.median(np.abs(off))) < MAX_SHARE_CHANGE
 
 
-def _find_greatest_depth(brush, lowest_mm: float) -> tuple[float, float]:
+def _find_greatest_depth(brush) -> tuple[float, float]:
     """Return the greatest measured depth that is allowed, and half the width there."""
     measured = [law.calibrated_mm[1] for law in (brush.lag, brush.half_width) if law.calibrated_mm]
-    deepest = min([brush.depth_range_mm[1], -lowest_mm, *measured])
+    deepest = min([brush.depth_range_mm[1], *measured])
     return deepest, brush.half_width(max(deepest, 0.0))
 
 

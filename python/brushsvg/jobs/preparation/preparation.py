@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ... import _core, read
 from ...comparison.corrections import apply_corrections
 from ...errors import Error
@@ -276,12 +274,12 @@ def _plan_strokes(lines: _StrokeSet, compensation, brush, compensated, options: 
             targets = [target for target, stroke in zip(targets, painted, strict=True) if stroke.id in kept_ids]
             painted, compensation = fitting, compensated(fitting)
     if brush.paint and brush.width_follows_depth() and _leads_paint(options):
-        lowest_mm = cell.heights.lowest_mm if cell else -np.inf
 
         def fetched(plan):
             return fetched_mm(plan, brush, cell)
 
-        pressed = pressed_deeper(painted, targets, brush, compensation, compensated, fetched, lowest_mm)
+        on_cell = _limit_depth(brush, options)
+        pressed = pressed_deeper(painted, targets, on_cell, compensation, compensated, fetched)
         painted, targets, compensation = pressed.painted, pressed.targets, pressed.done
         notices = pressed.notices
     return _PlannedStrokes(
