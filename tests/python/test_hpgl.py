@@ -111,10 +111,12 @@ def test_a_depth_other_than_the_pens_is_refused(poses):
         text_for(plan)
 
 
-def test_a_pressing_brush_on_a_plotter_suggests_the_pen(tmp_path, capsys):
+@pytest.mark.parametrize("width_mm", [3, 4.5])
+def test_a_pressing_brush_on_a_plotter_suggests_the_pen(tmp_path, capsys, width_mm):
+    """The pen is the remedy for every width, also for one that needs a depth of more than the 5 mm of the cell."""
     (tmp_path / "a.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
-        '<path id="a" fill="none" stroke="#000" stroke-width="3" d="M20 30Q50 0 80 30"/></svg>'
+        f'<path id="a" fill="none" stroke="#000" stroke-width="{width_mm}" d="M20 30Q50 0 80 30"/></svg>'
     )
     words = ("convert", tmp_path / "a.svg", "-o", tmp_path / "a.hpgl", "--cell", "hpgl-plotter")
     status, _, reported = in_json(capsys, *words)

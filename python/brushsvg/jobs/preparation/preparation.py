@@ -136,9 +136,12 @@ def _leads_paint(options: Options) -> bool:
 
 
 def _limit_depth(brush, options: Options):
-    """Return the brush as the cell can press it: no deeper than its lowest height, and the end of its servo's table."""
+    """Return the brush as the cell can press it: no deeper than its lowest height, and the end of its servo's table.
+
+    A cell with a pen draws at one height. The brush is returned as it is, because no other width helps there.
+    """
     cell = options.cell
-    if cell is None or not brush.width_follows_depth():
+    if cell is None or cell.pen or not brush.width_follows_depth():
         return brush
     lowest_mm = cell.heights.lowest_mm
     if cell.servo:
