@@ -102,3 +102,17 @@ def test_editable_strokes_wider_than_the_brush_are_reported(tmp_path, monkeypatc
     status, _, reported = in_json(capsys, "convert", "out.svg", "-o", "out.ngc")
     assert status == 1 and is_reported(reported, "width-out-of-reach 20.000 8.400]", "square"), reported
     assert in_json(capsys, *words, "--force", "--brush", "rigid")[2] == [], "a pen draws lines of any width as one"
+
+
+def test_editable_strokes_wider_than_the_cell_can_press_are_reported(tmp_path, monkeypatch, capsys):
+    """round-6 paints 8.4 mm, and 6.72 mm on a cell that can press it by 8 mm."""
+    monkeypatch.chdir(tmp_path)
+    bar = '<rect id="bar" x="10" y="20" width="80" height="7.2" fill="red" stroke="none"/>'
+    (tmp_path / "in.svg").write_text(f"{HEAD}{bar}</svg>")
+    words = ("preview", "in.svg", "-o", "out.svg", "--show", "strokes", "--editable", "--force")
+    assert in_json(capsys, *words)[2] == []
+    cell = ("--cell", "grbl-servo")
+    status, _, reported = in_json(capsys, *words, *cell)
+    assert status == 0 and is_reported(reported, "width-out-of-reach bar 7.2 6.72] grbl-servo"), reported
+    status, _, reported = in_json(capsys, "convert", "out.svg", "-o", "out.gcode", *cell)
+    assert status == 1 and is_reported(reported, "width-out-of-reach 7.200 6.720] grbl-servo", "bar"), reported

@@ -113,7 +113,16 @@ def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Not
     return [stroke for stroke, area in zip(strokes, areas, strict=True) if area >= dab_mm2 / 2], notices
 
 
-def is_within_reach(half: float, greatest: float) -> bool:
+def find_wide_lines(lines: list, brush) -> list[tuple[_core.Stroke, float]]:
+    """Return the lines that are visibly wider than the brush, and half the greatest width of each."""
+    if not brush.width_follows_depth():
+        return []
+    greatest = brush.half_width_range_mm()[1]
+    widest = [(line, max(half for _, half in line.half_width)) for line in lines]
+    return [(line, half) for line, half in widest if not _is_within_reach(half, greatest)]
+
+
+def _is_within_reach(half: float, greatest: float) -> bool:
     """Return whether half a line's width is at most the brush's greatest.
 
     A difference that one does not see is allowed.
@@ -130,7 +139,7 @@ def _find_out_of_reach(stroke, least: float, greatest: float) -> tuple[str, floa
     halves = np.array([half for _, half in stroke.half_width])
     is_narrow, is_wide = halves < least - 1e-9, halves > greatest + 1e-9
     off = is_narrow | is_wide
-    if not off.any() or (not stroke.wanted_mm and not is_within_reach(halves.max(), greatest)):
+    if not off.any() or (not stroke.wanted_mm and not _is_within_reach(halves.max(), greatest)):
         return None
     worst = halves.max() if is_wide.any() else halves.min()
     what = "its shape is" if stroke.wanted_mm else "its line is"

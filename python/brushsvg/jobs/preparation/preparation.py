@@ -27,7 +27,7 @@ from ...strokes.extraction import strokes as strokes_of
 from ...strokes.joining import join_lines
 from ...strokes.stroke_search import search_strokes
 from ...strokes.uncovered_areas import notices_of_areas, uncovered_areas
-from ...strokes.wide_shapes import is_within_reach, within_reach
+from ...strokes.wide_shapes import find_wide_lines, within_reach
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
 from ..work import KnownSimulation, Work, select_colour
@@ -83,7 +83,7 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
     notices: the warnings of the drawing; further warnings are added to this list.
     """
     stage("finding strokes")
-    on_cell = _limit_depth(brush, options)
+    on_cell = limit_depth(brush, options)
     found_strokes, stroke_notices = _find_strokes(design, on_cell, options)
     notices += stroke_notices
     if not partly:
@@ -135,7 +135,7 @@ def _leads_paint(options: Options) -> bool:
     return options.compensation in ("closed", "refined")
 
 
-def _limit_depth(brush, options: Options):
+def limit_depth(brush, options: Options):
     """Return the brush as the cell can press it: no deeper than its lowest height, and the end of its servo's table.
 
     A cell with a pen draws at one height. The brush is returned as it is, because no other width helps there.
@@ -281,7 +281,7 @@ def _plan_strokes(lines: _StrokeSet, compensation, brush, compensated, options: 
         def fetched(plan):
             return fetched_mm(plan, brush, cell)
 
-        on_cell = _limit_depth(brush, options)
+        on_cell = limit_depth(brush, options)
         pressed = pressed_deeper(painted, targets, on_cell, compensation, compensated, fetched)
         painted, targets, compensation = pressed.painted, pressed.targets, pressed.done
         notices = pressed.notices
@@ -343,10 +343,8 @@ def _refuse_wide_lines(strokes: list, brush) -> None:
 
     Lines are checked before filled shapes, which need much more time.
     """
-    for stroke in strokes if brush.width_follows_depth() else ():
-        widest = max(half for _, half in stroke.half_width)
-        if not stroke.wanted_mm and not is_within_reach(widest, brush.half_width_range_mm()[1]):
-            brush.depth_for_half_width(widest, stroke.id)
+    for stroke, half_mm in find_wide_lines([stroke for stroke in strokes if not stroke.wanted_mm], brush):
+        brush.depth_for_half_width(half_mm, stroke.id)
 
 
 def _read_design(source, reading: read.ReadOptions) -> Design:

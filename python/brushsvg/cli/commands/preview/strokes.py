@@ -5,13 +5,14 @@ from __future__ import annotations
 from ....errors import Error, Notice
 from ....jobs.choices import make_layout, make_read_options, report_ineffective_flags
 from ....jobs.options import DEFAULT_BRUSH
+from ....jobs.preparation.preparation import limit_depth
 from ....model.library import find_brush
 from ....read import read_drawing
 from ....read.layout import arrange
 from ....strokes.extraction import strokes as strokes_of
-from ....strokes.wide_shapes import is_within_reach
+from ....strokes.wide_shapes import find_wide_lines
 from ...console import refuse_errors, stage, warn
-from ...steps.options import apply_drawing_settings, load_brush, make_choices
+from ...steps.options import apply_drawing_settings, make_choices, make_options
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
 
@@ -30,8 +31,9 @@ def preview_strokes(args) -> None:
             strokes, notices = [], [nothing.notice()]
         notices = [*design.notices, *notices]
         if args.editable:
-            brush_name = apply_drawing_settings(chosen, args.input).brush
-            notices += _report_wide_strokes(strokes, load_brush(brush_name) or find_brush(DEFAULT_BRUSH))
+            options = make_options(apply_drawing_settings(chosen, args.input))
+            brush = options.brush or find_brush(DEFAULT_BRUSH)
+            notices += _report_wide_strokes(strokes, limit_depth(brush, options))
         warn(args.input, notices)
         if args.editable:
             from ....show.editable_svg import lines_svg
@@ -47,13 +49,12 @@ def preview_strokes(args) -> None:
 def _report_wide_strokes(strokes, brush) -> list[Notice]:
     """Report strokes that become lines wider than the brush: it fills wide shapes, but convert refuses such lines."""
     least, greatest = brush.half_width_range_mm()
-    notices = []
-    for stroke in strokes if brush.width_follows_depth() else ():
-        half = max(half for _, half in stroke.half_width)
-        if not is_within_reach(half, greatest):
-            sentence = (
-                f"its line is {2 * half:.3g} mm wide, outside the range [{2 * least:.3g}, {2 * greatest:.3g}] mm of "
-                f"brush {brush.name}, and convert will refuse it: draw narrower lines in its place"
-            )
-            notices.append(Notice(stroke.id, sentence, code="width-out-of-reach"))
-    return notices
+    return [
+        Notice(
+            stroke.id,
+            f"its line is {2 * half:.3g} mm wide, outside the range [{2 * least:.3g}, {2 * greatest:.3g}] mm of "
+            f"brush {brush.name}, and convert will refuse it: draw narrower lines in its place",
+            code="width-out-of-reach",
+        )
+        for stroke, half in find_wide_lines(strokes, brush)
+    ]
