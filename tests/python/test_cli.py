@@ -356,6 +356,9 @@ def test_a_plan_keeps_its_brush(desk, capsys):
     assert status == 1 and agrees(reported, "brush-unknown my-brush '--brush FILE'", "brush")
     status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc", "--brush", "round-6", "--quiet")
     assert status == 0 and agrees(reported, "plan-of-other-brush my-brush round-6", "brush")
+    edited_plan(desk, brush="Round-6")
+    status, _, ((_, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
+    assert status == 1 and agrees(reported, "brush-unknown Round-6 'did you mean round-6?' '--brush FILE'", "brush")
     edited_plan(desk, brush="7/8 inch")  # the name of a brush is no path
     status, _, ((file, reported),) = in_json(capsys, "convert", "x.json", "-o", "out.ngc")
     assert (status, file) == (1, "x.json") and agrees(reported, "brush-unknown '7/8 inch'", "brush")

@@ -28,6 +28,7 @@ from ...strokes.joining import join_lines
 from ...strokes.stroke_search import search_strokes
 from ...strokes.uncovered_areas import notices_of_areas, uncovered_areas
 from ...strokes.wide_shapes import find_wide_lines, within_reach
+from ...suggestions import did_you_mean
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
 from ..work import KnownSimulation, Work, select_colour
@@ -457,7 +458,11 @@ def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> li
 
 def _prepare_plan(plan, options: Options) -> Work:
     if not options.brush and plan.brush not in brush_names() and not plan.brush.endswith(".json"):
-        sentence = f"the plan names brush {plan.brush!r}, which does not come along"
+        names = brush_names()
+        sentence = (
+            f"the plan was made for brush {plan.brush!r}, whose file is not known{did_you_mean(plan.brush, names)} "
+            f"Known are {', '.join(names)}"
+        )
         raise Error(sentence, "brush", code="brush-unknown", advice="give --brush FILE")
     brush = options.brush or find_brush(plan.brush)
     notices = mistyped_keys(brush) + report_other_brush(plan, brush)
