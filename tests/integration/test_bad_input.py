@@ -192,7 +192,7 @@ PLANS = {  # a change, and the key or stroke that is reported with its code
     "too fast": (
         lambda plan: plan["passes"][0].update(speed_mm_s=30),
         "line",
-        "speed-out-of-range 30 '[0.000001, 25.0] mm/s' round-6",
+        "speed-out-of-range 30 '[0.000001, 25] mm/s' round-6",
     ),
 }
 

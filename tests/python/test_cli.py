@@ -277,7 +277,7 @@ def edited_plan(desk, **changes):
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"speed_mm_s": 30}, "speed-out-of-range 30 [0.000001, 25.0] round-6"),
+        ({"speed_mm_s": 30}, "speed-out-of-range 30 [0.000001, 25] round-6"),
         ({"poses_mm": [[30, 30, 0], [200, 30, 0]], "arcs": []}, "tool-off-sheet 50.00 right"),
         ({"sheet_mm": [120, 20]}, "mark-off-sheet upper"),
         (

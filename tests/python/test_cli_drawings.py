@@ -158,7 +158,7 @@ def test_settings_change_the_plan(desk, capsys):
     assert is_reported(reported, "brush-asked-for rigid round-6", "a"), reported
     (desk / "d.svg").write_text(text.replace('speed="7"', 'speed="26"'))
     status, _, reported = in_json(capsys, "convert", "d.svg", "-o", "out.ngc")
-    assert status == 1 and is_reported(reported, "speed-out-of-range 26 [0.000001, 25.0]"), reported
+    assert status == 1 and is_reported(reported, "speed-out-of-range 26 [0.000001, 25]"), reported
 
 
 def test_dxf_needs_its_units(desk, capsys):

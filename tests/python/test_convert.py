@@ -88,7 +88,7 @@ def test_a_program_is_written_in_the_language_of_its_cell(drawing):
 def test_a_program_too_fast_for_the_brush_is_not_encoded(drawing):
     work = preparation.prepare(drawing)
     work.plan.passes[1].speed_mm_s = 25.5
-    with refused("speed-out-of-range 25.5 '[0.000001, 25.0] mm/s' round-6", "bold"):
+    with refused("speed-out-of-range 25.5 '[0.000001, 25] mm/s' round-6", "bold"):
         writer.encode(".ngc", work.plan, work.brush, "two")
 
 

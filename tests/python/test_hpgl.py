@@ -91,7 +91,7 @@ def test_the_drawn_path_is_within_half_a_unit_of_the_plan(turned_deg):
 def test_the_speed_is_rounded_down_to_whole_centimetres():
     found = run(text_for(TWO))
     assert {leg.speed_mm_s for leg in found.legs if leg.kind == "feed"} == {20.0}
-    with refused("speed-out-of-range 9 '[10, 100.0] mm/s of cell hpgl-plotter'"):
+    with refused("speed-out-of-range 9 '[10, 100] mm/s of cell hpgl-plotter'"):
         text_for(drawn([(10, 10), (20, 10)], speed=9.0))
 
 

@@ -71,7 +71,7 @@ def test_one_speed_fits_all_strokes_within_the_limits(desk, capsys):
     status, _, reported = in_json(capsys, "check", "pens.ngc", "pens.svg")
     assert status == 1 and is_reported(reported, "stroke-too-fast 12.0 5.0")
     reported = in_json(capsys, "convert", "pens.svg", "-o", "x.ngc", "--speed", "26")[2]
-    assert is_reported(reported, "speed-out-of-range 26 0.001 25 round-6")
+    assert is_reported(reported, "speed-out-of-range 26 0.000001 25 round-6")
     reported = in_json(capsys, "convert", "pens.svg", "-o", "x.lua", "--cell", "cr5", "--speed", "0.5")[2]
     assert is_reported(reported, "speed-out-of-range 0.5 1 25")
     assert not (desk / "x.ngc").exists()

@@ -32,7 +32,6 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
     least_mm: smallest depth that a program can express. Rounding may leave nothing of a smaller depth.
     """
     problems = [] if passes else [Notice("", "there is nothing to paint", code="nothing-to-paint")]
-    min_mm_s, max_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SPEED_MM_S), touching_mm_s(brush, cell)
     for a_pass in passes:
         poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
         if len(poses) == 0:
@@ -52,12 +51,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                 notices.append(Notice("", sentence, code="never-pressed"))
             if cell.pen:
                 notices += _check_pen_height(poses, cell)
-        speed = a_pass.speed_mm_s
-        if not min_mm_s <= speed <= max_mm_s:
-            least = np.format_float_positional(min_mm_s, trim="-")
-            owner = owner_of_speed_limit(speed, brush, cell)
-            sentence = f"speed {speed:.4g} mm/s is outside the range [{least}, {max_mm_s:.1f}] mm/s of {owner}"
-            notices.append(Notice("", sentence, code="speed-out-of-range"))
+        notices += check_painting_speed(a_pass.speed_mm_s, brush, cell)
         problems += [replace(notice, where=a_pass.stroke) for notice in notices]
     for station in cell.stations:
         if station.by_hand:
@@ -76,12 +70,18 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
     return problems
 
 
-def owner_of_speed_limit(speed_mm_s: float, brush, cell: Cell | None) -> str:
-    """Return the brush or the cell whose limit a speed breaks, in words."""
-    if cell is None:
-        return f"brush {brush.name}"
-    is_of_cell = speed_mm_s < LEAST_SPEED_MM_S.get(cell.language, 0.0) or cell.speeds.paint_mm_s < brush.max_speed_mm_s
-    return f"cell {cell.name}" if is_of_cell else f"brush {brush.name}"
+def check_painting_speed(speed_mm_s: float, brush, cell: Cell | None) -> list[Notice]:
+    """Report a speed outside the limits of the brush and the cell, with the one whose limit it breaks."""
+    min_mm_s, max_mm_s, owner = MIN_SPEED_MM_S, brush.max_speed_mm_s, f"brush {brush.name}"
+    if cell is not None:
+        min_mm_s, max_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SPEED_MM_S), touching_mm_s(brush, cell)
+        if speed_mm_s < min_mm_s or max_mm_s < brush.max_speed_mm_s:
+            owner = f"cell {cell.name}"
+    if min_mm_s <= speed_mm_s <= max_mm_s:
+        return []
+    least = np.format_float_positional(min_mm_s, trim="-")
+    sentence = f"speed {speed_mm_s:.4g} mm/s is outside the range [{least}, {max_mm_s:g}] mm/s of {owner}"
+    return [Notice("", sentence, code="speed-out-of-range")]
 
 
 def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None) -> list[Notice]:

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 from ... import _core, read
 from ...comparison.corrections import apply_corrections
 from ...errors import Error
-from ...machine.cells.cell import LEAST_SPEED_MM_S
 from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
 from ...machine.program import Job
-from ...machine.workspace_limits import ROUNDING_MM, owner_of_speed_limit
+from ...machine.workspace_limits import ROUNDING_MM, check_painting_speed
 from ...model.library import brush_names, find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper
 from ...planning.refinement import refine_where_better
@@ -401,15 +400,9 @@ def _set_drawn_speeds(plan, strokes):
 
 def _check_speed(brush, options: Options) -> None:
     """Raise Error if the requested speed is outside the limits of the brush or cell."""
-    speed, cell = options.speed_of_all_mm_s, options.cell
-    if speed is None:
-        return
-    min_mm_s = LEAST_SPEED_MM_S.get(cell.language, 0.001) if cell else 0.001
-    max_mm_s = min(brush.max_speed_mm_s, cell.speeds.paint_mm_s) if cell else brush.max_speed_mm_s
-    if not min_mm_s <= speed <= max_mm_s:
-        whose = owner_of_speed_limit(speed, brush, cell)
-        sentence = f"speed {speed:.4g} mm/s is outside the range [{min_mm_s:g}, {max_mm_s:g}] mm/s of {whose}"
-        raise Error(sentence, code="speed-out-of-range")
+    if options.speed_of_all_mm_s is not None:
+        for notice in check_painting_speed(options.speed_of_all_mm_s, brush, options.cell):
+            raise Error(notice.sentence, code=notice.code)
 
 
 def _set_requested_speed(plan, options: Options):
