@@ -8,11 +8,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from diagnostics import in_json, is_reported, refused
+from diagnostics import agrees, in_json, is_reported, refused
 from programs import RUNNABLE, call, program
 from test_gcode import TWO, text_of
 
 from brushsvg import _core, write_plan
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.machine.posts.gcode_servo import grbl_servo, servo_values_at
@@ -178,6 +180,17 @@ def test_shapes_and_lines_are_no_wider_than_the_cell_can_press_the_brush(
     (tmp_path / "line.svg").write_text(svg.format('<path id="l" d="M20 20H60" stroke="#000" stroke-width=".5"/>'))
     status, _, reported = in_json(capsys, "convert", "line.svg", "-o", program, "--force", *flags)
     assert status == 0 and is_reported(reported, f"depth-not-measured '0.84 to {widest_mm:.2g},'", "l"), reported
+
+
+def test_a_preview_leaves_out_only_the_lines_that_the_cell_cannot_paint(tmp_path):
+    lines = '<path id="wide" d="M20 15H60" stroke-width="7.2"/><path id="fine" d="M20 35H60" stroke-width="6"/>'
+    size = 'width="90mm" height="50mm" viewBox="0 0 90 50"'
+    path = tmp_path / "lines.svg"
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size} fill="none" stroke="#000">{lines}</svg>')
+    work = prepare(path, Options(cell=find_cell("grbl-servo")), partly=True)
+    (left_out,) = work.refused
+    assert agrees(left_out, "width-out-of-reach 7.200 6.720] grbl-servo", "wide")
+    assert [a_pass.stroke for a_pass in work.plan.passes] == ["fine"]
 
 
 def test_the_program_contains_only_words_grbl_knows():

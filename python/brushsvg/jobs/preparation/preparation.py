@@ -221,9 +221,9 @@ def _fills_corners(options: Options) -> bool:
 def _limit_widths(drawn: list, brush, options: Options, partly: bool) -> _StrokeSet:
     """Make strokes no wider than the brush."""
     strokes, refused, left_out = drawn, [], []
-    if partly and options.wide == "refuse":
+    if partly:
         strokes, _, refused, left_out = _separate_refused(
-            strokes, strokes, lambda pairs: within_reach(pairs, brush, options.wide)
+            strokes, strokes, lambda one: _refuse_wide_strokes(one, brush, options)
         )
     painted, targets, notices = within_reach(strokes, brush, options.wide, _leads_paint(options))
     return _StrokeSet(list(drawn), painted, targets, notices, refused, left_out)
@@ -336,6 +336,13 @@ def _find_stray_paint(
     unreached = [each for each in areas if not each.is_reached]
     missed = [each for each in areas if each.is_reached and _leads_paint(options)]
     return unreached, missed, _find_paint_outside(planned, brush, options)
+
+
+def _refuse_wide_strokes(strokes: list, brush, options: Options) -> None:
+    """Raise Error for the first line that is wider than the brush, and for the first such shape with --wide refuse."""
+    _refuse_wide_lines(strokes, brush)
+    if options.wide == "refuse":
+        within_reach(strokes, brush, options.wide)
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
