@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..._core import remarks
 from ...model.confidence import law_band
 from ...model.plot import brush_picture
 from ...reporting.report_text import Report, plural, verdict
@@ -25,8 +26,8 @@ def report(calibration) -> Report:
         fitted.name for fitted in calibration.laws if fitted.fit and getattr(brush, fitted.name).rmse_mm is None
     ]
     scattered = [
-        f"the values of {name} scatter by {rmse_mm:.1f} mm about a law of at most {greatest_mm:.1f} mm"
-        for name, rmse_mm, greatest_mm in _scattered_laws(calibration)
+        f"the values of {name} contradict each other: they scatter by {getattr(brush, name).rmse_mm:.2f} mm (RMSE)"
+        for name in _scattered_laws(brush)
     ]
     reservations = [
         f"{' and '.join(assumed)} {'is' if len(assumed) == 1 else 'are'} assumed, not measured" if assumed else "",
@@ -52,12 +53,13 @@ def report(calibration) -> Report:
     return Report(verdict(scattered, reservations), (*lines, *_suggest_next(calibration)), tuple(details))
 
 
-def _scattered_laws(calibration) -> list[tuple[str, float, float]]:
-    """Return the name, the RMSE and the greatest value of each law that its own values contradict."""
-    brush = calibration.brush
-    laws = [(fitted.name, getattr(brush, fitted.name)) for fitted in calibration.laws if fitted.fit]
-    sizes = [(name, law.rmse_mm or 0.0, max(abs(law(depth)) for depth in brush.depth_range_mm)) for name, law in laws]
-    return [size for size in sizes if size[1] > size[2]]
+def _scattered_laws(brush) -> list[str]:
+    """Return the names of the laws whose values contradict each other.
+
+    A plan depends only on lag and width. The positions inside the footprint may scatter without visible effect.
+    """
+    scattered = {notice.where for notice in remarks(brush) if notice.code == "law-scatters"}
+    return [name for name in ("lag", "half_width") if name in scattered]
 
 
 def _describe_fit(brush, fitted) -> str:
@@ -77,7 +79,7 @@ def _suggest_next(calibration) -> list[str]:
     It is the law with the largest interval for its size, at the depth where the interval is widest.
     """
     brush = calibration.brush
-    if scattered := [name for name, _, _ in _scattered_laws(calibration)]:
+    if scattered := _scattered_laws(brush):
         return [f"next: measure {' and '.join(scattered)} again, since the values contradict each other"]
     if assumed := [fitted.name for fitted in calibration.laws if fitted.fit is None]:
         return [f"next: measure {' and '.join(assumed)}, so far assumed"]
