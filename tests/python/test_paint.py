@@ -517,7 +517,9 @@ def test_a_brush_that_runs_dry_before_paint_is_fetched_is_reported():
         assert not report_dry_brush(loads, brush, find_cell())
 
 
-def test_convert_warns_that_the_brush_runs_dry(tmp_path, capsys):
+@pytest.mark.parametrize(("suffix", "is_reported_dry"), [(".ngc", True), (".json", False)])
+def test_convert_warns_that_the_brush_of_a_program_runs_dry(suffix, is_reported_dry, tmp_path, capsys):
+    """A plan has no cell that could fetch paint."""
     brush = find_brush("round-6")
     brush.paint = _core.Paint(0.4, lasts_mm=50)
     (tmp_path / "own.json").write_text(_core.write_brush(brush))
@@ -525,9 +527,9 @@ def test_convert_warns_that_the_brush_runs_dry(tmp_path, capsys):
         '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60">'
         '<path d="M20 30 h80" stroke="#000" stroke-width="3"/></svg>'
     )
-    out = str(tmp_path / "d.ngc")
+    out = str(tmp_path / f"d{suffix}")
     assert main(["convert", str(tmp_path / "d.svg"), "-o", out, "--brush", str(tmp_path / "own.json")]) == 0
-    assert "runs dry" in capsys.readouterr().err
+    assert ("runs dry" in capsys.readouterr().err) == is_reported_dry
 
 
 def test_loads_are_not_split_or_reported_as_strokes():

@@ -331,11 +331,12 @@ class SimulatedWork:
         field_notices = beyond_field(self.loads.loads, cell) if self.is_program else []
         part_notices = beyond_part(self.loads, self.cell) if self.is_program else []
         lowering_notices = _check_lowering(self.walk.job.z_offset_mm) if self.is_program else []
+        dry_notices = report_dry_brush(self.loads, brush, cell, first_stroke) if self.is_program else []
         return [
             *report_missing_paint(brush, cell),
             *order_notices,
             *report_long_strokes(self.loads, brush, cell),
-            *report_dry_brush(self.loads, brush, cell, first_stroke),
+            *dry_notices,
             *pen_notices,
             *field_notices,
             *part_notices,
