@@ -35,7 +35,8 @@ def start_processes(jobs: int) -> Iterator[Executor]:
         raise Error(NO_WORKER, code="worker-lost")
     if multiprocessing.current_process().daemon:
         sentence = (
-            "a process of multiprocessing.Pool cannot start worker processes: give batch executor=ThreadPoolExecutor()"
+            "a daemonic process, such as one of multiprocessing.Pool, cannot start worker processes: give batch "
+            "executor=ThreadPoolExecutor()"
         )
         raise Error(sentence, code="worker-lost")
     methods = multiprocessing.get_all_start_methods()
