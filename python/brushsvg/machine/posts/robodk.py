@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import contextlib
 import importlib.util
+import io
 import sys
 import tempfile
 import threading
@@ -43,7 +44,7 @@ def robodk(program: Program) -> Iterator[str]:
     Raises Error for everything that the post cannot do, and if it logs anything.
     """
     where = program.cell.robodk.post
-    with tempfile.TemporaryDirectory() as folder, _silence_this_thread():
+    with tempfile.TemporaryDirectory() as folder, _post_lock, contextlib.redirect_stdout(_sink):
         try:
             module = _load_post(where)
             post = module.RobotPost(PROGRAM_NAME, program.cell.name, AXIS_COUNT)
@@ -68,39 +69,17 @@ def robodk(program: Program) -> Iterator[str]:
     yield _decode_saved(saved, where)
 
 
-class _OtherThreads:
-    """A standard output that prints the text of all threads but one."""
-
-    stdout = None
-    silent_thread = 0
+class _Sink(io.TextIOBase):
+    """A standard output that drops what is printed."""
 
     def write(self, text: str) -> int:
-        if self.stdout is None or threading.get_ident() == self.silent_thread:
-            return len(text)
-        return self.stdout.write(text)
-
-    def __getattr__(self, name: str):
-        return getattr(self.stdout, name)
+        return len(text)
 
 
-# sys.stdout and sys.path belong to all threads. Two posts that set and reset them at the same moment would leave the
-# value of the other one behind.
+# sys.stdout and sys.path belong to all threads, so only one post runs at a time. What other threads print meanwhile is
+# lost. The sink is never freed: until Python 3.12, print() crashes if another thread frees the object it prints to.
 _post_lock = threading.Lock()
-# There is one such object, and it is never freed: until Python 3.12, print() crashes if another thread frees the
-# object that it prints to.
-_other_threads = _OtherThreads()
-
-
-@contextlib.contextmanager
-def _silence_this_thread() -> Iterator[None]:
-    """Drop what this thread prints. Only one thread at a time can do so."""
-    with _post_lock:
-        _other_threads.stdout, _other_threads.silent_thread = sys.stdout, threading.get_ident()
-        try:
-            with contextlib.redirect_stdout(_other_threads):
-                yield
-        finally:
-            _other_threads.silent_thread = 0
+_sink = _Sink()
 
 
 def _decode_saved(saved: bytes, where: str) -> str:
