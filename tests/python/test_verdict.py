@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from diagnostics import gives
 
+from brushsvg import _core
 from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.errors import Notice
 from brushsvg.jobs import outputs
@@ -59,10 +60,15 @@ def known_to(middle_mm):
             for code in ("off-middle-line", "paint-outside")
         ),
         (replace(MADE, assumed=("lag", "width")), BUT, ("lag", "width", "mine")),
-        (replace(MADE, lacks_interval=True), BUT, ("mine", "too few depths")),
+        (
+            replace(MADE, without_interval=("lag", "width")),
+            BUT,
+            ("lag and width", "mine", "interval"),
+        ),
         (known_to(UNCERTAIN_MM - 0.01), GOOD, ()),
         (known_to(UNCERTAIN_MM), BUT, ("mine", "1.0 mm")),
         (known_to(None), GOOD, ()),
+        (replace(known_to(1.5), without_interval=("width",)), BUT, ("width", "interval", "1.5 mm")),
     ],
 )
 def test_each_reason_changes_the_verdict(made, begins, named):
@@ -70,9 +76,23 @@ def test_each_reason_changes_the_verdict(made, begins, named):
     assert (made.verdict == GOOD) == (begins == GOOD)
 
 
-@pytest.mark.parametrize(("lags", "expected"), [([(2, 6), (5, 8)], BUT), (6.0, BUT), (0.0, GOOD)])
-def test_a_brush_of_two_measurements_is_not_called_good(lags, expected, tmp_path):
-    """Three measurements have an interval, which may be wide. Two have none, and were called good.
+TWO_LAGS, FOUR_LAGS = [(2, 6), (5, 8)], [(1, 3), (3, 5.1), (5, 7), (7, 9)]
+TWO_WIDTHS, FOUR_WIDTHS = [(1, 1.5), (7, 7)], [(1, 1.5), (3, 3.4), (5, 5.1), (7, 7)]
+
+
+@pytest.mark.parametrize(
+    ("lags", "widths", "expected", "named"),
+    [
+        (TWO_LAGS, TWO_WIDTHS, BUT, ("lag and width", "interval")),
+        (FOUR_LAGS, TWO_WIDTHS, BUT, ("the width", "interval")),
+        (TWO_LAGS, FOUR_WIDTHS, BUT, ("lag of", "interval")),
+        (FOUR_LAGS, FOUR_WIDTHS, GOOD, ()),
+        (6.0, TWO_WIDTHS, BUT, ("never measured",)),
+        (0.0, [(1, 3.0)], GOOD, ()),
+    ],
+)
+def test_a_brush_without_confidence_interval_is_not_called_good(lags, widths, expected, named, tmp_path):
+    """Three measurements have an interval, which may be wide. Two have none.
 
     A pen does not trail. It was to be calibrated, which `calibrate` refuses.
     """
@@ -80,10 +100,22 @@ def test_a_brush_of_two_measurements_is_not_called_good(lags, expected, tmp_path
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">'
         '<path d="M20 30 h50" fill="none" stroke="#000" stroke-width="3"/></svg>'
     )
-    widths = [(2, 2.0), (5, 5.0)] if lags else [(1, 3.0)]
     work = prepare(tmp_path / "d.svg", Options(brush=new_brush("mine", lags, widths)))
     made = outputs.make_report(work, predict_plan_marks(work.plan, work.brush), find_cell())
-    assert made.verdict.startswith(expected), made.verdict
+    assert made.verdict.startswith(expected) and gives(made.verdict, *named), made.verdict
+
+
+def test_a_brush_file_without_rmse_has_laws_without_interval():
+    """The keys about exactness are optional in a brush file. An RMSE of 0 says that a law is exact."""
+    brush, coefficients = new_brush("mine", FOUR_LAGS, FOUR_WIDTHS), [0.0, 0.5]
+    for half_width, names in (
+        (brush.half_width, ()),
+        (_core.Profile(coefficients, rmse_mm=0.0), ()),
+        (_core.Profile(coefficients), ("width",)),
+        (_core.Profile(coefficients, assumed=True), ()),
+    ):
+        brush.half_width = half_width
+        assert outputs.list_laws_without_interval(brush) == names
 
 
 def test_the_thresholds_equal_the_documentation():

@@ -16,7 +16,7 @@ from ..machine.tool_axes import is_tilted
 from ..machine.writer import time_s, whole_program
 from ..show.animation import animation
 from ..show.evaluation import report
-from ..show.evaluation.uncertainty import Band, uncertainty
+from ..show.evaluation.uncertainty import Band, is_law_interval_known, uncertainty
 from ..show.marks_svg import marks_svg
 from ..show.overlap_svg import overlap_svg
 from ..show.timeline import timeline
@@ -25,6 +25,7 @@ from .preparation.margin_strokes import MARGIN_KIND, is_margin, remove_margin_st
 from .work import Work
 
 TARGET_TOLERANCE_MM = 0.02  # how exactly an HTML page shows the target; smaller errors are not visible
+_NAMES_BY_LAW = {"lag": "lag", "half_width": "width"}  # the laws that a plan depends on, as users call them
 
 
 def header_lines(work: Work) -> tuple[str, ...]:
@@ -199,11 +200,11 @@ def make_report(
         refused=tuple(work.refused),
         forbidden=tuple(forbidden),
         confidence=confidence,
-        lacks_interval=confidence is None and not is_tilted_plan and not work.brush.is_rigid(),
         is_tilted=is_tilted_plan,
         groups=report.groups(marks, work.brush, work.strokes),
         advice=advice,
         assumed=list_assumed_laws(work.brush),
+        without_interval=list_laws_without_interval(work.brush),
         places=report.worst_places(painted) if is_drawing else (),
     )
 
@@ -212,5 +213,15 @@ def list_assumed_laws(brush: _core.Brush) -> tuple[str, ...]:
     """Return the names of the laws that were never measured. A pen has none: there is nothing to calibrate."""
     if brush.is_rigid():
         return ()
-    names_by_law = {"lag": "lag", "half_width": "width"}
-    return tuple(name for law, name in names_by_law.items() if getattr(brush, law).assumed)
+    return tuple(name for law, name in _NAMES_BY_LAW.items() if getattr(brush, law).assumed)
+
+
+def list_laws_without_interval(brush: _core.Brush) -> tuple[str, ...]:
+    """Return the names of the measured laws of which nobody knows how exact they are. A pen has none."""
+    if brush.is_rigid():
+        return ()
+    return tuple(
+        name
+        for law, name in _NAMES_BY_LAW.items()
+        if not (getattr(brush, law).assumed or is_law_interval_known(brush, law))
+    )

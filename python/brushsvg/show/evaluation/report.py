@@ -101,11 +101,11 @@ class Report:
     refused: tuple[Notice, ...] = ()  # strokes that were left out
     forbidden: tuple[Notice, ...] = ()  # warnings for which no program would be written
     confidence: PlanConfidence | None = None  # None: the brush has no confidence
-    lacks_interval: bool = False  # the brush trails, and was measured too rarely for confidence intervals
     is_tilted: bool = False  # the brush tilts somewhere, for which no confidence is known
     groups: tuple[Group, ...] = ()
     advice: str = ""  # on the drawing's size
-    assumed: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()  # laws that were never measured
+    without_interval: tuple[str, ...] = ()  # laws that were measured, but without a confidence interval
     places: tuple[Place, ...] = ()
 
     @property

@@ -100,6 +100,11 @@ def _is_law_measured(brush, law: str) -> bool:
     return bool(np.any(np.diag(covariance_of(brush))[places(brush)[law]]))
 
 
+def is_law_interval_known(brush, law: str) -> bool:
+    """Return whether it is known how exact a law is. An RMSE of 0 means that the law is exact."""
+    return _is_law_measured(brush, law) or getattr(brush, law).rmse_mm is not None
+
+
 def uncertainty(plan, brush, marks) -> PlanConfidence | None:
     """Return the confidence in the marks of a plan, per pass and in total.
 

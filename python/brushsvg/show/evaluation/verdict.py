@@ -2,8 +2,8 @@
 
 do not use:   a limit forbids running the program; no stroke can be painted; the overlap is below 0.70
 usable, but:  strokes are left out; the overlap is below 0.95; paint visibly misses the drawing; a law of the brush was
-              never measured, was measured too rarely for an interval, or is so uncertain that paint may be 1 mm from
-              the prediction; the drawing, or the part of it that the program paints, is not known
+              never measured, has no confidence interval, or is so uncertain that paint may be 1 mm from the
+              prediction; the drawing, or the part of it that the program paints, is not known
 good:         none of these
 
 An overlap of 0.95 is where differences become hard to see. The shipped brush in place of the real one gives about 0.6.
@@ -53,12 +53,17 @@ def _brush_reasons(report) -> list[str]:
     if report.assumed:
         names, verb = " and ".join(report.assumed), "was" if len(report.assumed) == 1 else "were"
         return [f"the {names} of brush {report.brush} {verb} never measured: calibrate your brush"]
-    if report.lacks_interval:
-        return [
-            f"brush {report.brush} was measured at too few depths to say how exact it is: measure lag and width at "
-            "three depths or more"
-        ]
+    reasons = []
+    if report.without_interval:
+        names = " and ".join(report.without_interval)
+        verb, pronoun = ("has", "it") if len(report.without_interval) == 1 else ("have", "them")
+        reasons.append(
+            f"the {names} of brush {report.brush} {verb} no confidence interval: measure {pronoun} at three depths or "
+            "more"
+        )
     middle_mm = report.confidence.total.middle_mm if report.confidence else None
-    if middle_mm is None or middle_mm < UNCERTAIN_MM:
-        return []
-    return [f"brush {report.brush} is known so badly that paint may be {middle_mm:.1f} mm from the prediction"]
+    if middle_mm is not None and middle_mm >= UNCERTAIN_MM:
+        reasons.append(
+            f"brush {report.brush} is known so badly that paint may be {middle_mm:.1f} mm from the prediction"
+        )
+    return reasons
