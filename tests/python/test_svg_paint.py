@@ -4,7 +4,10 @@ import pytest
 from diagnostics import are_reported, refused
 from svg_text import read
 
+from brushsvg import find_brush
+from brushsvg.jobs.preparation.thin_outlines import remove_thin_outlines
 from brushsvg.read.svg import element, paint_servers
+from brushsvg.strokes.extraction import strokes
 
 STOPS = '<stop stop-color="red"/><stop offset="1" stop-color="blue"/>'
 TILE = '<path d="M0 1H2"/>'
@@ -163,8 +166,34 @@ def test_a_stroke_below_its_fill_is_reported(order, is_on_top):
     shape = '<path id="p" d="M10 10h40v30z" fill="{}" stroke="#00f" stroke-width="4"/>'
     for fill in ("#f00", "#00f", "none"):
         design = read(f'<g style="paint-order:{order}">{shape.format(fill)}</g>')
-        expected = ["css-unread paint-order"] if fill == "#f00" and not is_on_top else []
-        assert are_reported(design.notices, *expected), design.notices
+        expected = ["css-unread p-stroke paint-order"] if fill == "#f00" and not is_on_top else []
+        assert are_reported([*design.notices, *strokes(design)[1]], *expected)
+
+
+@pytest.mark.parametrize("more", ['stroke-dasharray="9 5"', 'clip-path="url(#c)"'])
+def test_a_stroke_below_its_fill_is_reported_once_when_it_is_cut(more):
+    clip = '<clipPath id="c"><path d="M0 0H30V90H0Z M35 0H90V90H35Z"/></clipPath>'
+    shape = f'<path id="p" d="M10 10h40v30z" fill="#f00" stroke="#00f" stroke-width="4" paint-order="stroke" {more}/>'
+    reported = [notice.about for notice in strokes(read(clip + shape))[1]]
+    assert reported == ["paint-order"]
+
+
+@pytest.mark.parametrize(
+    ("shape", "paths_as", "codes"),
+    [
+        ('d="M10 10h40v30z" fill="#000" stroke="#f00" stroke-width="0.2"', None, ["outline-too-fine"]),
+        ('d="M10 10h40v30z" fill="#000" stroke="#f00" stroke-width="4"', None, ["css-unread"]),
+        ('d="M10 10h40v30z" fill="#000" stroke="#f00" stroke-width="4"', "stroke", []),
+        ('d="M10 10h40v30z" fill="#000" stroke="#f00" stroke-width="4"', "outline", []),
+        ('d="M10 10h40" fill="#000" stroke="#f00" stroke-width="4"', None, []),
+        ('d="M0 0H100V60H0Z" fill="#fff" stroke="#f00" stroke-width="4"', None, ["background"]),
+    ],
+)
+def test_paint_order_is_reported_only_where_a_stroke_covers_a_fill(shape, paths_as, codes):
+    design = read(f'<path id="p" {shape} paint-order="stroke"/><path id="last" d="M5 5h9v9z" stroke="#000"/>')
+    design, thin_notices = remove_thin_outlines(design, find_brush("round-6")) if paths_as is None else (design, [])
+    reported = [*design.notices, *thin_notices, *strokes(design, paths_as)[1]]
+    assert [notice.code for notice in reported] == codes
 
 
 @pytest.mark.parametrize("clip", ["", 'clip-path="url(#c)"'])

@@ -28,7 +28,11 @@ def remove_background(design: Design, page_mm: tuple[float, float]) -> Design:
     if not 0 < count < len(design.elements):
         return design
     backgrounds = design.elements[:count]
-    frames = tuple(shape.by_colour()[1] for shape in backgrounds if shape.fill_colour and not is_light(shape.colour))
+    frames = tuple(
+        replace(shape.by_colour()[1], is_under_fill=False)
+        for shape in backgrounds
+        if shape.fill_colour and not is_light(shape.colour)
+    )
     left_out = [shape.id for shape in backgrounds]
     sentence = f"white background is left out: {', '.join(left_out)}"
     notice = Notice("svg", sentence, code="background", advice="--background keep paints it")

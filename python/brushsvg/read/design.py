@@ -41,6 +41,7 @@ class Element:
     fill_rule: "nonzero" or "evenodd" for a filled shape, "" without a fill.
     fill_colour: colour of the fill if the stroke has another colour, otherwise "".
     dash_gap_mm: the smallest gap between the dashes of the stroke, 0 without dashes.
+    is_under_fill: the drawing has the stroke below a fill of another colour, but brushsvg paints it on top.
     """
 
     id: str
@@ -52,6 +53,7 @@ class Element:
     fill_rule: str = ""
     fill_colour: str = ""
     dash_gap_mm: float = 0.0
+    is_under_fill: bool = False
 
     @property
     def is_stroked(self) -> bool:
@@ -66,7 +68,9 @@ class Element:
         if not self.fill_colour:
             return (self,)
         plain = tuple(replace(subpath, widths=None) for subpath in self.subpaths)
-        shape = replace(self, subpaths=plain, stroke_width_mm=0.0, colour=self.fill_colour, fill_colour="")
+        shape = replace(
+            self, subpaths=plain, stroke_width_mm=0.0, colour=self.fill_colour, fill_colour="", is_under_fill=False
+        )
         name = f"{self.id}-stroke" if self.id else ""
         return shape, replace(self, id=name, fill_rule="", fill_colour="")
 

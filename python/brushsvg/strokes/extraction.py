@@ -70,6 +70,11 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
             continue
         if lines:
             painted_elements.append((element, lines))
+            if paths_as is None and element.is_under_fill:
+                sentence = "paint-order is not read: it is painted on top of the fill"
+                notices.append(
+                    Notice(element.id, sentence, layer=element.layer, code="css-unread", about="paint-order")
+                )
         else:
             empty.append(element)
     notices += _report_left_out(empty, paths_as)
@@ -135,7 +140,8 @@ def _split_by_colour(element: Element, paths_as: str | None) -> tuple[Element, .
     if paths_as == "outline":
         return (replace(element, colour=element.fill_colour),)
     shape, line = element.by_colour()
-    return (replace(line, id=element.id),) if _grow_by_stroke(element) is None else (shape, line)
+    is_line = _grow_by_stroke(element) is None
+    return (replace(line, id=element.id, is_under_fill=False),) if is_line else (shape, line)
 
 
 def _find_lines(element: Element, paths_as: str | None, script: str) -> list[_Line]:

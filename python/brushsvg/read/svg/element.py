@@ -110,9 +110,7 @@ class PaintedElements:
         # A black fill by default is rarely intended next to a stroke of another colour.
         is_two = properties["fill"] and "none" not in (fill, stroke) and fill != stroke
         order = properties["paint-order"].split()
-        if is_two and "stroke" in order and "fill" not in order[: order.index("stroke")]:
-            sentence = "paint-order is not read: its stroke is painted on top of its fill"
-            self.notes.add(node, context, sentence, code="css-unread", about="paint-order")
+        is_under_fill = is_two and "stroke" in order and "fill" not in order[: order.index("stroke")]
         if stroke == "none" and "width_mm" in context.settings:
             sentence = "data-brushsvg-width has no effect: it is a filled shape without a stroke"
             self.notes.add(node, context, sentence, code="width-without-effect", about="data-brushsvg-width")
@@ -128,6 +126,7 @@ class PaintedElements:
             fill_rule="" if fill == "none" else properties["fill-rule"],
             fill_colour=fill if is_two else "",
             dash_gap_mm=gap_mm,
+            is_under_fill=is_under_fill,
         )
         elements = [element]
         # The dashes do not enclose the filled area, so the fill keeps the outline without dashes.
