@@ -310,6 +310,8 @@ VALUES_OF = {
         brushsvg.convert(read(f'<path id="a" d="M30 {y}h20" fill="none" stroke="red" stroke-width="2"/>'))
         for y in (30, 31)
     ],
+    "SetupProgram": lambda _: [brushsvg.setup_height("grbl-3axis", lowest=each) for each in (-1.0, -0.5)],
+    "SimulatedPhoto": lambda _: [brushsvg.SimulatedPhoto(b"", "", count) for count in (1, 2)],
     "Check": lambda folder: [checked(folder, 30), checked(folder, 31)],
     "PaintedJob": lambda _: [
         brushsvg.PaintedJob(*painted, CELL, False, (), Report("good", ()), "") for painted in PAINTED_JOBS
