@@ -335,7 +335,7 @@ def _compare_with_rewritten(
         passes = simulated.plan.passes
         if any(a_pass.speed_mm_s < speed for a_pass, speed in zip(passes, speeds, strict=True)):
             at_own_speeds = against_regenerated.regenerate_program(
-                simulated, brush, cell, z_offset_mm, header.first_stroke
+                simulated, brush, cell, z_offset_mm, header.first_stroke, header_notes
             )
             most_s = duration_s(at_own_speeds)
     else:  # feeds may have been lowered after the time was written into the header
