@@ -162,7 +162,7 @@ PLANS = {  # a change, and the key or stroke that is reported with its code
         "format",
         "format-unknown brushsvg/marks",
     ),
-    "a brush that is not there": (lambda plan: plan.update(brush="broom"), "", "brush-unknown broom"),
+    "a brush that is not there": (lambda plan: plan.update(brush="broom"), "brush", "brush-unknown broom"),
     "no passes": (lambda plan: plan.update(passes=[]), "", "nothing-to-paint"),
     "above the paper": (
         lambda plan: plan["passes"][0]["poses_mm"][2].__setitem__(2, 1.0),
