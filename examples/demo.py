@@ -3,24 +3,18 @@
 import os
 import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
-from brushsvg import _core
 from brushsvg.cli.console import RefusedError, refuse_errors, say_notice, warn
 from brushsvg.files import write_files
 from brushsvg.jobs import outputs, prediction
 from brushsvg.jobs.comparison_picture import comparison_png
 from brushsvg.jobs.options import Options
-from brushsvg.jobs.preparation import preparation
-from brushsvg.jobs.work import Work
+from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.show.evaluation import report
-from brushsvg.strokes.wide_shapes import within_reach
 
 
 def main(drawing: Path, directory: Path) -> None:
@@ -28,7 +22,7 @@ def main(drawing: Path, directory: Path) -> None:
     ways = ("none", "constant", "closed", "refined")
     works = {how: preparation.prepare(drawing, Options(compensation=how)) for how in ways}
     work = works["closed"]
-    works["best"] = best_constant(work)
+    works["best"] = constant_lag.best_constant(work)
     marks = {how: prediction.predict(works[how]) for how in works}
     loads = split_into_loads(work.plan, work.brush, cell)
     walk = preflight.check_job(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)
@@ -62,44 +56,6 @@ def main(drawing: Path, directory: Path) -> None:
     }
     write_files(paths)
     print(table, *paths, sep="\n")
-
-
-def best_constant(work: Work, step_mm: float = 0.25) -> Work:
-    """Return the work compensated with the constant lag of largest overlap.
-
-    Lags from 0 to the greatest lag of the brush are tried, step_mm apart, and compared by pixels. The best lag is
-    in options.lag_mm. The notices are those of the given work.
-    """
-    strokes, window = work.strokes or [], (0.0, 0.0, *work.plan.sheet_mm)
-    # This resolution gives overlaps to 2e-4, in a twentieth of the time that outlines need.
-    px_per_mm = min(4.0, 4000.0 / max(work.plan.sheet_mm))
-    target = _core.wanted_coverage(strokes, window, px_per_mm)
-    best_work, best_overlap = work, -1.0
-    greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
-    for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():
-        options = replace(work.options, compensation="constant", lag_mm=lag_mm)
-        compensated = _core.compensate(
-            within_reach(strokes, work.brush, "clamp")[0],
-            work.brush,
-            work.plan.sheet_mm,
-            "constant",
-            options.tolerance_mm,
-            lag_mm,
-            options.speed_mm_s,
-        )
-        painted = _core.coverage(_core.simulate(compensated.plan, work.brush), work.brush, window, px_per_mm)
-        overlap = np.minimum(painted, target).sum() / np.maximum(painted, target).sum()
-        if overlap > best_overlap:
-            best_work, best_overlap = (
-                replace(
-                    work,
-                    plan=compensated.plan,
-                    tracking_errors=tuple(compensated.tracking_errors),
-                    options=options,
-                ),
-                overlap,
-            )
-    return best_work
 
 
 if __name__ == "__main__":

@@ -101,7 +101,10 @@ def test_clipped_drawings_agree_with_chromium(pairs):
     alike = {}
     for each, (text, seen) in pairs.items():
         ours, reported = painted(text, cap="flat")
-        assert not [one for one in reported if "clip" in one and "left out" not in one], (each, reported)
+        assert not [one for one in reported if "clip" in one and "left out" not in one and "lengthwise" not in one], (
+            each,
+            reported,
+        )
         alike[each] = 1.0 - difference(seen, ours)
     assert len(alike) == 40
     worst = sorted(alike.items(), key=lambda item: item[1])

@@ -1,9 +1,7 @@
 """`convert` finds the best constant lag and writes the files of each language."""
 
 import re
-import runpy
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +11,7 @@ from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.jobs import prediction
 from brushsvg.jobs.options import Options
-from brushsvg.jobs.preparation import preparation
+from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.jobs.work import order_nearest_first
 from brushsvg.machine import motion, program, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
@@ -22,8 +20,6 @@ from brushsvg.planning import travel_order
 from brushsvg.reporting.report_text import format_overlap
 from brushsvg.show.evaluation import report
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-best_constant = runpy.run_path(str(EXAMPLES / "demo.py"))["best_constant"]
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
 <path id="bold" d="M20 60 C50 40 70 70 95 50" stroke-width="4.5"/></g></svg>"""
@@ -41,7 +37,7 @@ def total(work):
 
 
 def test_the_best_constant_lag_has_the_smallest_error(drawing):
-    best = best_constant(preparation.prepare(drawing))
+    best = constant_lag.best_constant(preparation.prepare(drawing))
     assert best.options.compensation == "constant"
     assert 3 < best.options.lag_mm < 12
     assert best.options.lag_mm % 0.25 == 0
@@ -56,7 +52,7 @@ def test_the_best_constant_lag_has_the_smallest_error(drawing):
 
 def test_the_best_constant_lag_of_a_pen_is_zero(drawing):
     work = preparation.prepare(drawing, Options(brush=find_brush("rigid")))
-    assert best_constant(work).options.lag_mm == 0
+    assert constant_lag.best_constant(work).options.lag_mm == 0
 
 
 def test_the_comparison_is_a_table(drawing):

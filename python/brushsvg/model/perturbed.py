@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from copy import copy
-
 import numpy as np
 
 from .. import _core
+from .confidence import LAWS
 
 
 def changed_lag(brush, change: np.ndarray):
@@ -23,7 +22,18 @@ def with_lag(brush, change: np.ndarray):
 
     The result can be simulated and is good for nothing else.
     """
-    changed = copy(brush)
+    changed = _core.Brush()
+    for name in (
+        "name",
+        "kind",
+        "depth_range_mm",
+        *LAWS,
+        "footprints",
+        "paint",
+        "max_speed_mm_s",
+        "paint_depth_mm",
+    ):
+        setattr(changed, name, getattr(brush, name))
     changed.lag = changed_lag(brush, change)
     return changed
 

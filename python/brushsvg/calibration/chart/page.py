@@ -8,6 +8,7 @@ The page is white where strokes will be painted.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from html import escape
 
 import cv2
@@ -26,7 +27,7 @@ INCH_MM = 25.4
 PAGE_EXTENSIONS = (".pdf", ".svg")
 
 
-def chart_page(chart: Chart, extension: str, rings=()) -> bytes:
+def chart_page(chart: Chart, extension: str, rings: Iterable[np.ndarray] = ()) -> bytes:
     """Return the page with markers to print at 100 % and paint on, as PDF (".pdf") or SVG (".svg").
 
     chart: as `chart` returns it.

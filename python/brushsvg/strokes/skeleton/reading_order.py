@@ -37,7 +37,7 @@ def order_strokes(boxes: np.ndarray, lines: list[list[np.ndarray]], script: str 
 def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
     """Return the areas of each letter or character, in reading order.
 
-    The accents of a letter are a group of their own, unless it could be a character, whose upper parts come first.
+    The accents of a Latin letter are a group of their own.
     """
     if script == "cjk" and _is_one_character(boxes):
         return [list(range(len(boxes)))]
@@ -49,7 +49,7 @@ def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
             groups += _group_cells(row, boxes)
         else:
             for letter in _group_letters(row, boxes):
-                groups += [letter] if script == "auto" else _split_off_accents(letter, boxes)
+                groups += _split_off_accents(letter, boxes) if script == "latin" else [letter]
     return groups
 
 
