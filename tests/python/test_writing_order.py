@@ -102,6 +102,14 @@ def test_accents_follow_their_letter_in_a_word_that_is_one_path(accent):
         assert above == sorted(above)
 
 
+@pytest.mark.parametrize("script", ["auto", "latin"])
+@pytest.mark.parametrize("bar", [(0, -5, 100, -2), (0, 33, 100, 36)], ids=["underline", "overline"])
+def test_a_line_under_or_over_a_word_is_no_accent(bar, script):
+    letters = [(35 * k, 0, 35 * k + 24, 30) for k in range(3)]
+    groups = group_areas(np.array([bar, *letters]), script)
+    assert [each for each in groups if each != [0]] == [[1], [2], [3]]
+
+
 def test_a_dot_above_a_bar_comes_first_in_a_character():  # the dot of an i comes after its bar in a letter
     dot, bar = lines_of("M5 20H45V26H5ZM21 5H29V12H21Z", "cjk")
     assert dot[:, 1].mean() > bar[:, 1].mean()

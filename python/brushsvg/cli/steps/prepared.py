@@ -19,15 +19,12 @@ from ..console import refuse_errors, stage, warn
 from .options import make_options
 
 
-def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False, plan=None) -> Work:
-    """Prepare a drawing or plan, and print warnings about flags without effect.
-
-    plan: the plan in the input, if the input is a file of another kind, such as a chart.
-    """
+def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> Work:
+    """Prepare a drawing or plan, and print warnings about flags without effect."""
     warn(chosen.input, report_ineffective_flags(chosen))
     options = make_options(chosen, cell, brush)
     with refuse_errors(chosen.input):
-        return preparation.prepare(plan or chosen.input, options, stage, partly)
+        return preparation.prepare(chosen.input, options, stage, partly)
 
 
 @dataclass(frozen=True)

@@ -97,8 +97,10 @@ def _merge_low_rows(rows: list[list[int]], boxes: np.ndarray) -> list[list[int]]
     for k, row in enumerate(rows):
         nearer = k - 1 if gaps[k] < gaps[k + 1] else min(k + 1, len(rows) - 1)
         accent_mm = MAX_ACCENT_HEIGHT * sides[nearer][1]
-        is_accent = sides[k][1] < accent_mm and min(gaps[k], gaps[k + 1]) < accent_mm
-        is_low = is_accent or sides[k].max() < MAX_DOT_SHARE * sides[nearer].max()
+        is_narrow = sides[k][0] <= sides[nearer][0]  # unlike a line over a whole word
+        is_accent = nearer > k and is_narrow and sides[k][1] < accent_mm and gaps[k + 1] < accent_mm
+        is_small = sides[k].max() < MAX_DOT_SHARE * sides[nearer].max() and sides[k][1] < sides[nearer][1]
+        is_low = is_accent or is_small
         if joins or (is_low and nearer < k):
             merged[-1] += row
         else:
