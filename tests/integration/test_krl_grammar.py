@@ -44,7 +44,7 @@ by_hand = true
 colours = ["#ff0000"]
 """
 BROKEN = (  # no grammar of KRL accepts these
-    ("DEF brushsvg()", "DEF ()"),
+    ("DEF BRUSHSVG()", "DEF ()"),
     ("DECL E6POS here", "DECL E6POS"),
     ("BAS(#INITMOV, 0)", "BAS(#INITMOV, 0"),
     ("$TOOL = {", "$TOOL = "),

@@ -127,8 +127,8 @@ def test_a_frame_is_set_before_it_is_chosen(small):
     assert status == 1 and is_reported(reported, "line-incomplete")
 
 
-def test_a_file_that_begins_with_another_program_is_refused(small):
-    status, reported = small(lambda text: text.replace("/PROG  BRUSHSVG", "/PROG  BOTHER", 1))
+def test_a_name_that_no_controller_takes_is_refused(small):
+    status, reported = small(lambda text: text.replace("/PROG  ", "/PROG  1", 1))
     assert status == 1 and is_reported(reported, "line-unread"), reported
 
 

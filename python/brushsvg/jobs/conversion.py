@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from numbers import Integral
+from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
@@ -239,7 +240,10 @@ def _make_conversion(
         for suffix in formats:
             with_outlines = suffix_of(paths.get("picture")) == ".svg"
             marks = simulations[formats[0]].marks if simulations else None
-            simulations[suffix] = simulate_and_check(work, suffix, job, order, lenient, with_outlines, stage, marks)
+            program_path = (Path(out or path_of(source)).stem or "brushsvg") + suffix
+            simulations[suffix] = simulate_and_check(
+                work, suffix, job, order, lenient, with_outlines, stage, marks, program_path
+            )
             _raise_first_problem(simulations[suffix].problems, work.notices)
         first_simulation = simulations[formats[0]]
         stage("writing the program")
@@ -297,6 +301,7 @@ class SimulatedWork:
     cell: the cell as it is for this output.
     notes: notes for the header of the program.
     problems: what forbids writing the program, one notice for each kind.
+    name: the stem of the file; "" for none.
     """
 
     suffix: str
@@ -308,6 +313,7 @@ class SimulatedWork:
     walk: CheckedProgram
     problems: list[Notice]
     order: str
+    name: str = ""
 
     @property
     def is_program(self) -> bool:
@@ -319,7 +325,9 @@ class SimulatedWork:
         Raises Error if something forbids writing it.
         """
         work = self.work
-        encoded_program = writer.encode_checked(self.suffix, work.plan, self.walk, work.brush, work.title, self.notes)
+        encoded_program = writer.encode_checked(
+            self.suffix, work.plan, self.walk, work.brush, work.title, self.notes, self.name
+        )
         return writer.in_parts(self.suffix, encoded_program)
 
     def remarks(self) -> list[Notice]:
@@ -341,7 +349,18 @@ class SimulatedWork:
             *field_notices,
             *part_notices,
             *lowering_notices,
+            *self._report_renamed(),
         ]
+
+    def _report_renamed(self) -> list[Notice]:
+        """Return a notice if the controller knows the program by another name than its file."""
+        post = POSTS.get(self.cell.language) if self.is_program and self.name else None
+        known_name = post.controller_name(self.name) if post else self.name
+        if known_name.lower() == self.name.lower():
+            return []
+        sentence = f"the program is called {known_name} on the controller, which cannot have {self.name!r} as a name"
+        advice = f"name the file {known_name}{self.suffix}"
+        return [Notice("", sentence, code="program-renamed", advice=advice)]
 
     def time_s(self) -> float | None:
         """Return how long the machine takes for the program, or for one of the plan."""
@@ -396,7 +415,7 @@ def simulate_and_check(
     suffix: the extension of the program, or ".json" for a plan.
     rings: also trace the outlines of the marks.
     marks: the marks of the same work in the same order, if they are known.
-    path: the path of the program, for errors about its format.
+    path: the path of the program, for its name and for errors about its format; "" for none.
     """
     cell, brush, tolerance_mm = work.options.cell, work.brush, work.options.tolerance_mm
     notes = outputs.header_lines(work)
@@ -415,7 +434,7 @@ def simulate_and_check(
     problems = summarize_notices([*walk.problems, *damaged])
     if damaged:
         problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
-    return SimulatedWork(suffix, work, cell, notes, marks, loads, walk, problems, order)
+    return SimulatedWork(suffix, work, cell, notes, marks, loads, walk, problems, order, Path(path).stem)
 
 
 def estimate_time_s(loads: PlanInLoads, brush, cell: Cell) -> float | None:

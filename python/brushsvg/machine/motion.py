@@ -100,6 +100,8 @@ class Program:
     rise_in_robot_mm: this height in the robot's frame.
     touching_mm_s: highest speed of the brush's tip on the paper [mm/s].
     tilts: whether the brush is tilted anywhere.
+    name: what the program is called, for languages in which programs have names. A post changes it if its language does
+        not take it.
     """
 
     header: tuple[str, ...]
@@ -110,6 +112,7 @@ class Program:
     rise_in_robot_mm: float
     touching_mm_s: float
     tilts: bool = False
+    name: str = "brushsvg"
 
     @cached_property
     def duration_s(self) -> float:

@@ -88,8 +88,11 @@ def encode_checked(
     brush: _core.Brush,
     title: str,
     notes: Iterable[str] = (),
+    name: str = "",
 ) -> bytes | Iterator[str]:
     """Encode a plan whose loads have been checked already, like encode.
+
+    name: stem of the file, after which some languages name the program.
 
     Raises Error if the check found a problem.
     """
@@ -97,7 +100,8 @@ def encode_checked(
     if suffix == ".json":
         return _core.write_plan(plan).encode()
     header = header_of(title or "untitled", brush.name, walk.loads, notes, program, walk.job)
-    return text_of(post_for(suffix, program.cell), replace(program, header=header), suffix)
+    named = replace(program, header=header, name=name or program.name)
+    return text_of(post_for(suffix, program.cell), named, suffix)
 
 
 def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | str | Iterator[str]]:
@@ -202,5 +206,5 @@ def write_program(
     walk = check_job(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
     notices = report_other_brush(plan, brush)
     notes = [f"warnings: {len(notices)}"] if notices else []
-    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title, notes)))
+    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title, notes, Path(path).stem)))
     return notices

@@ -42,6 +42,7 @@ class Task:
     chosen: the choices without a brush; a cell is a Cell.
     suffix: the extension of the program, "" for the first one of the cell's language.
     version: the version of brushsvg, which the worker must have as well.
+    name: the name of the program's file without its extension.
     """
 
     drawing: InMemory
@@ -51,6 +52,7 @@ class Task:
     order: str
     lenient: bool
     version: str
+    name: str
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,9 @@ def _convert(task: Task) -> TaskResult:
     chosen = fill_from_drawing(check_choices(chosen), task.drawing)
     work = preparation.prepare(task.drawing, make_options(chosen))
     suffix = task.suffix or conversion.default_suffix(work.options.cell)
-    simulated = conversion.simulate_and_check(work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient)
+    simulated = conversion.simulate_and_check(
+        work, suffix, Job(chosen.z_offset or 0.0), task.order, task.lenient, path=task.name + suffix
+    )
     if simulated.problems:
         problem, *others = simulated.problems
         rest = f", and {len(others)} more of other kinds" if others else ""

@@ -187,7 +187,9 @@ class _BatchSettings:
         return sha256(f"{item.digest}\n{self.description}".encode())
 
     def task(self, item: Item) -> Task:
-        return Task(item.read(), self.chosen, self.brush, self.format, self.order, self.lenient, self.version)
+        return Task(
+            item.read(), self.chosen, self.brush, self.format, self.order, self.lenient, self.version, item.name
+        )
 
 
 def _make_batch_settings(chosen: Choices, format: str, order: str, lenient: bool) -> _BatchSettings:

@@ -51,6 +51,10 @@ class Post(NamedTuple):
         """
         return _module_of(self.source).programs(text) if self.parted else {"": text}
 
+    def controller_name(self, name: str) -> str:
+        """Return the name that the controller gives a program, or the same name if the language has no names."""
+        return getattr(_module_of(self.source), "controller_name", str)(name)
+
     def called(self, text: str) -> list[str]:
         """Return the names of the files with which a program continues."""
         return _module_of(self.source).called(text) if self.parted else []

@@ -19,6 +19,7 @@ from .dobot import round_down_speed_mm_s
 from .script import (
     LanguageWords,
     blends_mm,
+    name_on_controller,
     name_parts,
     tool_rotations_at,
     upright_tool_rotation,
@@ -29,7 +30,7 @@ from .text import PROGRAM_END, STATEMENT_ENDS, format_number, format_rows, plain
 LINE_LIMIT = 100  # letters of a remark, which may need several lines
 REMARK_LETTERS = 32  # letters of one line of a remark
 DEGREE_DECIMALS, POINT_DECIMALS = 5, 3  # decimals of the angles of frames and of points
-MAIN = "BRUSHSVG"
+MAX_NAME_LETTERS = 8
 INDEX = 1  # number of the user frame, the tool, and the registers that set them
 RISE_REGISTER, HEIGHT_REGISTER = 2, 1  # position register and register that the rise uses
 MAX_TEXT_IN_MEMORY_BYTES = 20_000_000  # larger text is kept in a file
@@ -41,7 +42,7 @@ def fanuc(program: Program) -> Iterator[str]:
     A job with too many points for one program becomes a main program that calls others, each with whole strokes. Points
     are in the user frame. To teach the paper anew, only the lines of the user frame have to change.
     """
-    cell = program.cell
+    cell, name = program.cell, controller_name(program.name)
     setup = "".join(map(comment, program.header)) + _setup_lines(program)
     end = comment(PROGRAM_END)
     points, section_text, calls, names, risen = _ProgramPoints(cell), "", [], None, False
@@ -55,15 +56,20 @@ def fanuc(program: Program) -> Iterator[str]:
             section_text += "".join(write_section(section, _language_words(program, points), risen))
             risen = risen or bool(section.moves)
         if not calls:
-            yield _write_program(MAIN, setup + section_text + end, points)
+            yield _write_program(name, setup + section_text + end, points)
             return
         calls.append(next(names))
         held_file.write(_write_program(calls[-1], section_text, points))
         called = "".join(f" : CALL {call} ;\n" for call in calls)
-        yield _write_program(MAIN, setup + called + end, _ProgramPoints(cell))
+        yield _write_program(name, setup + called + end, _ProgramPoints(cell))
         held_file.seek(0)
         while piece := held_file.read(1_000_000):
             yield piece
+
+
+def controller_name(name: str) -> str:
+    """Return the name of a program on the controller."""
+    return name_on_controller(name, MAX_NAME_LETTERS)
 
 
 def programs(text: str) -> dict[str, str]:
@@ -71,9 +77,8 @@ def programs(text: str) -> dict[str, str]:
 
     The main program has the name "".
     """
-    program_texts = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
-    texts_by_name = {re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in program_texts}
-    return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
+    main, *others = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
+    return {"": main} | {re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in others}
 
 
 def called(text: str) -> list[str]:

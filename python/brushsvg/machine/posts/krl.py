@@ -20,6 +20,7 @@ from .script import (
     blends_mm,
     format_rounded_down,
     join_numbers,
+    name_on_controller,
     name_parts,
     split_into_parts,
     upright_tool_rotation,
@@ -31,8 +32,17 @@ LINE_LIMIT = 100
 DEGREE_DECIMALS = 5
 SPEED_DECIMALS = 6  # decimals of speeds in m/s
 MAX_TEXT_IN_MEMORY_BYTES = 20_000_000  # larger text is kept in a file
-MAIN = "brushsvg"
+MAX_NAME_LETTERS = 24
 RISES = "DECL E6POS here\n"
+# Words of the language, types, and the names that the program itself uses.
+RESERVED_WORDS = frozenset(
+    """ANIN ANOUT AND AXIS BAS BOOL BRAKE CASE CHANNEL CHAR CIRC CIRC_REL CONFIRM CONST CONTINUE DECL DEF DEFAULT DEFDAT
+    DEFFCT DELAY DO E3AXIS E3POS E6AXIS E6POS ELSE END ENDDAT ENDFCT ENDFOR ENDIF ENDLOOP ENDSPLINE ENDSWITCH ENDWHILE
+    ENUM ERR_RAISE EXIT EXOR EXT EXTFCT FALSE FOR FRAME GLOBAL GOTO HALT HERE IF IMPORT INT INTERRUPT INVERSE IS LIN
+    LIN_REL LOOP MAXIMUM MINIMUM NOT OFF ON OR POS PRIO PTP PTP_REL PUBLIC PULSE REAL REPEAT RESUME RETURN SCIRC SEC
+    SEMA SIGNAL SLIN SPL SPLINE SPTP STEP STRUC SWITCH THEN TIMER TO TRIGGER TRUE UNTIL WAIT WHEN WHILE
+    ABS ACOS ATAN2 COS SIN SQRT TAN B_AND B_EXOR B_NOT B_OR""".split()
+)
 LINES_AROUND_PART = 3  # lines of a called program in addition to its moves
 
 
@@ -43,7 +53,7 @@ def krl(program: Program) -> Iterator[str]:
     with whole strokes. Points are in the BASE. To teach the paper anew, only the line of the BASE has to change. The
     first move must be a PTP, so it goes to the robot's own place.
     """
-    cell, decimals = program.cell, program.cell.decimals
+    cell, decimals, name = program.cell, program.cell.decimals, controller_name(program.name)
     acceleration = format_rounded_down(cell.speeds.acceleration_mm_s2 / 1e3, 3)
     tool = frame_of_pose(np.array(cell.tool.tcp_mm), cell.tool.rotation_deg)
     header = "".join(map(comment, program.header))
@@ -63,17 +73,24 @@ def krl(program: Program) -> Iterator[str]:
     end = comment(PROGRAM_END) + "END\n"
     first, second = next(part_texts), next(part_texts, None)
     if second is None:
-        yield f"DEF {MAIN}()\n{header}{RISES}{setup}{first}\n{end}"
+        yield f"DEF {name}()\n{header}{RISES}{setup}{first}\n{end}"
         return
     calls, setup = "", header + setup
     with SpooledTemporaryFile(MAX_TEXT_IN_MEMORY_BYTES, "w+", encoding="ascii") as held_file:
-        for name, moves in zip(name_parts(program, setup), itertools.chain((first, second), part_texts), strict=False):
-            held_file.write(f"DEF {name}()\n{'' if calls else RISES}{moves}END\n")
-            calls += f"{name}()\n"
-        yield f"DEF {MAIN}()\n{setup}{calls}{end}"
+        for called_name, moves in zip(
+            name_parts(program, setup), itertools.chain((first, second), part_texts), strict=False
+        ):
+            held_file.write(f"DEF {called_name}()\n{'' if calls else RISES}{moves}END\n")
+            calls += f"{called_name}()\n"
+        yield f"DEF {name}()\n{setup}{calls}{end}"
         held_file.seek(0)
         while piece := held_file.read(1_000_000):
             yield piece
+
+
+def controller_name(name: str) -> str:
+    """Return the name of a routine, which must be that of its file."""
+    return name_on_controller(name, MAX_NAME_LETTERS, RESERVED_WORDS)
 
 
 def programs(text: str) -> dict[str, str]:
@@ -81,9 +98,8 @@ def programs(text: str) -> dict[str, str]:
 
     The main program has the name "".
     """
-    program_texts = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
-    texts_by_name = {re.match(r"DEF (\w+)", program_text)[1]: program_text for program_text in program_texts}
-    return {"" if name == MAIN else name: program_text for name, program_text in texts_by_name.items()}
+    main, *others = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
+    return {"": main} | {re.match(r"DEF (\w+)", program_text)[1]: program_text for program_text in others}
 
 
 def called(text: str) -> list[str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import itertools
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Container, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -67,6 +68,26 @@ def split_into_parts(program: Program, words: LanguageWords, lines_around: int, 
     yield part_text
 
 
+def name_on_controller(name: str, max_letters: int, reserved: Container[str] = ()) -> str:
+    """Return the name of a program on its controller, in capitals.
+
+    Controllers take names that begin with a letter and have letters, digits and underscores. A name that must change
+    ends with four letters that depend on all of it, so that the names of two jobs differ.
+
+    reserved: words in capitals that cannot be names.
+    """
+    capitals = name.upper()
+    if re.fullmatch(rf"[A-Z][A-Z0-9_]{{0,{max_letters - 1}}}", capitals) and capitals not in reserved:
+        return capitals
+    kept = re.sub(r"[^A-Z0-9_]", "_", capitals)
+    kept = kept if kept[:1].isalpha() else f"P{kept}"
+    return kept[: max_letters - 4] + _four_letters(hashlib.sha256(name.encode("utf-8", "surrogateescape")).digest())
+
+
+def _four_letters(digest: bytes) -> str:
+    return np.base_repr(int.from_bytes(digest[:8], "big") % 36**4, 36).zfill(4)
+
+
 def name_parts(program: Program, setup: str) -> Iterator[str]:
     """Yield names of programs that the main program calls, without end.
 
@@ -81,7 +102,7 @@ def name_parts(program: Program, setup: str) -> Iterator[str]:
             for values in (move.points_mm, move.speed_mm_s, move.axes, move.blends_mm):
                 if values is not None:  # + 0.0: -0 becomes 0
                     digest.update((np.round(np.asarray(values, float), program.cell.decimals) + 0.0).tobytes())
-    of_job = np.base_repr(int.from_bytes(digest.digest()[:8], "big") % 36**4, 36).zfill(4)
+    of_job = _four_letters(digest.digest())
     return (f"B{of_job}{number:03d}" for number in itertools.count(1))
 
 

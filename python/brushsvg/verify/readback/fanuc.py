@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.fanuc import INDEX, MAIN, POINT_DECIMALS, cnt_mm
+from ...machine.posts.fanuc import INDEX, POINT_DECIMALS, cnt_mm
 from ...machine.posts.script import upright_tool_rotation
 from ...machine.posts.text import PROGRAM_END
 from . import Readback, unread_error
@@ -73,10 +73,11 @@ def read_fanuc(text: str, cell: Cell) -> Readback:
 def _instructions_in_order(text: str, cell: Cell) -> NumberedLines:
     """Return the instructions in running order, with places for point numbers."""
     programs = _split_programs(text)
-    if not programs or next(iter(programs)) != MAIN:
-        raise Error(f"it does not begin with the program {MAIN}", code="line-unread")
-    lines, called = [], [MAIN]
-    for number, line in _resolve_points(*programs[MAIN], cell):
+    if not programs:
+        raise Error("it does not begin with /PROG and a name", code="line-unread")
+    main = next(iter(programs))
+    lines, called = [], [main]
+    for number, line in _resolve_points(*programs[main], cell):
         call = _CALL.fullmatch(line)
         if not call:
             lines.append((number, line))
@@ -101,7 +102,7 @@ def _split_programs(text: str) -> dict[str, tuple[NumberedLines, NumberedLines]]
         line = " ".join(raw.split())
         if not line:
             continue
-        begins = re.fullmatch(r"/PROG (\w{1,32})", line)
+        begins = re.fullmatch(r"/PROG ([A-Za-z]\w{0,35})", line)
         if begins and part == "out" and begins[1] not in programs:
             name, part, has_group = begins[1], "name", False
             programs[name] = ([], [])

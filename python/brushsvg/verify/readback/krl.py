@@ -23,6 +23,7 @@ _TURN = rf"a {N}, b {N}, c {N}"
 _TO = _point("xyz", f"(?P<turned>{_TURN})")
 _VIA = _point("uvw", f"(?P<turned_via>{_TURN})")
 _FRAME = rf"\{{x {N}, y {N}, z {N}, {_TURN}\}}"
+_DEF = re.compile(r"def (\w+)\(\)")
 _LINES = tuple(  # in lower case
     (kind, re.compile(pattern))
     for kind, pattern in (
@@ -35,14 +36,10 @@ _LINES = tuple(  # in lower case
         ("rise", r"lin here"),
         ("sets", rf"\$acc\.cp = (?P<acceleration>{N})"),
         ("text", rf"if here\.z < (?P<height>{N}) then|here\.z = {N}|here = \$pos_act|endif|halt"),
-        (
-            "text",
-            rf"def brushsvg\(\)|decl e6pos here|end|\$(?:tool|base) = {_FRAME}",
-        ),
+        ("text", rf"decl e6pos here|end|\$(?:tool|base) = {_FRAME}"),
         ("text", r"bas\(#initmov, 0\)|ptp \$axis_act|\$ori_type = #var"),
     )
 )
-_DEF = re.compile(r"def (\w+)\(\)")
 _CALL = re.compile(r"(b[0-9a-z]{4}\d{3,})\(\)")
 _RISE_DECLARATION = RISES.strip().lower()
 _INITIALISATION = "bas(#initmov, 0)"  # sets all motion parameters
@@ -88,7 +85,7 @@ def _lines_in_order(text: str) -> NumberedLines:
             raise Error(sentence, code="line-unread")
         part = uncalled.pop(call[1])
         if len(uncalled) + 1 == len(others) and part[1:2] and part[1][1].strip(" ").lower() == _RISE_DECLARATION:
-            lines.insert(next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")) + 1, part.pop(1))
+            lines.insert(next(k for k, (_, line) in enumerate(lines) if not line.startswith(";")), part.pop(1))
         if part[-1][1].strip(" ").lower() != "end":
             raise Error(f"program {call[1]!r} has no END", code="program-cut-short")
         lines += part[1:-1]
@@ -100,7 +97,8 @@ def _lines_in_order(text: str) -> NumberedLines:
 def _split_programs(text: str) -> tuple[NumberedLines, dict[str, NumberedLines]]:
     """Return the lines of the main program, and of the others by their names.
 
-    The lines of the main program include the remarks above it.
+    The lines of the main program include the remarks above it, but not the line with its name, which is that of its
+    file.
     """
     main: NumberedLines = []
     others: dict[str, NumberedLines] = {}
@@ -112,6 +110,10 @@ def _split_programs(text: str) -> tuple[NumberedLines, dict[str, NumberedLines]]
             if names:
                 lines = others[found[1]] = []
             names.add(found[1])
+            if lines is main:
+                continue
         if line.strip(" "):
             lines.append((number, line.rstrip(" ")))
+    if not names:
+        raise Error("no DEF names a routine", code="line-unread")
     return main, others

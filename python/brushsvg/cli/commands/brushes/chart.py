@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from .... import _core
 from ....errors import Notice
@@ -54,7 +55,9 @@ def chart_file(args) -> None:
         if walk.problems:
             raise RefusedError(args.output, summarize_notices([_advise_smaller_sheet(each) for each in walk.problems]))
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
-        files = writer.in_files(args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title))
+        files = writer.in_files(
+            args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title, (), Path(args.output).stem)
+        )
     if args.page:
         with refuse_errors(args.page):
             files[args.page] = chart_page(laid_out, suffix_of(args.page))
