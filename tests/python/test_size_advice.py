@@ -5,6 +5,7 @@ The tests call the functions and the command line.
 
 import json
 import re
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -16,6 +17,7 @@ from brushsvg.cli import main
 from brushsvg.jobs import prediction
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import other_sizes, preparation
+from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.planning import size_advice
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60">
@@ -204,3 +206,20 @@ def test_wrong_usage_is_refused(drawing, capsys, words, expected):
     status, _, err = ran(capsys, "preview", drawing(), *words)
     assert status == 2
     assert expected in err
+
+
+def test_sizes_are_tried_as_deep_as_the_cell_can_press(tmp_path):
+    """A brush that the cell presses no deeper than 4 mm paints shapes of 5.5 mm better at a smaller size."""
+    shapes = "".join(f'<rect x="15" y="{6 + 10 * k}" width="160" height="5.5" rx="2.75"/>' for k in range(3))
+    path = tmp_path / "w.svg"
+    path.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="40mm" viewBox="0 0 200 40">{shapes}</svg>',
+        encoding="utf-8",
+    )
+    advice = {}
+    for lowest_mm in (-10.0, -4.0):
+        cell = find_cell("linuxcnc-3axis")
+        cell = replace(cell, heights=replace(cell.heights, lowest_mm=lowest_mm))
+        work = preparation.prepare(path, Options(cell=cell, wide="clamp"))
+        advice[lowest_mm] = other_sizes.advise_on_size(work)
+    assert "noticeably better" in advice[-10.0] and "would be about" in advice[-4.0], advice

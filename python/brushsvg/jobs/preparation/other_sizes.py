@@ -12,6 +12,7 @@ from ...strokes.wide_shapes import within_reach
 from ..options import Options
 from ..work import Work
 from .compensated import make_compensation
+from .preparation import limit_depth
 
 
 def advise_on_size(work: Work) -> str:
@@ -79,6 +80,7 @@ def _make_quick_trial(brush, options: Options):
 
 
 def _search_strokes(strokes: list, brush, options: Options, compensated) -> Searched:
+    brush = limit_depth(brush, options)
     painted, targets, _ = within_reach(strokes, brush, options.wide)
     if options.compensation not in ("closed", "refined"):
         return Searched(strokes, painted, targets, compensated(painted))
