@@ -165,7 +165,7 @@ def check_program(
             ("brush", header.brush, brush_names()),
         ):
             if getattr(chosen, kind) is None and name not in names:
-                sentence = f"the program names {kind} {name!r}, which does not come along"
+                sentence = f"the program names {kind} {name!r}, which brushsvg does not ship"
                 raise Error(sentence, code=f"{kind}-unknown", advice=f"give --{kind} FILE")
         tolerance_mm = header.tolerance_mm or preflight.DEFAULT_TOLERANCE_MM
         cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)

@@ -280,7 +280,7 @@ def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:
     for kind, names in (("brush", brush_names()), ("cell", cell_names())):
         if getattr(chosen, kind) is None and settings.get(kind, names[0]) not in names:
             sentence = (
-                f"data-brushsvg-{kind} asks for {kind} {settings[kind]!r}, which does not come along"
+                f"data-brushsvg-{kind} asks for {kind} {settings[kind]!r}, which brushsvg does not ship"
                 f"{did_you_mean(settings[kind], names)} Known are {', '.join(names)}"
             )
             raise Error(sentence, where="svg", code=f"{kind}-unknown", advice=f"give --{kind}")

@@ -287,7 +287,7 @@ def add_brush(commands) -> None:
     flags.add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = subcommands.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")
-    plot.add_argument("input", metavar="NAME", help="a brush that comes along, or a brush.json")
+    plot.add_argument("input", metavar="NAME", help="a shipped brush, or a brush.json")
     flags.add_output(plot, "a picture (.svg .png)")
     flags.add_write_options(plot)
     plot.set_defaults(run="brush_plot", parser=plot, check=_check_brush_plot)

@@ -17,7 +17,7 @@ def add_setup(commands) -> None:
 
 def _add_first_run(commands) -> None:
     first = commands.add_parser("first-run", help="write a safe first program for a new machine")
-    first.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml")
+    first.add_argument("input", metavar="NAME", help="a shipped cell, or a cell.toml")
     flags.add_output(first, flags.PROGRAM_HELP)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     first.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
@@ -153,7 +153,7 @@ def add_cell(commands) -> None:
 
 def _add_cell_place(subcommands) -> None:
     place = subcommands.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
-    place.add_argument("input", metavar="NAME", help="a cell that comes along, or a cell.toml, with an arm")
+    place.add_argument("input", metavar="NAME", help="a shipped cell, or a cell.toml, with an arm")
     place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
     flags.add_output(place, "a picture of the table (.png .svg)", False)
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")

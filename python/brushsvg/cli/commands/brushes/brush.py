@@ -46,7 +46,7 @@ def brush_new(args) -> None:
             widths += read_widths(read_bytes(args.widths).decode("utf-8", "replace"))
     with refuse_errors(path):
         if name in brush_names():
-            raise Error(f"a brush named {name} comes along: give yours another name", "name", code="name-taken")
+            raise Error(f"a shipped brush has the name {name}: give yours another name", "name", code="name-taken")
         if args.like is not None:
             brush = brush_like(name, find_brush(args.like))
             brush.max_speed_mm_s = args.speed or brush.max_speed_mm_s
