@@ -169,6 +169,7 @@ def _one_load(desk: Desk) -> None:
     (desk.folder / "one-load.json").write_text(json.dumps(reported))
 
 
+DEJAVU = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 # Name of a file -> its text, the command that makes it, or a function of the desk.
 MADE = {
     "word.svg": ROBOT,
@@ -183,7 +184,8 @@ MADE = {
     "b.dxf": _dxf,
     "foreign.gcode": FOREIGN,
     "mine.csv": "\n".join(TABLE) + "\n",
-    "Lora.ttf": lambda desk: shutil.copy("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", desk.folder / "Lora.ttf"),
+    "Lora.ttf": lambda desk: shutil.copy(DEJAVU, desk.folder / "Lora.ttf"),
+    "DejaVuSans.ttf": lambda desk: shutil.copy(DEJAVU, desk.folder),
     "robot.svg": ROBOT,
     "letters.svg": "brushsvg text Ro -o letters.svg --font Lora.ttf --size 60",
     "word.ngc": "brushsvg convert word.svg -o word.ngc",

@@ -491,9 +491,87 @@ def test_a_missing_outline_glyph_is_left_out_without_a_box(ttf):
     assert agrees(refusal("\ue000", ttf), "nothing-to-paint U+E000")
 
 
-def test_mixed_text_directions_in_a_line_are_reported(ttf):
-    _, notices = filled("A\u05d0", ttf)
-    assert agrees(notices[-1], "text-direction 1 two")
+def font_of_bars(characters: str, features="", accents="") -> bytes:
+    """Return a font with a bar for each character. Each glyph is 200 units wide, accents have no width."""
+    names = {character: f"uni{ord(character):04X}" for character in characters + accents}
+    builder = FontBuilder(1000, isTTF=True)
+    builder.setupGlyphOrder([".notdef", "space", *names.values()])
+    builder.setupCharacterMap({ord(character): name for character, name in names.items()} | {0x20: "space"})
+    pen = TTGlyphPen(None)
+    for k, point in enumerate([(50, 0), (50, 700), (150, 700), (150, 0)]):
+        (pen.lineTo if k else pen.moveTo)(point)
+    pen.closePath()
+    bar, empty = pen.glyph(), TTGlyphPen(None).glyph()
+    builder.setupGlyf({".notdef": empty, "space": empty} | dict.fromkeys(names.values(), bar))
+    widths = {names[accent]: 0 for accent in accents}
+    builder.setupHorizontalMetrics({name: (widths.get(name, 200), 0) for name in builder.font.getGlyphOrder()})
+    builder.setupHorizontalHeader(ascent=800, descent=-200)
+    builder.setupNameTable({"familyName": "Test", "styleName": "Regular"})
+    builder.setupOS2()
+    builder.setupPost()
+    if features:
+        addOpenTypeFeaturesFromString(builder.font, features)
+    return saved(builder.font)
+
+
+def bars(text, font):
+    """Return (character, place from the left) of each bar in the order of painting, and the notices."""
+    document, notices = text_svg(text, font, size_mm=10)
+    found = [(path.get("id").split("-")[2], float(path.get("d").split()[1].split(",")[0])) for path in paths(document)]
+    letters = [re.sub("u([0-9A-F]{4})", lambda code: chr(int(code[1], 16)), name) for name, _ in found]
+    return [(letter, round((x - 20) / 2)) for letter, (_, x) in zip(letters, found, strict=True)], notices
+
+
+def read_from_the_left(text, font):
+    found, notices = bars(text, font)
+    assert notices == []
+    return "".join(letter for letter, _ in sorted(found, key=lambda bar: bar[1]))
+
+
+def test_letters_from_right_to_left_are_painted_in_the_order_of_reading():
+    font = font_of_bars("\u05d0\u05d1\u05d2", accents="\u05b0")
+    assert bars("\u05d0\u05d1 \u05d2", font) == ([("\u05d0", 3), ("\u05d1", 2), ("\u05d2", 0)], [])
+    letter, accent = bars("\u05d0\u05b0\u05d1", font)[0][:2]
+    assert letter == accent == ("\u05d0\u05b0", 1)
+    glyphs, _ = text_svg("\u05d0\u05b0", font)
+    assert len(paths(glyphs)) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ab \u05d0\u05d1 12", "ab12\u05d1\u05d0"),
+        ("\u05d0\u05d1 12 ab", "ab12\u05d1\u05d0"),
+        ("\u05d0 1,2-2 \u05d1", "\u05d11,2-2\u05d0"),
+        ("ab, 12", "ab,12"),
+        ("12 \u05d0", "\u05d012"),
+        ("a \u05d0, \u05d1 b", "a\u05d1,\u05d0b"),
+    ],
+)
+def test_numbers_and_words_of_other_directions_keep_their_order(text, expected):
+    assert read_from_the_left(text, font_of_bars("ab12,-\u05d0\u05d1")) == expected
+
+
+def test_lines_from_right_to_left_begin_at_the_right():
+    font = font_of_bars("ab\u05d0\u05d1")
+    assert bars("abab\n\u05d0\u05d1\nb", font)[0][4:] == [("\u05d0", 3), ("\u05d1", 2), ("b", 0)]
+
+
+def test_each_script_of_a_line_is_shaped_by_its_own_rules():
+    """Each script of a line is shaped by its own rules.
+
+    In Devanagari, the vowel I stands before its consonant. The font joins the two glyphs in this order only.
+    """
+    rules = "languagesystem dev2 dflt; feature pres { sub uni093F uni0915 by uni0062; } pres;"
+    font = font_of_bars("ab\u0915\u093f", rules)
+    assert [found[0] for found in bars("a \u0915\u093f", font)[0]] == ["a", "\u0915\u093f"]
+    document, _ = text_svg("a \u0915\u093f", font)
+    assert [path.get("d").count("Z") for path in paths(document)] == [1, 1]
+
+
+def test_marks_of_direction_are_reported():
+    _, notices = bars("a\u202e\u05d0\u202c", font_of_bars("a\u05d0"))
+    assert are_reported(notices, "text-direction 1 U+202E")
 
 
 def repacked(ttf, flavor):

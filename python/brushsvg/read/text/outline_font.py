@@ -1,7 +1,7 @@
 """Typeset text in a TrueType or OpenType font.
 
-HarfBuzz shapes and draws the glyphs. fontTools unpacks fonts and makes cubics. Only this module imports them, so only
-outline fonts need the extra `text`.
+HarfBuzz shapes and draws the glyphs. fontTools unpacks fonts and makes cubics. Only this module and text_runs import
+them, so only outline fonts need the extra `text`.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from ...errors import Error
 from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
 from .setting import PlacedGlyph, TypesetText, find_script, should_have_ink
+from .text_runs import TextRun, sort_from_the_left, split_runs, starts_at_the_right
 
 _MAX_UNPACKED_BYTES = 200_000_000  # bytes; the largest fonts, with all Chinese characters, have a fifth of this size
 _UNITS_PER_EM_RANGE = (16, 16384)  # units per em that the format allows
@@ -36,13 +37,14 @@ _MIN_CLOSED_CUBICS = 8
 def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
     """Typeset lines of text, kerned and joined as the font prescribes.
 
+    Each script is shaped by its own rules, and lines may have two writing directions.
     A collection is read as its first font, a variable font as its default instance.
 
     data: the font file; size_mm: the em of the font. Raises Error if the font cannot be read.
     """
     unpacked = _unpack(data)
     setter = _Typesetter(unpacked, size_mm)
-    placed = tuple(map(setter.place, lines))
+    placed = _align_lines(lines, list(map(setter.place, lines)))
     is_filled = not setter.is_single_line_font()
     notices: tuple[Notice, ...] = tuple(_unused_part_notices(unpacked, setter.face))
     if not is_filled:
@@ -101,37 +103,49 @@ class _Typesetter:
         self.missing: dict[str, None] = {}
         self.blank: dict[str, None] = {}
 
-    def place(self, line: str) -> tuple[PlacedGlyph, ...]:
-        buffer = hb.Buffer()
-        buffer.add_codepoints([ord(character) for character in line])
-        buffer.language = "und"  # some builds of HarfBuzz use the locale, so the output would depend on it
-        buffer.guess_segment_properties()
-        hb.shape(self.font, buffer)
-        infos, positions = buffer.glyph_infos or (), buffer.glyph_positions or ()
-        clusters = sorted({info.cluster for info in infos})
-        ends = dict(zip(clusters, [*clusters[1:], len(line)], strict=bool(line)))  # an empty line has no cluster
-        placed, inked, words = [], set(), []
+    def place(self, line: str) -> tuple[tuple[PlacedGlyph, ...], float]:
+        """Return the glyphs of a line in the order of reading, and the length of the line [mm]."""
+        runs = split_runs(line)
+        glyphs_of_runs = {}
+        inked: set[int] = set()
         x = y = 0
-        for info, position in zip(infos, positions, strict=True):
-            characters = line[info.cluster : ends[info.cluster]]
-            if info.codepoint == 0:
-                inked.add(info.cluster)  # this cluster is reported as missing, not as blank
-                without_glyph = [
-                    character for character in characters if not self.font.get_nominal_glyph(ord(character))
-                ]
-                self.missing.update(dict.fromkeys(without_glyph or characters))
-                continue
-            if subpaths := self._shape(info.codepoint):
-                inked.add(info.cluster)
-                origin = x + position.x_offset, -(y + position.y_offset)
-                at_mm = (value * self.mm_per_unit for value in origin)
-                placed.append(PlacedGlyph(characters, subpaths, *at_mm, find_script(characters)))
-                words.append(line[: info.cluster].count(" "))
-            x, y = x + position.x_advance, y + position.y_advance
-        for cluster in clusters:
-            if cluster not in inked:
-                self.blank.update(dict.fromkeys(filter(should_have_ink, line[cluster : ends[cluster]])))
-        return tuple(_join_words(placed, words, line.split(" ")))
+        for run in sort_from_the_left(runs):
+            infos, positions = self._shape_run(line, run)
+            clusters = sorted({info.cluster for info in infos})
+            ends = dict(zip(clusters, [*clusters[1:], run.end], strict=True))
+            glyphs = []
+            for info, position in zip(infos, positions, strict=True):
+                characters = line[info.cluster : ends[info.cluster]]
+                if info.codepoint == 0:
+                    inked.add(info.cluster)  # this cluster is reported as missing, not as blank
+                    without_glyph = [
+                        character for character in characters if not self.font.get_nominal_glyph(ord(character))
+                    ]
+                    self.missing.update(dict.fromkeys(without_glyph or characters))
+                    continue
+                if subpaths := self._shape(info.codepoint):
+                    inked.add(info.cluster)
+                    origin = x + position.x_offset, -(y + position.y_offset)
+                    at_mm = (value * self.mm_per_unit for value in origin)
+                    glyph = PlacedGlyph(characters, subpaths, *at_mm, find_script(characters))
+                    glyphs.append((line[: info.cluster].count(" "), glyph))
+                x, y = x + position.x_advance, y + position.y_advance
+            for cluster in clusters:
+                if cluster not in inked:
+                    self.blank.update(dict.fromkeys(filter(should_have_ink, line[cluster : ends[cluster]])))
+            glyphs_of_runs[run] = glyphs[::-1] if run.is_right_to_left else glyphs
+        placed = [glyph for run in runs for glyph in glyphs_of_runs[run]]
+        words = [word for word, _ in placed]
+        return tuple(_join_words([glyph for _, glyph in placed], words, line.split(" "))), x * self.mm_per_unit
+
+    def _shape_run(self, line: str, run: TextRun) -> tuple[list[hb.GlyphInfo], list[hb.GlyphPosition]]:
+        buffer = hb.Buffer()
+        buffer.add_codepoints([ord(character) for character in line], run.start, run.end - run.start)
+        buffer.language = "und"  # some builds of HarfBuzz use the locale, so the output would depend on it
+        buffer.direction = "rtl" if run.is_right_to_left else "ltr"
+        buffer.script = run.script
+        hb.shape(self.font, buffer)
+        return buffer.glyph_infos or [], buffer.glyph_positions or []
 
     def is_single_line_font(self) -> bool:
         """Whether the font is a single-line font.
@@ -152,6 +166,26 @@ class _Typesetter:
             contours = (np.array(contour).reshape(-1, 4, 2) * to_mm for contour in pen.contours if contour)
             self.shapes[glyph] = tuple(SubPath(cubics, closed=True) for cubics in contours)
         return self.shapes[glyph]
+
+
+def _align_lines(
+    lines: list[str], placed: list[tuple[tuple[PlacedGlyph, ...], float]]
+) -> tuple[tuple[PlacedGlyph, ...], ...]:
+    """Return the glyphs of all lines.
+
+    Lines from right to left begin at the right end of the longest line.
+
+    placed: the glyphs and the length [mm] of each line.
+    """
+    longest_mm = max(length_mm for _, length_mm in placed)
+    shifts_mm = (
+        longest_mm - length_mm if starts_at_the_right(line) else 0
+        for line, (_, length_mm) in zip(lines, placed, strict=True)
+    )
+    return tuple(
+        tuple(replace(glyph, x_mm=glyph.x_mm + shift_mm) for glyph in glyphs)
+        for (glyphs, _), shift_mm in zip(placed, shifts_mm, strict=True)
+    )
 
 
 def _join_words(placed: list[PlacedGlyph], words: list[int], texts: list[str]) -> list[PlacedGlyph]:

@@ -14,6 +14,7 @@ _MAX_CHARACTERS = 100_000  # forty pages; a longer text is a mistake
 # First bytes of outline fonts.
 _OUTLINE_FONT_STARTS = (b"\0\1\0\0", b"OTTO", b"true", b"ttcf", b"wOFF", b"wOF2")
 _MAX_NAMED_CHARACTERS = 12  # characters without a glyph that a sentence names
+_DIRECTION_MARKS = ("LRE", "RLE", "LRO", "RLO", "LRI", "RLI", "FSI")  # bidirectional classes
 
 
 def text_svg(
@@ -28,7 +29,8 @@ def text_svg(
 ) -> tuple[str, list[Notice]]:
     """Return the SVG document of a text, and notices about the text and the font.
 
-    A newline starts a line. All lines begin at the same x.
+    A newline starts a line. All lines from left to right begin at the same x, as do those from right to left. The first
+    letter of a line decides about its direction.
 
     font: the content of a font file. The lines of an SVG font are stroked with width_mm. The outlines of a TrueType
     or OpenType font are filled.
@@ -67,7 +69,7 @@ def text_svg(
     if typeset.blank:
         sentence = f"the font has no outline for {_list_characters(typeset.blank)}: left out"
         notices.append(Notice("text", sentence, code="glyph-missing"))
-    notices += _direction_notices(text, typeset.filled)
+    notices += _direction_notices(text, font_module is not svg_font)
     if not any(typeset.lines):
         reasons = "; ".join(notice.sentence for notice in notices if notice.where != "font")
         raise Error(
@@ -105,28 +107,21 @@ def _remove_controls(text: str) -> tuple[str, list[Notice]]:
     ]
 
 
-def _direction_notices(text: str, is_shaped: bool) -> list[Notice]:
-    """Return notices about lines whose order of writing directions may be wrong.
-
-    Lines with two directions need an order of their runs, which is not computed here. A user cannot see that such a
-    line is in the wrong order.
-    """
+def _direction_notices(text: str, is_outline_font: bool) -> list[Notice]:
+    """Return notices about lines whose writing directions are not read."""
     notices = []
     for number, line in enumerate(text.split("\n"), 1):
         directions = {unicodedata.bidirectional(character) for character in line}
-        if not directions & {"R", "AL"}:
+        if not is_outline_font:
+            if directions & {"R", "AL"}:
+                sentence = f"line {number} is set from left to right, as SVG fonts are"
+                notices.append(Notice("text", sentence, code="text-direction"))
             continue
-        if not is_shaped:
-            notices.append(
-                Notice(
-                    "text",
-                    f"line {number} is set from left to right, as SVG fonts are",
-                    code="text-direction",
-                )
-            )
-        elif directions & {"L", "EN", "AN"}:
-            sentence = f"line {number} holds writing in two directions and is set in one: check its order"
-            notices.append(Notice("text", sentence, code="text-direction"))
+        marks = dict.fromkeys(c for c in line if unicodedata.bidirectional(c) in _DIRECTION_MARKS)
+        if marks:
+            sentence = f"line {number} has marks of direction that are not read, {_list_characters(tuple(marks))}"
+            advice = "check the order of its words, or remove the marks"
+            notices.append(Notice("text", sentence, code="text-direction", advice=advice))
     return notices
 
 
