@@ -569,6 +569,22 @@ def test_each_script_of_a_line_is_shaped_by_its_own_rules():
     assert [path.get("d").count("Z") for path in paths(document)] == [1, 1]
 
 
+@pytest.mark.parametrize(
+    ("word", "script"),
+    [
+        ("\u0995\u09b2", "devanagari"),  # Bengali
+        ("\u0a15\u0a32", "devanagari"),  # Gurmukhi
+        ("\u0721\u0720", "arabic"),  # Syriac
+        ("\u07de\u07ca", "arabic"),  # N'Ko
+        ("\U0001e900\U0001e923", "arabic"),  # Adlam
+    ],
+)
+def test_a_word_of_a_joined_script_is_one_shape(word, script):
+    document, _ = text_svg(word, font_of_bars(word))
+    (path,) = paths(document)
+    assert path.get("data-brushsvg-script") == script and path.get("d").count("Z") == len(word)
+
+
 def test_marks_of_direction_are_reported():
     _, notices = bars("a\u202e\u05d0\u202c", font_of_bars("a\u05d0"))
     assert are_reported(notices, "text-direction 1 U+202E")

@@ -8,9 +8,15 @@ from dataclasses import dataclass
 from ..design import Notice, SubPath
 
 # Scripts by the first word of a character's name in Unicode.
-_SCRIPTS = {"ARABIC": "arabic", "DEVANAGARI": "devanagari"} | dict.fromkeys(
-    ("CJK", "HIRAGANA", "KATAKANA", "HANGUL", "BOPOMOFO", "KANGXI"), "cjk"
-)
+_SCRIPTS = {
+    word: script
+    for script, words in {
+        "arabic": ("ARABIC", "SYRIAC", "NKO", "ADLAM", "MANDAIC", "HANIFI"),  # joined, from right to left
+        "devanagari": ("DEVANAGARI", "BENGALI", "GURMUKHI"),  # with a headline
+        "cjk": ("CJK", "HIRAGANA", "KATAKANA", "HANGUL", "BOPOMOFO", "KANGXI"),
+    }.items()
+    for word in words
+}
 
 
 @dataclass(frozen=True)
