@@ -585,6 +585,15 @@ def test_a_word_of_a_joined_script_is_one_shape(word, script):
     assert path.get("data-brushsvg-script") == script and path.get("d").count("Z") == len(word)
 
 
+@pytest.mark.parametrize(
+    ("character", "script"), [("\u6c38", "cjk"), ("\u3042", "cjk"), ("\uc655", None), ("\u05d0", "latin")]
+)
+def test_a_character_has_the_script_by_which_it_is_written(character, script):
+    document, _ = text_svg(character, font_of_bars(character))
+    (path,) = paths(document)
+    assert path.get("data-brushsvg-script") == script
+
+
 def test_marks_of_direction_are_reported():
     _, notices = bars("a\u202e\u05d0\u202c", font_of_bars("a\u05d0"))
     assert are_reported(notices, "text-direction 1 U+202E")

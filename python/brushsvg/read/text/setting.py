@@ -13,7 +13,8 @@ _SCRIPTS = {
     for script, words in {
         "arabic": ("ARABIC", "SYRIAC", "NKO", "ADLAM", "MANDAIC", "HANIFI"),  # joined, from right to left
         "devanagari": ("DEVANAGARI", "BENGALI", "GURMUKHI"),  # with a headline
-        "cjk": ("CJK", "HIRAGANA", "KATAKANA", "HANGUL", "BOPOMOFO", "KANGXI"),
+        "cjk": ("CJK", "HIRAGANA", "KATAKANA", "BOPOMOFO", "KANGXI"),
+        "auto": ("HANGUL",),  # has circles, and no character of the data for "cjk" has one
     }.items()
     for word in words
 }
