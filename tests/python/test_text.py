@@ -236,6 +236,15 @@ def test_control_characters_are_dropped_and_markup_is_escaped():
     assert agrees(notices[0], "control-characters U+0000 U+001B U+D800 U+FFFF")
 
 
+@pytest.mark.parametrize("end", ["\r", "\r\n", "\v", "\f", "\x85", "\u2028", "\u2029"])
+def test_line_ends_of_other_programs_start_a_line(end):
+    assert drawn(f"TI{end}T") == drawn("TI\nT")
+
+
+def test_a_tab_is_a_space():
+    assert drawn("T\tI") == drawn("T I")
+
+
 @pytest.mark.parametrize(
     ("d", "expected"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 
 from ...errors import Error, as_number, missing_packages_error, need_numbers, need_one_of, require_type
@@ -14,6 +15,7 @@ _MAX_CHARACTERS = 100_000  # forty pages; a longer text is a mistake
 # First bytes of outline fonts.
 _OUTLINE_FONT_STARTS = (b"\0\1\0\0", b"OTTO", b"true", b"ttcf", b"wOFF", b"wOF2")
 _MAX_NAMED_CHARACTERS = 12  # characters without a glyph that a sentence names
+_LINE_ENDS = re.compile("\r\n|[\r\v\f\x85\u2028\u2029]")  # how texts of other programs end lines
 _DIRECTION_MARKS = ("LRE", "RLE", "LRO", "RLO", "LRI", "RLI", "FSI")  # bidirectional classes
 
 
@@ -93,7 +95,8 @@ def _checked(name: str, value: float, maximum: float, unit: str = "") -> float:
 
 
 def _remove_controls(text: str) -> tuple[str, list[Notice]]:
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    """Return a text with newlines and blanks as its only controls, and a notice about the characters left out."""
+    text = _LINE_ENDS.sub("\n", text).replace("\t", " ")
     kept = "".join(character for character in text if character == "\n" or not _is_control(character))
     if kept == text:
         return text, []
