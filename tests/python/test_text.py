@@ -354,7 +354,7 @@ def test_text_is_centred_on_a_given_sheet_or_refused():
     assert drawn("T", sheet_mm=(100, 60)) == ["M 48.0000,26.5000 L 52.0000,26.5000 M 50.0000,26.5000 L 50.0000,33.5000"]
     assert drawn("T", sheet_mm=(5, 8)) == ["M 0.5000,0.5000 L 4.5000,0.5000 M 2.5000,0.5000 L 2.5000,7.5000"]
     reported = refusal("T", svg_font(), size_mm=10, sheet_mm=(4.9, 60))
-    assert agrees(reported, "text-does-not-fit '5.00 x 8.00 mm' '4.9 x 60 mm'")
+    assert agrees(reported, "text-does-not-fit '5.00 x 8.00 mm' '4.9 x 60 mm' --size --sheet")
     reported = refusal("T", svg_font(), size_mm=10, sheet_mm=(60, 7.9))
     assert agrees(reported, "text-does-not-fit '60 x 7.9 mm'")
 
@@ -373,7 +373,7 @@ def test_same_input_gives_the_same_bytes():
 def test_right_to_left_text_is_reported():
     glyphs = GLYPHS + '<glyph unicode="\u05d0" d="M 0 0 L 9 9"/>'
     _, (notice,) = text_svg("I\n\u05d0", svg_font(glyphs))
-    assert agrees(notice, "text-direction 2")
+    assert agrees(notice, "text-direction 2 TrueType")
 
 
 # Outline fonts
@@ -618,7 +618,7 @@ def repacked(ttf, flavor):
 
 def test_woff_is_unpacked_and_woff2_refused(ttf):
     assert filled("AV fi", repacked(ttf, "woff")) == filled("AV fi", ttf)
-    assert agrees(refusal("A", b"wOF2" + bytes(60)), "font-unknown WOFF2")
+    assert agrees(refusal("A", b"wOF2" + bytes(60)), "font-unknown WOFF2 brotli FILE")
 
 
 def test_a_woff_bomb_is_refused(ttf, monkeypatch):

@@ -274,7 +274,9 @@ def _select_preview(args) -> str:
 
 def add_text(commands) -> None:
     text = commands.add_parser("text", help="write a text in a font as a drawing")
-    text.add_argument("input", metavar="TEXT", help="what to write; \\n starts a line")
+    text.add_argument(
+        "input", metavar="TEXT", help="what to write; \\n starts a line; a text that begins with - comes last, after --"
+    )
     flags.add_output(text, "a drawing (.svg)")
     text.add_argument(
         "--font",

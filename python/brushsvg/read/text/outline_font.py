@@ -290,8 +290,8 @@ class _CubicPen(BasePen):
 def _unpack(data: bytes) -> bytes:
     """Return a font as HarfBuzz reads it: a WOFF font is decompressed."""
     if data.startswith(b"wOF2"):
-        sentence = "WOFF2 is not read: unpack it first, for example with fonttools ttLib.woff2 decompress"
-        raise Error(sentence, code="font-unknown")
+        advice = "unpack it first: pip install brotli, then fonttools ttLib.woff2 decompress FILE"
+        raise Error("WOFF2 is not read", code="font-unknown", advice=advice)
     if not data.startswith(b"wOFF"):
         return data
     try:

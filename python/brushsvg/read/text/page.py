@@ -60,6 +60,7 @@ def svg_document(
                 f"{sheet[0]:g} x {sheet[1]:g} mm",
                 "text",
                 code="text-does-not-fit",
+                advice="give a smaller --size or a larger --sheet",
             )
     shift = (sheet - lower - upper) / 2
     style = (

@@ -118,7 +118,8 @@ def _direction_notices(text: str, is_outline_font: bool) -> list[Notice]:
         if not is_outline_font:
             if directions & {"R", "AL"}:
                 sentence = f"line {number} is set from left to right, as SVG fonts are"
-                notices.append(Notice("text", sentence, code="text-direction"))
+                advice = "use a TrueType or OpenType font"
+                notices.append(Notice("text", sentence, code="text-direction", advice=advice))
             continue
         marks = dict.fromkeys(c for c in line if unicodedata.bidirectional(c) in _DIRECTION_MARKS)
         if marks:
