@@ -107,12 +107,12 @@ def bulged(vertices, closed=False):
 def save_font(path, family, wide=600, slanted=False):
     """Save a font in which A, x and p are boxes of the given width.
 
-    The em has 1000 units. A is 700 high, and the gap between letters is 100. `slanted` cuts each box in half
-    along its diagonal.
+    The em has 1000 units. A, U+05D0 and U+0301 are 700 high, and the gap between letters is 100. `slanted` cuts each
+    box in half along its diagonal.
     """
     builder = FontBuilder(1000, isTTF=True)
     builder.setupGlyphOrder([".notdef", "space", "A", "x", "p"])
-    builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space"})
+    builder.setupCharacterMap({ord(letter): letter for letter in "Axp"} | {32: "space", 0x05D0: "A", 0x0301: "A"})
     glyphs = {"space": TTGlyphPen(None).glyph()}
     for name, top in TOPS.items():
         pen, bottom = TTGlyphPen(None), -200 if name == "p" else 0

@@ -144,6 +144,15 @@ def test_text_control_codes_are_replaced(fonts):
     assert sum(agrees(notice, "text-unread 'lines along'") for notice in design.notices) == 1
 
 
+@pytest.mark.parametrize("written", ["A \u05d0", "A\u0301"])
+def test_letters_that_are_not_set_one_by_one_from_the_left_are_reported(fonts, written):
+    document = in_boxes()
+    for words in (written, "A A"):
+        document.modelspace().add_text(words, height=7, dxfattribs={"style": "Boxes"})
+    first = read(document).elements[0].id
+    assert [n.where for n in read(document).notices if agrees(n, "text-unread CAD")] == [first]
+
+
 @pytest.mark.parametrize("kind", ["TEXT", "MTEXT"])
 def test_text_without_a_height_is_damaged(fonts, kind):
     line = "0 LINE 8 0 10 0 20 0 11 5 21 5"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections import Counter
 
 import numpy as np
@@ -104,6 +105,9 @@ class TextConverter:
             self._note_unread(name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer)
         if self._is_stacked(dxf.style):
             self._note_unread(name, _STACKED_SENTENCE, layer)
+        if any(map(_needs_shaping, text)):
+            advice = "explode the text into lines in your CAD program"
+            self._note_unread(name, "it is set letter by letter from left to right, unlike its script", layer, advice)
         length = drawn.text_width_ex(text, cap_height=dxf.height)  # includes blanks at the ends
         placed = ezdxf.addons.text2path.alignment_transformation(
             drawn.measurements.scale_from_baseline(dxf.height),
@@ -150,8 +154,8 @@ class TextConverter:
             self._document.styles.get(style).dxf.get("flags", 0) & _STACKED_BIT
         )
 
-    def _note_unread(self, name: str, sentence: str, layer: str) -> None:
-        self._unread.append(Notice(name, sentence, layer=layer, code="text-unread"))
+    def _note_unread(self, name: str, sentence: str, layer: str, advice: str = "") -> None:
+        self._unread.append(Notice(name, sentence, layer=layer, code="text-unread", advice=advice))
 
     def _count_letters(self, text: str, name: str) -> None:
         self._letters_left -= len(text)
@@ -159,6 +163,11 @@ class TextConverter:
             where = name.partition("/")[0]
             sentence = f"the drawing's text unfolds to more than {_MAX_LETTERS} letters"
             raise Error(sentence, where=where, code="drawing-too-large")
+
+
+def _needs_shaping(character: str) -> bool:
+    """Whether a character is written from right to left, or is a mark with its place at another letter."""
+    return unicodedata.bidirectional(character) in ("R", "AL") or unicodedata.category(character) in ("Mn", "Mc")
 
 
 _STACKED_SENTENCE = "its letters one below the other are not read: they are set in a line"
