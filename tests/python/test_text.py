@@ -555,10 +555,12 @@ def test_letters_from_right_to_left_are_painted_in_the_order_of_reading():
         ("ab, 12", "ab,12"),
         ("12 \u05d0", "\u05d012"),
         ("a \u05d0, \u05d1 b", "a\u05d1,\u05d0b"),
+        ("\u05d0 (ab) 12", "12)ab(\u05d0"),  # mirrored brackets
+        ("ab (\u05d0) \u05d1", "ab(\u05d0)\u05d1"),
     ],
 )
 def test_numbers_and_words_of_other_directions_keep_their_order(text, expected):
-    assert read_from_the_left(text, font_of_bars("ab12,-\u05d0\u05d1")) == expected
+    assert read_from_the_left(text, font_of_bars("ab12,-()\u05d0\u05d1")) == expected
 
 
 def test_lines_from_right_to_left_begin_at_the_right():

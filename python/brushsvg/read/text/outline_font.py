@@ -28,6 +28,7 @@ _UNITS_PER_EM_RANGE = (16, 16384)  # units per em that the format allows
 _COLOUR_TABLES = ("COLR", "CBDT", "sbix", "SVG ")  # tables of glyphs in colours or as pictures
 _STRAIGHT_LETTERS = "AEFHIKLMNTVWXYZilt"  # straight letters: in a single-line font, contours of many have no area
 _SINGLE_LINE_SENTENCE = "it is a single-line font: its contours are read as lines"
+_CONTEXT_CHARACTERS = 5  # characters next to a run by which HarfBuzz joins its letters
 _JOINED_SCRIPTS = ("arabic", "devanagari")  # scripts in which a word is one shape
 # Cubics of a contour. With fewer cubics, the last one always counts as the edge that closes the contour, as in a V.
 # From this number on, a short last cubic belongs to the drawn line, as in an O.
@@ -110,25 +111,25 @@ class _Typesetter:
         inked: set[int] = set()
         x = y = 0
         for run in sort_from_the_left(runs):
-            infos, positions = self._shape_run(line, run)
-            clusters = sorted({info.cluster for info in infos})
+            shaped = self._shape_run(line, run)
+            clusters = sorted({cluster for cluster, _, _ in shaped})
             ends = dict(zip(clusters, [*clusters[1:], run.end], strict=True))
             glyphs = []
-            for info, position in zip(infos, positions, strict=True):
-                characters = line[info.cluster : ends[info.cluster]]
-                if info.codepoint == 0:
-                    inked.add(info.cluster)  # this cluster is reported as missing, not as blank
+            for cluster, glyph_index, position in shaped:
+                characters = line[cluster : ends[cluster]]
+                if glyph_index == 0:
+                    inked.add(cluster)  # this cluster is reported as missing, not as blank
                     without_glyph = [
                         character for character in characters if not self.font.get_nominal_glyph(ord(character))
                     ]
                     self.missing.update(dict.fromkeys(without_glyph or characters))
                     continue
-                if subpaths := self._shape(info.codepoint):
-                    inked.add(info.cluster)
+                if subpaths := self._shape(glyph_index):
+                    inked.add(cluster)
                     origin = x + position.x_offset, -(y + position.y_offset)
                     at_mm = (value * self.mm_per_unit for value in origin)
                     glyph = PlacedGlyph(characters, subpaths, *at_mm, find_script(characters))
-                    glyphs.append((line[: info.cluster].count(" "), glyph))
+                    glyphs.append((line[:cluster].count(" "), glyph))
                 x, y = x + position.x_advance, y + position.y_advance
             for cluster in clusters:
                 if cluster not in inked:
@@ -138,14 +139,18 @@ class _Typesetter:
         words = [word for word, _ in placed]
         return tuple(_join_words([glyph for _, glyph in placed], words, line.split(" "))), x * self.mm_per_unit
 
-    def _shape_run(self, line: str, run: TextRun) -> tuple[list[hb.GlyphInfo], list[hb.GlyphPosition]]:
+    def _shape_run(self, line: str, run: TextRun) -> list[tuple[int, int, hb.GlyphPosition]]:
+        """Return (index of the first character in the line, glyph, position) of each glyph, from left to right."""
+        first = max(0, run.start - _CONTEXT_CHARACTERS)
+        around = line[first : run.end + _CONTEXT_CHARACTERS]
         buffer = hb.Buffer()
-        buffer.add_codepoints([ord(character) for character in line], run.start, run.end - run.start)
+        buffer.add_codepoints([ord(character) for character in around], run.start - first, run.end - run.start)
         buffer.language = "und"  # some builds of HarfBuzz use the locale, so the output would depend on it
         buffer.direction = "rtl" if run.is_right_to_left else "ltr"
         buffer.script = run.script
         hb.shape(self.font, buffer)
-        return buffer.glyph_infos or [], buffer.glyph_positions or []
+        glyphs = zip(buffer.glyph_infos or (), buffer.glyph_positions or (), strict=True)
+        return [(first + info.cluster, info.codepoint, position) for info, position in glyphs]
 
     def is_single_line_font(self) -> bool:
         """Whether the font is a single-line font.

@@ -1,7 +1,6 @@
 """Split a line of text into runs of one script and one direction.
 
-The directions follow the Unicode bidirectional algorithm (UAX #9), without its explicit marks (X1 to X8) and its rule
-for brackets (N0).
+The directions follow the Unicode bidirectional algorithm (UAX #9), without its explicit marks (X1 to X8).
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ _NOT_NEUTRAL = ("L", "R", "EN", "AN")
 _REMOVED = ("BN", "LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _COMMON_SCRIPTS = ("Zyyy", "Zinh", "Zzzz")  # digits, punctuation, accents, unassigned characters
 _SEPARATORS = (("ES", "EN"), ("CS", "EN"), ("CS", "AN"))  # (separator, numbers that it may join)
+_MAX_OPEN_BRACKETS = 63  # UAX #9 (BD16) reads no brackets after this number
 # How much higher the level of a character is than the level of its line, for lines from the left and from the right.
 _LEVEL_STEPS = ({"L": 0, "R": 1, "EN": 2, "AN": 2}, {"L": 1, "R": 0, "EN": 1, "AN": 1})
 
@@ -85,7 +85,7 @@ def _find_levels(line: str) -> list[int]:
     edge = "LR"[base]
     kinds = [unicodedata.bidirectional(character) or "L" for character in line]
     kept = [k for k, kind in enumerate(kinds) if kind not in _REMOVED]
-    resolved = _resolve([kinds[k] for k in kept], edge)
+    resolved = _resolve([line[k] for k in kept], [kinds[k] for k in kept], edge)
     levels = {k: base + _LEVEL_STEPS[base][kind] for k, kind in zip(kept, resolved, strict=True)}
     filled, current = [], base
     for k in range(len(line)):
@@ -94,8 +94,8 @@ def _find_levels(line: str) -> list[int]:
     return filled
 
 
-def _resolve(kinds: list[str], edge: str) -> list[str]:
-    """Return "L", "R", "EN" or "AN" for each character (rules W1 to W7, N1 and N2).
+def _resolve(characters: list[str], kinds: list[str], edge: str) -> list[str]:
+    """Return "L", "R", "EN" or "AN" for each character (rules W1 to W7 and N0 to N2).
 
     kinds: the bidirectional classes; edge: the direction of the line, "L" or "R".
     """
@@ -116,10 +116,51 @@ def _resolve(kinds: list[str], edge: str) -> list[str]:
     for k, kind in enumerate(kinds):
         kinds[k] = "R" if kind == "AL" else "L" if kind == "EN" and strong == "L" else kind
         strong = kinds[k] if kinds[k] in _STRONG else strong
+    _resolve_brackets(characters, kinds, edge)
     for is_neutral, group in groupby(range(len(kinds)), key=lambda k: kinds[k] not in _NOT_NEUTRAL):
         if is_neutral:
             indices = list(group)
             outside = [kinds[k] if 0 <= k < len(kinds) else edge for k in (indices[0] - 1, indices[-1] + 1)]
-            before, after = ("L" if kind == "L" else "R" for kind in outside)
+            before, after = map(_find_side, outside)
             kinds[indices[0] : indices[-1] + 1] = [before if before == after else edge] * len(indices)
     return kinds
+
+
+def _resolve_brackets(characters: list[str], kinds: list[str], edge: str) -> None:
+    """Give both brackets of a pair one direction (rule N0).
+
+    They have the direction of the line if a letter or number between them has it. Otherwise they have the other
+    direction if it is that of the text between them and of the text before them.
+    """
+    for opening, closing in _find_bracket_pairs(characters, kinds):
+        inside = {_find_side(kind) for kind in kinds[opening + 1 : closing] if kind in _NOT_NEUTRAL}
+        if not inside:
+            continue
+        kinds_before = (kinds[k] for k in range(opening - 1, -1, -1))
+        before = next((_find_side(kind) for kind in kinds_before if kind in _NOT_NEUTRAL), edge)
+        kinds[opening] = kinds[closing] = edge if edge in inside else before
+
+
+def _find_bracket_pairs(characters: list[str], kinds: list[str]) -> list[tuple[int, int]]:
+    """Return the indices of the brackets of each pair, in the order of the opening brackets."""
+    waiting: list[tuple[int, str]] = []  # index of an opening bracket, and the closing one
+    pairs = []
+    for k, (character, kind) in enumerate(zip(characters, kinds, strict=True)):
+        if kind in _NOT_NEUTRAL or not unicodedata.mirrored(character):
+            continue
+        if unicodedata.category(character) == "Ps":
+            if len(waiting) == _MAX_OPEN_BRACKETS:
+                break
+            following = (chr(ord(character) + step) for step in (1, 2))
+            waiting.append((k, next((each for each in following if unicodedata.category(each) == "Pe"), "")))
+        for depth in reversed(range(len(waiting))):
+            if waiting[depth][1] == character:
+                pairs.append((waiting[depth][0], k))
+                del waiting[depth:]
+                break
+    return sorted(pairs)
+
+
+def _find_side(kind: str) -> str:
+    """Return the direction that a resolved letter or number has for the neutral characters next to it."""
+    return "L" if kind == "L" else "R"
