@@ -17,6 +17,7 @@ from fontTools.pens.recordingPen import DecomposingRecordingPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import TTCollection, TTFont
 from fontTools.ttLib.sfnt import SFNTReader, SFNTWriter
+from fontTools.ttLib.tables.DefaultTable import DefaultTable
 
 from brushsvg.errors import Error
 from brushsvg.read.text import text_svg
@@ -603,6 +604,16 @@ def test_a_character_has_the_script_by_which_it_is_written(character, script):
     document, _ = text_svg(character, font_of_bars(character))
     (path,) = paths(document)
     assert path.get("data-brushsvg-script") == script
+
+
+def test_letters_that_a_font_joins_by_graphite_are_reported():
+    font = TTFont(io.BytesIO(font_of_bars("a\u0628")))
+    font["Silf"] = DefaultTable("Silf")
+    font["Silf"].data = bytes(16)
+    assert bars("a", saved(font))[1] == []
+    assert are_reported(bars("a\u0628", saved(font))[1], "font-rules-unread Graphite")
+    addOpenTypeFeaturesFromString(font, "feature liga { sub uni0628 by uni0061; } liga;")
+    assert bars("a\u0628", saved(font))[1] == []
 
 
 def test_marks_of_direction_are_reported():

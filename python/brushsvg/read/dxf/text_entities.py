@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 import re
-import unicodedata
 from collections import Counter
 
 import numpy as np
 
 from ...errors import Error
 from ..design import Notice
+from ..text.setting import needs_shaping
 from .entity_curves import Curve
 from .ezdxf_import import ezdxf
 from .file import printable
@@ -105,7 +105,7 @@ class TextConverter:
             self._note_unread(name, "its lines along the letters (%%u, %%o, %%k) are not read: left out", layer)
         if self._is_stacked(dxf.style):
             self._note_unread(name, _STACKED_SENTENCE, layer)
-        if any(map(_needs_shaping, text)):
+        if any(map(needs_shaping, text)):
             advice = "explode the text into lines in your CAD program"
             self._note_unread(name, "it is set letter by letter from left to right, unlike its script", layer, advice)
         length = drawn.text_width_ex(text, cap_height=dxf.height)  # includes blanks at the ends
@@ -163,11 +163,6 @@ class TextConverter:
             where = name.partition("/")[0]
             sentence = f"the drawing's text unfolds to more than {_MAX_LETTERS} letters"
             raise Error(sentence, where=where, code="drawing-too-large")
-
-
-def _needs_shaping(character: str) -> bool:
-    """Whether a character is written from right to left, or is a mark with its place at another letter."""
-    return unicodedata.bidirectional(character) in ("R", "AL") or unicodedata.category(character) in ("Mn", "Mc")
 
 
 _STACKED_SENTENCE = "its letters one below the other are not read: they are set in a line"

@@ -20,7 +20,7 @@ from fontTools.ttLib import TTFont
 from ...errors import Error
 from ...geometry.rings import signed_area
 from ..design import Notice, SubPath
-from .setting import PlacedGlyph, TypesetText, find_script, should_have_ink
+from .setting import PlacedGlyph, TypesetText, find_script, needs_shaping, should_have_ink
 from .text_runs import TextRun, sort_from_the_left, split_runs, starts_at_the_right
 
 _MAX_UNPACKED_BYTES = 200_000_000  # bytes; the largest fonts, with all Chinese characters, have a fifth of this size
@@ -48,6 +48,10 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
     placed = _align_lines(lines, list(map(setter.place, lines)))
     is_filled = not setter.is_single_line_font()
     notices: tuple[Notice, ...] = tuple(_unused_part_notices(unpacked, setter.face))
+    if _has_only_graphite_rules(setter.face) and any(map(needs_shaping, "".join(lines))):
+        sentence = "the font joins its letters by rules of Graphite, which are not read: they are set one by one"
+        advice = "use a font with OpenType rules"
+        notices += (Notice("text", sentence, code="font-rules-unread", advice=advice),)
     if not is_filled:
         notices = Notice("font", _SINGLE_LINE_SENTENCE, code="font-of-lines"), *notices
         placed = tuple(
@@ -77,6 +81,10 @@ def _unused_part_notices(data: bytes, face: hb.Face) -> Iterator[Notice]:
     if any(face.reference_table(tag).data for tag in _COLOUR_TABLES):
         sentence = "it is a font of colours, which are not read: of its letters plain outlines are painted"
         yield Notice("font", sentence, code="font-of-colours")
+
+
+def _has_only_graphite_rules(face: hb.Face) -> bool:
+    return bool(face.reference_table("Silf").data) and not face.reference_table("GSUB").data
 
 
 def _axes(fvar: bytes) -> list[tuple[str, float]]:

@@ -63,6 +63,11 @@ def should_have_ink(character: str) -> bool:
     return unicodedata.category(character)[0] in "LNPS" and character not in "\u115f\u1160\u2800\u3164\uffa0"
 
 
+def needs_shaping(character: str) -> bool:
+    """Whether a character is written from right to left, or is a mark with its place at another letter."""
+    return unicodedata.bidirectional(character) in ("R", "AL") or unicodedata.category(character) in ("Mn", "Mc")
+
+
 def find_script(characters: str) -> str:
     """Return the script of characters: the first script that is not "latin", if any."""
     names = (unicodedata.name(character, "").split(" ")[0] for character in characters)
