@@ -182,6 +182,11 @@ def test_a_small_arabic_letter_next_to_a_wide_one_is_no_dot():
     assert group_areas(np.array([hamza, alef]), "arabic") == [[1], [0]]
 
 
+def test_a_dot_of_a_small_arabic_letter_next_to_a_wide_one_comes_after_both():
+    wide, small, dot = [20, 0, 105, 22], [108, 12, 127, 37], [118, 5, 122, 9]
+    assert group_areas(np.array([wide, dot, small]), "arabic") == [[2], [0], [1]]
+
+
 def test_arabic_glyphs_that_are_paths_of_their_own_are_written_from_the_right():
     glyphs = [
         ("dot", "M18 8h4v4h-4z"),

@@ -175,12 +175,17 @@ def _group_cells(row: list[int], boxes: np.ndarray) -> list[list[int]]:
 def _group_bodies_and_dots(row: list[int], boxes: np.ndarray) -> list[list[int]]:
     """Return bodies, then dots, both from the right; each is a letter of its own.
 
-    Dots are small and above or below a body. A small letter next to a wide one is no dot.
+    Dots are small and above or below a body, or a letter that is small next to a wide one. A letter of this kind is
+    no dot.
     """
     sizes = (boxes[:, 2:] - boxes[:, :2]).max(axis=1)
-    bodies = [k for k in row if sizes[k] >= MAX_DOT_SHARE * sizes[row].max()]
-    dots = {k for k in row if k not in bodies and _is_stacked(boxes[k], boxes[bodies])}
-    return [[k] for k in sorted(row, key=lambda k: (k in dots, -boxes[k, 2]))]
+    max_dot = MAX_DOT_SHARE * sizes[row].max()
+
+    def is_dot(k: int) -> bool:
+        letters = [j for j in row if sizes[j] >= max_dot or sizes[k] < MAX_DOT_SHARE * sizes[j]]
+        return sizes[k] < max_dot and _is_stacked(boxes[k], boxes[letters])
+
+    return [[k] for k in sorted(row, key=lambda k: (is_dot(k), -boxes[k, 2]))]
 
 
 def _is_stacked(box: np.ndarray, others: np.ndarray) -> bool:
