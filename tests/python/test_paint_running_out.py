@@ -13,6 +13,7 @@ import shapely
 from diagnostics import is_reported
 from sampling import sample
 
+import brushsvg
 from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.jobs.conversion import simulate_and_check
@@ -191,3 +192,14 @@ def test_check_accepts_the_program(tmp_path, capsys):
     flags = ["--brush", str(tmp_path / "b.json"), "--cell", str(tmp_path / "c.toml")]
     assert main(["convert", str(tmp_path / "d.svg"), "-o", out, *flags]) == 0
     assert main(["check", out, str(tmp_path / "d.svg"), *flags]) == 0, capsys.readouterr()
+
+
+def test_check_repeats_that_the_brush_runs_dry(tmp_path):
+    brush = find_brush("round-6")
+    brush.paint = _core.Paint(0.1, lasts_mm=50.0)
+    (tmp_path / "d.svg").write_text(drawing())
+    out = tmp_path / "d.ngc"
+    written = brushsvg.convert(tmp_path / "d.svg", out, brush=brush)
+    checked = brushsvg.check(out, tmp_path / "d.svg", brush=brush)
+    for notices in (written.notices, checked.notices):
+        assert is_reported(notices, "paint-runs-out '[0, 50] mm' round-6"), notices

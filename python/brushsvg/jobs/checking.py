@@ -21,7 +21,7 @@ from ..machine import preflight
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
 from ..machine.motion import duration_s
-from ..machine.paint_reload import split_into_loads
+from ..machine.paint_reload import report_dry_brush, split_into_loads
 from ..machine.posts import GCODE
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
@@ -249,6 +249,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         strokes, drawn, speeds = None, None, None
         if work:
             loads = split_into_loads(work.plan, brush, cell)
+            warn(program.path, report_dry_brush(loads, brush, cell, header.first_stroke))
             stroke_rows, differences = against_plan.with_plan(simulated, loads, cell, header.first_stroke)
             if header.is_of_plan and work.strokes is not None:
                 differences = _merge_style_differences(differences)
