@@ -23,7 +23,7 @@ from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_f
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import program_in_robot_frame
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.trajectory import POSE_ROW, SLICE_S, make_timed_sections
+from brushsvg.machine.trajectory import POSE_ROW, SLICE_S, make_timed_sections, time_lines
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.readback import read_program
 
@@ -102,6 +102,18 @@ def message(text: str) -> tuple[list[list[float]], str, str]:
     rows = [line.split(",") for line in text.splitlines() if line[0] in "-0123456789"]
     frames = re.search(r"# frame: (\S+)\n# link: (\S+)", text).groups()
     return [[float(cell) for cell in row[:8]] for row in rows], *frames
+
+
+@pytest.mark.parametrize("acceleration_mm_s2", [20.0, 100.0, 500.0])
+def test_each_row_has_a_later_time_than_the_row_before_it(acceleration_mm_s2):
+    random = np.random.default_rng(1)
+    for _ in range(1000):
+        count = int(random.integers(2, 12))
+        lengths = np.round(10 ** random.uniform(-2, 1.5, count), 3).tolist()
+        caps = random.choice([0, 3, 5, 15, 20, 100, 1e9], count - 1).tolist()
+        top_mm_s = float(random.choice([5, 20, 100]))
+        times = [when_s for _, when_s, _ in time_lines(lengths, caps, [top_mm_s] * count, acceleration_mm_s2)]
+        assert np.diff([0.0, *times]).min() > 1e-7
 
 
 def test_json_contains_the_rows_of_the_table():

@@ -15,6 +15,7 @@ from .tool_axes import turned_on
 POSE_ROW, WAY_ROW, REST_ROW = 0, 1, 2
 SLICE_S = 0.02  # spacing of rows while the speed changes; between two rows the speed counts as constant
 MIN_LENGTH_MM = 1e-6
+MIN_SLICE_S = 1e-6  # rows that are closer in time could be written with one time
 
 
 def make_timed_sections(program: Program) -> Iterator[tuple[str, np.ndarray]]:
@@ -119,8 +120,11 @@ def time_lines(
         even_mm = max(length - (2 * peak * peak - begin * begin - end * end) / (2 * a), 0.0)
         even_s = even_mm / peak if even_mm > MIN_LENGTH_MM else 0.0
         if max(rising_s, falling_s) > SLICE_S / 2:
+            took_s, last_s = rising_s + even_s + falling_s, 0.0
             for after_s, done_mm in _slice_points(begin, peak, rising_s, even_s, falling_s, length, end, a):
-                yield k, now_s + after_s, done_mm
+                if min(after_s - last_s, took_s - after_s) >= MIN_SLICE_S:
+                    yield k, now_s + after_s, done_mm
+                    last_s = after_s
         now_s += rising_s + even_s + falling_s
         yield k, now_s, None
 
