@@ -16,6 +16,7 @@ from brushsvg.cli import main
 from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_check import remarks
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.motion import Wait
 from brushsvg.machine.paint_reload import (
@@ -244,6 +245,40 @@ def test_check_refuses_a_program_that_sweeps_through_a_vessel(tmp_path, capsys):
     for drawing in ((), (str(tmp_path / "a.svg"),)):
         status, _, reported = in_json(capsys, "check", words[0], *drawing, *words[1:])
         assert status == 1 and is_reported(reported, "vessel-entered pot", "line"), reported
+
+
+def test_a_visit_inside_another_vessel_is_refused():
+    def parsed(**changes):
+        return parse_cell(write_cell(cell_with(Reload("stroke"), BLACK, replace(WATER, **changes))))
+
+    near = {"place_mm": (-8.0, 10.0), "radius_mm": 20.0, "rim_mm": 5.0}
+    with refused("cell-station place_mm 12 water radius_mm 20 5", "station 1"):
+        parsed(**near)
+    with refused("cell-station place_mm 9 black radius_mm 10 4", "station 2"):
+        parsed(place_mm=(-11.0, 10.0), radius_mm=5.0)
+    wipe = {"radius_mm": 5.0, "rim_mm": 1.0, "wipe_mm": ((-30.0, 60.0, 2.0), (-20.0, 16.0, 3.0))}
+    with refused("cell-station wipe_mm 6 black radius_mm 10 4", "station 2"):
+        parsed(**wipe)
+    for changes in (
+        {**near, "radius_mm": 11.0},
+        {**near, "place_mm": BLACK.place_mm, "surface_mm": BLACK.surface_mm},  # one vessel
+        {
+            **near,
+            "rim_mm": -10.0,
+            "surface_mm": -10.0,
+            "depth_mm": 5.0,
+        },  # the paint of station 1 is above this rim, as on a tray
+        {**wipe, "wipe_mm": ((-30.0, 60.0, 2.0), (-20.0, 16.0, 4.0))},
+    ):
+        assert parsed(**changes).stations[1].radius_mm == changes["radius_mm"]
+
+
+def test_circles_wider_than_the_vessel_are_remarked_on():
+    def reported(**changes):
+        return remarks(cell_with(Reload("stroke"), replace(WATER, **changes)))
+
+    assert is_reported(reported(stir_mm=13.0, radius_mm=12.0), "unusual-value stir_mm 13 radius_mm 12", "station 1")
+    assert not reported(stir_mm=12.0, radius_mm=12.0)
 
 
 def test_lower_paper_does_not_lower_the_vessels_on_the_table(tmp_path, capsys):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from itertools import pairwise
@@ -441,6 +442,7 @@ def _check_paint(cell: Cell) -> None:
         if names.index(station.name) != number - 1:
             raise Error(f"the name {station.name!r} is given twice", where=where, code="name-taken")
         _check_station_heights(station, cell, where)
+        _check_other_vessels(station, cell, where)
         for colour in station.colours:
             if not re.fullmatch("#[0-9a-fA-F]{6}", colour):
                 raise Error(f"colour {colour[:24]!r} is not written as #rrggbb", where=where, code="colour-invalid")
@@ -497,6 +499,30 @@ def _check_station_heights(station: Station, cell: Cell, where: str) -> None:
             )
 
 
+def _check_other_vessels(station: Station, cell: Cell, where: str) -> None:
+    """Refuse a visit that dips or wipes inside another vessel, below its rim.
+
+    Two stations at one place are one vessel.
+    """
+    if station.by_hand:
+        return
+    points = [("place_mm", (*station.place_mm, station.surface_mm - station.depth_mm))]
+    points += [("a point of wipe_mm", point) for point in station.wipe_mm]
+    for other in cell.stations:
+        if other.by_hand or other.place_mm == station.place_mm:
+            continue
+        for name, point in points:
+            away_mm = math.dist(point[:2], other.place_mm)
+            if away_mm < other.radius_mm and point[2] < other.rim_mm:
+                raise Error(
+                    f"{name} is {away_mm:.3g} mm from the middle of vessel {other.name!r}, less than its radius_mm "
+                    f"{other.radius_mm:g}: the tool would hit that vessel below its rim at {other.rim_mm:g} mm",
+                    where=where,
+                    code="cell-station",
+                    advice="move one of them, or correct radius_mm",
+                )
+
+
 # (key, smallest usual value, largest usual value, why a value outside this range is unusual)
 USUAL_RANGES = (
     ("heights.safe_mm", 2.0, 200.0, "clips, vessels and drops of paint stand higher; or the way up is long"),
@@ -541,6 +567,14 @@ def remarks(cell: Cell) -> list[Notice]:
     if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
         sentence = f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm"
         notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
+    for number, station in enumerate(cell.stations, 1):
+        if station.stir_mm > station.radius_mm:
+            sentence = (
+                f"stir_mm {station.stir_mm:g} is more than radius_mm {station.radius_mm:g}: the brush would stir "
+                "outside its vessel"
+            )
+            advice = "lower stir_mm, or set radius_mm to the radius of the vessel"
+            notices.append(Notice(f"station {number}", sentence, code="unusual-value", advice=advice))
     if cell.paper.example:
         notices.append(OF_EXAMPLE)
     return notices + _check_facing(cell) + _check_dip_tilt(cell) + _check_sheet_corner(cell)
