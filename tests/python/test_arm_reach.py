@@ -18,7 +18,7 @@ from brushsvg.cli import main
 from brushsvg.machine import preflight
 from brushsvg.machine.arm import joints, place
 from brushsvg.machine.arm.follow import flange_at, follow, joint_rates, lowest_joint_mm
-from brushsvg.machine.cells.cell import robot_from_paper
+from brushsvg.machine.cells.cell import Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import transform_points
 from brushsvg.machine.paint_reload import split_into_loads
@@ -160,6 +160,28 @@ def test_a_missing_library_is_reported_with_the_package_to_install(tmp_path, cap
     assert is_reported(reported, "arm-not-followed ssik UR5e")
     status, _, reported = in_json(capsys, "cell", "place", far)
     assert status == 1 and is_reported(reported, "package-missing ssik")
+
+
+@pytest.mark.parametrize(
+    ("taught", "axes"),
+    [
+        (((150, -550, 200), (-140, -550, 200), (150, -550, 400)), (0, 2)),
+        (((-550, -150, 200), (-550, 140, 200), (-600, -150, 400)), (1, 2)),
+        (((-150, -550, 200), (140, -550, 200), (-150, -450, 300)), (0, 1)),
+    ],
+)
+def test_place_draws_a_wall_from_the_front(tmp_path, capsys, taught, axes):
+    """`cell place -o` once failed for paper that stands upright, because the map was always seen from above."""
+    shipped = find_cell("ur5e")
+    workspace = replace(shipped.workspace, tilt_limit_deg=90.0, box_mm=((-700.0, -700.0, 0.0), (700.0, 700.0, 800.0)))
+    cell = replace(shipped, workspace=workspace, paper=Paper(taught_mm=taught))
+    (tmp_path / "wall.toml").write_text(write_cell(cell))
+    status, output, _ = in_json(capsys, "cell", "place", tmp_path / "wall.toml", "-o", tmp_path / "wall.svg")
+    assert status == 0 and "reaches all of it" in output
+    table = place.table_of(cell, robot_from_paper(cell), joints.joints_of(cell.arm))
+    assert table.axes == axes and np.count_nonzero(table.what == place.REACHED) > 100
+    seen = " and ".join("xyz"[axis] for axis in axes)
+    assert (f"{seen}, mm of the robot" in (tmp_path / "wall.svg").read_text()) is (axes != (0, 1))
 
 
 def test_place_reports_workable_paper_positions_and_draws_the_table(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""Draw the table in front of an arm from above: its reach, the paper, and where the paper could be."""
+"""Draw the table in front of an arm from above, or a wall: its reach, the paper, and where the paper could be."""
 
 from __future__ import annotations
 
@@ -35,11 +35,12 @@ def table_picture(suffix: str, table: Table, cell: Cell, sheet_mm, frame, found)
     low = np.minimum(low, -40.0)
     high = np.maximum(np.array([table.x_mm[-1], table.y_mm[-1]]) + step_mm / 2, 40.0)
     corners = np.array([(0, 0, 0), (sheet_mm[0], 0, 0), (*sheet_mm, 0), (0, sheet_mm[1], 0)], dtype=float)
-    sheets = [(transform_points(frame, corners)[:, :2], SHEET, "paper")]
+    sheets = [(transform_points(frame, corners)[:, table.axes], SHEET, "paper")]
     if found is not None:
-        sheets.append((transform_points(found, corners)[:, :2], ALTERNATIVE_SHEET, "would do here"))
+        sheets.append((transform_points(found, corners)[:, table.axes], ALTERNATIVE_SHEET, "would do here"))
     for ring, _, _ in sheets:
         low, high = np.minimum(low, ring.min(axis=0) - 10), np.maximum(high, ring.max(axis=0) + 10)
+    shown = "" if table.axes == (0, 1) else " and ".join("xyz"[axis] for axis in table.axes) + ", "
     drawn = _draw_png if suffix == ".png" else _draw_svg
     return drawn(
         table,
@@ -47,12 +48,12 @@ def table_picture(suffix: str, table: Table, cell: Cell, sheet_mm, frame, found)
         low,
         high,
         sheets,
-        f"{cell.name}: arm {cell.arm.name}, mm of the robot's frame; white: beyond the cell's box",
+        f"{cell.name}: arm {cell.arm.name}, {shown}mm of the robot's frame; white: beyond the cell's box",
     )
 
 
 def _ticks(low: float, high: float) -> np.ndarray:
-    return np.arange(np.ceil(low / GRID_MM), np.floor(high / GRID_MM) + 1) * GRID_MM
+    return np.arange(np.ceil(low / GRID_MM), np.floor(high / GRID_MM) + 1) * GRID_MM + 0.0  # no -0
 
 
 def _draw_png(table: Table, step_mm: float, low, high, sheets, title: str) -> bytes:

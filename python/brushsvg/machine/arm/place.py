@@ -134,37 +134,44 @@ def _is_above_table(arm: Arm, joints_rad: np.ndarray, frame: np.ndarray) -> np.n
 
 @dataclass(frozen=True)
 class Table:
-    """A map of the table that shows where an arm can paint.
+    """A map of the paper's plane that shows where an arm can paint: of the table, or of a wall.
 
-    x_mm (n,), y_mm (m,): middles of the squares, on the paper's plane, in the robot's frame.
+    axes: the two axes of the robot's frame that the map shows, 0 to 2: to the right, and up.
+    x_mm (n,), y_mm (m,): middles of the squares along these axes, on the paper's plane, in the robot's frame.
     what (m, n): the worse rating of each square, at the paper and at the safe height.
     """
 
+    axes: tuple[int, int]
     x_mm: np.ndarray
     y_mm: np.ndarray
     what: np.ndarray
 
 
 def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> Table:
-    """Rate each square of the table for the arm.
+    """Rate each square of the paper's plane for the arm.
 
-    The table is the cell's box, or the area that the links reach.
+    The plane is seen along the axis of the robot's frame that is nearest to its normal. The map covers the cell's box,
+    or the area that the links reach.
     """
     reach_mm = sum(float(np.hypot(a, d)) for a, _, d, _ in joints.arm.dh)
     low, high = cell.workspace.box_mm or ((-reach_mm,) * 3, (reach_mm,) * 3)
-    step_mm = max(high[0] - low[0], high[1] - low[1]) / MAX_TABLE_SQUARES
-    x, y = (np.arange(low[k] + step_mm / 2, high[k], step_mm) for k in (0, 1))
     normal, origin = frame[:3, 2], frame[:3, 3]
+    # A paper that leans 45 degrees is seen from above.
+    along = max((2, 1, 0), key=lambda axis: round(abs(float(normal[axis])), 6))
+    axes = tuple(axis for axis in range(3) if axis != along)
+    step_mm = max(high[axis] - low[axis] for axis in axes) / MAX_TABLE_SQUARES
+    x, y = (np.arange(low[axis] + step_mm / 2, high[axis], step_mm) for axis in axes)
     what = np.full((len(y), len(x)), REACHED)
-    for row, there_y in enumerate(y):
-        for column, there_x in enumerate(x):
-            there_z = origin[2] - ((there_x - origin[0]) * normal[0] + (there_y - origin[1]) * normal[1]) / normal[2]
-            paper_point = np.array([there_x, there_y, there_z])
+    paper_point = origin.copy()
+    for row, paper_point[axes[1]] in enumerate(y):
+        for column, paper_point[axes[0]] in enumerate(x):
+            paper_point[along] = origin[along]
+            paper_point[along] -= (paper_point - origin) @ normal / normal[along]
             for height in (0.0, cell.heights.safe_mm):
                 what[row, column] = min(
                     what[row, column], _rate_place(joints, cell, frame, paper_point + height * normal)
                 )
-    return Table(x, y, what)
+    return Table((axes[0], axes[1]), x, y, what)
 
 
 def _rate_place(joints: JointSolver, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> int:
