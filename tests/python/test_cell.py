@@ -408,6 +408,18 @@ def test_a_wall_that_was_taught_facing_away_is_reported(towards):
     assert are_reported([notice for notice in remarks(away) if notice.where == "paper"], "paper-faces-away")
 
 
+def test_paper_that_leans_on_purpose_is_taught_after_its_limit_is_raised(tmp_path, capsys):
+    taught = ("--taught=150,-550,200", "--taught=-140,-550,200", "--taught=150,-550,400")
+    wall = str(tmp_path / "wall.toml")
+    status, _, reported = in_json(capsys, "cell", "new", "-o", wall, "--like", "ur5e", *taught)
+    assert status == 1 and is_reported(reported, "paper-tilted 90.00 0 15 workspace.tilt_limit_deg --like", "paper")
+    shipped = find_cell("ur5e")
+    leaning = replace(shipped, workspace=replace(shipped.workspace, tilt_limit_deg=90.0))
+    (tmp_path / "base.toml").write_text(write_cell(leaning))
+    status, _, reported = in_json(capsys, "cell", "new", "-o", wall, "--like", tmp_path / "base.toml", *taught)
+    assert status == 0 and reported == []
+
+
 @pytest.mark.parametrize(
     ("points", "expected"),
     [

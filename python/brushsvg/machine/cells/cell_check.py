@@ -205,13 +205,18 @@ def _check_paper(cell: Cell) -> None:
         raise
     limit_deg = cell.workspace.tilt_limit_deg
     if tilt_deg > limit_deg + 1e-9:
+        if cell.paper.taught_mm and tilt_deg > 90:
+            advice = "seen from above, the third point must be to the left of the line from the first to the second"
+        elif cell.tool:
+            advice = "raise this limit if the paper should lean, for cell new in a file that you give with --like"
+        else:
+            advice = ""
         raise Error(
-            f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of tilt_limit_deg",
+            f"the paper leans {tilt_deg:.2f} degrees, outside the range [0, {limit_deg:g}] degrees of "
+            "workspace.tilt_limit_deg",
             where="paper",
             code="paper-tilted",
-            advice="seen from above, the third point is to the left of the way from the first to the second"
-            if cell.paper.taught_mm and tilt_deg > 90
-            else "",
+            advice=advice,
         )
 
 
@@ -591,7 +596,7 @@ def _check_facing(cell: Cell) -> list[Notice]:
         return []
     sentence = (
         f"the paper leans {tilt_deg:.0f} degrees and faces away from the robot's origin, as if painted from behind: "
-        "seen from its front, the third point is to the left of the way from the first to the second"
+        "seen from its front, the third point must be to the left of the line from the first to the second"
     )
     return [Notice("paper", sentence, code="paper-faces-away")]
 
