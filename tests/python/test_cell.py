@@ -47,7 +47,7 @@ def test_every_shipped_cell_loads_and_equals_the_output_of_the_tool(name):
     [
         ("press_mm_s = 8.0", "", "speeds.press_mm_s", "key-missing"),
         ("press_mm_s = 8.0", "press_mm_s = 8.0\npress = 3", "speeds.press", "key-unknown travel_mm_s"),
-        ("press_mm_s = 8.0", 'press_mm_s = "8"', "speeds.press_mm_s", "wrong-type 8"),
+        ("press_mm_s = 8.0", 'press_mm_s = "8"', "speeds.press_mm_s", "wrong-type \"not '8'\""),
         ("press_mm_s = 8.0", "press_mm_s = nan", "speeds.press_mm_s", "wrong-type nan"),
         ("press_mm_s = 8.0", "press_mm_s = true", "speeds.press_mm_s", "wrong-type True"),
         ("press_mm_s = 8.0", "press_mm_s = 0", "speeds.press_mm_s", "out-of-range 0 0.01 5000"),

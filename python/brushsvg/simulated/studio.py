@@ -166,7 +166,7 @@ def _value(limits, value, where: str):
             raise Error(f"{where} must be {count} finite numbers", where, code="wrong-type")
         return tuple(_value(limits | {"count": None}, each, where) for each in value)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < math.inf:
-        raise Error(f"{where} must be a finite number, not {str(value)[:40]}", where, code="wrong-type")
+        raise Error(f"{where} must be a finite number, not {value!r:.40}", where, code="wrong-type")
     least, greatest = limits["range"]
     if not least <= value <= greatest:
         sentence = f"{where} {format_value(value)} is outside the range [{least:g}, {greatest:g}]"

@@ -130,7 +130,7 @@ def _read_number(entry: Entry, value, where: str):
     types = int if entry.kind == "whole" else int | float
     if isinstance(value, bool) or not isinstance(value, types) or value != value or abs(value) == math.inf:
         expected = "a whole number" if entry.kind == "whole" else "a finite number"
-        raise Error(f"{where} must be {expected}, not {str(value)[:40]}", where=where, code="wrong-type")
+        raise Error(f"{where} must be {expected}, not {value!r:.40}", where=where, code="wrong-type")
     if not entry.least <= value <= entry.greatest:
         sentence = f"{where} {format_value(value)} is outside the range [{entry.least:g}, {entry.greatest:g}]"
         raise Error(sentence, where=where, code="out-of-range")
@@ -143,7 +143,7 @@ def _read_rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
         sentence = f"{where} has {len(value)} rows, more than {MAX_ROWS}"
         raise Error(sentence, where=where, code="out-of-range")
     if not isinstance(value, list) or (count is not None and len(value) != count):
-        sentence = f"{where} must be {_shape_in_words(shape)}, not {str(value)[:40]}"
+        sentence = f"{where} must be {_shape_in_words(shape)}, not {value!r:.40}"
         raise Error(sentence, where=where.partition("[")[0], code="wrong-type")
     if len(shape) == 1:
         return tuple(_read_number(entry, item, where) for item in value)
