@@ -280,6 +280,9 @@ def test_a_sheet_is_out_of_reach_only_if_no_point_of_it_is_reachable():
         ("speeds", {"paint_mm_s": 0.1}, "unusual-value 0.1 1 500"),
         ("speeds", {"acceleration_mm_s2": 40000.0}, "unusual-value 10 10000"),
         ("tool", {"tcp_mm": (0.0, 0.0, 1800.0)}, "unusual-value 1800"),
+        ("tool", {"tcp_mm": (0.0, 0.0, 0.15)}, "unusual-value 0.15 10 500"),
+        ("tool", {"tcp_mm": (0.0, 0.0, -150.0)}, "unusual-value 150 behind rotation_deg"),
+        ("tool", {"tcp_mm": (130.0, 0.0, 45.0), "rotation_deg": (0.0, -90.0, 0.0)}, "unusual-value 130 behind"),
         (
             "workspace",
             {"box_mm": ((-100.0, -850.0, -50.0), (450.0, -200.0, 500.0))},

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...errors import Error, Notice
-from ..frames import normal_tilt_deg, transform_points
+from ..frames import normal_tilt_deg, rotation, transform_points
 from ..move_extents import distances_from_origin, make_paths
 from ..realised.smooth_field import max_field_slope
 from ..workspace_limits import find_broken_limits
@@ -570,8 +570,12 @@ def remarks(cell: Cell) -> list[Notice]:
         sentence = f"one value changes the height by {value:.2g} mm: depths are off by half of it"
         notices.append(Notice("servo.table", sentence, code="servo-coarse"))
     if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
-        sentence = f"the tip is {length_mm:.0f} mm from the flange, outside the usual range [10, 500] mm"
+        sentence = f"the tip is {length_mm:.4g} mm from the flange, outside the usual range [10, 500] mm"
         notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
+    if cell.tool and (ahead_mm := float(rotation(cell.tool.rotation_deg)[:, 2] @ cell.tool.tcp_mm)) < -0.5:
+        sentence = f"the tip is {-ahead_mm:.4g} mm behind the flange, so the brush points back past it"
+        advice = "check the signs of tcp_mm and rotation_deg: z of the tool points from the holder to the tip"
+        notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm", advice=advice))
     for number, station in enumerate(cell.stations, 1):
         if station.stir_mm > station.radius_mm:
             sentence = (
