@@ -133,6 +133,8 @@ UNREADABLE = {
         (edited(r"brushsvg\(\)\n", ""), "program-cut-short"),
         (edited(r"on_paper\((\S+), ", r"on_paper(1e3, "), "line-unread"),
         (edited("  end\n", "  end\n  set_digital_out(1, True)\n"), "line-unread"),
+        (lambda text: text.replace("\n", "\r\n"), "line-unread 'line 1' 'save it with line feeds alone'"),
+        (edited("  # stroke 1", "  # Größe\n  # stroke 1"), "line-unread \"'ö'\" 'leave it out'"),
     ],
 }
 

@@ -159,7 +159,7 @@ def text_of_file(data: bytes) -> str:
     Letters that an editor left are kept, so that error messages can name them. Raises Error for UTF-16.
     """
     if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
-        raise Error("it is written in UTF-16: brushsvg writes plain 7-bit text", code="line-unread")
+        raise Error("it is written in UTF-16, not in plain 7-bit text: save it as UTF-8", code="line-unread")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
@@ -170,9 +170,9 @@ def _describe_letter(letter: str, line: int) -> str:
     if letter == "\ufeff":
         return f"line {line} begins with a byte order mark (U+FEFF), which an editor put there: save it without one"
     if letter == "\r":
-        return f"line {line} ends as on Windows, with a carriage return: brushsvg writes line feeds alone"
+        return f"line {line} ends as on Windows, with a carriage return: save it with line feeds alone"
     named = f"U+{ord(letter):04X} {unicodedata.name(letter, '')}".strip()
-    return f"line {line} has a letter {letter!r} ({named}): brushsvg writes plain 7-bit text"
+    return f"line {line} has a letter {letter!r} ({named}): programs are plain 7-bit text, so leave it out"
 
 
 def read_program(text: str, suffix: str, cell: Cell) -> Readback:
