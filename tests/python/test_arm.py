@@ -193,4 +193,6 @@ def test_cell_check_refuses_an_arm_that_convert_refuses(prebuilt, tmp_path, caps
     cell = find_cell("ur5e")
     (tmp_path / "mine.toml").write_text(write_cell(replace(cell, arm=replace(cell.arm, prebuilt=prebuilt))))
     status, out, reported = in_json(capsys, "cell", "check", tmp_path / "mine.toml")
-    assert (status, out) == (1, "") and is_reported(reported, f"cell-arm '{prebuilt}'", "arm.prebuilt"), reported
+    assert (status, out) == (1, "") and is_reported(
+        reported, f"cell-arm '{prebuilt}' 'leave prebuilt out'", "arm.prebuilt"
+    ), reported

@@ -131,7 +131,7 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     """
     if not any(each.name == f"{arm.prebuilt}_ik" for each in ssik.list_arms()):
         sentence = f"ssik has no arm {arm.prebuilt!r} ready"
-        raise Error(sentence, where="arm.prebuilt", code="cell-arm")
+        raise Error(sentence, where="arm.prebuilt", code="cell-arm", advice="leave prebuilt out")
     manipulator = ssik.Manipulator.from_prebuilt(arm.prebuilt)
     sample_angles = np.random.default_rng(0).uniform(-1.0, 1.0, (5, len(arm.dh)))
     our_flanges = joint_frames_of(arm, sample_angles)[:, -1]
@@ -143,7 +143,7 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
             solve_roughly = _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh)))
             return lambda flange: _refine_on_links(arm, solve_roughly(flange), flange)
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
-    raise Error(sentence, where="arm.prebuilt", code="cell-arm")
+    raise Error(sentence, where="arm.prebuilt", code="cell-arm", advice="correct the links, or leave prebuilt out")
 
 
 def _refine_on_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
