@@ -367,6 +367,14 @@ def test_a_table_that_only_other_languages_use_is_refused(name, table):
             parse_cell(write_cell(replace(cell, **{table: TABLES[table]})))
 
 
+def test_an_unknown_language_is_reported_instead_of_its_tables(tmp_path, capsys):
+    """A cell with the language "KRL" was once refused because that language 'does not use a table tool'."""
+    text = write_cell(find_cell("kr6-r900")).replace('language = "krl"', 'language = "KRL"')
+    (tmp_path / "mine.toml").write_text(text)
+    status, _, reported = in_json(capsys, "cell", "check", tmp_path / "mine.toml")
+    assert status == 0 and is_reported(reported, "language-unknown 'KRL' krl robodk", "language"), reported
+
+
 @pytest.mark.parametrize(
     ("servo", "expected"),
     [

@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import Error, Notice
 from ..frames import normal_tilt_deg, rotation, transform_points
 from ..move_extents import distances_from_origin, make_paths
+from ..posts import POSTS
 from ..realised.smooth_field import max_field_slope
 from ..workspace_limits import find_broken_limits
 from .cell import (
@@ -93,14 +94,14 @@ def check(cell: Cell) -> None:
 def _check_tables(cell: Cell) -> None:
     """Raise Error if a table of the cell is missing or unused.
 
-    A table is unused if only other languages use it.
+    A table is unused if only other languages use it. Nobody knows what a language without a post uses.
     """
     for table in sorted({table for tables in REQUIRED_TABLES.values() for table in tables}):
         languages = [language for language, tables in REQUIRED_TABLES.items() if table in tables]
         is_given = getattr(cell, table) is not None
         if cell.language in languages and not is_given:
             raise Error(f"language {cell.language!r} needs a table {table}", where=table, code="key-missing")
-        if is_given and cell.language not in languages:
+        if is_given and cell.language in POSTS and cell.language not in languages:
             sentence = f"language {cell.language!r} does not use a table {table}: it is for {', '.join(languages)}"
             raise Error(sentence, where=table, code="key-unused")
 
