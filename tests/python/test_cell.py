@@ -21,6 +21,7 @@ from brushsvg.machine.cells.cell_file import (
     read_cell,
     write_cell,
 )
+from brushsvg.machine.cells.describe_cell import cell_page
 from brushsvg.machine.frames import (
     frame_of_pose,
     normal_tilt_deg,
@@ -373,6 +374,15 @@ def test_an_unknown_language_is_reported_instead_of_its_tables(tmp_path, capsys)
     (tmp_path / "mine.toml").write_text(text)
     status, _, reported = in_json(capsys, "cell", "check", tmp_path / "mine.toml")
     assert status == 0 and is_reported(reported, "language-unknown 'KRL' krl robodk", "language"), reported
+
+
+def test_a_page_of_a_cell_shows_how_the_tool_is_turned():
+    cell = find_cell("ur5e")
+    tool = replace(cell.tool, tcp_mm=(130.0, 0.0, 45.0), rotation_deg=(0.0, 90.0, 0.0), spin_deg=25.0)
+    lines = [" ".join(line.split()) for line in cell_page(replace(cell, tool=tool)).splitlines()]
+    at = lines.index("tool tip at 130, 0, 45 mm from the flange, turned by 0, 90, 0 degrees")
+    assert lines[at + 1] == "turned about the brush by 25 degrees"
+    assert not any("turned" in line for line in cell_page(cell).splitlines())
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,9 @@ def cell_page(cell) -> str:
     joints = f"cut by at most {blending.tolerance_mm:g} mm" if blending.tolerance_mm else "exact"
     rows.append(("corners", joints))
     if cell.tool:
-        rows.append(("tool", f"tip at {_point_text(cell.tool.tcp_mm)} mm from the flange"))
+        rows.append(("tool", f"tip at {_point_text(cell.tool.tcp_mm)} mm from the flange{_turn_text(cell.tool)}"))
+        if cell.tool.spin_deg:
+            rows.append(("", f"turned about the brush by {cell.tool.spin_deg:g} degrees"))
     if cell.servo:
         ends = (cell.servo.table[0], cell.servo.table[-1])
         rows.append(("servo", " to ".join(f"{value:g} at {height:g} mm" for height, value in ends)))
@@ -57,9 +59,12 @@ def _box_text(low, high) -> str:
 def _paper_text(paper) -> str:
     if paper.taught_mm:
         return f"taught by {len(paper.taught_mm)} points, the first at {_point_text(paper.taught_mm[0])} mm"
-    turned = f", turned by {_point_text(paper.rotation_deg)} degrees" if any(paper.rotation_deg) else ""
     example = " (an example: teach yours)" if paper.example else ""
-    return f"lower left corner at {_point_text(paper.origin_mm)} mm of the robot's frame{turned}{example}"
+    return f"lower left corner at {_point_text(paper.origin_mm)} mm of the robot's frame{_turn_text(paper)}{example}"
+
+
+def _turn_text(posed) -> str:
+    return f", turned by {_point_text(posed.rotation_deg)} degrees" if any(posed.rotation_deg) else ""
 
 
 def _reload_text(reload) -> str:

@@ -109,7 +109,7 @@ def cell_place(args) -> None:
         pose = place.cell_at(cell, nearest_place.frame).paper
         print_text(f"{args.input}: the sheet {nearest_place.text} would do: {_format_pose(pose)}\n")
     if followed_there.start_rad is not None:
-        angles = ", ".join(f"{math.degrees(angle):.0f}" for angle in followed_there.start_rad)
+        angles = ", ".join(str(round(math.degrees(angle))) for angle in followed_there.start_rad)
         print_text(f"{args.input}: it begins with its joints at {angles} degrees, or turned by whole turns\n")
     if problems:
         if not nearest_place:
