@@ -142,6 +142,22 @@ def test_all_that_a_post_prints_is_dropped(tmp_path, capsys, monkeypatch, has_ou
     assert capsys.readouterr().out == ""
 
 
+def test_cell_check_refuses_a_missing_post(tmp_path, monkeypatch, capsys):
+    """A relative path starts at the current folder, which is often another one than that of the cell."""
+    cell = tmp_path / "mine.toml"
+    cell.write_text(write_cell(cell_with("mypost.py")))
+    (tmp_path / "mypost.py").write_text("")
+    (tmp_path / "other").mkdir()
+    monkeypatch.chdir(tmp_path / "other")
+    status, out, reported = in_json(capsys, "cell", "check", cell)
+    assert (status, out) == (1, "")
+    assert is_reported(reported, f"file-unreadable mypost.py {tmp_path / 'other'} 'whole path'", "robodk.post"), (
+        reported
+    )
+    monkeypatch.chdir(tmp_path)
+    assert in_json(capsys, "cell", "check", cell)[0] == 0
+
+
 def test_a_missing_post_and_tables_of_other_languages_are_refused(tmp_path):
     with refused("file-unreadable nowhere.py"):
         text_for(cell_with(tmp_path / "nowhere.py"))

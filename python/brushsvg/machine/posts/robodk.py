@@ -123,10 +123,22 @@ def _imported_modules(path: Path) -> list[str]:
     return [name.partition(".")[0] for name in names if name]
 
 
-def _load_post(where: str) -> ModuleType:
+def find_post(where: str) -> Path:
+    """Return the path of a post, which may be relative to the current folder. Raises Error if there is no such file."""
     path = Path(where).expanduser()
     if not path.is_file():
-        raise Error(f"there is no post {where}", where="robodk.post", code="file-unreadable")
+        folder = "" if path.is_absolute() else f" in the folder {Path.cwd()}"
+        raise Error(
+            f"there is no post {where}{folder}",
+            where="robodk.post",
+            code="file-unreadable",
+            advice="give the whole path of the post in the cell",
+        )
+    return path
+
+
+def _load_post(where: str) -> ModuleType:
+    path = find_post(where)
     spec = importlib.util.spec_from_file_location("brushsvg_robodk_post", path)
     if spec is None or spec.loader is None:
         raise Error(f"the post {where} is no file of Python", where="robodk.post", code="post-failed")

@@ -22,6 +22,7 @@ from ....machine.cells.cell_file import (
 from ....machine.cells.describe_cell import cell_page
 from ....machine.paint_reload import split_into_loads
 from ....machine.posts import POSTS
+from ....machine.posts.robodk import find_post
 from ....machine.preflight import DEFAULT_TOLERANCE_MM, check_rounding
 from ....machine.program import find_stations_out_of_limits
 from ....machine.writer import whole_program
@@ -48,6 +49,8 @@ def cell_check(args) -> None:
             check_rounding(cell, DEFAULT_TOLERANCE_MM)
         if cell.arm and is_installed():
             joints_of(cell.arm)
+        if cell.robodk:
+            find_post(cell.robodk.post)
     if cell.language not in POSTS:
         known_languages = ", ".join(POSTS)
         sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known_languages}"
