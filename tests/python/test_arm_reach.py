@@ -176,12 +176,11 @@ def test_place_draws_a_wall_from_the_front(tmp_path, capsys, taught, axes):
     workspace = replace(shipped.workspace, tilt_limit_deg=90.0, box_mm=((-700.0, -700.0, 0.0), (700.0, 700.0, 800.0)))
     cell = replace(shipped, workspace=workspace, paper=Paper(taught_mm=taught))
     (tmp_path / "wall.toml").write_text(write_cell(cell))
-    status, output, _ = in_json(capsys, "cell", "place", tmp_path / "wall.toml", "-o", tmp_path / "wall.svg")
-    assert status == 0 and "reaches all of it" in output
+    assert in_json(capsys, "cell", "place", tmp_path / "wall.toml", "-o", tmp_path / "wall.svg")[0] == 0
     table = place.table_of(cell, robot_from_paper(cell), joints.joints_of(cell.arm))
     assert table.axes == axes and np.count_nonzero(table.what == place.REACHED) > 100
     seen = " and ".join("xyz"[axis] for axis in axes)
-    assert (f"{seen}, mm of the robot" in (tmp_path / "wall.svg").read_text()) is (axes != (0, 1))
+    assert (f"{seen}, mm" in (tmp_path / "wall.svg").read_text()) is (axes != (0, 1))
 
 
 def test_place_reports_workable_paper_positions_and_draws_the_table(tmp_path, capsys):

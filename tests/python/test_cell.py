@@ -379,9 +379,8 @@ def test_an_unknown_language_is_reported_instead_of_its_tables(tmp_path, capsys)
 def test_a_page_of_a_cell_shows_how_the_tool_is_turned():
     cell = find_cell("ur5e")
     tool = replace(cell.tool, tcp_mm=(130.0, 0.0, 45.0), rotation_deg=(0.0, 90.0, 0.0), spin_deg=25.0)
-    lines = [" ".join(line.split()) for line in cell_page(replace(cell, tool=tool)).splitlines()]
-    at = lines.index("tool tip at 130, 0, 45 mm from the flange, turned by 0, 90, 0 degrees")
-    assert lines[at + 1] == "turned about the brush by 25 degrees"
+    turned, spun = (line for line in cell_page(replace(cell, tool=tool)).splitlines() if "turned" in line)
+    assert "0, 90, 0" in turned and turned.startswith("tool ") and "25" in spun
     assert not any("turned" in line for line in cell_page(cell).splitlines())
 
 
