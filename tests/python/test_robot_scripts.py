@@ -221,6 +221,7 @@ REFUSED = [
     ("kr6-r900", "LIN {X", "PTP {X", "line-unread"),
     ("kr6-r900", "LIN {X 10.000", "LIN {X 10.000, X 10.000", "line-unread"),
     ("kr6-r900", "C 180.00000}", "C 179.40000}", "tool-turned 0.6"),
+    ("kr6-r900", "PTP $AXIS_ACT\r\n", "PTP $AXIS_ACT\r\n&REL 3\r\n", "line-unread"),
     ("kr6-r900", "$VEL.CP = 0.050000\r\n", "", "line-incomplete speed"),
     ("kr6-r900", "$VEL.CP = 0.020000", "$VEL.CP = 0", "line-incomplete speed"),
     ("kr6-r900", "$APO.CDIS = 0.039", "$APO.CDIS = -0.039", "line-unread blend"),
@@ -250,6 +251,7 @@ REFUSED = [
     ("lrmate200id", " : C P[22]\r\n", "", "line-unread circle"),
     ("lrmate200id", " : PR[1,6]=0.00000 ;\r\n", "", "line-incomplete"),
     ("lrmate200id", "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n", "", "line-unread DEFAULT_GROUP"),
+    ("lrmate200id", "DEFAULT_GROUP", "TCD: ABORT_REQUEST = 1;\r\nDEFAULT_GROUP", "line-unread ABORT_REQUEST"),
     ("lrmate200id", " : !end: the brush is held up ;\r\n", "", "program-cut-short"),
     ("lrmate200id", "};\r\n/END\r\n", "};\r\n", "program-cut-short"),
     ("lrmate200id", " : !end", " : CALL B0001 ;\r\n : !end", "line-unread B0001"),
@@ -286,7 +288,18 @@ def test_the_reader_refuses_invalid_programs(name, old, new, expected):
 
 
 LOOKS = "tip = get_current_posx(DR_BASE)[0]\n", "flange = get_current_tool_flange_posx(DR_BASE)\n"
+KRL_HEAD = "&ACCESS RVP\r\n&REL 3\r\n&PARAM TEMPLATE = C:\\KRC\\Roboter\\Template\\vorgabe\r\nDEF brushsvg()"
+TP_GROUP = "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n"
+TP_HEAD = (
+    "OWNER\t\t= MNEDITOR;\r\nPROG_SIZE\t= 636;\r\nCREATE\t\t= DATE 26-11-29  TIME 10:00:00;\r\n"
+    "MODIFIED\t= DATE 26-11-29  TIME 10:05:00;\r\nFILE_NAME\t= ;\r\nVERSION\t\t= 0;\r\nLINE_COUNT\t= 54;\r\n"
+    "MEMORY_SIZE\t= 1108;\r\nTCD:  STACK_SIZE\t= 0,\r\n      TASK_PRIORITY\t= 50,\r\n      TIME_SLICE\t= 0,\r\n"
+    "      BUSY_LAMP_OFF\t= 0,\r\n      ABORT_REQUEST\t= 0,\r\n      PAUSE_REQUEST\t= 0;\r\n"
+)
+TP_TAIL = "CONTROL_CODE\t= 00000000 00000000;\r\n"
 SAME = [  # equal for the controller
+    ("kr6-r900", "DEF brushsvg()", KRL_HEAD),
+    ("lrmate200id", TP_GROUP, TP_HEAD + TP_GROUP + TP_TAIL),
     ("m0609", "".join(LOOKS), "".join(reversed(LOOKS))),
     ("m0609", LOOKS[0], LOOKS[0].replace("[0]", "[-0]")),
 ]

@@ -17,7 +17,14 @@ from . import Readback, unread_error
 from .script import N, NumberedLines, Script, place, read_script
 
 _C = rf"(?:{N}|\({N}\))"
-_ATTRIBUTES = re.compile(r"COMMENT *= \"[ -!#-~]*\";|PROTECT *= READ(?:_WRITE)?;|DEFAULT_GROUP *= 1,\*,\*,\*,\*;|/MN")
+_ATTRIBUTES = re.compile(
+    r"COMMENT *= \"[ -!#-~]*\";|PROTECT *= READ(?:_WRITE)?;|DEFAULT_GROUP *= 1,\*,\*,\*,\*;|/MN"
+    # A controller adds these when it saves a program. A program that ignores a request to stop is not accepted.
+    r"|OWNER *= \w*;|FILE_NAME *= \w*;|(?:PROG_SIZE|VERSION|LINE_COUNT|MEMORY_SIZE) *= \d+;"
+    r"|(?:CREATE|MODIFIED) *= DATE [\d-]+ TIME [\d:]+;|CONTROL_CODE *= 0+ 0+;"
+    r"|(?:TCD: )?(?:STACK_SIZE|TASK_PRIORITY|TIME_SLICE) *= \d+[,;]"
+    r"|(?:TCD: )?(?:BUSY_LAMP_OFF|ABORT_REQUEST|PAUSE_REQUEST) *= 0[,;]"
+)
 _GROUP = re.compile(r"DEFAULT_GROUP *= 1,\*,\*,\*,\*;")
 _POINT = re.compile(
     rf"P\[(\d{{1,5}})\]\{{ GP1: UF : {INDEX}, UT : {INDEX}, CONFIG : '([^']*)', "

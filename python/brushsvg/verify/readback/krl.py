@@ -42,6 +42,7 @@ _LINES = tuple(  # in lower case
 )
 _CALL = re.compile(r"(b[0-9a-z]{4}\d{3,})\(\)")
 _RISE_DECLARATION = RISES.strip().lower()
+_FILE_HEADER = re.compile(r"&(?:access|rel|param|comment|user)\b.*")  # a controller adds these above DEF
 _INITIALISATION = "bas(#initmov, 0)"  # sets all motion parameters
 
 
@@ -102,9 +103,13 @@ def _split_programs(text: str) -> tuple[NumberedLines, dict[str, NumberedLines]]
     """
     main: NumberedLines = []
     others: dict[str, NumberedLines] = {}
-    lines, names = main, set()
+    lines, names, is_inside = main, set(), False
     for number, line in enumerate(text.splitlines(), 1):
-        if found := _DEF.fullmatch(line.strip(" ").lower()):
+        statement = line.strip(" ").lower()
+        if not is_inside and _FILE_HEADER.fullmatch(statement):
+            continue
+        is_inside = (is_inside or statement.startswith("def ")) and statement != "end"
+        if found := _DEF.fullmatch(statement):
             if found[1] in names:
                 raise Error(f"line {number}: {found[1]!r} stands there twice", code="line-unread")
             if names:
