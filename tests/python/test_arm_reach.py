@@ -162,12 +162,28 @@ def test_a_missing_library_is_reported_with_the_package_to_install(tmp_path, cap
     assert status == 1 and is_reported(reported, "package-missing ssik")
 
 
+def test_no_joint_is_behind_a_wall():
+    """The wrist once passed for free behind a wall, because only a joint below the robot's base was in the table."""
+    shipped = find_cell("ur5e")
+    workspace = replace(shipped.workspace, tilt_limit_deg=90.0)
+    wall = Paper(taught_mm=((150, -550, 200), (-140, -550, 200), (150, -550, 400)))
+    cell = replace(shipped, workspace=workspace, paper=wall)
+    made = over_sheet(BRUSH, cell, (200.0, 100.0))
+    assert not follow(made, joints.joints_of(cell.arm)).problems
+    reversed_tool = replace(cell, tool=replace(cell.tool, tcp_mm=(0.0, 0.0, -250.0)))
+    made = over_sheet(BRUSH, reversed_tool, (200.0, 100.0))
+    (notice,) = follow(made, joints.joints_of(cell.arm)).problems
+    assert agrees(notice, "joint-below-table 'behind the paper'")
+    named = replace(reversed_tool, arm=replace(cell.arm, posture_deg=(-37.0, -93.0, -134.0, -133.0, -37.0, 180.0)))
+    assert not follow(over_sheet(BRUSH, named, (200.0, 100.0)), joints.joints_of(named.arm)).problems
+
+
 @pytest.mark.parametrize(
     ("taught", "axes"),
     [
         (((150, -550, 200), (-140, -550, 200), (150, -550, 400)), (0, 2)),
         (((-550, -150, 200), (-550, 140, 200), (-600, -150, 400)), (1, 2)),
-        (((-150, -550, 200), (140, -550, 200), (-150, -450, 300)), (0, 1)),
+        (((150, -450, 200), (-140, -450, 200), (150, -550, 300)), (0, 1)),
     ],
 )
 def test_place_draws_a_wall_from_the_front(tmp_path, capsys, taught, axes):

@@ -18,8 +18,8 @@ from itertools import chain
 import numpy as np
 
 from ...errors import Notice
-from ..cells.cell import Arm, Cell, joint_number
-from ..frames import frame_of_pose, transform_points
+from ..cells.cell import MIN_WALL_TILT_DEG, Arm, Cell, joint_number
+from ..frames import frame_of_pose, normal_tilt_deg, transform_points
 from ..motion import Program
 from ..posts.script import upright_tool_rotation
 from ..tool_axes import between_deg, normalize, rotation_axes, turned_to
@@ -86,7 +86,8 @@ class _Solutions:
     most: np.ndarray  # (k,) largest turn of any joint for each mm [rad/mm]
     # (k,) side of all singularities. Between two solutions on different sides there is a singularity.
     sides: np.ndarray
-    lowest_mm: np.ndarray  # (k,) height of the lowest joint above the table
+    lowest_mm: np.ndarray  # (k,) height of the lowest joint above the table, or in front of a wall
+    is_wall: bool  # the paper is on a wall
 
 
 @dataclass
@@ -172,22 +173,29 @@ def _rate_solutions(angles: np.ndarray, joint_frames: np.ndarray, place: Place, 
     jacobian = flange_rates_at(joint_frames, place.robot_mm)
     turns = _invert_jacobian(jacobian)
     fastest = np.sqrt((turns[..., :3] ** 2).sum(axis=-1)).max(axis=-1, initial=0.0)
-    return _Solutions(angles, turns, fastest, np.sign(np.linalg.det(jacobian)), lowest_joint_mm(joint_frames, frame))
+    sides, lowest_mm = np.sign(np.linalg.det(jacobian)), lowest_joint_mm(joint_frames, frame)
+    return _Solutions(angles, turns, fastest, sides, lowest_mm, _is_wall(frame))
 
 
 def lowest_joint_mm(joint_frames: np.ndarray, frame: np.ndarray) -> np.ndarray:
-    """Return the height [mm] of the lowest joint above the table, (...).
+    """Return the height [mm] of the lowest joint above the table, or in front of a wall with the paper, (...).
 
     Only joints from the elbow on count. The paper may be on a block and the robot on a pedestal. A joint that is lower
-    than both the paper and the base is therefore in the table.
+    than both the paper and the base is therefore in the table. A wall has no such gaps.
 
     joint_frames: (..., n + 1, 4, 4) frames of the joints.
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     """
     joints = joint_frames[..., ELBOW_JOINT:-1, :3, 3]
     over_paper = (joints - frame[:3, 3]) @ frame[:3, 2]
+    if _is_wall(frame):
+        return over_paper.min(axis=-1, initial=np.inf)
     over_base = joints[..., 2] - joint_frames[..., :1, 2, 3]
     return np.maximum(over_paper, over_base).min(axis=-1, initial=np.inf)
+
+
+def _is_wall(frame: np.ndarray) -> bool:
+    return normal_tilt_deg(frame) >= MIN_WALL_TILT_DEG
 
 
 def _continue_solutions(
@@ -314,10 +322,8 @@ def _advance_posture(
     posture.side = solutions.sides[nearest]
     posture.failure = _find_failure(posture, place, solutions.rates[nearest], arm)
     if posture.failure is None and not arm.posture_deg and solutions.lowest_mm[nearest] < 0:
-        sentence = (
-            f"{_near(place)} a joint of arm {arm.name} would be {-solutions.lowest_mm[nearest]:.0f} mm below the "
-            "table, lower than the paper and its base"
-        )
+        side = "behind the paper" if solutions.is_wall else "below the table, lower than the paper and its base"
+        sentence = f"{_near(place)} a joint of arm {arm.name} would be {-solutions.lowest_mm[nearest]:.0f} mm {side}"
         posture.failure = Notice(place.name, sentence, code="joint-below-table")
 
 

@@ -377,6 +377,9 @@ REQUIRED_TABLES = {
     "robodk": ("tool", "robodk"),
 } | dict.fromkeys(("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2"), ("tool",))
 CONTACT_KEYS = {"urscript": "force_n", "xarm": "sensitivity"}  # the key that sets when contact ends a program
+# Tilt from which paper counts as a wall that is painted from the robot's side only.
+# An arm may reach across flatter paper.
+MIN_WALL_TILT_DEG = 45.0
 JOINT_PLAY_REASON = "joints of an arm have play of their own"
 NO_BACKLASH_REASONS = dict.fromkeys(  # languages for which backlash is not compensated, with the reason
     ("urscript", "jaka", "rapid", "xarm", "krl", "dobot", "fanuc", "doosan", "ros2", "robodk"),

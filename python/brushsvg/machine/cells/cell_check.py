@@ -21,6 +21,7 @@ from .cell import (
     DEFAULT_FANUC_CONFIGURATION,
     LEAST_ACCELERATION_MM_S2,
     LEAST_SPEED_MM_S,
+    MIN_WALL_TILT_DEG,
     RELOAD_OCCASIONS,
     REQUIRED_TABLES,
     Cell,
@@ -35,9 +36,6 @@ from .cell import (
     value_mm,
 )
 
-# Tilt from which paper counts as a wall that is painted from the robot's side only.
-# An arm may reach across flatter paper.
-MIN_WALL_TILT_DEG = 45.0
 # Largest tilt of paper next to which the brush dips into a vessel without a remark. The shipped arms allow no more.
 MAX_DIP_TILT_DEG = 15.0
 # Smallest spacing of the grid lines of a height map, and largest height or depth in the map.
