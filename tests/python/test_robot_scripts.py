@@ -288,7 +288,7 @@ def test_the_reader_refuses_invalid_programs(name, old, new, expected):
 
 
 LOOKS = "tip = get_current_posx(DR_BASE)[0]\n", "flange = get_current_tool_flange_posx(DR_BASE)\n"
-KRL_HEAD = "&ACCESS RVP\r\n&REL 3\r\n&PARAM TEMPLATE = C:\\KRC\\Roboter\\Template\\vorgabe\r\nDEF brushsvg()"
+KRL_HEAD = "&ACCESS RVP\r\n&REL 3\r\n&PARAM TEMPLATE = C:\\KRC\\Roboter\\Template\\vorgabe\r\nDEF BRUSHSVG()"
 TP_GROUP = "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n"
 TP_HEAD = (
     "OWNER\t\t= MNEDITOR;\r\nPROG_SIZE\t= 636;\r\nCREATE\t\t= DATE 26-11-29  TIME 10:00:00;\r\n"
@@ -298,7 +298,7 @@ TP_HEAD = (
 )
 TP_TAIL = "CONTROL_CODE\t= 00000000 00000000;\r\n"
 SAME = [  # equal for the controller
-    ("kr6-r900", "DEF brushsvg()", KRL_HEAD),
+    ("kr6-r900", "DEF BRUSHSVG()", KRL_HEAD),
     ("lrmate200id", TP_GROUP, TP_HEAD + TP_GROUP + TP_TAIL),
     ("m0609", "".join(LOOKS), "".join(reversed(LOOKS))),
     ("m0609", LOOKS[0], LOOKS[0].replace("[0]", "[-0]")),
