@@ -14,7 +14,6 @@
 #include "brushsvg/stroke_search.hpp"
 #include "inverse/closed_form.hpp"
 #include "inverse/ends/end_styles.hpp"
-#include "inverse/ends/select_ends.hpp"
 #include "marks/half_painted.hpp"
 #include "strokes/candidates.hpp"
 #include "strokes/canvas.hpp"
@@ -249,12 +248,8 @@ class Search {
         Tile all{box, Coverage::Zero(box.rows, box.columns)};
         for (const Stroke& stroke : strokes) try {
                 checkpoint(100);
-                bool turns = false;
-                const auto poses =
-                    closed_form(select_ends(stroke, brush_, options, kStepMm).front(), brush_, kStepMm, turns);
-                if (!poses) return std::nullopt;
-                Pass pass;
-                poses->into(pass);
+                const Pass pass = compensate(stroke, brush_, options).pass;
+                if (pass.poses_mm.rows() == 0) return std::nullopt;
                 paint_over(all.share, box, canvas_.paint(pass, brush_));
             } catch (const Error&) {
                 return std::nullopt;

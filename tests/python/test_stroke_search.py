@@ -26,6 +26,10 @@ CORNERS = {
     "a slab on both sides": "M8 44V38H20V14H12V8H36V14H28V38H40V44Z",
     "a diamond": "M30 12L40 26L30 40L20 26Z",
     "a bar wider than the brush": "M10 20H52V30H10Z",
+    # the end of the bar that a changed stroke painted in the search was bare in the plan
+    "a 7": "M16.005 54.132C16.076 41.21 21.472 25.519 30.56 5H5C5 8.408 5.426 12.1 7.13 12.1"
+    "C12.242 12.1 16.076 11.958 20.194 11.674C15.153 20.549 7.84 40.997 7.84 51.931"
+    "C7.84 53.777 9.331 54.132 16.005 54.132Z",
 }
 
 
