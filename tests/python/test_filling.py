@@ -202,8 +202,8 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
     shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
     paint = paint_of(passes_of(made, brush), brush)
     places = shapely.points(shapely.get_coordinates(paint))
-    assert shapely.distance(shape, places).max() < 0.3
-    assert paint.difference(shape.buffer(0.15)).area < 0.15
+    assert shapely.distance(shape, places).max() < 0.35
+    assert paint.difference(shape.buffer(0.15)).area < 0.2
     assert paint.intersection(shape).area / paint.union(shape).area > 0.98
 
 

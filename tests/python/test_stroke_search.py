@@ -59,6 +59,25 @@ def test_no_visible_area_is_missing_or_overpainted(tmp_path, d):
     assert shape.intersection(mark).area / shape.union(mark).area > 0.965
 
 
+BRACKETED = (
+    "M5 76.2 5.8 73H15.8Q18.4 73 19.1 70.4L26.1 44.4L18.2 12.6Q17.4 10.1 16.3 9.15Q15.2 8.2 13.2 8.2H5.8L6.6 5H38.2"
+    "L37.4 8.2H31.5Q29 8.2 27.8 9.7Q26.6 11.2 27.3 12.9L33.9 40.7L51.1 20.9Q52.6 19.1 53.35 18.25Q54.1 17.4 55.1 15.5"
+    "Q56.1 13.6 56.1 12.1Q56.1 8.2 51.3 8.2H47L47.8 5H77.4L76.6 8.2H71.9Q66.2 8.2 60 15.5L35.5 43.3L28.2 70.4"
+    "Q27.4 73 30 73H40L39.2 76.2Z"
+)
+
+
+def test_a_bracket_that_belongs_to_two_strokes_is_painted(tmp_path):
+    """The bracket between a hairline and its serif is painted, although two strokes share its edge.
+
+    Rounding left a slit between the parts of both strokes. No stroke was added along the edge with the slit, and
+    2.8 mm2 stayed bare.
+    """
+    shape, mark, _ = painted(tmp_path, BRACKETED)
+    missing = shape.buffer(-0.15).difference(mark)
+    assert max(each.area for each in shapely.get_parts(missing)) < 1.0
+
+
 HAIRLINES = {  # heavy diagonals with hairlines, as in the letters z and k
     "z": "M20 6H41.99L29.83 27.4C33.99 27.4 39.22 25.02 40.49 19.28H41.49V28.02H20"
     "L32.16 6.61C28 6.61 22.77 9 21.5 14.73H20.5Z",

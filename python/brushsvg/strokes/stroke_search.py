@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import _core
+from ..geometry.rings import without_slivers
+from .skeleton.shape_to_strokes import SLIVER_MM
 from .trial_mark import MIN_VISIBLE_MM
 from .uncovered_areas import MIN_MISSED_SHARE, is_mostly_within, swept_discs
 
@@ -166,7 +168,11 @@ def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Sh
         _Shape(
             element,
             strokes,
-            _core.unite([ring for stroke in strokes for ring in stroke.wanted_mm]),
+            # Rounding leaves slits between the parts of a shape. Their mouths would be corners of its outline.
+            [
+                without_slivers(ring, SLIVER_MM)
+                for ring in _core.unite([ring for stroke in strokes for ring in stroke.wanted_mm])
+            ],
             *map(list, zip(*paint[element], strict=True)),
             sorted(repeats[element]),
         )
