@@ -60,6 +60,13 @@ double ShapeOutline::edge_mm(const Vector2d& at_mm) {
     return least;
 }
 
+bool ShapeOutline::is_clear(const Vector2d& from_mm, const Vector2d& to_mm) const {
+    const int count = 1 + int((to_mm - from_mm).norm() / kEvenMm);
+    for (int i = 0; i <= count; ++i)
+        if (!canvas_.is_inside(from_mm + double(i) / count * (to_mm - from_mm))) return false;
+    return true;
+}
+
 double ShapeOutline::room_mm(const Vector2d& at_mm) { return canvas_.is_inside(at_mm) ? edge_mm(at_mm) : 0.0; }
 
 Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
@@ -74,7 +81,7 @@ Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>&
                 const double squared = way.squaredNorm();
                 const double t = squared > 0.0 ? std::clamp((place - a).dot(way) / squared, 0.0, 1.0) : 0.0;
                 const Vector2d on = a + t * way;
-                if ((on - place).squaredNorm() >= least) continue;
+                if ((on - place).squaredNorm() >= least || !outline.is_clear(on, place)) continue;
                 least = (on - place).squaredNorm();
                 best = on;
             }
@@ -83,14 +90,15 @@ Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>&
     Vector2d farthest = area.deepest;
     double most = -1.0;
     for (const Vector2d& place : some_of(area.places))
-        if (const double away = root_of(place).second; away > most) {
+        if (const double away = root_of(place).second; away > most && std::isfinite(away)) {
             most = away;
             farthest = place;
         }
     Candidates out;
     for (const Vector2d& place : {area.deepest, farthest}) {
         const auto [root, away] = root_of(place);
-        if (away < kEvenMm) continue;  // a stroke runs there, and its mark leaves the place bare
+        // no middle line can be seen from there, or a stroke runs there and its mark leaves the place bare
+        if (!std::isfinite(away) || away < kEvenMm) continue;
         const Vector2d onward = (place - root) / away;
         const double there = (area.deepest - root).norm();
         double reach = 0.0;

@@ -27,6 +27,8 @@ class ShapeOutline {
     double room_mm(const Eigen::Vector2d& at_mm);
     /// Return the distance from the outline, inside and outside of the shape.
     double edge_mm(const Eigen::Vector2d& at_mm);
+    /// Return whether the straight way between two places stays in the shape.
+    bool is_clear(const Eigen::Vector2d& from_mm, const Eigen::Vector2d& to_mm) const;
 
  private:
     const Canvas& canvas_;
@@ -39,7 +41,7 @@ class ShapeOutline {
 using Candidates = std::vector<WideLine>;
 
 /// Return lines straight out from the nearest place on a middle line, to the middle of the area and to its farthest
-/// place. They are as wide as the shape has room. half_mm: the brush's least and greatest half width.
+/// place. They stay in the shape and are as wide as it has room. half_mm: the brush's least and greatest half width.
 Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
                         const std::array<double, 2>& half_mm);
 
