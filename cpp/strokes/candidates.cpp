@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "brushsvg/checkpoint.hpp"
+
 namespace brushsvg {
 namespace {
 
@@ -68,6 +70,26 @@ bool ShapeOutline::is_clear(const Vector2d& from_mm, const Vector2d& to_mm) cons
 }
 
 double ShapeOutline::room_mm(const Vector2d& at_mm) { return canvas_.is_inside(at_mm) ? edge_mm(at_mm) : 0.0; }
+
+Stroke within_room(Stroke stroke, ShapeOutline& outline, double tolerance_mm) {
+    const MiddlePolyline line = flatten(stroke, tolerance_mm);
+    const double length = line(line.rows() - 1, 2);
+    if (!(length > 0.0)) return stroke;
+    std::vector<Vector2d> places;
+    std::vector<double> halves;
+    for (Index i = 0; i + 1 < line.rows(); ++i) {
+        const Eigen::Vector3d from = line.block<1, 3>(i, 0), way = line.block<1, 3>(i + 1, 0).transpose() - from;
+        const int count = 1 + int(way.z() / kEvenMm);
+        for (int k = i == 0 ? 0 : 1; k <= count; ++k) {
+            checkpoint(1);
+            const Eigen::Vector3d at = from + double(k) / count * way;
+            places.push_back(at.head<2>());
+            halves.push_back(std::min(half_width_at(stroke, at.z() / length), outline.room_mm(places.back())));
+        }
+    }
+    stroke.half_width = fit_curve(line_of(places, halves), tolerance_mm, stroke.closed).half_width;
+    return stroke;
+}
 
 Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
                         const std::array<double, 2>& half_mm) {

@@ -37,6 +37,9 @@ class ShapeOutline {
     OutlineEdges edges_;
 };
 
+/// Return a stroke that is nowhere wider than the room of the shape about its middle line, within a tolerance.
+Stroke within_room(Stroke stroke, ShapeOutline& outline, double tolerance_mm);
+
 /// Lines with half widths [mm] that may paint a bare area. The search decides whether they do.
 using Candidates = std::vector<WideLine>;
 

@@ -160,14 +160,15 @@ class Search {
             painting = std::move(other);
             return is_changed = true;
         };
+        const Stroke in_room = within_room(given, outline_, kStepMm);
         Variant best;
         const auto look = [&](const Variant& variant) {
             checkpoint(100);
-            const std::optional<Stroke> stroke = varied(given, variant, half_mm_);
+            const std::optional<Stroke> stroke = varied(variant.is_in_room ? in_room : given, variant, half_mm_);
             const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
             if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
-        // try one choice after the other: the direction, the ends, the width, the length
+        // try one choice after the other: the direction, the ends, the room, the width, the length
         for (const bool reversed : {false, true}) {
             if (reversed && !may.reversed) break;
             Variant from;
@@ -189,6 +190,9 @@ class Search {
                 look(variant);
             }
         };
+        Variant narrow = best;
+        narrow.is_in_room = true;
+        look(narrow);
         try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
         for (const std::size_t end : {0u, 1u})
             if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });

@@ -13,6 +13,7 @@ struct Variant {
     bool is_reversed = false;
     bool is_square = true;                ///< its ends go into the corners of its shape, if it has one
     bool is_pointed = false;              ///< it begins pointed
+    bool is_in_room = false;              ///< it is as narrow as its shape
     double width = 1.0;                   ///< as a share of its own width
     std::array<double, 2> cut{0.0, 0.0};  ///< lengths cut off its ends, in its greatest half width
 };

@@ -35,9 +35,9 @@ struct SearchedShape {
 
 /// Search for the strokes with which the mark of each shape costs least.
 ///
-/// The search begins with the given strokes. A stroke that sticks out of its shape gets another path: narrower,
-/// shortened at an end, or in parts that meet at its corners. A stroke that fills the shape together with others, whose
-/// paint covers its ends, may also be reversed or left out.
+/// The search begins with the given strokes. A stroke that sticks out of its shape gets another path: as narrow as the
+/// shape, narrower everywhere, shortened at an end, or in parts that meet at its corners. A stroke that fills the shape
+/// together with others, whose paint covers its ends, may also be reversed or left out.
 ///
 /// Then strokes are added, for the largest bare area first. They go straight out from a stroke next to the area, along
 /// the edge of the shape, from a corner inwards, or across.
