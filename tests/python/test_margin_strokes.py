@@ -107,6 +107,21 @@ def test_check_and_report_ignore_margin_strokes(desk, capsys):
     assert not brushsvg.check("border.ngc", "word.svg", brush="mine.json").problems
 
 
+def test_margin_strokes_are_painted_in_the_colour_of_the_job(desk):
+    red_bow = SVG.format(110, 80).replace('id="bow"', 'id="bow" stroke="#c62828"')
+    (desk / "word.svg").write_text(red_bow)
+    for colour in ("#c62828", "#000000"):
+        run(f"convert word.svg -o plan.json --brush mine.json --page page.svg --colour {colour}")
+        plan = read_plan("plan.json")
+        assert len(added(plan)) == 3 and {each.colour for each in plan.passes} == {colour}
+        deepest_of_job = max(-np.min(each.poses_mm[:, 2]) for each in plan.passes if each not in added(plan))
+        assert max(-np.min(each.poses_mm[:, 2]) for each in added(plan)) <= deepest_of_job + 0.01
+        run(f"convert word.svg -o word.ngc --brush mine.json --page page.svg --colour {colour}")
+        run(f"check word.ngc word.svg --brush mine.json --colour {colour}")
+    command = "convert word.svg -o plan.json --brush mine.json --page page.svg --force --colour #00ff00"
+    assert main(command.split()) == 1  # the drawing has no such colour
+
+
 def test_convert_reports_what_margin_strokes_will_calibrate(desk, capsys):
     words = "convert word.svg -o plan.json --brush mine.json --page page.svg".split()
     status, out, _ = in_json(capsys, *words)

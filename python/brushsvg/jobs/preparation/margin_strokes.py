@@ -18,7 +18,7 @@ from ...machine.preflight import check_job
 from ...machine.program import Job
 from ...model.confidence import fitted_down_to_mm, law_band
 from ...model.describe import LAWS
-from ..work import Work
+from ..work import Work, select_colour
 
 MARGIN_KIND = "margin"
 DEPTH_COUNT = 3  # a straight stroke at the smallest depth, and a corner at each of the other depths
@@ -52,12 +52,15 @@ def add_margin_strokes(work: Work) -> Work:
 
     The work stays as it is, with a notice, where the sheet is too narrow or the cell cannot paint the strokes.
     """
-    requested, deepest_mm = work.options.margin_strokes, _find_deepest_mm(work.plan)
+    requested, colour = work.options.margin_strokes, work.options.colour
+    # Only strokes of this colour stay in the job, so the margin strokes have this colour and its depths.
+    painted_plan = work.plan if colour is None else select_colour(work, colour).plan
+    deepest_mm = _find_deepest_mm(painted_plan)
     if requested == "off" or deepest_mm <= 0 or (requested == "auto" and is_calibrated(work.brush, deepest_mm)):
         return work
     if work.brush.is_rigid():
         return _warn_left_out(work, f"brush {work.brush.name} is a pen, which marks teach nothing")
-    placement = _place_passes(work, deepest_mm)
+    placement = _place_passes(work, deepest_mm, painted_plan.passes[-1])
     if placement is None:
         width = work.plan.sheet_mm[0]
         return _warn_left_out(work, f"the sheet is {width:g} mm wide, which is too narrow for them")
@@ -136,8 +139,10 @@ def _warn_left_out(work: Work, why: str) -> Work:
     return replace(work, notices=(*work.notices, notice))
 
 
-def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, float]] | None:
+def _place_passes(work: Work, deepest_mm: float, last_pass) -> tuple[list, tuple[float, float]] | None:
     """Place the passes in rows above the sheet.
+
+    last_pass: the pass of the job before them, which gives them its layer and colour.
 
     Returns the passes and the size of the sheet with their strip, or None if a pass is wider than the sheet.
     """
@@ -149,7 +154,7 @@ def _place_passes(work: Work, deepest_mm: float) -> tuple[list, tuple[float, flo
     _, shallowest, *deeper = chart_depths(brush, 1 + DEPTH_COUNT, deepest_mm)
     charted = [straight(brush, shallowest), *(angular(brush, depth) for depth in deeper)]
     left, bottom, top, passes = 0.0, height + GAP_MM, height, []
-    names, last_pass = {each.stroke for each in work.plan.passes}, work.plan.passes[-1]
+    names = {each.stroke for each in work.plan.passes}
     free_names = (name for k in range(1, len(names) + DEPTH_COUNT + 1) if (name := f"{MARGIN_KIND}-{k}") not in names)
     speed = min(work.options.speed_of_all_mm_s or work.options.speed_mm_s, brush.max_speed_mm_s)
     for a_pass, (x0, y0, x1, y1) in zip(charted, room_for(brush, charted, LAG_FACTORS, WIDTH_FACTOR), strict=True):
