@@ -367,6 +367,17 @@ def test_project_settings_that_do_not_apply_to_a_drawing_are_ignored(desk, capsy
 
 
 @pytest.mark.slow
+def test_layers_of_a_project_concern_only_drawings_with_layers(desk):
+    project('layers = ["Ink"]')
+    for command in ("convert d.svg -o d.ngc", "check d.ngc d.svg", "preview d.svg", "batch d.svg -o out"):
+        assert main(command.split()) == 0, command
+    assert len(brushsvg.convert("d.svg", **brushsvg.find_project("d.svg").choices).plan.passes) == 2
+    assert main("convert d.svg -o d.ngc --layer Ink".split()) == 1  # typed
+    (desk / "d.svg").write_text(DRAWING.replace("<path", '<g id="Red"><path').replace("/>", "/></g>"))
+    assert main("convert d.svg -o d.ngc".split()) == 1  # it has layers, but not this one
+
+
+@pytest.mark.slow
 def test_the_brush_of_a_drawing_or_plan_overrides_the_project(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')

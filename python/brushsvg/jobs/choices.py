@@ -435,7 +435,8 @@ def make_read_options(chosen: Choices) -> ReadOptions:
 
 
 def make_layout(chosen: Choices) -> Layout:
-    return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin)
+    needs_layers = "layer" not in chosen.from_project  # a project also serves drawings without layers
+    return Layout(tuple(chosen.layer or ()), chosen.width, chosen.fit, chosen.scale, chosen.origin, needs_layers)
 
 
 def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:

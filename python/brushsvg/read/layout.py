@@ -19,6 +19,7 @@ class Layout:
     A value that is None or empty leaves the drawing as drawn.
 
     layers: names of the layers to paint, with all that they contain.
+    needs_layers: refuse a drawing that has no layers at all, instead of painting all of it.
     width_mm: width of every line, in place of the drawing's widths. Filled shapes have none.
     fit_mm: (width, height); the target marks are scaled to fill this size as far as their shape allows, and placed
     in the middle of the sheet.
@@ -31,6 +32,7 @@ class Layout:
     fit_mm: tuple[float, float] | None = None
     scale: float | None = None
     origin_mm: tuple[float, float] | None = None
+    needs_layers: bool = True
 
 
 AS_DRAWN = Layout()
@@ -48,7 +50,7 @@ def arrange(design: Design, layout: Layout) -> Design:
     Raises Error for a layer that does not exist or has nothing to paint, and for marks that cannot be fitted.
     """
     if layout.layers:
-        design = _select_layers(design, layout.layers)
+        design = _select_layers(design, layout)
     if layout.width_mm is not None:
         elements = tuple(_set_width(e, layout.width_mm) for e in design.elements)
         notices = tuple(notice for notice in design.notices if notice.code not in WIDTH_NOTICE_CODES)
@@ -114,11 +116,13 @@ def _fitting_scale(lines: np.ndarray, marks: np.ndarray, fit_mm: tuple[float, fl
     return scale
 
 
-def _select_layers(design: Design, names: tuple[str, ...]) -> Design:
+def _select_layers(design: Design, layout: Layout) -> Design:
     painted = [element.layer for element in design.elements if element.layer]
     noticed = [notice.layer for notice in design.notices if notice.layer]
     paths = list(dict.fromkeys([*painted, *filter(None, design.layers), *noticed]))
-    requested = [_find_layer(name, paths) for name in names]
+    if not paths and not layout.needs_layers:
+        return design
+    requested = [_find_layer(name, paths) for name in layout.layers]
 
     def is_chosen(layer: str | None, among: list[str] = requested) -> bool:
         return any(layer == path or (layer or "").startswith(path + "/") for path in among)
