@@ -367,6 +367,41 @@ def test_project_settings_that_do_not_apply_to_a_drawing_are_ignored(desk, capsy
 
 
 @pytest.mark.slow
+def test_a_command_names_only_project_settings_that_it_uses(desk, capsys):
+    (desk / "own.svg").write_text(with_settings(cell="linuxcnc-3axis", tolerance="0.2"))
+    project('cell = "grbl-3axis"\nbrush = "round-6"\n[defaults]\nfit = "90x60"\nunits = "mm"\nstart = "round"')
+    for command, used in (
+        ("convert d.svg -o d.ngc", "cell, brush, fit, start"),
+        ("convert d.svg -o e.ngc --scale 0.9 --terminals pointed", "cell, brush"),
+        ("convert own.svg -o own.ngc", "brush, fit, start"),
+        ("convert d.svg -o d.json", "cell, brush, fit, start"),
+        ("convert d.json -o plan.ngc", "cell, brush"),
+        ("check plan.ngc d.json", "cell, brush unless the program names another"),
+        ("check d.ngc d.svg", "fit; cell, brush unless the program names another"),
+        ("batch d.svg own.svg -o out", "cell, brush, fit, units, start"),
+        ("preview d.svg --all-brushes", "cell, brush, fit, start"),
+    ):
+        capsys.readouterr()
+        assert main(command.split()) == 0, command
+        assert f": settings used: {used}; --explain" in capsys.readouterr().err, command
+    project('[defaults]\nunits = "mm"')
+    assert main("convert d.svg -o d.ngc".split()) == 0
+    assert "settings used" not in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_damaged_brush_of_a_project_is_named(desk, capsys):
+    assert main("convert d.svg -o d.json --quiet".split()) == 0
+    (desk / "bad.json").write_text("{}")
+    project('brush = "bad.json"')
+    for extra in ([], ["--explain"]):
+        status, _, reported = in_json(capsys, "convert", "d.json", "-o", "d.ngc", *extra)
+        assert status == 1 and [(file.split("/")[-1], each.code) for file, each in reported] == [
+            ("bad.json", "key-missing")
+        ]
+
+
+@pytest.mark.slow
 def test_layers_of_a_project_concern_only_drawings_with_layers(desk):
     project('layers = ["Ink"]')
     for command in ("convert d.svg -o d.ngc", "check d.ngc d.svg", "preview d.svg", "batch d.svg -o out"):

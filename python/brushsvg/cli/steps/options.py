@@ -20,7 +20,8 @@ def make_choices(args, **instead) -> Choices:
     given = {name: getattr(args, name, None) for name in CHOICES} | instead
     if isinstance(given["brush"], list):  # an option that may be given more than once
         given["brush"] = given["brush"][0] if given["brush"] else None
-    return choices.drop_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
+    with refuse_errors(""):  # errors name the brush or cell of the project themselves
+        return choices.drop_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
 
 
 def apply_drawing_settings(chosen: Choices, drawing: str, alone: bool = False) -> Choices:

@@ -17,6 +17,8 @@ from ..console import refuse_errors, say, say_notice
 
 # The settings of a project file that an option excludes, by the dest of the option.
 EXCLUDED_BY = {"per_colour": ("colour", "margin_strokes")}
+# Settings that the header of a program may name, in place of the project file.
+PROGRAM_SETTINGS = ("brush", "cell", "sheet", "z_offset")
 
 
 def use_project(args, argv: list[str] | None) -> None:
@@ -49,8 +51,23 @@ def use_project(args, argv: list[str] | None) -> None:
         _print_sources(args, project, typed_options)
     elif filled and args.messages == "text" and not getattr(args, "quiet", False):
         # A file in a parent folder must not change a program without a message.
-        flags = ", ".join(_get_flag(settable_options[name]) for name in filled)
-        say(path or "", f"settings used: {flags}; --explain lists where each comes from")
+        if used := _list_used_flags(args, filled, settable_options):
+            say(path or "", f"settings used: {used}; --explain lists where each comes from")
+
+
+def _list_used_flags(args, filled: list[str], settable_options: dict[str, argparse.Action]) -> str:
+    """List the options that have their values from the project file; "" if there are none.
+
+    Options that the command line or the drawing overrules, or that do not suit the drawing, are left out.
+    """
+    final_names = _make_final_choices(args).from_project
+    used = [name for name in filled if name in final_names or name not in args.from_project]
+    of_program = [name for name in used if _is_of_program(args) and name in PROGRAM_SETTINGS]
+    certain = ", ".join(_get_flag(settable_options[name]) for name in used if name not in of_program)
+    if not of_program:
+        return certain
+    uncertain = ", ".join(_get_flag(settable_options[name]) for name in of_program)
+    return "; ".join(filter(None, [certain, f"{uncertain} unless the program names another"]))
 
 
 def _writes_plan(args) -> bool:
@@ -138,8 +155,7 @@ def _describe_source(args, project: Project, typed, name: str, value, from_proje
     if name in typed:
         return _format_value(value), "command line"
     if name in from_project or (name in project.settings and value == project.settings[name]):
-        program_settings = ("brush", "cell", "sheet", "z_offset")
-        exception = ", unless the program names another" if _is_of_program(args) and name in program_settings else ""
+        exception = ", unless the program names another" if _is_of_program(args) and name in PROGRAM_SETTINGS else ""
         return _format_value(value), project.path + exception
     default = getattr(args, name)
     if value is None or value == default:
