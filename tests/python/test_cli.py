@@ -380,7 +380,7 @@ def test_a_plan_keeps_its_brush(desk, capsys):
         "convert a.svg -o out.json --report ./out.json",
         "convert a.svg -o out.ngc --compensation best",
         "convert a.svg -o out.ngc --comp none",
-        "convert a.svg -o out.ngc --lag 5",
+        "convert a.svg -o out.ngc --lag 5 --compensation closed",
         "convert a.svg -o out.ngc --compensation none --terminals round",
         "preview a.svg --compensation constant --start pointed",
         "batch a.svg -o out --compensation none --end butt",

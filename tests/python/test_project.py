@@ -402,6 +402,26 @@ def test_a_damaged_brush_of_a_project_is_named(desk, capsys):
 
 
 @pytest.mark.slow
+def test_a_typed_lag_counts_with_the_compensation_of_the_project_or_drawing(desk, capsys):
+    command = "convert d.svg -o o.ngc --lag 4"
+    assert main([*command.split(), "--compensation", "constant"]) == 0
+    program = (desk / "o.ngc").read_bytes()
+    status, _, reported = in_json(capsys, *command.split())
+    assert status == 1 and is_reported(reported, "options-contradict")
+    (desk / "own.svg").write_text(with_settings(compensation="constant"))
+    assert main("convert own.svg -o o.ngc --lag 4".split()) == 0
+    assert (desk / "o.ngc").read_bytes() == program
+    brushsvg.convert("own.svg", "o.ngc", lag=4)
+    assert (desk / "o.ngc").read_bytes() == program
+    project('[defaults]\ncompensation = "constant"\nlag = 3')
+    assert main(["convert", "d.svg", "-o", "p.ngc", "--lag", "4"]) == 0
+    assert (desk / "p.ngc").read_bytes() == program
+    assert main("batch d.svg -o out --lag 4".split()) == 0
+    assert (desk / "out" / "programs" / "d.ngc").read_bytes() == program
+    assert main("convert d.svg -o p.ngc --lag 4 --compensation closed".split()) == 2
+
+
+@pytest.mark.slow
 def test_layers_of_a_project_concern_only_drawings_with_layers(desk):
     project('layers = ["Ink"]')
     for command in ("convert d.svg -o d.ngc", "check d.ngc d.svg", "preview d.svg", "batch d.svg -o out"):

@@ -201,8 +201,8 @@ def check_choices(chosen: Choices) -> Choices:
         chosen = replace(chosen, cell=parse_cell(write_cell(chosen.cell)))
     if chosen.fit is not None and chosen.scale is not None:
         raise Error("fit and scale exclude each other", code="options-contradict")
-    if chosen.lag is not None and chosen.compensation != "constant":
-        raise Error("a lag needs compensation constant", "lag", code="options-contradict")
+    if chosen.compensation is not None or chosen.input is None:  # otherwise the drawing may name one
+        _refuse_lag_without_effect(chosen)
     suffix = suffix_of(chosen.input)
     if chosen.units and suffix in (".svg", ".svgz"):
         sentence = "units are for drawings that do not say them; an SVG does"
@@ -211,6 +211,12 @@ def check_choices(chosen: Choices) -> Choices:
         sentence = "select is for SVG; layers of a DXF are chosen by layer"
         raise Error(sentence, "select", code="options-contradict")
     return chosen
+
+
+def _refuse_lag_without_effect(chosen: Choices) -> None:
+    if chosen.lag is not None and chosen.compensation != "constant":
+        advice = "give --compensation constant"
+        raise Error("a lag needs compensation constant", "lag", code="options-contradict", advice=advice)
 
 
 def refuse_ends_without_effect(chosen: Choices) -> None:
@@ -285,6 +291,7 @@ def fill_from_drawing(chosen: Choices, drawing, alone: bool = False) -> Choices:
             )
             raise Error(sentence, where="svg", code=f"{kind}-unknown", advice=f"give --{kind}")
     filled = replace(chosen, **{name: value for name, value in settings.items() if getattr(chosen, name) is None})
+    _refuse_lag_without_effect(filled)
     refuse_ends_without_effect(replace(chosen, compensation=filled.compensation))
     return filled
 

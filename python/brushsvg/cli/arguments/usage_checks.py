@@ -30,8 +30,11 @@ def check_drawing(args) -> None:
 
 
 def check_compensation(args) -> None:
-    """Refuse flags that need another compensation."""
-    if args.lag is not None and args.compensation != "constant":
+    """Refuse flags that need another compensation than the typed one.
+
+    Without a typed one, the project file or the drawing may name it.
+    """
+    if args.lag is not None and args.compensation not in (None, "constant"):
         args.parser.error("--lag needs --compensation constant")
     for flag in ("terminals", "start", "end"):
         if args.compensation in ("none", "constant") and getattr(args, flag) not in (None, "auto"):
