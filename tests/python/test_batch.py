@@ -396,6 +396,15 @@ def test_a_problem_of_the_whole_batch_is_one_refusal(desk, items, choices, expec
     assert not Path("out/table.csv").exists()
 
 
+def test_a_refused_row_has_the_advice_of_convert(desk, capsys):
+    line = '<path id="a" d="M20 20 H90 V" fill="none" stroke="#000" stroke-width="3"/>'
+    Path("damaged.svg").write_text(PAGE.format("", line))
+    _, _, reported = in_json(capsys, "convert", "damaged.svg", "-o", "x.ngc")
+    (advice,) = {notice.advice for _, notice in reported if notice.refused}
+    status, _, ((_, notice),) = in_json(capsys, "batch", "damaged.svg", "-o", "out", "--jobs", "1")
+    assert status == 1 and "--lenient" in advice and gives(notice.text, advice)
+
+
 def test_a_missing_drawing_is_a_row_and_tried_again(desk, monkeypatch):
     with threads() as executor:
         done = brushsvg.batch(["in/1.svg", "gone.svg", "odd.pdf", "folder"], "out", executor=executor)

@@ -129,7 +129,7 @@ def _convert(task: Task) -> TaskResult:
     if simulated.problems:
         problem, *others = simulated.problems
         rest = f", and {len(others)} more of other kinds" if others else ""
-        raise Error(f"{problem.sentence}{rest}", problem.where, code=problem.code)
+        raise Error(f"{problem.sentence}{rest}", problem.where, code=problem.code, advice=problem.advice)
     texts = {
         name: pieces if isinstance(pieces, bytes) else "".join(pieces).encode()
         for name, pieces in simulated.encoded().items()
