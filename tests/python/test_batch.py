@@ -396,6 +396,35 @@ def test_a_problem_of_the_whole_batch_is_one_refusal(desk, items, choices, expec
     assert not Path("out/table.csv").exists()
 
 
+def test_linked_folders_are_read_once_and_broken_links_are_rows(desk, monkeypatch):
+    Path("customer/signs").mkdir(parents=True)
+    Path("customer/signs/5.svg").write_text(drawing(5))
+    Path("in/a").symlink_to(desk / "customer")
+    Path("in/customer").symlink_to(desk / "customer")  # again
+    Path("in/alias").symlink_to("below")
+    Path("customer/loop").symlink_to(desk / "in")
+    Path("in/gone.svg").symlink_to("nowhere.svg")
+    with threads() as executor:
+        done = brushsvg.batch(["in"], "out", executor=executor)
+    names = {row.name: row.code for row in done.rows}
+    (linked,) = names.keys() & {"a/signs/5", "customer/signs/5"}
+    assert names == dict.fromkeys(["0", "1", "2", linked], "") | {
+        "below/wide": "width-out-of-reach",
+        "gone": "file-unreadable",
+    }
+
+    def refuse_below(path):
+        if path.name == "below":
+            raise PermissionError(13, "Permission denied")
+        return read_folder(path)
+
+    read_folder = Path.iterdir
+    monkeypatch.setattr(Path, "iterdir", refuse_below)
+    with refused("file-unreadable") as caught:
+        brushsvg.batch(["in"], "out", jobs=1)
+    assert caught.value.file == "in/below"
+
+
 def test_a_refused_row_has_the_advice_of_convert(desk, capsys):
     line = '<path id="a" d="M20 20 H90 V" fill="none" stroke="#000" stroke-width="3"/>'
     Path("damaged.svg").write_text(PAGE.format("", line))

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...errors import Error, require_type
-from ...files import read_bytes
+from ...files import read_bytes, system_reason
 from ...read import READERS, InMemory
 from ...read.text import text_svg
 
@@ -47,7 +47,7 @@ class Item:
 def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
     """List the drawings of files, folders, patterns and lists, in that order.
 
-    A folder stands for all SVG and DXF files below it. A pattern has * ? or []. A list (.txt) has a path on each
+    A folder stands for all SVG and DXF files below it, also in linked folders. A pattern has * ? or []. A list (.txt) has a path on each
     line, from the folder of the list. Error if an operand matches nothing.
     """
     items = []
@@ -70,11 +70,27 @@ def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
 
 
 def _find_drawings_below(folder: Path) -> list[Path]:
-    paths = sorted(path for path in folder.rglob("*") if path.suffix.lower() in FOLDER_SUFFIXES and path.is_file())
+    """Find the drawings of a folder, its subfolders and linked folders, each folder once."""
+    paths, folders, visited = [], [folder], set()
+    while folders:
+        current_folder = folders.pop()
+        if os.path.realpath(current_folder) in visited:
+            continue
+        visited.add(os.path.realpath(current_folder))
+        try:
+            entries = sorted(current_folder.iterdir())
+        except OSError as problem:
+            sentence = f"the folder cannot be read: {system_reason(problem)}"
+            raise Error(sentence, file=str(current_folder), code="file-unreadable") from None
+        for path in entries:
+            if path.is_dir():  # links come last, so that a folder has its own name rather than that of a link
+                folders.insert(0 if path.is_symlink() else len(folders), path)
+            elif path.suffix.lower() in FOLDER_SUFFIXES and (path.is_file() or path.is_symlink()):
+                paths.append(path)  # a link to a file that does not exist becomes a refused row
     if not paths:
         sentence = f"no drawing is in this folder; looked for {', '.join(FOLDER_SUFFIXES)}"
         raise Error(sentence, file=str(folder), code="file-unreadable")
-    return paths
+    return sorted(paths)
 
 
 def _read_list(path: str) -> list[str]:
