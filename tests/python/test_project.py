@@ -9,6 +9,7 @@ import pickle
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from diagnostics import agrees, gives, in_json, is_reported, refused
@@ -419,6 +420,17 @@ def test_a_typed_lag_counts_with_the_compensation_of_the_project_or_drawing(desk
     assert main("batch d.svg -o out --lag 4".split()) == 0
     assert (desk / "out" / "programs" / "d.ngc").read_bytes() == program
     assert main("convert d.svg -o p.ngc --lag 4 --compensation closed".split()) == 2
+
+
+@pytest.mark.slow
+def test_a_batch_in_python_uses_a_project_as_the_command_does(desk):
+    project('cell = "grbl-3axis"\npaper = "a4"\n[defaults]\nmargin-strokes = "on"\nspeed = 12\nz-offset = 0.4')
+    assert main("batch d.svg -o out --jobs 1".split()) == 0
+    program = (desk / "out" / "programs" / "d.ngc").read_bytes()
+    with ThreadPoolExecutor(1) as executor:
+        brushsvg.batch(["d.svg"], "own", executor=executor, **brushsvg.find_project("d.svg").choices)
+    assert (desk / "own" / "programs" / "d.ngc").read_bytes() == program
+    assert main("check out/programs/d.ngc d.svg".split()) == 0
 
 
 @pytest.mark.slow

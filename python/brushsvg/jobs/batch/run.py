@@ -28,7 +28,7 @@ from ...reporting.report_text import format_overlap
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
 from ..cancelling import Cancel
-from ..choices import ChoiceKeywords, Choices, load_cell
+from ..choices import ChoiceKeywords, Choices, drop_from_project, load_cell
 from ..conversion import ORDERS, make_choices
 from . import executors, one, tables
 from .items import Item, file_name_key, make_items
@@ -131,7 +131,9 @@ def batch(
     drawings = make_items(items)
     need_truth(lenient, "lenient")
     need_truth(parquet, "parquet")
-    settings = _make_batch_settings(make_choices(None, choices), format, order, bool(lenient))
+    # Margin strokes belong to a page. A project may set them for conversions with a page.
+    chosen = drop_from_project(make_choices(None, choices), ["margin_strokes"])
+    settings = _make_batch_settings(chosen, format, order, bool(lenient))
     folder = Path(out)
     manifest = Manifest(folder)
     try:
