@@ -59,10 +59,12 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
 def decode_text(data: bytes, what: str, code: str, file: str | None = None) -> str:
     """Decode the content of a file; raise Error if it is not UTF-8.
 
+    A byte order mark, which editors on Windows write, is left out.
+
     what: the expected content in words.
     """
     try:
-        return data.decode("utf-8")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise Error(f"the file is not {what}: it is not text in UTF-8", file=file, code=code) from None
 

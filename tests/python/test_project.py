@@ -433,6 +433,21 @@ def test_a_batch_in_python_uses_a_project_as_the_command_does(desk):
     assert main("check out/programs/d.ngc d.svg".split()) == 0
 
 
+def test_a_project_and_a_cell_may_begin_with_a_byte_order_mark(desk):
+    assert main("cell new -o machine.toml --like grbl-3axis --quiet".split()) == 0
+    project('cell = "machine.toml"')
+    for name in (NAME, "machine.toml"):
+        (desk / name).write_bytes(b"\xef\xbb\xbf" + (desk / name).read_bytes().replace(b"\n", b"\r\n"))
+    assert brushsvg.find_project("d.svg").settings["cell"] == str(desk / "machine.toml")
+    assert brushsvg.find_cell("machine.toml").language == "grbl"
+
+
+def test_a_broken_link_to_a_project_is_refused(desk, capsys):
+    (desk / NAME).symlink_to("nowhere.toml")
+    status, _, ((file, notice),) = in_json(capsys, "convert", "d.svg", "-o", "o.ngc")
+    assert (status, file, notice.code) == (1, str(desk / NAME), "file-unreadable")
+
+
 @pytest.mark.slow
 def test_layers_of_a_project_concern_only_drawings_with_layers(desk):
     project('layers = ["Ink"]')

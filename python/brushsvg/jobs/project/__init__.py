@@ -78,7 +78,7 @@ def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
     home = os.path.abspath(os.path.expanduser("~"))
     while True:
         path = os.path.join(folder, NAME)
-        if os.path.isfile(path):
+        if os.path.isfile(path) or os.path.islink(path):  # a broken link is refused when it is read
             return path
         above = os.path.dirname(folder)
         if folder in (home, above) or os.path.exists(os.path.join(folder, ".git")):
