@@ -624,6 +624,7 @@ def test_init_without_a_terminal_uses_flags_as_answers(desk, capsys):
     for more, code in (
         ("--cell ur5", "cell-unknown ur5e"),
         ("--cell ur5e --brush roun-6", "brush-unknown round-6"),
+        ("--cell ur5e --brush mine.json --speed 300", "speed-out-of-range 300 mine 25"),
     ):
         status, _, reported = in_json(capsys, "init", *more.split())
         assert status == 1 and is_reported(reported, code)
@@ -659,8 +660,8 @@ def test_init_asks_four_questions_each_with_a_default(desk):
     status, shown = at_terminal(desk, "init", answers="\n\n\n\n")
     # The file exists already, so init asks no questions.
     assert status == 1 and not re.search(r"\[[^\[\]]+\]: ", shown)
-    status, shown = at_terminal(desk, "init", "--force", answers="ur5\nur5e\nroun-6\nrigid\na9\na5\nfast\n12,5\n")
-    assert status == 0 and len(re.findall(r"\[[^\[\]]+\]: ", shown)) == 8
+    status, shown = at_terminal(desk, "init", "--force", answers="ur5\nur5e\nroun-6\nrigid\na9\na5\nfast\n900\n12,5\n")
+    assert status == 0 and len(re.findall(r"\[[^\[\]]+\]: ", shown)) == 9
     assert gives(shown, "ur5e", "round-6")
     assert brushsvg.read_project(desk / NAME).settings == {
         "brush": "rigid",

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from ....errors import Error, Notice
 from ....jobs.options import DEFAULT_BRUSH
 from ....jobs.project import NAME, write_project
+from ....jobs.project.values import name_or_path
 from ....machine.cells.cell_file import DEFAULT_CELL, cell_names, find_cell
 from ....machine.posts import POSTS
 from ....model.library import brush_names, find_brush
@@ -34,6 +35,10 @@ def init_project(args) -> None:
         cell = _read_cell(args.cell, folder) if args.cell else None
         brush = _read_brush(args.brush, folder) if args.brush else None
     paper, speed = args.sheet, args.paint_speed
+
+    def read_speed(text: str, folder: str) -> float | None:
+        return _check_speed(_read_speed(text), brush, cell, folder)
+
     if can_answer(args):
         if cell is None:
             for line in _list_machines():
@@ -51,7 +56,9 @@ def init_project(args) -> None:
             say(f"Papers: {', '.join(PAPERS_MM)}, or a size such as 300x200mm")
             paper = _ask(f"Paper [{DEFAULT_PAPER}]: ", DEFAULT_PAPER, folder, _read_paper)
         if speed is None:
-            speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, _read_speed)
+            speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, read_speed)
+    with refuse_errors("--speed"):
+        _check_speed(speed, brush, cell, folder)
     text = write_project(brush or None, cell, paper or DEFAULT_PAPER, speed)
     write_outputs(args, {args.output: text}, sources=[args.output])
     if not args.quiet:
@@ -102,8 +109,25 @@ def _read_paper(text: str, _folder: str) -> str:
     return text
 
 
-def _read_speed(text: str, _folder: str) -> float | None:
+def _read_speed(text: str) -> float | None:
     return values.paint_speed(text.replace(",", ".")) if text else None
+
+
+def _check_speed(speed_mm_s: float | None, brush: str | None, cell: str | None, folder: str) -> float | None:
+    """Return the speed; raise Error if it is outside the limits of the brush or cell.
+
+    brush, cell: as in the project file; None and "" stand for the defaults.
+    """
+    if speed_mm_s is not None:
+        from ....machine.workspace_limits import check_painting_speed
+
+        for notice in check_painting_speed(
+            speed_mm_s,
+            find_brush(name_or_path("brush", brush or DEFAULT_BRUSH, folder)),
+            find_cell(name_or_path("cell", cell or DEFAULT_CELL, folder)),
+        ):
+            raise Error(notice.sentence, code=notice.code)
+    return speed_mm_s
 
 
 def _make_relative_path(folder: str, path: str) -> str:
