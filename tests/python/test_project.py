@@ -449,6 +449,18 @@ def test_a_broken_link_to_a_project_is_refused(desk, capsys):
 
 
 @pytest.mark.slow
+def test_compare_knows_the_page_of_a_project_with_a_speed(desk, capsys):
+    project('brush = "round-6"\n[defaults]\nspeed = 12\ntolerance = 0.1')
+    for command in (
+        "convert d.svg -o d.json --page page.pdf --quiet",
+        "simulate-photo d.json -o sheet.jpg --quiet",
+        "compare sheet.jpg d.svg --quiet",
+        "compare sheet.jpg d.json --quiet",
+    ):
+        assert main(command.split()) == 0, command
+
+
+@pytest.mark.slow
 def test_layers_of_a_project_concern_only_drawings_with_layers(desk):
     project('layers = ["Ink"]')
     for command in ("convert d.svg -o d.ngc", "check d.ngc d.svg", "preview d.svg", "batch d.svg -o out"):

@@ -121,6 +121,7 @@ def add_compare(commands) -> None:
     )
     flags.add_input(compare)
     flags.add_choices(compare)
+    flags.add_speed(compare)
     flags.add_corrections(compare)
     flags.add_margin_strokes(compare)
     flags.add_output(compare, "the figures and the corrections for the next sheet (.json), or the report (.txt)", False)
@@ -169,6 +170,7 @@ def add_simulate_photo(commands) -> None:
     flags.add_input(simulate)
     flags.add_output(simulate, "a photograph (.jpg)")
     flags.add_choices(simulate)
+    flags.add_speed(simulate)
     flags.add_corrections(simulate)
     flags.add_margin_strokes(simulate)
     simulate.add_argument(

@@ -51,7 +51,8 @@ def use_project(args, argv: list[str] | None) -> None:
         _print_sources(args, project, typed_options)
     elif filled and args.messages == "text" and not getattr(args, "quiet", False):
         # A file in a parent folder must not change a program without a message.
-        if used := _list_used_flags(args, filled, settable_options):
+        used = _list_used_flags(args, filled, settable_options)
+        if used:
             say(path or "", f"settings used: {used}; --explain lists where each comes from")
 
 

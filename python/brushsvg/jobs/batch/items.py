@@ -47,8 +47,8 @@ class Item:
 def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
     """List the drawings of files, folders, patterns and lists, in that order.
 
-    A folder stands for all SVG and DXF files below it, also in linked folders. A pattern has * ? or []. A list (.txt) has a path on each
-    line, from the folder of the list. Error if an operand matches nothing.
+    A folder stands for all SVG and DXF files below it, also in linked folders. A pattern has * ? or []. A list
+    (.txt) has a path on each line, from the folder of the list. Error if an operand matches nothing.
     """
     items = []
     for operand in map(os.fspath, operands):
