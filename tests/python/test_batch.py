@@ -343,6 +343,17 @@ def test_lists_patterns_and_open_documents_are_accepted(desk):
     )
 
 
+def test_a_list_that_contains_itself_is_refused(desk):
+    Path("a.txt").write_text("in/1.svg\nin/b.txt\n")
+    Path("in/b.txt").write_text("0.svg\n2.svg\n")
+    with threads() as executor:
+        assert [row.name for row in brushsvg.batch(["a.txt"], "out", executor=executor).rows] == ["1", "0", "2"]
+    Path("in/b.txt").write_text("0.svg\n../a.txt\n")
+    with refused("file-unreadable") as caught:
+        brushsvg.batch(["a.txt"], "out", jobs=1)
+    assert Path(caught.value.file) == Path("in/../a.txt") and caught.value.advice
+
+
 @pytest.mark.parametrize("data", [b"", b" \n\n", b"\xff\xfe\x00", None])
 def test_an_empty_list_is_refused_with_its_file_name(desk, capsys, data):
     Path("font.svg").write_text(FONT)

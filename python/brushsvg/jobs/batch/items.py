@@ -44,11 +44,13 @@ class Item:
     path: str = ""
 
 
-def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
+def list_drawings(operands: Iterable[str | os.PathLike[str]], open_lists: tuple[str, ...] = ()) -> list[Item]:
     """List the drawings of files, folders, patterns and lists, in that order.
 
     A folder stands for all SVG and DXF files below it, also in linked folders. A pattern has * ? or []. A list
     (.txt) has a path on each line, from the folder of the list. Error if an operand matches nothing.
+
+    open_lists: the lists that these operands are read from, which must not be read again.
     """
     items = []
     for operand in map(os.fspath, operands):
@@ -57,7 +59,11 @@ def list_drawings(operands: Iterable[str | os.PathLike[str]]) -> list[Item]:
                 _make_drawing_item(path, path.relative_to(operand)) for path in _find_drawings_below(Path(operand))
             ]
         elif Path(operand).suffix.lower() == LIST_SUFFIX:
-            items += list_drawings(_read_list(operand))
+            real_path = os.path.realpath(operand)
+            if real_path in open_lists:
+                sentence = "this list contains itself, directly or in another list"
+                raise Error(sentence, file=operand, code="file-unreadable", advice="remove its name from the list")
+            items += list_drawings(_read_list(operand), (*open_lists, real_path))
         elif os.path.exists(operand) or not glob.has_magic(operand):
             items.append(_make_drawing_item(Path(operand), Path(Path(operand).name)))
         else:
