@@ -713,6 +713,14 @@ def test_an_interrupted_batch_continues(desk, monkeypatch, by):
     assert contents() == contents("whole")
 
 
+def test_a_contact_sheet_shows_the_accents_of_names_from_macos():
+    composed, decomposed, bare = (
+        list(contact_sheets([Card(name, "", "", None)]))
+        for name in ("Gr\u00f6\u00dfe", "Gro\u0308\u00dfe", "Gro\u00dfe")
+    )
+    assert composed == decomposed != bare
+
+
 def test_a_contact_sheet_shows_every_drawing(tmp_path):
     picture = tmp_path / "a.png"
     cv2.imwrite(str(picture), np.full((60, 120, 3), (0, 0, 255), np.uint8))

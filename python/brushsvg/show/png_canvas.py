@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import unicodedata
+
 import cv2
 import numpy as np
 
@@ -26,14 +28,21 @@ def bgr(colour: str) -> tuple[int, int, int]:
 
 def write_text(image, text: str, baseline: tuple[int, int], size: int, weight: int, colour: str) -> int:
     """Write text in OpenCV's own font; return the x [px] where the text ends."""
+    text = _compose_accents(text)
     end, _ = cv2.putText(image, text, baseline, bgr(colour), cv2.FontFace("sans"), size, weight)
     return int(end[0])
 
 
 def text_width(text: str, size: int, weight: int) -> int:
     """Return how far a text reaches to the right of its start [px]."""
+    text = _compose_accents(text)
     (x, _, width, _) = cv2.getTextSize((10000, 100), text, (0, 0), cv2.FontFace("sans"), size, weight)
     return x + width
+
+
+def _compose_accents(text: str) -> str:
+    """Compose letters and accents, because OpenCV leaves out accents that stand alone, as in names from macOS."""
+    return unicodedata.normalize("NFC", text)
 
 
 def encode_png(image: np.ndarray) -> bytes:
