@@ -4,13 +4,17 @@ Without matplotlib, a message says how to install it.
 """
 
 import sys
+import warnings
 
 import numpy as np
 import pytest
 from diagnostics import in_json
 from sampling import sample
 
+import brushsvg
 from brushsvg import _core, find_brush
+from brushsvg.calibration.chart.page import chart_page
+from brushsvg.comparison.job_page import job_page
 from brushsvg.model.plot import brush_picture, brush_picture_on, law_band, new_figure
 
 
@@ -22,6 +26,19 @@ def test_svg_and_png_pictures_are_reproducible(name):
         picture = brush_picture(brush, suffix)
         assert picture.startswith(start)
         assert picture == brush_picture(brush, suffix)
+
+
+def test_a_name_in_letters_that_the_font_lacks_gives_no_python_warning():
+    brush = find_brush("round-6")
+    brush.name = "\u6bdb\u7b14"
+    page = job_page(
+        brushsvg.compensate([brushsvg.stroke_from_path("M20 40H90", 3)], brush, sheet_mm=(140, 100)).plan, brush.name
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for suffix in (".svg", ".png"):
+            assert brush_picture(brush, suffix)
+        assert chart_page(page.printed, ".pdf")
 
 
 def test_bands_follow_rmse_and_covariance():

@@ -7,6 +7,9 @@ from __future__ import annotations
 
 import io
 import math
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -160,12 +163,21 @@ def note(axes, at, text: str, **style) -> None:
 
 
 def encoded(figure, suffix: str) -> bytes:
-    if notes := figure.findobj(lambda artist: artist.get_gid() == NOTE):
-        _place_notes(figure, notes)
     buffer = io.BytesIO()
     metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
-    figure.savefig(buffer, format=suffix[1:], dpi=140, metadata=metadata)
+    with allow_missing_letters():
+        if notes := figure.findobj(lambda artist: artist.get_gid() == NOTE):
+            _place_notes(figure, notes)
+        figure.savefig(buffer, format=suffix[1:], dpi=140, metadata=metadata)
     return buffer.getvalue()
+
+
+@contextmanager
+def allow_missing_letters() -> Iterator[None]:
+    """Let matplotlib draw a box for a letter that its font lacks, such as a Chinese one, without a Python warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
+        yield
 
 
 def _place_notes(figure, notes: list) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ... import _core
 from ...errors import missing_packages_error, need_one_of, require_type
-from ...model.plot import new_figure
+from ...model.plot import allow_missing_letters, new_figure
 from .layout import TICK_MM, Bar, Chart, Label, Marker
 
 MAX_TEXT_MM = 2.3  # greatest size of letters
@@ -90,7 +90,7 @@ def chart_pdf(chart: Chart, more=()) -> bytes:
         axes.text(*label.at_mm, label.text, fontsize=points, color=LABEL_COLOUR, parse_math=False)
     buffer = io.BytesIO()
     title = chart.labels[-1].text if chart.labels else ""
-    with matplotlib.rc_context({"pdf.fonttype": 42}):
+    with allow_missing_letters(), matplotlib.rc_context({"pdf.fonttype": 42}):
         figure.savefig(buffer, format="pdf", metadata={"CreationDate": None, "Title": title})
     return buffer.getvalue()
 
