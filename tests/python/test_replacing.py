@@ -101,6 +101,17 @@ def test_no_program_replaces_a_brush(desk, capsys):
     assert is_kept(capsys, "own.json", "convert", "a.svg", "-o", "own.json")
 
 
+def test_the_brush_of_a_project_is_never_replaced_by_a_command_that_reads_it(desk, capsys):
+    assert in_json(capsys, "brush", "new", "-o", "mine.json", "--like", "round-6")[0] == 0
+    assert in_json(capsys, *"init --cell grbl-3axis --brush mine.json --sheet 100x60".split())[0] == 0
+    brush = Path("mine.json").read_bytes()
+    for words in ("convert a.svg -o mine.json", "preview a.svg -o mine.json", "chart -o c.gcode --chart mine.json"):
+        status, _, reported = in_json(capsys, *words.split(), "--force")
+        assert status == 1 and is_reported(reported, "options-contradict") and reported[-1][0] == "mine.json", words
+        assert Path("mine.json").read_bytes() == brush
+    assert in_json(capsys, *"convert a.svg -o mine.json --brush round-6 --force".split())[0] == 0
+
+
 def test_files_are_kept_if_the_record_cannot_be_written(desk, capsys, monkeypatch):
     Path("state").write_text("no folder")
     assert in_json(capsys, *CONVERT)[0] == 0

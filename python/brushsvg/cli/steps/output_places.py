@@ -6,7 +6,7 @@ import os
 from collections.abc import Collection
 
 from ...errors import Notice
-from ...files import write_files
+from ...files import find_file_used_twice, write_files
 from ...reporting.report_text import format_overlap
 from ...units import clock
 from ..console import RefusedError, clear_stage, print_text, refuse_errors, say, stage
@@ -34,7 +34,16 @@ def check_outputs(args, *paths: str | None, sources: Collection[str | None] = ()
         if reason:
             why = Notice("", f"the file cannot be written: {reason}", code="file-unwritable")
             raise RefusedError(path, [why])
+    _refuse_project_brush(args, paths)
     refuse_replacing(filter(None, paths), sources, args.force)
+
+
+def _refuse_project_brush(args, paths: Collection[str | None]) -> None:
+    """Refuse to replace the brush of the project file, as a typed brush is refused, also with --force."""
+    brushes = args.brush if "brush" in getattr(args, "from_project", ()) else []
+    if twice := find_file_used_twice([brushes] if isinstance(brushes, str) else brushes, paths):
+        sentence = "this is the brush that brushsvg.toml names, and cannot be two files at once"
+        raise RefusedError(twice, [Notice("", sentence, code="options-contradict", advice="give another name")])
 
 
 def write_outputs(
