@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from command import brushsvg
+from diagnostics import is_reported
 
 import brushsvg as package
 
@@ -60,6 +62,37 @@ def test_a_name_that_a_controller_does_not_take_is_changed_with_a_warning(drawn)
         assert len(warned) == 1 and f"name the file {known}{suffix}" in warned[0].text, (name, done.notices)
         assert known != name.upper() and re.fullmatch("[A-Z][A-Z0-9_]{0,23}", known)
         assert package.check(path, drawn / "word.svg", cell=NAMES[suffix][1]).problems == ()
+
+
+def test_every_command_reports_a_changed_name(drawn):
+    made = (
+        ("setup", "first-run", "kr6-r900"),
+        ("setup", "height", "--cell", "kr6-r900"),
+        ("setup", "border", "word.svg", "--cell", "kr6-r900"),
+        ("chart", "--cell", "kr6-r900"),
+    )
+    for number, words in enumerate(made):
+        file = f"no-{number}.src"
+        reported = brushsvg("--messages", "json", *words, "-o", file, cwd=drawn, status=0).reported
+        assert is_reported(reported, f"program-renamed {name_in(drawn / file)}"), (words, reported)
+    plan = package.convert(drawn / "word.svg", formats=(".json",)).plan
+    cell = package.find_cell("kr6-r900")
+    notices = package.write_program(drawn / "no-4.src", plan, package.find_brush("round-6"), cell=cell)
+    assert is_reported(notices, f"program-renamed no-4 {name_in(drawn / 'no-4.src')}"), notices
+
+
+@pytest.mark.parametrize("suffix", NAMES)
+def test_check_reports_a_file_that_was_renamed(drawn, suffix):
+    cell = NAMES[suffix][1]
+    package.convert(drawn / "word.svg", drawn / f"word{suffix}", cell=cell)
+    (drawn / f"word{suffix}").rename(drawn / f"other{suffix}")
+    for file in (f"other{suffix}", f"OTHER{suffix.upper()}"):
+        (drawn / f"other{suffix}").rename(drawn / file)
+        checked = package.check(drawn / file, drawn / "word.svg", cell=cell)
+        assert is_reported(checked.notices, f"program-renamed WORD {Path(file).stem} WORD{suffix}"), checked.notices
+        (drawn / file).rename(drawn / f"other{suffix}")
+    (drawn / f"other{suffix}").rename(drawn / f"Word{suffix}")
+    assert not is_reported(package.check(drawn / f"Word{suffix}", cell=cell).notices, "program-renamed")
 
 
 def test_a_drawing_without_a_file_has_a_name_too():

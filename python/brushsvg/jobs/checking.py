@@ -22,10 +22,10 @@ from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
 from ..machine.motion import duration_s
 from ..machine.paint_reload import report_dry_brush, split_into_loads
-from ..machine.posts import GCODE
+from ..machine.posts import GCODE, POSTS
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
-from ..machine.writer import called_programs, parted_post
+from ..machine.writer import called_programs, parted_post, report_renamed
 from ..model.library import brush_names, find_brush
 from ..read import settings_in
 from ..read.gcode import is_ours
@@ -171,6 +171,7 @@ def check_program(
         cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
         brush = load_brush(chosen.brush) or find_brush(header.brush)
         read = read_program(text, suffix, cell)
+    warn(path, report_renamed(Path(path).stem, suffix, cell, POSTS[cell.language].name_in(text)))
     warn(cell.name, list_arm_notices(cell))
     program = _OwnProgram(path, text, header, read, cell, brush)
     if header.border_mm or header.heights_mm or header.first_mm:

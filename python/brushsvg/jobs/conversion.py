@@ -349,18 +349,8 @@ class SimulatedWork:
             *field_notices,
             *part_notices,
             *lowering_notices,
-            *self._report_renamed(),
+            *writer.report_renamed(self.name, self.suffix, self.cell),
         ]
-
-    def _report_renamed(self) -> list[Notice]:
-        """Return a notice if the controller knows the program by another name than its file."""
-        post = POSTS.get(self.cell.language) if self.is_program and self.name else None
-        known_name = post.controller_name(self.name) if post else self.name
-        if known_name.lower() == self.name.lower():
-            return []
-        sentence = f"the program is called {known_name} on the controller, which cannot have {self.name!r} as a name"
-        advice = f"name the file {known_name}{self.suffix}"
-        return [Notice("", sentence, code="program-renamed", advice=advice)]
 
     def time_s(self) -> float | None:
         """Return how long the machine takes for the program, or for one of the plan."""

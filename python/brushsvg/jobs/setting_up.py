@@ -177,7 +177,7 @@ def make_border(
         header = header_lines.border_header(
             title, brush.name, len(plan.passes), plan.sheet_mm, notes, around_mm, program, job
         )
-        text = _text_of(post, program, header, path, suffix)
+        text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, list_cell_notices(cell))
     return SetupProgram(text, duration_s(program))
 
@@ -192,7 +192,7 @@ def make_first_run(chosen: Choices, path: str | None, warn: Warn = lambda file, 
     with name_file_in_errors(cell.name):
         program = setup_programs.first_run(brush, cell, chosen.sheet, *DEFAULT_HEIGHTS_MM)
         header = header_lines.first_header(brush.name, chosen.sheet, DEFAULT_HEIGHTS_MM, program)
-        text = _text_of(post, program, header, path, suffix)
+        text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, list_cell_notices(cell))
     warn(cell.name, setup_programs.report_missing_air_run(cell, chosen.sheet))
     count = len(setup_programs.stroke_heights_mm(*DEFAULT_HEIGHTS_MM)) + 1
@@ -211,7 +211,7 @@ def make_height(
     with name_file_in_errors(cell.name):
         program = setup_programs.paper_height(brush, cell, chosen.sheet, *heights_mm)
         header = header_lines.height_header(brush.name, chosen.sheet, heights_mm, program)
-        text = _text_of(post, program, header, path, suffix)
+        text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, list_cell_notices(cell))
     return SetupProgram(text, duration_s(program), len(setup_programs.stroke_heights_mm(*heights_mm)))
 
@@ -228,6 +228,7 @@ def _find_post(path: str | None, cell: Cell) -> tuple[str, Post]:
         return suffix, writer.post_for(suffix, cell)
 
 
-def _text_of(post: Post, program: Program, header: tuple[str, ...], path: str | None, suffix: str) -> str:
+def _text_of(post: Post, program: Program, header: tuple[str, ...], path: str | None, suffix: str, warn: Warn) -> str:
     name = Path(path).stem if path else program.name
+    warn(path or "", writer.report_renamed(name, suffix, program.cell))
     return "".join(writer.text_of(post, replace(program, header=header, name=name), suffix))

@@ -139,6 +139,26 @@ def path_next_to(path: str | os.PathLike[str], name: str) -> str:
     return str(path.with_name((path.stem if name.startswith("-") else "") + name + path.suffix))
 
 
+def report_renamed(name: str, suffix: str, cell: Cell, known_name: str = "") -> list[Notice]:
+    """Return a notice if the controller knows a program by another name than that of its file.
+
+    name: the stem of the file; "" for none.
+    suffix: the extension of the file, with its dot.
+    known_name: the name in the program; by default the name that the post gives it.
+    """
+    post = POSTS.get(cell.language)
+    if not name or post is None or suffix not in post.extensions:
+        return []
+    possible_name = post.controller_name(name)
+    known_name = known_name or possible_name
+    if known_name.lower() == name.lower():
+        return []
+    is_possible = possible_name.lower() == name.lower()
+    reason = f"but its file {name!r}" if is_possible else f"which cannot have {name!r} as a name"
+    sentence = f"the program is called {known_name} on the controller, {reason}"
+    return [Notice("", sentence, code="program-renamed", advice=f"name the file {known_name}{suffix}")]
+
+
 def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str], str]) -> dict[str, str]:
     """Return the texts of the files that a program calls.
 
@@ -189,7 +209,8 @@ def write_program(
     The program is in the cell's language. The extension of path decides between the two.
 
     There is a notice if the plan was made for another brush, or with another file of this brush. The program paints
-    with the given brush, and its header counts the notices.
+    with the given brush, and its header counts these notices. Another notice says if the controller cannot have the
+    name of the file as the name of the program.
 
     Raises Error, and writes nothing, if paint leaves the sheet or a limit of the brush or the cell is broken.
     """
@@ -206,5 +227,6 @@ def write_program(
     walk = check_job(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
     notices = report_other_brush(plan, brush)
     notes = [f"warnings: {len(notices)}"] if notices else []
-    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title, notes, Path(path).stem)))
-    return notices
+    name = Path(path).stem
+    write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title, notes, name)))
+    return [*notices, *report_renamed(name, suffix, cell)]

@@ -55,6 +55,10 @@ class Post(NamedTuple):
         """Return the name that the controller gives a program, or the same name if the language has no names."""
         return getattr(_module_of(self.source), "controller_name", str)(name)
 
+    def name_in(self, text: str) -> str:
+        """Return the name of a program in its text, or "" if the language has no names."""
+        return getattr(_module_of(self.source), "name_in", lambda text: "")(text)
+
     def called(self, text: str) -> list[str]:
         """Return the names of the files with which a program continues."""
         return _module_of(self.source).called(text) if self.parted else []

@@ -93,6 +93,12 @@ def controller_name(name: str) -> str:
     return name_on_controller(name, MAX_NAME_LETTERS, RESERVED_WORDS)
 
 
+def name_in(text: str) -> str:
+    """Return the name of the main program, or "" if there is none."""
+    found = re.search(r"^ *DEF (\w+)", text, re.IGNORECASE | re.MULTILINE)
+    return found[1] if found else ""
+
+
 def programs(text: str) -> dict[str, str]:
     """Return the texts of a stream of programs, keyed by program name.
 

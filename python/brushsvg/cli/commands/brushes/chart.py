@@ -15,7 +15,7 @@ from ....machine.program import Job
 from ....model.library import find_brush
 from ....text_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM
-from ...console import RefusedError, print_text, refuse_errors, stage
+from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.options import (
     apply_drawing_settings,
     load_brush,
@@ -55,14 +55,14 @@ def chart_file(args) -> None:
         if walk.problems:
             raise RefusedError(args.output, summarize_notices([_advise_smaller_sheet(each) for each in walk.problems]))
         title = f"{'dabs' if args.dabs else 'calibration chart'} of brush {brush.name}"
-        files = writer.in_files(
-            args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title, (), Path(args.output).stem)
-        )
+        name = Path(args.output).stem
+        files = writer.in_files(args.output, writer.encode_checked(suffix, laid_out.plan, walk, brush, title, (), name))
     if args.page:
         with refuse_errors(args.page):
             files[args.page] = chart_page(laid_out, suffix_of(args.page))
     if args.chart:
         files[args.chart] = write_chart(laid_out).encode()
+    warn(args.output, writer.report_renamed(name, suffix, cell))
     warn_about_cell(args, cell)
     write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell))
     print_text(
