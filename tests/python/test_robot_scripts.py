@@ -221,6 +221,8 @@ REFUSED = [
     ("kr6-r900", "LIN {X", "PTP {X", "line-unread"),
     ("kr6-r900", "LIN {X 10.000", "LIN {X 10.000, X 10.000", "line-unread"),
     ("kr6-r900", "C 180.00000}", "C 179.40000}", "tool-turned 0.6"),
+    ("kr6-r900", "DEF BRUSHSVG()", "DEF LOOP()", "line-unread loop"),
+    ("kr6-r900", "DEF BRUSHSVG()", "DEF 1WORD()", "line-unread 1word"),
     ("kr6-r900", "PTP $AXIS_ACT\r\n", "PTP $AXIS_ACT\r\n&REL 3\r\n", "line-unread"),
     ("kr6-r900", "$VEL.CP = 0.050000\r\n", "", "line-incomplete speed"),
     ("kr6-r900", "$VEL.CP = 0.020000", "$VEL.CP = 0", "line-incomplete speed"),
@@ -285,6 +287,15 @@ def test_the_reader_refuses_invalid_programs(name, old, new, expected):
     assert old in text
     with refused(expected):
         read_program(text.replace(old, new, 1), LANGUAGES[name], find_cell(name))
+
+
+def test_only_remarks_may_be_above_the_name_of_a_routine():
+    cell = find_cell("kr6-r900")
+    name, *lines = text_for(cell).splitlines(keepends=True)
+    first_move = next(number for number, line in enumerate(lines) if line.startswith("LIN "))
+    moved = "".join([*lines[: first_move + 1], name, *lines[first_move + 1 :]])
+    with refused(f"line-unread {first_move + 2}"):
+        read_program(moved, ".src", cell)
 
 
 LOOKS = "tip = get_current_posx(DR_BASE)[0]\n", "flange = get_current_tool_flange_posx(DR_BASE)\n"

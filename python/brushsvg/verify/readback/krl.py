@@ -7,7 +7,7 @@ import re
 from ...errors import Error
 from ...machine.cells.cell import Cell
 from ...machine.frames import rotation, rotation_deg
-from ...machine.posts.krl import RISES
+from ...machine.posts.krl import RISES, controller_name
 from ...machine.posts.script import upright_tool_rotation
 from ...machine.posts.text import PROGRAM_END
 from . import Readback
@@ -112,8 +112,12 @@ def _split_programs(text: str) -> tuple[NumberedLines, dict[str, NumberedLines]]
         if found := _DEF.fullmatch(statement):
             if found[1] in names:
                 raise Error(f"line {number}: {found[1]!r} stands there twice", code="line-unread")
+            if controller_name(found[1]) != found[1].upper():
+                raise Error(f"line {number}: a routine cannot have the name {found[1]!r}", code="line-unread")
             if names:
                 lines = others[found[1]] = []
+            elif any(not above.startswith(";") for _, above in main):
+                raise Error(f"line {number}: only remarks may be above the first DEF", code="line-unread")
             names.add(found[1])
             if lines is main:
                 continue
