@@ -254,6 +254,7 @@ REFUSED = [
     ("lrmate200id", " : PR[1,6]=0.00000 ;\r\n", "", "line-incomplete"),
     ("lrmate200id", "DEFAULT_GROUP\t= 1,*,*,*,*;\r\n", "", "line-unread DEFAULT_GROUP"),
     ("lrmate200id", "DEFAULT_GROUP", "TCD: ABORT_REQUEST = 1;\r\nDEFAULT_GROUP", "line-unread ABORT_REQUEST"),
+    ("lrmate200id", "/MN", "ENABLE_SINGULARITY_AVOIDANCE : TRUE;\r\n/MN", "line-unread ENABLE_SINGULARITY_AVOIDANCE"),
     ("lrmate200id", " : !end: the brush is held up ;\r\n", "", "program-cut-short"),
     ("lrmate200id", "};\r\n/END\r\n", "};\r\n", "program-cut-short"),
     ("lrmate200id", " : !end", " : CALL B0001 ;\r\n : !end", "line-unread B0001"),
@@ -308,9 +309,14 @@ TP_HEAD = (
     "      BUSY_LAMP_OFF\t= 0,\r\n      ABORT_REQUEST\t= 0,\r\n      PAUSE_REQUEST\t= 0;\r\n"
 )
 TP_TAIL = "CONTROL_CODE\t= 00000000 00000000;\r\n"
+TP_R30IB_TAIL = (
+    "LOCAL_REGISTERS\t= 0,0,0;\r\n/APPL\r\n\r\nAUTO_SINGULARITY_HEADER;\r\n"
+    "  ENABLE_SINGULARITY_AVOIDANCE   : FALSE;\r\n"
+)
 SAME = [  # equal for the controller
     ("kr6-r900", "DEF BRUSHSVG()", KRL_HEAD),
     ("lrmate200id", TP_GROUP, TP_HEAD + TP_GROUP + TP_TAIL),
+    ("lrmate200id", TP_GROUP, TP_HEAD + TP_GROUP + TP_TAIL + TP_R30IB_TAIL),
     ("m0609", "".join(LOOKS), "".join(reversed(LOOKS))),
     ("m0609", LOOKS[0], LOOKS[0].replace("[0]", "[-0]")),
 ]

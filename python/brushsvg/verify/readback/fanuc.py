@@ -24,6 +24,8 @@ _ATTRIBUTES = re.compile(
     r"|(?:CREATE|MODIFIED) *= DATE [\d-]+ TIME [\d:]+;|CONTROL_CODE *= 0+ 0+;"
     r"|(?:TCD: )?(?:STACK_SIZE|TASK_PRIORITY|TIME_SLICE) *= \d+[,;]"
     r"|(?:TCD: )?(?:BUSY_LAMP_OFF|ABORT_REQUEST|PAUSE_REQUEST) *= 0[,;]"
+    # An R-30iB adds these. Singularity avoidance would turn the tool.
+    r"|LOCAL_REGISTERS *= \d+,\d+,\d+;|/APPL|AUTO_SINGULARITY_HEADER;|ENABLE_SINGULARITY_AVOIDANCE *: FALSE;"
 )
 _GROUP = re.compile(r"DEFAULT_GROUP *= 1,\*,\*,\*,\*;")
 _POINT = re.compile(
