@@ -259,7 +259,16 @@ def test_a_visit_inside_another_vessel_is_refused():
     wipe = {"radius_mm": 5.0, "rim_mm": 1.0, "wipe_mm": ((-30.0, 60.0, 2.0), (-20.0, 16.0, 3.0))}
     with refused("cell-station wipe_mm 6 black radius_mm 10 4", "station 2"):
         parsed(**wipe)
+    low = {"radius_mm": 5.0, "rim_mm": 1.0}
+    for wiped in (((-20.0, 30.0, 3.0), (-16.0, -10.0, 3.0)), ((-20.0, -10.0, 1.0),)):  # across the vessel
+        with refused("cell-station wipe_mm black radius_mm 10 4", "station 2"):
+            parsed(**low, wipe_mm=wiped)
+    with refused("cell-station stir_mm 9 black radius_mm 10 4", "station 2"):
+        parsed(**low, place_mm=(-20.0, 24.0), stir_mm=5.0)
     for changes in (
+        {**low, "place_mm": (-20.0, 24.0), "stir_mm": 4.0},
+        {**low, "wipe_mm": ((-30.5, 30.0, 3.0), (-30.5, -10.0, 3.0))},
+        {**low, "wipe_mm": ((-20.0, 30.0, 5.0), (-20.0, -10.0, 4.0))},
         {**near, "radius_mm": 11.0},
         {**near, "place_mm": BLACK.place_mm, "surface_mm": BLACK.surface_mm},  # one vessel
         {
@@ -268,7 +277,7 @@ def test_a_visit_inside_another_vessel_is_refused():
             "surface_mm": -10.0,
             "depth_mm": 5.0,
         },  # the paint of station 1 is above this rim, as on a tray
-        {**wipe, "wipe_mm": ((-30.0, 60.0, 2.0), (-20.0, 16.0, 4.0))},
+        {**wipe, "wipe_mm": ((-30.0, 60.0, 4.0), (-20.0, 16.0, 4.0))},
     ):
         assert parsed(**changes).stations[1].radius_mm == changes["radius_mm"]
 

@@ -504,20 +504,25 @@ def _check_station_heights(station: Station, cell: Cell, where: str) -> None:
 
 
 def _check_other_vessels(station: Station, cell: Cell, where: str) -> None:
-    """Refuse a visit that dips or wipes inside another vessel, below its rim.
+    """Refuse a visit that dips, stirs or wipes inside another vessel, below its rim.
 
     Two stations at one place are one vessel.
     """
     if station.by_hand:
         return
-    points = [("place_mm", (*station.place_mm, station.surface_mm - station.depth_mm))]
-    points += [("a point of wipe_mm", point) for point in station.wipe_mm]
+    dip = (*station.place_mm, station.surface_mm - station.depth_mm)
+    above_rim = (*station.place_mm, max(station.rim_mm, 0.0) + cell.heights.clearance_mm)
     for other in cell.stations:
         if other.by_hand or other.place_mm == station.place_mm:
             continue
-        for name, point in points:
-            away_mm = math.dist(point[:2], other.place_mm)
-            if away_mm < other.radius_mm and point[2] < other.rim_mm:
+        dip_mm = _find_distance_below_rim([dip, dip], other)
+        distances_mm = {
+            "place_mm": dip_mm,
+            "the circle of stir_mm": abs(dip_mm - station.stir_mm),
+            "the way along wipe_mm": _find_distance_below_rim([above_rim, *station.wipe_mm], other),
+        }
+        for name, away_mm in distances_mm.items():
+            if away_mm < other.radius_mm:
                 raise Error(
                     f"{name} is {away_mm:.3g} mm from the middle of vessel {other.name!r}, less than its radius_mm "
                     f"{other.radius_mm:g}: the tool would hit that vessel below its rim at {other.rim_mm:g} mm",
@@ -525,6 +530,26 @@ def _check_other_vessels(station: Station, cell: Cell, where: str) -> None:
                     code="cell-station",
                     advice="move one of them, or correct radius_mm",
                 )
+
+
+def _find_distance_below_rim(path: list, vessel: Station) -> float:
+    """Return the distance [mm] of the middle of a vessel from a path, where the path is below the rim.
+
+    path: points [mm] that straight lines connect. Returns inf if the path is nowhere below the rim.
+    """
+    nearest_mm = math.inf
+    for start, end in pairwise(np.array(path, dtype=float)):
+        above_mm = np.array([start[2], end[2]]) - vessel.rim_mm
+        if above_mm.min() >= 0:
+            continue
+        first, last = start, end
+        if above_mm.max() > 0:
+            at_rim = start + (end - start) * above_mm[0] / (above_mm[0] - above_mm[1])
+            first, last = (at_rim, end) if above_mm[0] > 0 else (start, at_rim)
+        way, to_middle = (last - first)[:2], np.array(vessel.place_mm) - first[:2]
+        share = np.clip(to_middle @ way / max(way @ way, 1e-12), 0.0, 1.0)
+        nearest_mm = min(nearest_mm, float(np.hypot(*(to_middle - share * way))))
+    return nearest_mm
 
 
 # (key, smallest usual value, largest usual value, why a value outside this range is unusual)
