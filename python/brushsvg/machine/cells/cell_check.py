@@ -207,7 +207,7 @@ def _check_paper(cell: Cell) -> None:
         if cell.paper.taught_mm and tilt_deg > 90:
             advice = "seen from above, the third point must be to the left of the line from the first to the second"
         elif cell.tool:
-            advice = "raise this limit if the paper should lean, for cell new in a file that you give with --like"
+            advice = "raise this limit if the paper should lean; cell new reads it from the file of --like"
         else:
             advice = ""
         raise Error(
