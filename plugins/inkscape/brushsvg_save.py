@@ -7,9 +7,12 @@ The file is byte for byte the output of `brushsvg convert` or `brushsvg preview`
 
 from __future__ import annotations
 
+import re
 import sys
+from pathlib import Path
 
 from brushsvg_dialogs import show_message
+from brushsvg_preview import SODIPODI
 from brushsvg_program import DRAWING, Run, arguments, choices, guarded, root_of
 
 
@@ -23,14 +26,25 @@ def main() -> None:
         cell="document",
         cell_file="",
     )
-    if args.cell == "document" and args.else_cell and root_of(args.input_file).get("data-brushsvg-cell") is None:
+    root = root_of(args.input_file)
+    if args.cell == "document" and args.else_cell and root.get("data-brushsvg-cell") is None:
         args.cell = args.else_cell
-    out = f"saved.{args.format}"
+    out = f"{_find_file_stem(root)}.{args.format}"
     with Run(args.executable, args.input_file, args.command, DRAWING, "-o", out, *choices(args)) as run:
         _, warnings = run.finish()
         sys.stdout.buffer.write(run.made(out))
     if warnings:
         show_message("\n".join(["Saved. brushsvg warns:", *warnings]))
+
+
+def _find_file_stem(root: dict[str, str]) -> str:
+    """Return the stem of the file's name, after which some languages name the program.
+
+    Inkscape does not say where it writes the output. `Save As` first gives the document the name of this file. `Save a
+    Copy` keeps the name of the drawing.
+    """
+    name = re.sub(r"[^\w .-]", "_", Path(root.get(f"{SODIPODI}docname", "")).stem)
+    return name.lstrip("-") or "saved"
 
 
 if __name__ == "__main__":

@@ -73,18 +73,20 @@ def test_every_machine_gets_its_own_language(plugin, tmp_path, cell):
         plugin.save(drawing, saved)
     finally:
         plugin.set()
+    (tmp_path / "typed").mkdir()
+    typed = tmp_path / "typed" / f"drawing{extension}"  # some languages name the program after its file
     brushsvg(
         "convert",
         "drawing.svg",
         "-o",
-        f"typed{extension}",
+        typed,
         "--cell",
         cell,
         *(["--brush", "rigid"] if pen else []),
         cwd=tmp_path,
         status=0,
     )
-    assert saved.read_bytes() == (tmp_path / f"typed{extension}").read_bytes()
+    assert saved.read_bytes() == typed.read_bytes()
 
 
 def test_file_types_of_inkscape_keep_their_extensions(plugin, tmp_path):
