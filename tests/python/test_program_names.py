@@ -95,6 +95,13 @@ def test_check_reports_a_file_that_was_renamed(drawn, suffix):
     assert not is_reported(package.check(drawn / f"Word{suffix}", cell=cell).notices, "program-renamed")
 
 
+def test_a_program_next_to_a_plan_has_its_warnings(drawn):
+    done = package.convert(drawn / "word.svg", drawn / "no-1.json", formats=(".src",), cell="kr6-r900")
+    known = re.match(r"DEF (\w+)", done.texts[".src"])[1]
+    assert is_reported(done.notices, f"program-renamed no-1 {known}"), done.notices
+    assert is_reported(done.notices, "paper-example")
+
+
 def test_a_drawing_without_a_file_has_a_name_too():
     done = package.convert(ElementTree.fromstring(WORD), formats=(".src",), cell="kr6-r900")
     assert done.texts[".src"].startswith("DEF BRUSHSVG()")

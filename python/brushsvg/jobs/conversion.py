@@ -265,8 +265,9 @@ def _make_conversion(
             measured_figures = outputs.make_report(first_simulation.work, first_simulation.marks, cell)
         if "report" in paths:
             files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured_figures)
-    cell_notices = list_cell_notices(cell) if first_simulation.is_program else []
-    notices = (*ignored, *first_simulation.work.notices, *first_simulation.remarks(), *cell_notices)
+    cell_notices = list_cell_notices(cell) if any(each.is_program for each in simulations.values()) else []
+    remarks = dict.fromkeys(remark for each in simulations.values() for remark in each.remarks())
+    notices = (*ignored, *first_simulation.work.notices, *remarks, *cell_notices)
     conversion = Conversion(
         work.title, first_simulation.work.plan, notices, first_simulation.time_s(), texts, measured_figures
     )
