@@ -58,10 +58,10 @@ def searched(start, target, brush, step_mm: float, tries: int, seed: int):
     knots = np.concatenate([[0.0] * 3, np.linspace(0.0, 1.0, CONTROLS - 2), [1.0] * 3])
     splines = BSpline.design_matrix(along / along[-1], knots, 3).toarray()
     painted = _core.painted_bounds(_core.simulate(plan_of(start, brush), brush).passes[0], brush)
-    points = np.vstack([*_core.wanted_outline(target, 0.01), np.reshape(painted, (2, 2))])
+    points = np.vstack([*_core.target_outline(target, 0.01), np.reshape(painted, (2, 2))])
     low, size = points.min(axis=0) - ROUND_MM, np.ptp(points, axis=0) + 2 * ROUND_MM
     window = (*low.tolist(), *size.tolist())
-    drawn = _core.wanted_coverage([target], window, WINDOW_PX)
+    drawn = _core.target_coverage([target], window, WINDOW_PX)
 
     def moved(x: np.ndarray):
         out = poses + splines @ x.reshape(CONTROLS, 3)

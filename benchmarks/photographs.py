@@ -148,7 +148,7 @@ def outcome(case: Case, jpeg: bytes, true_height: float, height_known: float | N
             depth = share * deepest
             error = getattr(found, law)(depth) - brush.law(law)(depth)
             values[f"{law} at {share:g}"] = (error, law_band(found, law, np.array([depth]))[0][0])
-    half = _core.deviations_of_95() * np.sqrt(fitted.covariance[-4, -4])
+    half = _core.interval_factor_95() * np.sqrt(fitted.covariance[-4, -4])
     values["height"] = (fitted.fit.height_mm - true_height, half)
     out["values"] = {name: [float(value) for value in both] for name, both in values.items()}
     depths = np.linspace(0.15, 1, 18) * deepest

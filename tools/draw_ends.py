@@ -49,7 +49,7 @@ def strokes(ending: bool) -> list:
         path = np.hstack([middle[:, 2 * k : 2 * k + 2] for k in (3, 2, 1, 0)]) if ending else middle
         stroke = _core.Stroke("s", path, half_width=[(0.0, 2.0)])
         if outline is not None:
-            stroke.wanted_mm = [outline]
+            stroke.target_mm = [outline]
         out.append(stroke)
     return out
 
@@ -59,7 +59,7 @@ def cell(stroke, brush, **how: str) -> np.ndarray:
     marks = _core.simulate(plan, brush)
     window = (-AT_MM[0], -AT_MM[1], *SIZE_MM)
     paint = _core.coverage(marks, brush, window, PX_PER_MM)[..., None]
-    target = _core.wanted_coverage([stroke], window, PX_PER_MM)[..., None]
+    target = _core.target_coverage([stroke], window, PX_PER_MM)[..., None]
     image = np.full((*paint.shape[:2], 3), 255.0)
     for share, name in (
         (np.minimum(paint, target), "both"),

@@ -22,9 +22,7 @@ from pathlib import Path
 from docs_lint import BANNED_WORDS, ROOT, banned_words
 
 FOLDERS = ("python", "cpp", "tests", "examples", "benchmarks", "tools", "plugins")
-NOT_YET = (  # files and folders that still contain banned words
-    "python/brushsvg/_core",  # has the names of the C++ core
-)
+NOT_YET: tuple[str, ...] = ()  # files and folders that still contain banned words
 BANNED_IN_CODE = BANNED_WORDS.with_name("banned_words_in_code.txt")
 PYTHON = (".py", ".pyi")
 CPP = (".cpp", ".hpp", ".h", ".cc")
@@ -32,9 +30,7 @@ QUOTATION = re.compile(r"(?<![\w\\])\"[^\"\n]*\"(?!\w)|`[^`\n]*`")
 CPP_TEXT = re.compile(
     r"//(?P<line>.*)|/\*(?P<block>[\s\S]*?)\*/|\bR\"(?P<mark>\w*)\((?P<raw>[\s\S]*?)\)(?P=mark)\"|\"(?P<string>(?:\\.|[^\"\\\n])*)\"|'(?:\\.|[^'\\\n])+'"
 )
-KEPT_NAMES = (  # names of the core's interface, and `tell` of file objects
-    *("wanted_mm", "wanted_outline", "wanted_coverage", "wanted_pieces", "left_aside", "thin_out", "tell"),
-)
+KEPT_NAMES = ("tell",)  # `tell` of file objects
 QUOTING = (
     "tests/python/test_docs_lint.py",
     "tests/python/test_words_lint.py",

@@ -8,50 +8,51 @@
 
 namespace brushsvg {
 
-struct CancelWhen::Asked {
+struct CancelWhen::CancelRequest {
     std::function<bool()> is_over;
     std::thread::id owner = std::this_thread::get_id();
-    std::chrono::steady_clock::time_point last{};
-    std::exception_ptr why;
-    std::atomic<bool> over{false};  ///< cancelled, for the reason in `why`
+    std::chrono::steady_clock::time_point last_poll{};
+    std::exception_ptr cause;
+    std::atomic<bool> is_cancelled{false};  ///< cancelled, for the reason in `why`
 };
 
 namespace {
 
 /// Amount of work between readings of the clock, and time between calls of is_over.
-constexpr int kWorkBetween = 500;
-constexpr std::chrono::milliseconds kBetween{50};
+constexpr int kWorkPerClockReadingUs = 500;
+constexpr std::chrono::milliseconds kPollInterval{50};
 
-thread_local CancelWhen::Asked* asked = nullptr;
-thread_local int done = 0;
+thread_local CancelWhen::CancelRequest* current_request = nullptr;
+thread_local int work_done = 0;
 
 }  // namespace
 
-CancelWhen::CancelWhen(std::function<bool()> is_over) : asked_(std::make_unique<Asked>()), before_(asked) {
-    asked_->is_over = std::move(is_over);
-    asked = asked_.get();
+CancelWhen::CancelWhen(std::function<bool()> is_over)
+    : request_(std::make_unique<CancelRequest>()), outer_(current_request) {
+    request_->is_over = std::move(is_over);
+    current_request = request_.get();
 }
 
-CancelWhen::~CancelWhen() { asked = before_; }
+CancelWhen::~CancelWhen() { current_request = outer_; }
 
 void checkpoint(int work) {
-    if (!asked) return;
-    if (asked->over.load(std::memory_order_acquire)) std::rethrow_exception(asked->why);
-    if (asked->owner != std::this_thread::get_id() || (done += work) < kWorkBetween) return;
-    done = 0;
+    if (!current_request) return;
+    if (current_request->is_cancelled.load(std::memory_order_acquire)) std::rethrow_exception(current_request->cause);
+    if (current_request->owner != std::this_thread::get_id() || (work_done += work) < kWorkPerClockReadingUs) return;
+    work_done = 0;
     const auto now = std::chrono::steady_clock::now();
-    if (now - asked->last < kBetween) return;
-    asked->last = now;
+    if (now - current_request->last_poll < kPollInterval) return;
+    current_request->last_poll = now;
     try {
-        if (asked->is_over()) throw Cancelled();
+        if (current_request->is_over()) throw Cancelled();
     } catch (...) {
-        asked->why = std::current_exception();
-        asked->over.store(true, std::memory_order_release);
+        current_request->cause = std::current_exception();
+        current_request->is_cancelled.store(true, std::memory_order_release);
         throw;
     }
 }
 
-SameCancel::SameCancel() : asked_(asked) {}
-void SameCancel::take_over() const { asked = asked_; }
+CancelHandover::CancelHandover() : request_(current_request) {}
+void CancelHandover::take_over() const { current_request = request_; }
 
 }  // namespace brushsvg

@@ -16,7 +16,7 @@ namespace brushsvg {
 
 /// Returns the number of processors. It is queried once, because the system reads a file each time, which needs a
 /// thirtieth of the time to convert a page.
-inline std::size_t processors() {
+inline std::size_t processor_count() {
     static const std::size_t count = std::max(1u, std::thread::hardware_concurrency());
     return count;
 }
@@ -24,10 +24,10 @@ inline std::size_t processors() {
 /// Calls work(i) for i in [begin, end) on all processors. Of several errors, the one with the lowest i is thrown. If
 /// the system starts fewer threads, as in a container with a limit of processes, these threads or this one do the work.
 template <class Work>
-void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
+void parallel_for(std::size_t begin, std::size_t end, Work&& work) {
     std::atomic<std::size_t> next{begin};
     std::vector<std::exception_ptr> errors(end - begin);
-    const SameCancel cancel;
+    const CancelHandover cancel;
     const auto run = [&] {
         for (std::size_t i = next++; i < end; i = next++) try {
                 checkpoint();
@@ -37,8 +37,8 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
             }
     };
     std::mutex mutex;
-    std::condition_variable ended;
-    const std::size_t threads = std::min(processors(), end - begin);
+    std::condition_variable thread_ended;
+    const std::size_t threads = std::min(processor_count(), end - begin);
     std::size_t running = 0;
     std::vector<std::thread> others;
     others.reserve(threads);  // so that below only the start of a thread can fail
@@ -49,26 +49,26 @@ void on_all_processors(std::size_t begin, std::size_t end, Work&& work) {
                 run();
                 const std::lock_guard lock(mutex);
                 --running;
-                ended.notify_one();
+                thread_ended.notify_one();
             });
             ++running;
         } catch (const std::exception&) {
             break;  // no more threads or no memory for them: the running threads do all the work
         }
     run();
-    std::exception_ptr given_up;  // only this thread polls for cancellation, also while it waits
+    std::exception_ptr cancellation;  // only this thread polls for cancellation, also while it waits
     std::unique_lock lock(mutex);
     while (running > 0) {
-        ended.wait_for(lock, std::chrono::milliseconds(50));
-        if (!given_up) try {
+        thread_ended.wait_for(lock, std::chrono::milliseconds(50));
+        if (!cancellation) try {
                 checkpoint(1 << 20);
             } catch (...) {
-                given_up = std::current_exception();
+                cancellation = std::current_exception();
             }
     }
     lock.unlock();
     for (std::thread& other : others) other.join();
-    if (given_up) std::rethrow_exception(given_up);
+    if (cancellation) std::rethrow_exception(cancellation);
     for (const std::exception_ptr& error : errors)
         if (error) std::rethrow_exception(error);
 }

@@ -4,7 +4,7 @@
 namespace {
 
 /// Return a getter of a law of a brush. The law is a copy that is defined only at the brush's depths.
-auto law_of(brushsvg::Profile brushsvg::Brush::* law) {
+auto law_getter(brushsvg::Profile brushsvg::Brush::* law) {
     return [law](const brushsvg::Brush& brush) {
         brushsvg::Profile copy = brush.*law;
         copy.depth_range_mm = brush.depth_range_mm;
@@ -41,23 +41,24 @@ A liner is a round brush with long bristles. Other kinds are refused.)")
             [](Brush& b, std::array<double, 2> value) { b.depth_range_mm = std::move(value); },
             "(least, greatest) depth [mm] to which the brush may be pressed.")
         .def_property(
-            "lag", law_of(&Brush::lag), [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); },
+            "lag", law_getter(&Brush::lag), [](Brush& b, brushsvg::Profile value) { b.lag = std::move(value); },
             R"(r(d): distance of the centre of friction behind the TCP, bristles taut.
 
 A Profile, 0 at all depths for a pen.)")
         .def_property(
-            "tip_gap", law_of(&Brush::tip_gap), [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); },
+            "tip_gap", law_getter(&Brush::tip_gap),
+            [](Brush& b, brushsvg::Profile value) { b.tip_gap = std::move(value); },
             R"(b(d): distance from the tip of the footprint to the centre of friction.
 
 A Profile.)")
         .def_property(
-            "tip_to_widest", law_of(&Brush::tip_to_widest),
+            "tip_to_widest", law_getter(&Brush::tip_to_widest),
             [](Brush& b, brushsvg::Profile value) { b.tip_to_widest = std::move(value); },
             R"(x_w(d): distance from the tip of the footprint to its widest section.
 
 A Profile.)")
         .def_property(
-            "half_width", law_of(&Brush::half_width),
+            "half_width", law_getter(&Brush::half_width),
             [](Brush& b, brushsvg::Profile value) { b.half_width = std::move(value); },
             "h(d): half of the footprint's greatest width. A Profile that never falls.")
         .def_property(
@@ -92,19 +93,19 @@ Raises Error, with the reachable range, if no depth paints this half width.)")
         .def(
             "lever_to_widest",
             [](const Brush& b, double depth_mm) {
-                return law_of(&Brush::tip_to_widest)(b).at(depth_mm) - law_of(&Brush::tip_gap)(b).at(depth_mm);
+                return law_getter(&Brush::tip_to_widest)(b).at(depth_mm) - law_getter(&Brush::tip_gap)(b).at(depth_mm);
             },
             py::arg("depth_mm"), "Return e(d) = x_w(d) - b(d) [mm], signed.")
         .def("__repr__", [](const Brush& b) {
             const auto& [least, greatest] = b.depth_range_mm;
             const auto span = [](double from, double to) {
-                return from == to ? in_digits(from) : in_digits(from) + " to " + in_digits(to);
+                return from == to ? format_number(from) : format_number(from) + " to " + format_number(to);
             };
             return "<Brush " + quoted(b.name) + ": " + (b.kind.empty() ? "" : b.kind + ", ") + "depth " +
                    span(least, greatest) + " mm, lag " + span(b.lag(least), b.lag(greatest)) + " mm, lines " +
                    span(2.0 * b.half_width(least), 2.0 * b.half_width(greatest)) + " mm wide>";
         });
-    as_value(type);
+    add_value_semantics(type);
     m.def(
         "check", [](const Brush& brush) { brushsvg::check(brush); }, py::arg("brush"),
         R"(Raise Error if the brush would make a robot go wrong.
@@ -114,7 +115,7 @@ Examples are a negative lag, or laws and outlines that disagree.)");
         "remarks",
         [](const Brush& brush) {
             py::list out;
-            for (const auto& each : brushsvg::remarks(brush)) out.append(notice(each, each.sentence));
+            for (const auto& each : brushsvg::remarks(brush)) out.append(make_notice(each, each.sentence));
             return out;
         },
         py::arg("brush"), "Return notices about unusual laws of a brush that check() accepts.");

@@ -11,13 +11,14 @@
 
 namespace {
 
-using Way = std::function<brushsvg::CompensatedPass(const brushsvg::Stroke&)>;
+using Compensator = std::function<brushsvg::CompensatedPass(const brushsvg::Stroke&)>;
 
 /// Return the function that computes the plan of one stroke by a method.
-Way way_of(const std::string& method, const brushsvg::Brush& brush, brushsvg::CompensateOptions options,
-           [[maybe_unused]] const std::array<double, 2>& sheet_mm) {
+Compensator make_compensator(const std::string& method, const brushsvg::Brush& brush,
+                             brushsvg::CompensateOptions options,
+                             [[maybe_unused]] const std::array<double, 2>& sheet_mm) {
     using brushsvg::Compensation;
-    const auto closed_form = [&brush](const brushsvg::CompensateOptions& o) -> Way {
+    const auto closed_form = [&brush](const brushsvg::CompensateOptions& o) -> Compensator {
         return [&brush, o](const brushsvg::Stroke& stroke) { return compensate(stroke, brush, o); };
     };
     for (const auto& [name, value] : {std::pair("none", Compensation::none),
@@ -72,11 +73,11 @@ has_turn_in_place: whether the brush turns in place, at a corner too sharp for t
         .def_readonly("within_tolerance", &TrackingError::within_tolerance)
         .def_readonly("has_turn_in_place", &TrackingError::has_turn_in_place)
         .def("__repr__", [](const TrackingError& e) {
-            return "<TrackingError of " + in_digits(e.largest_mm) + " mm at (" + in_digits(e.at_mm[0]) + ", " +
-                   in_digits(e.at_mm[1]) + ") mm, " + in_digits(e.mean_mm) + " mm on average" +
+            return "<TrackingError of " + format_number(e.largest_mm) + " mm at (" + format_number(e.at_mm[0]) + ", " +
+                   format_number(e.at_mm[1]) + ") mm, " + format_number(e.mean_mm) + " mm on average" +
                    (e.within_tolerance ? ", within the tolerance>" : ">");
         });
-    as_fixed_value(error);
+    add_fixed_value_semantics(error);
     py::class_<Compensated> type(m, "Compensated",
                                  R"(A plan with its tracking errors and warnings.
 
@@ -88,7 +89,7 @@ warnings: notices about strokes.)");
         .def_property_readonly("warnings",
                                [](const Compensated& done) {
                                    py::tuple out(done.warnings.size());
-                                   for (std::size_t i = 0; i < out.size(); ++i) out[i] = notice(done.warnings[i]);
+                                   for (std::size_t i = 0; i < out.size(); ++i) out[i] = make_notice(done.warnings[i]);
                                    return out;
                                })
         .def(
@@ -119,10 +120,11 @@ passes: (whether the pass is from the other plan, its index there) for each pass
         .def("__repr__", [](const Compensated& done) {
             double largest = 0.0;
             for (const TrackingError& each : done.tracking_errors) largest = std::max(largest, each.largest_mm);
-            return "<Compensated: " + counted(done.plan.passes.size(), "pass") + ", at most " + in_digits(largest) +
-                   " mm off the middle line, " + counted(done.warnings.size(), "warning") + ">";
+            return "<Compensated: " + format_count(done.plan.passes.size(), "pass") + ", at most " +
+                   format_number(largest) + " mm off the middle line, " +
+                   format_count(done.warnings.size(), "warning") + ">";
         });
-    as_value(type);
+    add_value_semantics(type);
     m.def(
         "compensate",
         [](const std::vector<Stroke>& strokes, const Brush& brush, std::optional<std::array<double, 2>> sheet,
@@ -133,12 +135,12 @@ passes: (whether the pass is from the other plan, its index there) for each pass
             options.lag_mm = lag_mm;
             options.speed_mm_s = speed_mm_s;
             options.few_poses = few_poses;
-            options.start = terminal_named(start, "");
-            options.end = terminal_named(end, "");
+            options.start = parse_terminal(start, "");
+            options.end = parse_terminal(end, "");
             check(brush);
             if (sheet) check_sheet(*sheet);
             const std::array<double, 2> sheet_mm = sheet.value_or(std::array<double, 2>{0.0, 0.0});
-            const Way way = way_of(method, brush, options, sheet_mm);
+            const Compensator compensate_one = make_compensator(method, brush, options, sheet_mm);
             Compensated out;
             out.plan.brush = brush.name;
             out.plan.brush_sha256 = brush.sha256;
@@ -148,7 +150,8 @@ passes: (whether the pass is from the other plan, its index there) for each pass
                     Warning{"widths-ignored", "", "brush " + brush.name + " has one width: drawn widths are ignored"});
             std::vector<CompensatedPass> done(strokes.size());
             const std::size_t at_once = method == "refined" ? 8 : 32;  // Ctrl-C and progress wait for this many strokes
-            in_parallel_chunks(strokes.size(), at_once, progress, [&](std::size_t i) { done[i] = way(strokes[i]); });
+            run_in_parallel_chunks(strokes.size(), at_once, progress,
+                                   [&](std::size_t i) { done[i] = compensate_one(strokes[i]); });
             for (CompensatedPass& one : done) {
                 out.plan.passes.push_back(std::move(one.pass));
                 out.tracking_errors.push_back(one.tracking_error);
@@ -186,7 +189,7 @@ start, end: closed and refined only. Terminals of the strokes that do not set th
 
 Raises Error, naming the stroke, for widths or depths that the brush cannot reach.)");
     m.def("tracking_error_of", &tracking_error_of, py::arg("pass_"), py::arg("stroke"), py::arg("brush"),
-          py::arg("tolerance_mm") = 0.05, py::call_guard<Unlocked>(),
+          py::arg("tolerance_mm") = 0.05, py::call_guard<ReleasedGil>(),
           R"(Return the TrackingError of a pass against the stroke that it should paint.
 
 The pass is simulated.)");
@@ -196,7 +199,7 @@ The pass is simulated.)");
            double tolerance_mm) {
             if (passes.size() != strokes.size()) throw Error("sizes-differ", "a stroke is needed for each pass");
             std::vector<TrackingError> found(passes.size());
-            in_parallel_chunks(found.size(), 64, py::none(), [&](std::size_t i) {
+            run_in_parallel_chunks(found.size(), 64, py::none(), [&](std::size_t i) {
                 found[i] = tracking_error_of(passes[i], strokes[i], brush, tolerance_mm);
             });
             return found;

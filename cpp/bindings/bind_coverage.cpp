@@ -3,7 +3,7 @@
 
 void bind_coverage(py::module_& m) {
     using namespace brushsvg;
-    const auto unlocked = py::call_guard<Unlocked>();
+    const auto unlocked = py::call_guard<ReleasedGil>();
     m.def(
         "coverage",
         [](const Marks& marks, const Brush& brush, const std::array<double, 4>& w, double px_per_mm) {
@@ -28,11 +28,11 @@ window_mm: (x, y, width, height) [mm] of the part of the paper.)");
         "trace_outlines",
         [](Marks& marks, const Brush& brush, const py::object& progress) {
             Rings all;
-            in_chunks(marks.passes.size(), 4, progress, [&](std::size_t i) {
+            run_in_chunks(marks.passes.size(), 4, progress, [&](std::size_t i) {
                 marks.passes[i].outline_mm = outline(marks.passes[i], brush);
                 all.insert(all.end(), marks.passes[i].outline_mm.begin(), marks.passes[i].outline_mm.end());
             });
-            const Unlocked unlocked;
+            const ReleasedGil unlocked;
             marks.outline_mm = marks.passes.size() == 1 ? all : unite(all);
         },
         py::arg("marks"), py::arg("brush"), py::arg("progress") = py::none(),

@@ -15,7 +15,7 @@ inline constexpr auto members<brushsvg::fit::LawFit> = std::tuple(
 
 void bind_fit(py::module_& m) {
     using namespace brushsvg::fit;
-    const auto unlocked = py::call_guard<Unlocked>();
+    const auto unlocked = py::call_guard<ReleasedGil>();
     py::enum_<Norm>(m, "Norm").value("squares", Norm::squares).value("absolute", Norm::absolute);
     py::class_<LawShape> law_shape(m, "LawShape", R"(Constraints on a law that is fitted.
 
@@ -30,10 +30,10 @@ positive and rising hold at all depths of range_mm.)");
              py::arg("floor") = -std::numeric_limits<double>::infinity(),
              py::arg_v("norm", Norm::squares, "Norm.squares"), py::arg("smoothing") = 0.0)
         .def("__repr__", [](const LawShape& v) {
-            return "<LawShape of degree " + std::to_string(v.degree) + " at " + in_digits(v.range_mm[0]) + " to " +
-                   in_digits(v.range_mm[1]) + " mm>";
+            return "<LawShape of degree " + std::to_string(v.degree) + " at " + format_number(v.range_mm[0]) + " to " +
+                   format_number(v.range_mm[1]) + " mm>";
         });
-    as_fixed_value(law_shape);
+    add_fixed_value_semantics(law_shape);
     py::class_<LawFit> law_fit(m, "LawFit", "A fitted law, with its uncertainty and its residuals.");
     law_fit
         .def(py::init([](const brushsvg::Profile& law, std::vector<std::vector<double>> covariance,
@@ -49,10 +49,10 @@ positive and rising hold at all depths of range_mm.)");
         .def_readonly("degrees_of_freedom", &LawFit::degrees_of_freedom)
         .def_readonly("held", &LawFit::held)
         .def("__repr__", [](const LawFit& v) {
-            return "<LawFit: " + repr_of(v.law) + ", R^2 " + in_digits(v.r_squared) + ", " +
-                   in_digits(v.degrees_of_freedom) + " degrees of freedom>";
+            return "<LawFit: " + repr_of(v.law) + ", R^2 " + format_number(v.r_squared) + ", " +
+                   format_number(v.degrees_of_freedom) + " degrees of freedom>";
         });
-    as_fixed_value(law_fit);
+    add_fixed_value_semantics(law_fit);
     m.def("fit_law", &fit_law, py::arg("depth_mm"), py::arg("value_mm"), py::arg("shape"),
           py::arg("scatter") = std::vector<double>{}, unlocked,
           R"(Fit a law to values [mm] measured at depths [mm].

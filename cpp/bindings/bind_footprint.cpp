@@ -17,12 +17,12 @@ outline_mm: the outline (n, 2) [mm], a simple, unclosed, counter-clockwise ring.
             std::string size;
             if (f.outline_mm.rows() > 0) {
                 const Eigen::RowVector2d span = f.outline_mm.colwise().maxCoeff() - f.outline_mm.colwise().minCoeff();
-                size = ", " + in_digits(span.x()) + " mm long and " + in_digits(span.y()) + " mm wide";
+                size = ", " + format_number(span.x()) + " mm long and " + format_number(span.y()) + " mm wide";
             }
-            return "<Footprint at depth " + in_digits(f.depth_mm) +
-                   " mm: " + counted(std::size_t(f.outline_mm.rows()), "point") + size + ">";
+            return "<Footprint at depth " + format_number(f.depth_mm) +
+                   " mm: " + format_count(std::size_t(f.outline_mm.rows()), "point") + size + ">";
         });
-    as_fixed_value(one);
+    add_fixed_value_semantics(one);
     py::class_<FootprintTable> table(m, "FootprintTable",
                                      R"(The outlines of a brush at several depths, in tuples, with ascending depths.
 
@@ -40,12 +40,12 @@ All outlines have the same number of points. At other depths, the outlines are b
         .def("__repr__", [](const FootprintTable& t) {
             std::string depths;
             if (!t.dragged.empty())
-                depths = " at depths " + in_digits(t.dragged.front().depth_mm) + " to " +
-                         in_digits(t.dragged.back().depth_mm) + " mm";
+                depths = " at depths " + format_number(t.dragged.front().depth_mm) + " to " +
+                         format_number(t.dragged.back().depth_mm) + " mm";
             return "<FootprintTable: " + std::to_string(t.dragged.size()) + " dragged" + depths + ", " +
                    std::to_string(t.pressed.size()) + " pressed>";
         });
-    as_fixed_value(table);
+    add_fixed_value_semantics(table);
     m.def("footprint_at", &footprint_at, py::arg("table"), py::arg("depth_mm"), py::arg("pull") = 1.0,
           R"(Return the outline (n, 2) [mm] at a depth [mm], with the tip at the origin.
 

@@ -7,7 +7,7 @@
 #include "plan_json.hpp"
 
 void bind_io(py::module_& m) {
-    const auto unlocked = py::call_guard<Unlocked>();
+    const auto unlocked = py::call_guard<ReleasedGil>();
     m.def(
         "read_brush", [](std::string_view text) { return brushsvg::io::read_brush(std::string(text)); },
         py::arg("text"), unlocked, "Read a brush from the text of brush.json. Raises Error, naming the key.");

@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 
 /// Visit the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1).
 template <class Visit>
-void along_pieces(const LagLaw<double>& law, double depth0, double depth1, Visit&& visit) {
+void visit_pieces(const LagLaw<double>& law, double depth0, double depth1, Visit&& visit) {
     double from = 0.0;
     for (std::size_t k = 0; k < law.pieces.size(); ++k) {
         const auto& piece = law.pieces[depth1 >= depth0 ? k : law.pieces.size() - 1 - k];
@@ -29,12 +29,12 @@ double alpha_after(double alpha0, double exponent) {
 }
 
 double exponent(double s_mm, double depth0, double depth1, const Profile& profile) {
-    require_within(s_mm, {0.0, kFarthestMm}, "the way s [mm]");
-    const LagLaw<double> law = law_between(profile, depth0, depth1);
+    require_within(s_mm, {0.0, kMaxLengthMm}, "the way s [mm]");
+    const LagLaw<double> law = make_law_between(profile, depth0, depth1);
     if (s_mm == 0.0) return 0.0;
     if (law.rigid) return std::numeric_limits<double>::infinity();
     double sum = 0.0;
-    along_pieces(law, depth0, depth1, [&](const auto& piece, double from, double to) {
+    visit_pieces(law, depth0, depth1, [&](const auto& piece, double from, double to) {
         const auto depth = [&](double t) { return depth0 + t * (depth1 - depth0); };
         sum += lag_exponent(piece, depth(from), depth(to), s_mm * (to - from));
     });
@@ -54,10 +54,10 @@ py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const P
     for (std::size_t k = 0; k < n; ++k) {
         require_within(depth_mm[k], {0.0, 1000.0}, "depth " + std::to_string(k));
         for (int axis = 0; axis < 2; ++axis)
-            require_within(tcp_mm(Eigen::Index(k), axis), {-kFarthestMm, kFarthestMm}, "place " + std::to_string(k));
+            require_within(tcp_mm(Eigen::Index(k), axis), {-kMaxLengthMm, kMaxLengthMm}, "place " + std::to_string(k));
     }
     const auto [lo, hi] = std::minmax_element(depth_mm.begin(), depth_mm.end());
-    const LagLaw<double> law = law_between(profile, *lo, *hi);
+    const LagLaw<double> law = make_law_between(profile, *lo, *hi);
     LagState<double> state = touch_down<double>(tcp_mm.row(0));
     if (contact_mm) {
         const double lag = law.at(depth_mm[0]), reach = (tcp_mm.row(0).transpose() - *contact_mm).norm();
@@ -95,7 +95,7 @@ py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const P
 using Table = py::array_t<double, py::array::c_style>;
 
 /// Stack the tables (rows, 2) of all lags along a third axis.
-Table next_to_each_other(const std::vector<FollowedRows>& lags, Ring FollowedRows::* table) {
+Table stack_tables(const std::vector<FollowedRows>& lags, Ring FollowedRows::* table) {
     const auto rows = lags.empty() ? 0 : (lags[0].*table).rows();
     Table out({rows, Eigen::Index(2), Eigen::Index(lags.size())});
     auto to = out.mutable_unchecked<3>();
@@ -111,18 +111,18 @@ py::list follow_lags(const std::vector<Pass>& passes, const std::vector<PassMark
         throw Error("sizes-differ", std::to_string(passes.size()) + " passes and marks of " +
                                         std::to_string(marks.size()) + ": each pass needs its own");
     std::vector<LagLaw<double>> laws;
-    for (const Profile& lag : lags) laws.push_back(law_between(lag, depth_range_mm[0], depth_range_mm[1]));
+    for (const Profile& lag : lags) laws.push_back(make_law_between(lag, depth_range_mm[0], depth_range_mm[1]));
     std::vector<std::vector<FollowedRows>> followed(passes.size());
     {
-        const Unlocked unlocked;
-        on_all_processors(0, passes.size(), [&](std::size_t i) {
+        const ReleasedGil unlocked;
+        parallel_for(0, passes.size(), [&](std::size_t i) {
             for (const LagLaw<double>& law : laws) followed[i].push_back(follow_lag(passes[i], marks[i], law));
         });
     }
     py::list out;
     for (const auto& of_pass : followed)
-        out.append(py::make_tuple(next_to_each_other(of_pass, &FollowedRows::contact_mm),
-                                  next_to_each_other(of_pass, &FollowedRows::heading)));
+        out.append(py::make_tuple(stack_tables(of_pass, &FollowedRows::contact_mm),
+                                  stack_tables(of_pass, &FollowedRows::heading)));
     return out;
 }
 
@@ -141,7 +141,7 @@ void bind_lag(py::module_& m) {
             state.heading = (tcp0 - contact).normalized();
             state.taut = state.heading_known = true;
             const Move<double> move(tcp0, tcp1, depth0, depth1);
-            along_pieces(law, depth0, depth1, [&](const auto& piece, double from, double to) {
+            visit_pieces(law, depth0, depth1, [&](const auto& piece, double from, double to) {
                 detail::drag(piece, move, from, to, state);
             });
             return state.contact;

@@ -39,7 +39,7 @@ inline constexpr auto members<brushsvg::fit::MarkOptions> =
                &brushsvg::fit::MarkOptions::axes, &brushsvg::fit::MarkOptions::tilt_mm_per_mm,
                &brushsvg::fit::MarkOptions::backlash_mm, &brushsvg::fit::MarkOptions::field_mm,
                &brushsvg::fit::MarkOptions::spacing_mm, &brushsvg::fit::MarkOptions::noise_mm,
-               &brushsvg::fit::MarkOptions::noise_length_mm, &brushsvg::fit::MarkOptions::most_iterations);
+               &brushsvg::fit::MarkOptions::noise_length_mm, &brushsvg::fit::MarkOptions::max_iterations);
 
 template <>
 inline constexpr auto members<brushsvg::fit::MarkResidual> =
@@ -53,12 +53,12 @@ inline constexpr auto members<brushsvg::fit::MarkFit> =
                &brushsvg::fit::MarkFit::turn_rad, &brushsvg::fit::MarkFit::shift_mm, &brushsvg::fit::MarkFit::centre_mm,
                &brushsvg::fit::MarkFit::machine, &brushsvg::fit::MarkFit::marks, &brushsvg::fit::MarkFit::noise_mm,
                &brushsvg::fit::MarkFit::samples, &brushsvg::fit::MarkFit::effective_samples,
-               &brushsvg::fit::MarkFit::left_aside, &brushsvg::fit::MarkFit::slim, &brushsvg::fit::MarkFit::remarks,
+               &brushsvg::fit::MarkFit::outlier_share, &brushsvg::fit::MarkFit::slim, &brushsvg::fit::MarkFit::remarks,
                &brushsvg::fit::MarkFit::iterations, &brushsvg::fit::MarkFit::converged);
 
 void bind_mark_fit(py::module_& m) {
     using namespace brushsvg::fit;
-    const auto unlocked = py::call_guard<Unlocked>();
+    const auto unlocked = py::call_guard<ReleasedGil>();
     py::class_<PaintedMark> painted_mark(m, "PaintedMark", R"(The mark that one pass painted, with the path of the TCP.
 
 stroke: id of the stroke.
@@ -77,10 +77,10 @@ arcs: arcs of the pass, which the TCP follows on their circles.)");
         .def_property_readonly("outline_mm", frozen_copy(&PaintedMark::outline_mm))
         .def_property_readonly("arcs", frozen_copy(&PaintedMark::arcs))
         .def("__repr__", [](const PaintedMark& v) {
-            return "<PaintedMark " + quoted(v.stroke) + ": " + counted(v.outline_mm.size(), "ring") +
-                   ", painted along " + counted(std::size_t(v.poses_mm.rows()), "pose") + ">";
+            return "<PaintedMark " + quoted(v.stroke) + ": " + format_count(v.outline_mm.size(), "ring") +
+                   ", painted along " + format_count(std::size_t(v.poses_mm.rows()), "pose") + ">";
         });
-    as_fixed_value(painted_mark);
+    add_fixed_value_semantics(painted_mark);
     py::class_<Prior> prior(m, "Prior",
                             R"(Prior knowledge of a number, as a normal distribution.
 
@@ -92,8 +92,8 @@ sigma: the standard deviation. 0: the number is known; inf: nothing is known.)")
         .def_readwrite("value", &Prior::value)
         .def_readwrite("sigma", &Prior::sigma)
         .def("__repr__",
-             [](const Prior& v) { return "Prior(" + in_digits(v.value) + ", " + in_digits(v.sigma) + ")"; });
-    as_value(prior);
+             [](const Prior& v) { return "Prior(" + format_number(v.value) + ", " + format_number(v.sigma) + ")"; });
+    add_value_semantics(prior);
     py::class_<MarkLaws> mark_laws(m, "MarkLaws",
                                    R"(Laws as coefficients (ascending powers of depth), and a footprint's shape.
 
@@ -118,10 +118,10 @@ The footprint has the shape of a drop.)");
         .def_property_readonly("widest_by_depth", frozen_copy(&MarkLaws::widest_by_depth))
         .def_property_readonly("front_by_depth", frozen_copy(&MarkLaws::front_by_depth))
         .def("__repr__", [](const MarkLaws& v) {
-            return "<MarkLaws: lag of " + counted(v.lag.size(), "term") + ", tip gap of " +
+            return "<MarkLaws: lag of " + format_count(v.lag.size(), "term") + ", tip gap of " +
                    std::to_string(v.tip_gap.size()) + ", half width of " + std::to_string(v.half_width.size()) + ">";
         });
-    as_fixed_value(mark_laws);
+    add_fixed_value_semantics(mark_laws);
     py::class_<LawPrior> law_prior(m, "LawPrior", R"(Prior knowledge of the laws.
 
 laws: the mean.
@@ -132,8 +132,8 @@ rows: (k, n), over the coefficients of lag, tip_gap and half_width (their consta
                  return LawPrior{std::move(laws), std::move(rows)};
              }),
              py::arg("laws"), py::arg("rows"))
-        .def("__repr__", [](const LawPrior& v) { return "<LawPrior: " + counted(v.rows.size(), "row") + ">"; });
-    as_fixed_value(law_prior);
+        .def("__repr__", [](const LawPrior& v) { return "<LawPrior: " + format_count(v.rows.size(), "row") + ">"; });
+    add_fixed_value_semantics(law_prior);
     py::class_<Machine> machine(m, "Machine", R"(The systematic errors of a machine's motion.
 
 The tool is commanded to (x, y), measured from MarkFit.centre_mm, and to the depth d. The machine moves the tool to
@@ -156,11 +156,11 @@ field_middle_mm, field_reach_mm: u and v are the commanded distances from field_
         .def_property_readonly("field_middle_mm", frozen_copy(&Machine::field_middle_mm))
         .def_property_readonly("field_reach_mm", frozen_copy(&Machine::field_reach_mm))
         .def("__repr__", [](const Machine& v) {
-            return "<Machine: scale " + in_digits(v.scale[0]) + " and " + in_digits(v.scale[1]) + ", skew " +
-                   in_digits(v.skew) + ", backlash " + in_digits(v.backlash_mm[0]) + " and " +
-                   in_digits(v.backlash_mm[1]) + " mm>";
+            return "<Machine: scale " + format_number(v.scale[0]) + " and " + format_number(v.scale[1]) + ", skew " +
+                   format_number(v.skew) + ", backlash " + format_number(v.backlash_mm[0]) + " and " +
+                   format_number(v.backlash_mm[1]) + " mm>";
         });
-    as_fixed_value(machine);
+    add_fixed_value_semantics(machine);
     py::class_<MarkOptions> mark_options(m, "MarkOptions", R"(Options of fit_marks; lengths in mm.
 
 deepest_mm: the laws hold on [0, deepest_mm].
@@ -198,24 +198,24 @@ noise_mm: noise of the edges. If given, nothing is fitted, and the result is the
         .def_readwrite("spacing_mm", &MarkOptions::spacing_mm)
         .def_readwrite("noise_mm", &MarkOptions::noise_mm)
         .def_readwrite("noise_length_mm", &MarkOptions::noise_length_mm)
-        .def_readwrite("most_iterations", &MarkOptions::most_iterations)
+        .def_readwrite("max_iterations", &MarkOptions::max_iterations)
         .def("__repr__", [](const MarkOptions& v) {
-            return "<MarkOptions: to depth " + in_digits(v.deepest_mm) + " mm, a point every " +
-                   in_digits(v.spacing_mm) + " mm>";
+            return "<MarkOptions: to depth " + format_number(v.deepest_mm) + " mm, a point every " +
+                   format_number(v.spacing_mm) + " mm>";
         });
-    as_value(mark_options);
-    py::class_<MarkResidual> mark_miss(m, "MarkResidual", "Deviation of one painted mark from its prediction.");
-    mark_miss.def_readonly("point_mm", &MarkResidual::point_mm)
+    add_value_semantics(mark_options);
+    py::class_<MarkResidual> mark_residual(m, "MarkResidual", "Deviation of one painted mark from its prediction.");
+    mark_residual.def_readonly("point_mm", &MarkResidual::point_mm)
         .def_property_readonly("distance_mm", frozen_copy(&MarkResidual::distance_mm))
         .def_property_readonly("displacement_mm", frozen_copy(&MarkResidual::displacement_mm))
         .def_readonly("way_mm", &MarkResidual::way_mm)
         .def_readonly("rms_mm", &MarkResidual::rms_mm)
         .def_readonly("outlier", &MarkResidual::outlier)
         .def("__repr__", [](const MarkResidual& v) {
-            return "<MarkResidual: rms " + in_digits(v.rms_mm) + " mm over " + counted(v.distance_mm.size(), "point") +
-                   ">";
+            return "<MarkResidual: rms " + format_number(v.rms_mm) + " mm over " +
+                   format_count(v.distance_mm.size(), "point") + ">";
         });
-    as_fixed_value(mark_miss);
+    add_fixed_value_semantics(mark_residual);
     py::class_<MarkFit> mark_fit(m, "MarkFit", R"(A brush fitted to marks.
 
 covariance: of these numbers, in this order:
@@ -236,16 +236,16 @@ covariance: of these numbers, in this order:
         .def_readonly("noise_mm", &MarkFit::noise_mm)
         .def_readonly("samples", &MarkFit::samples)
         .def_readonly("effective_samples", &MarkFit::effective_samples)
-        .def_readonly("left_aside", &MarkFit::left_aside)
+        .def_readonly("outlier_share", &MarkFit::outlier_share)
         .def_readonly("slim", &MarkFit::slim)
         .def_property_readonly("remarks", frozen_copy(&MarkFit::remarks))
         .def_readonly("iterations", &MarkFit::iterations)
         .def_readonly("converged", &MarkFit::converged)
         .def("__repr__", [](const MarkFit& v) {
-            return "<MarkFit to " + counted(v.marks.size(), "mark") + ": edges within " + in_digits(v.noise_mm) +
-                   " mm (1 sigma)" + (v.converged ? ">" : ", not converged>");
+            return "<MarkFit to " + format_count(v.marks.size(), "mark") + ": edges within " +
+                   format_number(v.noise_mm) + " mm (1 sigma)" + (v.converged ? ">" : ", not converged>");
         });
-    as_fixed_value(mark_fit);
+    add_fixed_value_semantics(mark_fit);
     m.def("fit_marks", &fit_marks, py::arg("marks"), py::arg("start") = std::optional<MarkLaws>(),
           py::arg_v("options", MarkOptions(), "MarkOptions()"), unlocked,
           R"(Fit laws to painted marks and to the TCP paths that painted them.

@@ -10,7 +10,7 @@ template <class T>
 auto column(std::vector<T> brushsvg::PassMarks::* member) {
     return [member](const brushsvg::PassMarks& marks) {
         const auto& values = marks.*member;
-        return as_typed<py::array_t<T>>(frozen(py::array_t<T>(py::ssize_t(values.size()), values.data())));
+        return as_typed<py::array_t<T>>(freeze(py::array_t<T>(py::ssize_t(values.size()), values.data())));
     };
 }
 
@@ -39,7 +39,7 @@ moves, because the bristles straighten. In the rows before the first pose, the b
                                [](const PassMarks& p) {
                                    py::array_t<bool> out(py::ssize_t(p.taut.size()));
                                    std::copy(p.taut.begin(), p.taut.end(), out.mutable_data());
-                                   return as_typed<py::array_t<bool>>(frozen(out));
+                                   return as_typed<py::array_t<bool>>(freeze(out));
                                })
         .def_property_readonly("pull", column(&PassMarks::pull))
         .def_property_readonly("lean_mm_per_mm", [](const PassMarks& p) -> const Ring& { return p.lean_mm_per_mm; })
@@ -51,7 +51,7 @@ moves, because the bristles straighten. In the rows before the first pose, the b
                 const std::vector<std::size_t> rows = pose_rows(p);
                 py::array_t<py::ssize_t> out(py::ssize_t(rows.size()));
                 std::copy(rows.begin(), rows.end(), out.mutable_data());
-                return as_typed<py::array_t<py::ssize_t>>(frozen(out));
+                return as_typed<py::array_t<py::ssize_t>>(freeze(out));
             },
             "Index of the row of each pose.")
         .def_property("outline_mm", frozen_copy(&PassMarks::outline_mm),
@@ -59,10 +59,10 @@ moves, because the bristles straighten. In the rows before the first pose, the b
         .def("__repr__", [](const PassMarks& p) {
             double deepest = 0.0;
             for (const double depth : p.depth_mm) deepest = std::max(deepest, depth);
-            return "<PassMarks " + quoted(p.stroke) + ": " + counted(p.pose.size(), "row") + ", at most " +
-                   in_digits(deepest) + " mm deep, " + counted(p.outline_mm.size(), "ring") + ">";
+            return "<PassMarks " + quoted(p.stroke) + ": " + format_count(p.pose.size(), "row") + ", at most " +
+                   format_number(deepest) + " mm deep, " + format_count(p.outline_mm.size(), "ring") + ">";
         });
-    as_value(one);
+    add_value_semantics(one);
     py::class_<Marks> marks(m, "Marks",
                             R"(The marks that are painted: marks.json as a value.
 
@@ -76,10 +76,10 @@ outline_mm: a tuple of unclosed rings [(n, 2) mm] around all paint together, fil
         .def("__repr__", [](const Marks& m) {
             double area_mm2 = 0.0;
             for (const Ring& ring : m.outline_mm) area_mm2 += signed_area(ring);
-            return "<Marks of " + counted(m.passes.size(), "pass") + ": " +
-                   (m.outline_mm.empty()
-                        ? "no outline>"
-                        : counted(m.outline_mm.size(), "ring") + ", " + in_digits(area_mm2) + " mm^2 painted>");
+            return "<Marks of " + format_count(m.passes.size(), "pass") + ": " +
+                   (m.outline_mm.empty() ? "no outline>"
+                                         : format_count(m.outline_mm.size(), "ring") + ", " + format_number(area_mm2) +
+                                               " mm^2 painted>");
         });
-    as_value(marks);
+    add_value_semantics(marks);
 }

@@ -49,14 +49,14 @@ A Paint cannot be changed; make a new one instead.)");
              R"(Return the share of the width that is left after a path [mm].
 
 The share is of a freshly dipped brush's width.)")
-        .def("way_to_share_mm", &Paint::way_to_share_mm, py::arg("share"),
+        .def("path_to_share_mm", &Paint::path_to_share_mm, py::arg("share"),
              R"(Return the path [mm] after which the width has fallen to a share.
 
 The share is of a freshly dipped brush's width. The path is infinite if the width never falls so far.)")
         .def("__repr__", [](const Paint& p) {
-            std::string out = "<Paint: width exp(-" + in_digits(p.narrows_per_m) + " way / 1000 mm)";
-            if (p.lasts_mm) out += ", hairs dry after " + in_digits(*p.lasts_mm) + " mm";
+            std::string out = "<Paint: width exp(-" + format_number(p.narrows_per_m) + " way / 1000 mm)";
+            if (p.lasts_mm) out += ", hairs dry after " + format_number(*p.lasts_mm) + " mm";
             return out + (p.assumed ? ", assumed>" : ">");
         });
-    as_fixed_value(type);
+    add_fixed_value_semantics(type);
 }

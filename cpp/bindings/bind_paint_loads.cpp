@@ -4,10 +4,10 @@
 void bind_paint_loads(py::module_& m) {
     using namespace brushsvg;
     m.def(
-        "interrupted",
+        "split_into_loads",
         [](const Pass& pass, const Brush& brush, double first_mm, double every_mm, double backtrack_mm) {
-            const Unlocked release;
-            return interrupted(pass, brush, {first_mm, every_mm, backtrack_mm});
+            const ReleasedGil release;
+            return split_into_loads(pass, brush, {first_mm, every_mm, backtrack_mm});
         },
         py::arg("a_pass"), py::arg("brush"), py::arg("first_mm"), py::arg("every_mm"), py::arg("backtrack_mm") = 5.0,
         R"(Split a pass into parts, between which the brush is lifted to fetch paint.

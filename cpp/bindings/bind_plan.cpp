@@ -37,7 +37,7 @@ Neighbouring poses are less than 180 degrees apart on the circle.)");
                    std::to_string(a.centre_mm.x()) + ", " + std::to_string(a.centre_mm.y()) + "), " +
                    std::to_string(a.direction) + ")";
         });
-    as_fixed_value(arc);
+    add_fixed_value_semantics(arc);
     py::class_<Pass> one(m, "Pass", R"(The motion for one stroke.
 
 stroke: name of the stroke that the pass paints, made from origin. Set it to a name or to a StrokeId.
@@ -85,12 +85,12 @@ tool_axes: (n, 3): for each pose the unit vector from the tip up along the brush
                 if (i > 0) length += move_length_mm(p, i - 1);
                 deepest = std::max(deepest, -p.poses_mm(i, 2));
             }
-            return "<Pass " + quoted(p.stroke.name()) + ": " + counted(std::size_t(n), "pose") +
-                   (p.arcs.empty() ? "" : ", " + counted(p.arcs.size(), "arc")) + (is_tilted(p) ? ", tilted" : "") +
-                   ", " + in_digits(length) + " mm long, at most " + in_digits(deepest) + " mm deep, " +
-                   in_digits(p.speed_mm_s) + " mm/s>";
+            return "<Pass " + quoted(p.stroke.name()) + ": " + format_count(std::size_t(n), "pose") +
+                   (p.arcs.empty() ? "" : ", " + format_count(p.arcs.size(), "arc")) +
+                   (is_tilted(p) ? ", tilted" : "") + ", " + format_number(length) + " mm long, at most " +
+                   format_number(deepest) + " mm deep, " + format_number(p.speed_mm_s) + " mm/s>";
         });
-    as_value(one);
+    add_value_semantics(one);
     py::class_<Plan> plan(m, "Plan",
                           R"(The TCP poses of all strokes, in the paper frame: plan.json as a value.
 
@@ -113,11 +113,11 @@ extra: unknown keys of the file, as JSON.)");
         .def("__repr__", [](const Plan& p) {
             std::size_t poses = 0;
             for (const Pass& each : p.passes) poses += std::size_t(each.poses_mm.rows());
-            return "<Plan for brush " + quoted(p.brush) + ": " + counted(p.passes.size(), "pass") + ", " +
-                   counted(poses, "pose") + ", sheet " + in_digits(p.sheet_mm[0]) + " x " + in_digits(p.sheet_mm[1]) +
-                   " mm>";
+            return "<Plan for brush " + quoted(p.brush) + ": " + format_count(p.passes.size(), "pass") + ", " +
+                   format_count(poses, "pose") + ", sheet " + format_number(p.sheet_mm[0]) + " x " +
+                   format_number(p.sheet_mm[1]) + " mm>";
         });
-    as_value(plan);
+    add_value_semantics(plan);
     m.def(
         "refuse_tilted",
         [](const std::vector<Pass>& passes, const std::string& upright) {

@@ -80,16 +80,16 @@ For a law of a Brush, this is depth_range_mm of the Brush.)")
                 const double c = p.coefficients[i];
                 if (c == 0.0) continue;
                 out += out.empty() ? (c < 0.0 ? "-" : "") : c < 0.0 ? " - " : " + ";
-                out += in_digits(std::abs(c)) + (i == 0 ? "" : i == 1 ? " d" : " d^" + std::to_string(i));
+                out += format_number(std::abs(c)) + (i == 0 ? "" : i == 1 ? " d" : " d^" + std::to_string(i));
             }
             if (out.empty()) out = "0";
             if (std::isfinite(p.floor))
-                out = "max(" + in_digits(p.floor) + " + " + in_digits(p.floor_slope) + " d, " + out + ")";
+                out = "max(" + format_number(p.floor) + " + " + format_number(p.floor_slope) + " d, " + out + ")";
             out = "<Profile " + out + " mm at depth d mm";
             if (p.calibrated_mm)
-                out += ", measured at " + in_digits((*p.calibrated_mm)[0]) + " to " + in_digits((*p.calibrated_mm)[1]) +
-                       " mm";
+                out += ", measured at " + format_number((*p.calibrated_mm)[0]) + " to " +
+                       format_number((*p.calibrated_mm)[1]) + " mm";
             return out + (p.assumed ? ", assumed>" : ">");
         });
-    as_fixed_value(type);
+    add_fixed_value_semantics(type);
 }

@@ -5,7 +5,7 @@
 
 void bind_region(py::module_& m) {
     using namespace brushsvg;
-    const auto unlocked = py::call_guard<Unlocked>();
+    const auto unlocked = py::call_guard<ReleasedGil>();
     m.def("unite", &unite, py::arg("rings"), unlocked,
           R"(Return the union of shapes.
 
@@ -44,11 +44,11 @@ Raises Error if there are not as many ways as places.)");
           R"(Return the area of rings [mm^2].
 
 Clockwise rings are holes, and their area is subtracted. The area is negative if the holes outweigh the rest.)");
-    m.def("excess_turning", &excess_turning, py::arg("mark"), py::arg("wanted"),
+    m.def("excess_turning", &excess_turning, py::arg("mark"), py::arg("target"),
           R"(Return how much more a mark's outlines turn than the target's, in full turns.
 
 Each outline is replaced by a polygon within 0.1 mm.)");
-    m.def("thorns", &thorns, py::arg("mark"), py::arg("wanted"),
+    m.def("thorns", &thorns, py::arg("mark"), py::arg("target"),
           R"(Count the corners of a mark that stick out of the target.
 
 Counted are corners of more than 20 degrees that stick out by more than 0.3 mm. Each outline is replaced by a polygon

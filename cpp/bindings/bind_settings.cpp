@@ -4,13 +4,13 @@
 namespace {
 
 /// Return the settings that are set, under their names in Python.
-py::dict said(const brushsvg::Settings& settings) {
+py::dict set_fields(const brushsvg::Settings& settings) {
     py::dict out;
-    const auto say = [&out](const char* name, const auto& value) {
+    const auto add_field = [&out](const char* name, const auto& value) {
         if (value) out[name] = *value;
     };
-    each_setting(settings, say);
-    say("extra", settings.extra == "{}" ? std::nullopt : std::optional(settings.extra));
+    each_setting(settings, add_field);
+    add_field("extra", settings.extra == "{}" ? std::nullopt : std::optional(settings.extra));
     return out;
 }
 
@@ -52,15 +52,15 @@ A Settings cannot be changed; use replaced() to make a new one.)");
         .def(
             "replaced",
             [](const Settings& self, const py::kwargs& fields) {
-                py::dict all = said(self);
+                py::dict all = set_fields(self);
                 all.attr("update")(fields);
                 return py::type::of<Settings>()(**all).cast<Settings>();
             },
             "Return a copy in which the given fields have these values.")
         .def("__repr__", [](const Settings& self) {
             py::list parts;
-            for (const auto& [name, value] : said(self)) parts.append(py::str("{}={!r}").format(name, value));
+            for (const auto& [name, value] : set_fields(self)) parts.append(py::str("{}={!r}").format(name, value));
             return py::str("Settings({})").format(py::str(", ").attr("join")(parts));
         });
-    as_fixed_value(type);
+    add_fixed_value_semantics(type);
 }

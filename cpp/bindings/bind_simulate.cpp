@@ -10,7 +10,7 @@ void bind_simulate(py::module_& m) {
            bool may_rise) {
             Marks marks;
             marks.passes.resize(plan.passes.size());
-            in_parallel_chunks(plan.passes.size(), 64, progress, [&](std::size_t i) {
+            run_in_parallel_chunks(plan.passes.size(), 64, progress, [&](std::size_t i) {
                 marks.passes[i] = simulate(plan.passes[i], brush, tolerance_mm, for_outlines, may_rise);
             });
             return marks;
@@ -32,13 +32,13 @@ may_rise: True if the passes are motions of a machine that may leave the paper (
 
 Raises Error for z > 0 without may_rise, and for a pass entirely above the paper. Also raises Error for a pose deeper
 than the brush may be pressed.)");
-    m.def("narrow", &narrow, py::arg("marks"), py::arg("paint"), py::arg("dips_mm"), py::call_guard<Unlocked>(),
+    m.def("narrow", &narrow, py::arg("marks"), py::arg("paint"), py::arg("dips_mm"), py::call_guard<ReleasedGil>(),
           R"(Fill in width_share of each pass, as the paint runs out along the passes.
 
 Call this function before trace_outlines and coverage.
 
 dips_mm: for each pass, the distances [mm] along the TCP's path at which paint was just fetched, ascending. [0]: just
     before the pass. []: the pass continues with the paint of the previous pass.)");
-    m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"), py::call_guard<Unlocked>(),
+    m.def("widest_points", &widest_points, py::arg("pass_marks"), py::arg("brush"), py::call_guard<ReleasedGil>(),
           "Return the centre of the widest section at each row (n, 2) [mm].");
 }

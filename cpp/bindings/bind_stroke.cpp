@@ -22,7 +22,7 @@ name: element/part#repeat~lane+load, without the parts that have their default. 
         .def_readonly("load", &StrokeId::load)
         .def_property_readonly("name", &StrokeId::name)
         .def("__repr__", [](const StrokeId& id) { return "<StrokeId " + quoted(id.name()) + ">"; });
-    as_fixed_value(id);
+    add_fixed_value_semantics(id);
     py::implicitly_convertible<std::string, StrokeId>();
     using Knots = std::vector<std::pair<double, double>>;
     const auto knots_of = [](const Stroke& s) {
@@ -41,10 +41,10 @@ id: name of the stroke, made from origin. Set it to a name or to a StrokeId.
 origin: a StrokeId.
 middle_mm: cubics (n, 8) [mm].
 half_width: half widths along the middle line [(fraction of arc length, mm)].
-wanted_mm: rings of the target mark as drawn, or empty.
+target_mm: rings of the target mark as drawn, or empty.
 start_covered, end_covered: whether this end meets other strokes of the shape, whose paint covers the end.
 
-Set middle_mm, half_width, wanted_mm and settings as a whole.)");
+Set middle_mm, half_width, target_mm and settings as a whole.)");
     type.def(py::init([set_knots](StrokeId id, const Cubics& middle_mm, bool closed, const Knots& half_width,
                                   std::string layer, std::string colour, Settings settings) {
                  Stroke s;
@@ -70,11 +70,11 @@ Set middle_mm, half_width, wanted_mm and settings as a whole.)");
             "half_width",
             [knots_of](const Stroke& s) {
                 using Knot = py::typing::Tuple<py::float_, py::float_>;
-                return as_typed<py::typing::Tuple<Knot, py::ellipsis>>(frozen(py::cast(knots_of(s))));
+                return as_typed<py::typing::Tuple<Knot, py::ellipsis>>(freeze(py::cast(knots_of(s))));
             },
             set_knots)
-        .def_property("wanted_mm", frozen_copy(&Stroke::wanted_mm),
-                      [](Stroke& s, Rings rings) { s.wanted_mm = std::move(rings); })
+        .def_property("target_mm", frozen_copy(&Stroke::target_mm),
+                      [](Stroke& s, Rings rings) { s.target_mm = std::move(rings); })
         .def_readwrite("layer", &Stroke::layer)
         .def_readwrite("colour", &Stroke::colour)
         .def_property(
@@ -102,7 +102,7 @@ Set middle_mm, half_width, wanted_mm and settings as a whole.)");
                 WideLine line(n, 3);
                 for (py::ssize_t i = 0; i < n; ++i)
                     line.row(i) << points_mm.row(i), 0.5 * given.data()[given.ndim() == 0 ? 0 : i];
-                const Unlocked unlocked;
+                const ReleasedGil unlocked;
                 return stroke_along(name, line, tolerance_mm);
             },
             py::arg("points_mm"), py::arg("width_mm"), py::arg("name") = "stroke1", py::kw_only(),
@@ -135,14 +135,15 @@ Error for a number that is not finite or beyond 1e6 mm.)")
                 const auto [least, most] = std::minmax_element(
                     s.half_width.begin(), s.half_width.end(),
                     [](const WidthKnot& a, const WidthKnot& b) { return a.half_width_mm < b.half_width_mm; });
-                width = in_digits(2.0 * least->half_width_mm);
-                if (least->half_width_mm != most->half_width_mm) width += " to " + in_digits(2.0 * most->half_width_mm);
+                width = format_number(2.0 * least->half_width_mm);
+                if (least->half_width_mm != most->half_width_mm)
+                    width += " to " + format_number(2.0 * most->half_width_mm);
                 width += " mm wide";
             }
-            return "<Stroke " + quoted(s.id.name()) + ": " + counted(std::size_t(s.middle_mm.rows()), "cubic") + ", " +
-                   in_digits(length) + " mm long, " + width + (s.closed ? ", closed>" : ">");
+            return "<Stroke " + quoted(s.id.name()) + ": " + format_count(std::size_t(s.middle_mm.rows()), "cubic") +
+                   ", " + format_number(length) + " mm long, " + width + (s.closed ? ", closed>" : ">");
         });
-    as_value(type);
+    add_value_semantics(type);
     m.def(
         "flatten",
         [](const Stroke& stroke, double tolerance_mm) {
@@ -152,14 +153,14 @@ Error for a number that is not finite or beyond 1e6 mm.)")
         py::arg("stroke"), py::arg("tolerance_mm") = 0.005,
         "Return the middle line as points (n, 4): x, y, arc length, half width [mm].");
     m.def(
-        "wanted_outline",
+        "target_outline",
         [](const Stroke& stroke, double tolerance_mm) {
             check(stroke);
-            return wanted_outline(stroke, tolerance_mm);
+            return target_outline(stroke, tolerance_mm);
         },
-        py::arg("stroke"), py::arg("tolerance_mm") = 0.005, py::call_guard<Unlocked>(),
+        py::arg("stroke"), py::arg("tolerance_mm") = 0.005, py::call_guard<ReleasedGil>(),
         R"(Return the rings of the target mark.
 
-The target mark is wanted_mm of the stroke, if given. Otherwise the target mark is the path with its width, round caps
+The target mark is target_mm of the stroke, if given. Otherwise the target mark is the path with its width, round caps
 and round joins.)");
 }

@@ -13,10 +13,10 @@ area_mm2: area of the missing or excess paint.)");
         .def_readonly("is_missing", &WorstPlace::is_missing)
         .def_readonly("area_mm2", &WorstPlace::area_mm2)
         .def("__repr__", [](const WorstPlace& w) {
-            return "<WorstPlace at (" + in_digits(w.at_mm[0]) + ", " + in_digits(w.at_mm[1]) +
-                   ") mm: " + in_digits(w.area_mm2) + " mm^2 too " + (w.is_missing ? "little>" : "much>");
+            return "<WorstPlace at (" + format_number(w.at_mm[0]) + ", " + format_number(w.at_mm[1]) +
+                   ") mm: " + format_number(w.area_mm2) + " mm^2 too " + (w.is_missing ? "little>" : "much>");
         });
-    as_fixed_value(place);
+    add_fixed_value_semantics(place);
     py::class_<StrokeScore> type(m, "StrokeScore",
                                  R"(A score of how well a pass paints its stroke.
 
@@ -29,21 +29,22 @@ worst: a WorstPlace.)");
         .def_readonly("width_error_mm", &StrokeScore::width_error_mm)
         .def_readonly("worst", &StrokeScore::worst)
         .def("__repr__", [](const StrokeScore& s) {
-            const std::string width = s.width_error_mm ? in_digits(*s.width_error_mm) + " mm off in width" : "no width";
-            return "<StrokeScore: overlap " + in_digits(s.overlap) + ", " + width + ">";
+            const std::string width =
+                s.width_error_mm ? format_number(*s.width_error_mm) + " mm off in width" : "no width";
+            return "<StrokeScore: overlap " + format_number(s.overlap) + ", " + width + ">";
         });
-    as_fixed_value(type);
+    add_fixed_value_semantics(type);
     m.def(
         "score_strokes",
-        [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush) {
-            if (painted.size() != wanted.size())
+        [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& target, const Brush& brush) {
+            if (painted.size() != target.size())
                 throw Error("sizes-differ", "a stroke is needed for each pass of marks");
             std::vector<StrokeScore> found(painted.size());
-            in_parallel_chunks(found.size(), 64, py::none(),
-                               [&](std::size_t i) { found[i] = stroke_score(painted[i], wanted[i], brush); });
+            run_in_parallel_chunks(found.size(), 64, py::none(),
+                                   [&](std::size_t i) { found[i] = stroke_score(painted[i], target[i], brush); });
             return found;
         },
-        py::arg("painted"), py::arg("wanted"), py::arg("brush"),
+        py::arg("painted"), py::arg("target"), py::arg("brush"),
         R"(Score how well each pass of marks paints its stroke.
 
 Returns a StrokeScore for each pass, computed on all processors.)");

@@ -22,8 +22,8 @@ void bind_stroke_search(py::module_& m) {
     m.def(
         "search_strokes",
         [](const std::vector<Shape>& shapes, const Brush& brush, const std::string& detail, bool are_free) {
-            const ObjectiveWeights weights = weights_for(detail_named(detail));
-            const Unlocked unlocked;
+            const ObjectiveWeights weights = weights_for(parse_detail(detail));
+            const ReleasedGil unlocked;
             std::vector<Searched> out;
             for (SearchedShape& found : search_strokes(painted(shapes), brush, weights, are_free)) {
                 std::vector<Added> added;
@@ -48,21 +48,21 @@ detail: "draft", "normal" or "fine": how small an area gets its own stroke.
 are_free: True if strokes may also be moved, cut or left out. False: strokes are only added.)");
     m.def(
         "uncovered_areas",
-        [](const std::vector<Shape>& shapes, const Brush& brush, double least_share) {
-            const Unlocked unlocked;
+        [](const std::vector<Shape>& shapes, const Brush& brush, double min_share) {
+            const ReleasedGil unlocked;
             std::vector<std::vector<Uncovered>> out;
-            for (const auto& of_shape : uncovered_areas(painted(shapes), brush, least_share)) {
+            for (const auto& of_shape : uncovered_areas(painted(shapes), brush, min_share)) {
                 out.emplace_back();
                 for (const UncoveredArea& each : of_shape)
                     out.back().emplace_back(each.outline_mm, Point{each.place_mm.x(), each.place_mm.y()}, each.mm2);
             }
             return out;
         },
-        py::arg("shapes"), py::arg("brush"), py::arg("least_share"),
+        py::arg("shapes"), py::arg("brush"), py::arg("min_share"),
         R"(Find the areas of each shape that its passes leave without paint.
 
 Returns for each shape a list of (rings [mm], a place (x, y) in the area [mm], area [mm2]), the largest area first.
 
 shapes: as for search_strokes.
-least_share: the least area, as a share of the shape's area.)");
+min_share: the least area, as a share of the shape's area.)");
 }

@@ -35,7 +35,7 @@ void bind_stroke_score(py::module_& m);
 void bind_compensate(py::module_& m);
 void bind_stroke_search(py::module_& m);
 void bind_paint_loads(py::module_& m);
-void bind_thin_out(py::module_& m);
+void bind_simplify_pass(py::module_& m);
 void bind_io(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mark_fit(py::module_& m);
@@ -44,10 +44,10 @@ void bind_mark_fit(py::module_& m);
 ///
 /// The main thread checks for signals at checkpoints. Any thread can be stopped by PyThreadState_SetAsyncExc. Its
 /// exception is raised only when a line of Python runs, so a line is evaluated every now and then.
-class Unlocked {
+class ReleasedGil {
  public:
-    Unlocked()
-        : listens_([] {
+    ReleasedGil()
+        : cancel_([] {
               const py::gil_scoped_acquire locked;
               if (PyErr_CheckSignals() != 0) throw py::error_already_set();
               py::eval("None");
@@ -56,17 +56,17 @@ class Unlocked {
 
  private:
     py::gil_scoped_release unlocked_;
-    brushsvg::CancelWhen listens_;
+    brushsvg::CancelWhen cancel_;
 };
 
 /// Freeze a copy: make lists tuples and arrays read-only.
 ///
 /// Otherwise Python code could change the copy by mistake, and the change would be lost without a message.
-inline py::object frozen(const py::object& copy) {
+inline py::object freeze(const py::object& copy) {
     if (py::isinstance<py::list>(copy) || py::isinstance<py::tuple>(copy)) {
         py::tuple out(py::len(copy));
         std::size_t k = 0;
-        for (const py::handle one : copy) out[k++] = frozen(py::reinterpret_borrow<py::object>(one));
+        for (const py::handle one : copy) out[k++] = freeze(py::reinterpret_borrow<py::object>(one));
         return std::move(out);
     }
     if (py::isinstance<py::array>(copy)) copy.attr("setflags")(py::arg("write") = false);
@@ -118,7 +118,7 @@ template <class Owner, class Member>
 auto frozen_copy(Member Owner::* member) {
     return [member](const Owner& owner) {
         return as_typed<typename FrozenType<Member>::type>(
-            frozen(py::cast(owner.*member, py::return_value_policy::copy)));
+            freeze(py::cast(owner.*member, py::return_value_policy::copy)));
     };
 }
 
@@ -150,7 +150,7 @@ auto replace(Value Owner::* member) {
 /// Make a Python notice from a warning.
 ///
 /// `about`: its subject. Only notices with the same subject can be alike.
-inline py::object notice(const brushsvg::Warning& warning, const std::string& about = "") {
+inline py::object make_notice(const brushsvg::Warning& warning, const std::string& about = "") {
     return py::module_::import("brushsvg.errors")
         .attr("Notice")(warning.where, warning.sentence, py::arg("code") = warning.code, py::arg("about") = about);
 }
@@ -159,10 +159,10 @@ inline py::object notice(const brushsvg::Warning& warning, const std::string& ab
 ///
 /// `progress(done, n)`: called after each chunk, if given.
 template <class Work>
-void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
+void run_in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
     for (std::size_t begin = 0; begin < n; begin += chunk) {
         {
-            const Unlocked unlocked;
+            const ReleasedGil unlocked;
             for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) work(i);
         }
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -172,10 +172,10 @@ void in_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Wor
 
 /// Run `work(i)` for i in [0, n), in chunks, each chunk on all processors.
 template <class Work>
-void in_parallel_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
+void run_in_parallel_chunks(std::size_t n, std::size_t chunk, const py::object& progress, Work&& work) {
     const py::object in_strokes = progress.is_none() ? progress : py::cpp_function([&](std::size_t now, std::size_t) {
         progress(std::min(n, now * chunk), n);
     });
-    in_chunks((n + chunk - 1) / chunk, 1, in_strokes,
-              [&](std::size_t k) { brushsvg::on_all_processors(k * chunk, std::min(n, (k + 1) * chunk), work); });
+    run_in_chunks((n + chunk - 1) / chunk, 1, in_strokes,
+                  [&](std::size_t k) { brushsvg::parallel_for(k * chunk, std::min(n, (k + 1) * chunk), work); });
 }

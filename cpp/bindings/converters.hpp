@@ -22,35 +22,36 @@
 namespace py = pybind11;
 
 /// Most entries of a list. No useful list is longer, and no memory is requested for a longer one.
-inline constexpr py::ssize_t kMostEntries = 10'000'000;
+inline constexpr py::ssize_t kMaxEntries = 10'000'000;
 
 /// Counts the entries of one argument. Lists within a list are counted together; a row of numbers is one entry.
-class Entries {
+class EntryCounter {
  public:
-    Entries() {
-        if (depth_++ == 0) so_far_ = 0;
+    EntryCounter() {
+        if (depth_++ == 0) entry_count_ = 0;
     }
-    ~Entries() { --depth_; }
-    Entries(const Entries&) = delete;
-    Entries& operator=(const Entries&) = delete;
+    ~EntryCounter() { --depth_; }
+    EntryCounter(const EntryCounter&) = delete;
+    EntryCounter& operator=(const EntryCounter&) = delete;
 
     /// Throw Error if that many more entries are too many.
-    static void expect(py::ssize_t more) {
-        const double all = double(so_far_) + double(more);
-        if (all > double(kMostEntries))
+    static void require_room_for(py::ssize_t more) {
+        const double all = double(entry_count_) + double(more);
+        if (all > double(kMaxEntries))
             throw brushsvg::Error("list-too-long",
-                                  "a list of " + std::to_string(so_far_ + std::min(more, PY_SSIZE_T_MAX - so_far_)) +
-                                      " entries is longer than any that is read, " + std::to_string(kMostEntries),
-                                  "", all, std::array<double, 2>{0.0, double(kMostEntries)});
+                                  "a list of " +
+                                      std::to_string(entry_count_ + std::min(more, PY_SSIZE_T_MAX - entry_count_)) +
+                                      " entries is longer than any that is read, " + std::to_string(kMaxEntries),
+                                  "", all, std::array<double, 2>{0.0, double(kMaxEntries)});
     }
     static void add(py::ssize_t more) {
-        expect(more);
-        so_far_ += more;
+        require_room_for(more);
+        entry_count_ += more;
     }
 
  private:
     static inline thread_local int depth_ = 0;
-    static inline thread_local py::ssize_t so_far_ = 0;
+    static inline thread_local py::ssize_t entry_count_ = 0;
 };
 
 /// A number, or an array of numbers of any shape, for `py::vectorize`.
@@ -63,7 +64,7 @@ namespace pybind11::detail {
 using DoubleArray = array_t<double, array::c_style | array::forcecast>;
 
 /// Replace masked values by nan: values below a mask are not data.
-inline object unmasked(handle source) {
+inline object replace_masked_by_nan(handle source) {
     if (!isinstance<array>(source) || !hasattr(source, "filled")) return reinterpret_borrow<object>(source);
     return source.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
 }
@@ -71,12 +72,12 @@ inline object unmasked(handle source) {
 /// Return an array of numbers, or null for anything else.
 ///
 /// Complex numbers, dates and words would only seem to be numbers, and None would become nan.
-inline DoubleArray numbers_of(handle source) {
-    const auto found = reinterpret_steal<object>(array::ensure(unmasked(source)).release());
+inline DoubleArray to_double_array(handle source) {
+    const auto found = reinterpret_steal<object>(array::ensure(replace_masked_by_nan(source)).release());
     if (!found || std::string("biuf").find(array(found).dtype().kind()) == std::string::npos)
         return reinterpret_steal<DoubleArray>(handle());
     const auto values = reinterpret_borrow<array>(found);
-    Entries::expect(values.ndim() == 2 ? values.shape(0) : values.size());
+    EntryCounter::require_room_for(values.ndim() == 2 ? values.shape(0) : values.size());
     return DoubleArray::ensure(values);
 }
 
@@ -90,17 +91,17 @@ struct type_caster<std::vector<Value>> : list_caster<std::vector<Value>, Value> 
     bool load(handle source, bool convert) {
         if (!object_is_convertible_to_std_vector(source)) return false;
         if (!convert && !isinstance<sequence>(source)) return false;  // a generator can be read only once
-        const Entries entries;
+        const EntryCounter entries;
         ssize_t claimed = PyObject_LengthHint(source.ptr(), 0);
         if (claimed < 0) {
             PyErr_Clear();
             claimed = 0;
         }
-        Entries::expect(claimed);
+        EntryCounter::require_room_for(claimed);
         this->value.clear();
         this->value.reserve(std::size_t(claimed));
         for (const handle one : reinterpret_borrow<iterable>(source)) {
-            Entries::add(1);  // it may have more entries than it claims
+            EntryCounter::add(1);  // it may have more entries than it claims
             make_caster<Value> read;
             if (!read.load(one, convert)) return false;
             this->value.push_back(cast_op<Value&&>(std::move(read)));
@@ -139,7 +140,7 @@ struct type_caster<Numbers> {
             value.values = array_t<double>(ssize_t(read.size()), read.data());
             return true;
         }
-        const auto numbers = numbers_of(source);
+        const auto numbers = to_double_array(source);
         if (numbers) value.values = numbers;
         return bool(numbers);
     }
@@ -154,11 +155,11 @@ struct rows_caster {
 
     bool load(handle source, bool convert) {
         if (!convert && !isinstance<array_t<double>>(source)) return false;
-        const Entries entries;
+        const EntryCounter entries;
         if (is_array(source)) {
-            const auto numbers = numbers_of(source);
+            const auto numbers = to_double_array(source);
             if (!numbers || numbers.ndim() != 2 || numbers.shape(1) != Columns) return false;
-            Entries::add(numbers.shape(0));
+            EntryCounter::add(numbers.shape(0));
             value = Eigen::Map<const Rows>(numbers.data(), numbers.shape(0), Columns);
             return true;
         }

@@ -8,17 +8,17 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 
-inline constexpr double kFarthestMm = 1e6;  // limit of lengths; a longer one is an error in the data
+inline constexpr double kMaxLengthMm = 1e6;  // limit of lengths; a longer one is an error in the data
 
 /// Return the law of a lever between two depths [mm].
 ///
 /// Throws Error if the lever is negative, or 0 at some depths. Only the lever of a rigid pen is 0 at all depths.
-inline brushsvg::LagLaw<double> law_between(const brushsvg::Profile& profile, double depth0, double depth1) {
+inline brushsvg::LagLaw<double> make_law_between(const brushsvg::Profile& profile, double depth0, double depth1) {
     if (profile.coefficients.empty() || int(profile.coefficients.size()) > brushsvg::kMaxLawDegree + 1)
         throw brushsvg::Error("law-terms", "a lag has 1 to " + std::to_string(brushsvg::kMaxLawDegree + 1) +
                                                " coefficients, not " + std::to_string(profile.coefficients.size()));
     for (const double c : profile.coefficients)
-        brushsvg::require_within(c, {-kFarthestMm, kFarthestMm}, "a coefficient of the lag");
+        brushsvg::require_within(c, {-kMaxLengthMm, kMaxLengthMm}, "a coefficient of the lag");
     for (const double depth : {depth0, depth1}) brushsvg::require_within(depth, {0.0, 1000.0}, "the depth");
     const double lo = std::min(depth0, depth1), hi = std::max(depth0, depth1) + 1e-9;
     brushsvg::LagLaw<double> law = brushsvg::make_law(brushsvg::pieces(profile, lo, hi));

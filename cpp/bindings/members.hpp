@@ -71,7 +71,7 @@ inline constexpr auto members<brushsvg::WidthKnot> =
 template <>
 inline constexpr auto members<brushsvg::Stroke> = std::tuple(
     &brushsvg::Stroke::id, &brushsvg::Stroke::middle_mm, &brushsvg::Stroke::closed, &brushsvg::Stroke::half_width,
-    &brushsvg::Stroke::wanted_mm, &brushsvg::Stroke::layer, &brushsvg::Stroke::colour, &brushsvg::Stroke::settings,
+    &brushsvg::Stroke::target_mm, &brushsvg::Stroke::layer, &brushsvg::Stroke::colour, &brushsvg::Stroke::settings,
     &brushsvg::Stroke::start_covered, &brushsvg::Stroke::end_covered);
 
 template <>
@@ -115,7 +115,7 @@ inline constexpr auto members<brushsvg::StrokeScore> =
 
 template <>
 inline constexpr auto members<brushsvg::CommonArea> =
-    std::tuple(&brushsvg::CommonArea::common_mm2, &brushsvg::CommonArea::together_mm2);
+    std::tuple(&brushsvg::CommonArea::intersection_mm2, &brushsvg::CommonArea::union_mm2);
 
 template <>
 inline constexpr auto members<brushsvg::AxisBranch> = std::tuple(

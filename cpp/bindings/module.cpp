@@ -12,7 +12,7 @@
 ///
 /// A value is uninitialised if only its __new__ was called, or if its constructor refused its arguments. A debugger may
 /// show such a value; pybind11 would give it uninitialised memory.
-static void refuse_what_was_never_made(const py::module_& m) {
+static void refuse_uninitialised_values(const py::module_& m) {
     for (const auto& [name, what] : py::cast<py::dict>(m.attr("__dict__"))) {
         if (!py::isinstance<py::type>(what)) continue;
         if (auto* known = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(what.ptr())))
@@ -27,7 +27,7 @@ PYBIND11_MODULE(_core, m) {
 
 Lengths are in mm, angles in radians, coordinates in the paper frame.)";
     m.attr("__version__") = BRUSHSVG_VERSION;
-    m.attr("MOST_ENTRIES") = kMostEntries;
+    m.attr("MAX_ENTRIES") = kMaxEntries;
 
     py::register_local_exception_translator([](std::exception_ptr p) {
         try {
@@ -67,11 +67,11 @@ Lengths are in mm, angles in radians, coordinates in the paper frame.)";
     bind_compensate(m);
     bind_stroke_search(m);
     bind_paint_loads(m);
-    bind_thin_out(m);
+    bind_simplify_pass(m);
     bind_io(m);
 #ifdef BRUSHSVG_FIT
     bind_fit(m);
     bind_mark_fit(m);
 #endif
-    refuse_what_was_never_made(m);
+    refuse_uninitialised_values(m);
 }

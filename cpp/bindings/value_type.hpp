@@ -23,44 +23,44 @@ inline constexpr bool has_members = !std::is_same_v<decltype(members<Value>), co
 /// Return whether two values are equal in all members.
 ///
 /// Here nan equals nan, so that a copy is equal to its original.
-inline bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+inline bool are_equal(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 template <int Rows, int Columns, int Options>
-bool same(const Eigen::Matrix<double, Rows, Columns, Options>& a,
-          const Eigen::Matrix<double, Rows, Columns, Options>& b) {
+bool are_equal(const Eigen::Matrix<double, Rows, Columns, Options>& a,
+               const Eigen::Matrix<double, Rows, Columns, Options>& b) {
     if (a.rows() != b.rows()) return false;
     for (Eigen::Index i = 0; i < a.size(); ++i)
-        if (!same(a.data()[i], b.data()[i])) return false;
+        if (!are_equal(a.data()[i], b.data()[i])) return false;
     return true;
 }
 
 template <class Value>
-bool same(const Value& a, const Value& b);
+bool are_equal(const Value& a, const Value& b);
 template <class Value>
-bool same(const std::vector<Value>& a, const std::vector<Value>& b);
+bool are_equal(const std::vector<Value>& a, const std::vector<Value>& b);
 template <class Value>
-bool same(const std::optional<Value>& a, const std::optional<Value>& b);
+bool are_equal(const std::optional<Value>& a, const std::optional<Value>& b);
 template <class Value, std::size_t N>
-bool same(const std::array<Value, N>& a, const std::array<Value, N>& b) {
+bool are_equal(const std::array<Value, N>& a, const std::array<Value, N>& b) {
     for (std::size_t i = 0; i < N; ++i)
-        if (!same(a[i], b[i])) return false;
+        if (!are_equal(a[i], b[i])) return false;
     return true;
 }
 template <class Value>
-bool same(const std::vector<Value>& a, const std::vector<Value>& b) {
+bool are_equal(const std::vector<Value>& a, const std::vector<Value>& b) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
-        if (!same(a[i], b[i])) return false;
+        if (!are_equal(a[i], b[i])) return false;
     return true;
 }
 template <class Value>
-bool same(const std::optional<Value>& a, const std::optional<Value>& b) {
-    return a.has_value() == b.has_value() && (!a || same(*a, *b));
+bool are_equal(const std::optional<Value>& a, const std::optional<Value>& b) {
+    return a.has_value() == b.has_value() && (!a || are_equal(*a, *b));
 }
 template <class Value>
-bool same(const Value& a, const Value& b) {
+bool are_equal(const Value& a, const Value& b) {
     if constexpr (has_members<Value>)
-        return std::apply([&](auto... member) { return (same(a.*member, b.*member) && ...); }, members<Value>);
+        return std::apply([&](auto... member) { return (are_equal(a.*member, b.*member) && ...); }, members<Value>);
     else
         return a == b;
 }
@@ -145,10 +145,10 @@ inline py::object hashable(const py::object& state) {
 ///
 /// A copy shares nothing with its original.
 template <class Value>
-void as_value(py::class_<Value>& type) {
+void add_value_semantics(py::class_<Value>& type) {
     static_assert(has_members<Value>);
     type.def(
-            "__eq__", [](const Value& a, const Value& b) { return same(a, b); }, py::is_operator())
+            "__eq__", [](const Value& a, const Value& b) { return are_equal(a, b); }, py::is_operator())
         .def("__copy__", [](const Value& value) { return Value(value); })
         .def(
             "__deepcopy__", [](const Value& value, const py::dict&) { return Value(value); }, py::arg("memo"))
@@ -158,13 +158,13 @@ void as_value(py::class_<Value>& type) {
 
 /// Add equality, pickling, copying and a hash to a class whose fields cannot be set.
 template <class Value>
-void as_fixed_value(py::class_<Value>& type) {
-    as_value(type);
+void add_fixed_value_semantics(py::class_<Value>& type) {
+    add_value_semantics(type);
     type.def("__hash__", [](const Value& value) { return py::hash(hashable(state_of(value))); });
 }
 
 /// Format a number for repr.
-inline std::string in_digits(double number) {
+inline std::string format_number(double number) {
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", number);
     return text;
@@ -173,7 +173,7 @@ inline std::string in_digits(double number) {
 /// Return a name in quotes, like repr.
 inline std::string quoted(const std::string& name) { return py::repr(py::str(name)).cast<std::string>(); }
 
-inline std::string counted(std::size_t count, const std::string& what) {
+inline std::string format_count(std::size_t count, const std::string& what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : what.back() == 's' ? "es" : "s");
 }
 

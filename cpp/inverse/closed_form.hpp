@@ -11,8 +11,8 @@ namespace brushsvg {
 
 /// Return the arc lengths [mm] where the depth passes one of the given depths [mm], or the width has a knot. Samples
 /// must be placed there.
-std::vector<double> places_of_depths(const Stroke& stroke, const Brush& brush, double length,
-                                     const std::vector<double>& depths);
+std::vector<double> find_depth_places(const Stroke& stroke, const Brush& brush, double length,
+                                      const std::vector<double>& depths);
 
 /// Return poses that make the moves of a brush one after the other. The brush is set down for the first, turned over
 /// between moves, and lifted after the last. `turns` is set where a line bends too sharply for the lever and the brush

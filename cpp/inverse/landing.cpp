@@ -17,7 +17,7 @@ constexpr double kLiftSlackMm = 0.05;
 /// How far straight moves may stray from that offset [mm]. With more the patch slips or relaxes.
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
 /// Number of depth steps, of 128 in all, over which a lift moves inside. Fewer would need an extra move.
-constexpr double kLiftEases = 8.0;
+constexpr double kLiftEaseSteps = 8.0;
 /// Return whether the patch rests while the TCP runs up from P to P + r u and presses. It does as long as r(d)/d falls
 /// with depth; otherwise the brush must be pressed down first.
 bool may_press_while_running(const Brush& brush, double from, double depth) {
@@ -57,10 +57,10 @@ void lift(const Stance& last, const Brush& brush, PoseList& out, double until_mm
         int to = from;
         double slope = 0.0;
         for (int k = from + 1; k <= n; ++k) {
-            const double by = depth_at(from) - depth_at(k), wanted = reach(depth_at(k));
-            const double inside = from > 0 ? 1.0 : std::min(1.0, double(k) / kLiftEases);
-            least = std::max(least, (wanted - kLiftBandMm - at) / by);
-            most = std::min(most, (wanted + kLiftSlackMm - inside * (kLiftSlackMm - kLiftBandMm) - at) / by);
+            const double by = depth_at(from) - depth_at(k), target = reach(depth_at(k));
+            const double inside = from > 0 ? 1.0 : std::min(1.0, double(k) / kLiftEaseSteps);
+            least = std::max(least, (target - kLiftBandMm - at) / by);
+            most = std::min(most, (target + kLiftSlackMm - inside * (kLiftSlackMm - kLiftBandMm) - at) / by);
             if (least > most) break;
             slope = 0.5 * (least + most);
             to = k;

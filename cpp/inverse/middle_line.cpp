@@ -12,7 +12,7 @@ double angle_between(const Vector2d& from, const Vector2d& to) {
     return std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
 }
 
-double off_chord(const Sample& a, const Sample& b, const Sample& between) {
+double distance_from_chord(const Sample& a, const Sample& b, const Sample& between) {
     const Vector2d chord = b.tcp - a.tcp;
     const double squared = chord.squaredNorm();
     const double t = squared > 0.0 ? std::clamp((between.tcp - a.tcp).dot(chord) / squared, 0.0, 1.0) : 0.5;

@@ -11,18 +11,18 @@
 namespace brushsvg {
 
 /// Largest turn of the heading between two samples [rad]. It keeps the heading between them close to theirs.
-constexpr double kTurnStepRad = 0.2;
+constexpr double kMaxTurnStepRad = 0.2;
 /// Largest turn per chord of a turn in place [rad]. The patch rests at any value. With a much larger one the bristles
 /// relax half way along the chord, by its cosine.
-constexpr double kTurnChordRad = 0.4;
+constexpr double kMaxTurnChordRad = 0.4;
 /// Most samples that are added to the initial ones. Where a line needs more (a taper far too steep for the lever),
 /// finer steps no longer help. The tracking error is reported then.
-constexpr std::size_t kMostSamples = 20000;
+constexpr std::size_t kMaxAddedSamples = 20000;
 
 /// Least step of a cubic's parameter between two samples. At a cusp, the lengths of a cubic's parts do not add up to
 /// its own length. The difference exceeds the least step, so two samples there would never come close enough, and each
 /// round would split the same step.
-constexpr double kLeastParameterStep = 1e-9;
+constexpr double kMinParameterStep = 1e-9;
 
 /// A place on the middle line, and the solution of the inverse there.
 struct Sample {
@@ -79,7 +79,7 @@ class Line {
 
     /// Return samples at both ends of every cubic and at the given arc lengths, between s0 and s1. Neighbours share a
     /// cubic, or are on the same point where one cubic ends and the next begins.
-    Samples coarse(double s0, double s1, std::vector<double> extra) const {
+    Samples coarse_samples(double s0, double s1, std::vector<double> extra) const {
         extra.push_back(s0);
         extra.push_back(s1);
         std::sort(extra.begin(), extra.end());
@@ -113,7 +113,7 @@ class Line {
 };
 
 /// Return how far a sample's TCP is from the chord between two others [mm]. A difference in depth counts half.
-double off_chord(const Sample& a, const Sample& b, const Sample& between);
+double distance_from_chord(const Sample& a, const Sample& b, const Sample& between);
 
 /// Split the steps along the line until all chords are within `tolerance` of the TCP's path, depth included. Both
 /// thirds of a step are checked, because the middle of an S is on its chord. `solve` fills in contact, heading and tcp
@@ -121,7 +121,7 @@ double off_chord(const Sample& a, const Sample& b, const Sample& between);
 template <class Solve>
 void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& solve) {
     const double least = std::min(1e-3, 0.1 * tolerance);
-    const std::size_t most = samples.size() + kMostSamples;
+    const std::size_t most = samples.size() + kMaxAddedSamples;
     for (bool done = false; !done && samples.size() < most;) {
         Samples finer;
         std::vector<bool> trial;
@@ -132,7 +132,7 @@ void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& 
             if (i + 1 == samples.size() || samples[i].settled || samples[i].place.cubic != samples[i + 1].place.cubic)
                 continue;
             if (samples[i + 1].s - samples[i].s < least) continue;
-            if (samples[i + 1].place.t - samples[i].place.t < kLeastParameterStep) continue;
+            if (samples[i + 1].place.t - samples[i].place.t < kMinParameterStep) continue;
             for (double c : {1.0 / 3.0, 2.0 / 3.0}) {
                 finer.push_back(line.between(samples[i], samples[i + 1], c));
                 trial.push_back(true);
@@ -146,8 +146,8 @@ void refine_steps(const Line& line, Samples& samples, double tolerance, Solve&& 
             samples.push_back(finer[i]);
             if (i + 3 >= finer.size() || !trial[i + 1]) continue;
             const Sample &a = finer[i], &b = finer[i + 3];
-            bool close = std::abs(angle_between(a.heading, b.heading)) <= kTurnStepRad;
-            for (std::size_t k : {i + 1, i + 2}) close = close && off_chord(a, b, finer[k]) <= tolerance;
+            bool close = std::abs(angle_between(a.heading, b.heading)) <= kMaxTurnStepRad;
+            for (std::size_t k : {i + 1, i + 2}) close = close && distance_from_chord(a, b, finer[k]) <= tolerance;
             if (close) {
                 samples.back().settled = true;
             } else {

@@ -8,7 +8,7 @@
 #include "brushsvg/lag_arc.hpp"
 #include "brushsvg/simulate.hpp"
 #include "inverse/landing.hpp"
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 namespace brushsvg {
 namespace {
@@ -17,56 +17,56 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 /// Least depth [mm] for a landing. A brush that hardly touches has no patch to land in.
-constexpr double kLeastDepthMm = 0.05;
+constexpr double kMinLandingDepthMm = 0.05;
 
 /// Number of possible cuts per load of paint on long straight moves, whose ends alone are too far apart. Fewer would
 /// leave more paint unused, more only cost time.
 constexpr double kPlacesPerLoad = 200.0;
 
-constexpr double kMostLoads = 1000.0;  // most loads of one stroke; with more the brush would only travel
+constexpr double kMaxLoads = 1000.0;  // most loads of one stroke; with more the brush would only travel
 
 /// Largest distance [mm] of the patch from the arc's centre while the brush turns in place.
-constexpr double kRestsMm = 0.01;
+constexpr double kMaxTurnInPlaceMm = 0.01;
 
 /// The pass with more poses along its moves. own[i]: whether pose i belongs to the original pass.
-struct Fine {
+struct RefinedMoves {
     Pass pass;
-    std::vector<bool> own;
+    std::vector<bool> is_original;
 };
 
 /// Return the arc on which the pass continues from a pose.
-const Arc* arc_of(const Pass& pass, Index pose) {
+const Arc* find_arc(const Pass& pass, Index pose) {
     for (const Arc& arc : pass.arcs)
         if (arc.first <= pose && pose < arc.last) return &arc;
     return nullptr;
 }
 
-Eigen::RowVector3d on_arc(const Arc& arc, const Pass& pass, Index pose, double share) {
+Eigen::RowVector3d pose_on_arc(const Arc& arc, const Pass& pass, Index pose, double share) {
     const Vector2d from = pass.poses_mm.row(pose).head<2>().transpose();
     const Vector2d to = pass.poses_mm.row(pose + 1).head<2>().transpose();
     const Vector2d spoke = from - arc.centre_mm;
-    const Vector2d at = arc.centre_mm + turned_by<double>(spoke, share * turn_between(arc, from, to));
+    const Vector2d at = arc.centre_mm + rotated<double>(spoke, share * turn_between(arc, from, to));
     return {at.x(), at.y(), pass.poses_mm(pose, 2)};
 }
 
-Fine refined(const Pass& pass, double between_mm) {
+RefinedMoves refine_moves(const Pass& pass, double between_mm) {
     const Index count = pass.poses_mm.rows();
-    Fine out{pass, {}};
+    RefinedMoves out{pass, {}};
     out.pass.tool_axes.resize(0, 3);  // upright, as are all passes that are split
     std::vector<Eigen::RowVector3d> poses;
     std::vector<Index> at;
     for (Index i = 0; i < count; ++i) {
         at.push_back(Index(poses.size()));
         poses.push_back(pass.poses_mm.row(i));
-        out.own.push_back(true);
+        out.is_original.push_back(true);
         if (i + 1 == count) continue;
         const Eigen::RowVector3d way = pass.poses_mm.row(i + 1) - pass.poses_mm.row(i);
-        const Arc* arc = arc_of(pass, i);
+        const Arc* arc = find_arc(pass, i);
         const auto parts = Index(std::ceil(way.norm() / between_mm));
         for (Index k = 1; k < parts; ++k) {
             const double share = double(k) / double(parts);
-            poses.push_back(arc ? on_arc(*arc, pass, i, share) : pass.poses_mm.row(i) + way * share);
-            out.own.push_back(false);
+            poses.push_back(arc ? pose_on_arc(*arc, pass, i, share) : pass.poses_mm.row(i) + way * share);
+            out.is_original.push_back(false);
         }
     }
     out.pass.poses_mm.resize(Index(poses.size()), 3);
@@ -79,7 +79,7 @@ Fine refined(const Pass& pass, double between_mm) {
 }
 
 /// A place where the pass may be cut: the brush is taut and pressed there, and does not turn in place.
-struct Place {
+struct CutPlace {
     Index pose;
     double along_mm;  ///< length of the TCP's path up to the place
     Stance stance;
@@ -93,17 +93,17 @@ std::vector<double> path_lengths(const Poses& poses) {
 
 bool turns_in_place(const Pass& pass, Index pose, const Vector2d& contact) {
     for (const Arc& arc : pass.arcs)
-        if (arc.first <= pose && pose <= arc.last) return (contact - arc.centre_mm).norm() < kRestsMm;
+        if (arc.first <= pose && pose <= arc.last) return (contact - arc.centre_mm).norm() < kMaxTurnInPlaceMm;
     return false;
 }
 
-std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vector<double>& along) {
+std::vector<CutPlace> find_cut_places(const Pass& pass, const Brush& brush, const std::vector<double>& along) {
     const PassMarks marks = simulate(pass, brush, 0.05, false);
-    std::vector<Place> out;
+    std::vector<CutPlace> out;
     for (std::size_t row = 0; row < marks.pose.size(); ++row) {
         const double pose = marks.pose[row];
         const Index i = Index(std::lround(pose));
-        if (pose != double(i) || (!marks.taut[row] && !brush.is_rigid()) || marks.depth_mm[row] < kLeastDepthMm)
+        if (pose != double(i) || (!marks.taut[row] && !brush.is_rigid()) || marks.depth_mm[row] < kMinLandingDepthMm)
             continue;
         const Vector2d contact = marks.contact_mm.row(Index(row)).transpose();
         if (i == 0 || i + 1 >= pass.poses_mm.rows() || turns_in_place(pass, i, contact)) continue;
@@ -116,20 +116,20 @@ std::vector<Place> places(const Pass& pass, const Brush& brush, const std::vecto
 }
 
 /// Return the poses of the pass from one place to another with their arcs, between a landing and a lift.
-Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* to, int number) {
+Pass make_part(const RefinedMoves& fine, const Brush& brush, const CutPlace* from, const CutPlace* to, int number) {
     const Pass& pass = fine.pass;
     PoseList list;
     if (from) land(from->stance, brush, list);
     const Index first = from ? from->pose : 0, last = to ? to->pose : pass.poses_mm.rows() - 1;
     std::vector<std::int64_t> at;
     for (Index i = first; i <= last; ++i) {
-        if (fine.own[std::size_t(i)] || i == first || i == last)
+        if (fine.is_original[std::size_t(i)] || i == first || i == last)
             list.add(pass.poses_mm.row(i).head<2>().transpose(), -pass.poses_mm(i, 2));
         at.push_back(list.last());
     }
     if (to) lift(to->stance, brush, list);
     Pass out = pass;
-    list.into(out);
+    list.write_to(out);
     out.arcs.clear();
     for (const Arc& arc : pass.arcs) {
         const Index begins = std::max<Index>(arc.first, first), ends = std::min<Index>(arc.last, last);
@@ -141,7 +141,7 @@ Pass part(const Fine& fine, const Brush& brush, const Place* from, const Place* 
 
 }  // namespace
 
-std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintLoadOptions& options) {
+std::vector<Pass> split_into_loads(const Pass& pass, const Brush& brush, const PaintLoadOptions& options) {
     if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
         throw Error("load-too-short", "paint must last for more than twice the backtrack", pass.stroke,
                     options.every_mm);
@@ -149,45 +149,45 @@ std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintL
     refuse_tilted(pass, "strokes are parted into loads of paint for an upright brush");
     if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
-    const auto refuse_often = [&](double loads) {
-        if (!(loads <= kMostLoads))
+    const auto require_few_loads = [&](double loads) {
+        if (!(loads <= kMaxLoads))
             throw Error("load-too-short",
                         "paint that lasts so short would have to be fetched more than 1000 times in one stroke",
                         pass.stroke, options.every_mm);
     };
-    refuse_often(path_lengths(pass.poses_mm).back() / options.every_mm);
-    const Fine fine = refined(pass, options.every_mm / kPlacesPerLoad);
+    require_few_loads(path_lengths(pass.poses_mm).back() / options.every_mm);
+    const RefinedMoves fine = refine_moves(pass, options.every_mm / kPlacesPerLoad);
     const std::vector<double> along = path_lengths(fine.pass.poses_mm);
-    const std::vector<Place> all = places(fine.pass, brush, along);
+    const std::vector<CutPlace> all = find_cut_places(fine.pass, brush, along);
     std::vector<Pass> parts;
-    const Place* from = nullptr;
-    double lasts_to = options.first_mm;
-    while (along.back() > lasts_to) {
+    const CutPlace* from = nullptr;
+    double load_end_mm = options.first_mm;
+    while (along.back() > load_end_mm) {
         checkpoint(int(all.size()));
-        refuse_often(double(parts.size()) + 1.0);
+        require_few_loads(double(parts.size()) + 1.0);
         // cut at the last place that the paint reaches, else at the first after it; each cut must be beyond the last
         // one
         const double least = from ? from->along_mm + options.backtrack_mm : 0.0;
-        const Place *cut = nullptr, *back = nullptr;
-        for (const Place& place : all) {
-            if (place.along_mm <= least || (cut && place.along_mm > lasts_to)) continue;
+        const CutPlace *cut = nullptr, *back = nullptr;
+        for (const CutPlace& place : all) {
+            if (place.along_mm <= least || (cut && place.along_mm > load_end_mm)) continue;
             cut = &place;
-            if (place.along_mm > lasts_to) break;
+            if (place.along_mm > load_end_mm) break;
         }
         if (!cut) break;
-        for (const Place& place : all) {
+        for (const CutPlace& place : all) {
             // a part must advance
             if (place.pose >= cut->pose || (from && place.pose <= from->pose)) continue;
             if (!back || place.along_mm <= cut->along_mm - options.backtrack_mm) back = &place;
         }
         if (!back) back = cut;
-        parts.push_back(part(fine, brush, from, cut, int(parts.size()) + 1));
+        parts.push_back(make_part(fine, brush, from, cut, int(parts.size()) + 1));
         from = back;
         const double landing = brush.lag(back->stance.depth_mm);
-        lasts_to = back->along_mm + options.every_mm - landing;
+        load_end_mm = back->along_mm + options.every_mm - landing;
     }
     if (parts.empty()) return {pass};
-    parts.push_back(part(fine, brush, from, nullptr, int(parts.size()) + 1));
+    parts.push_back(make_part(fine, brush, from, nullptr, int(parts.size()) + 1));
     return parts;
 }
 

@@ -9,7 +9,7 @@
 namespace brushsvg {
 
 /// Tolerance for points on one circle [mm]: far more than rounding, far less than the resolution of a file.
-inline constexpr double kSameCircleMm = 1e-8;
+inline constexpr double kCircleToleranceMm = 1e-8;
 
 /// The poses of a pass while it is built, and the arcs through some of them.
 class PoseList {
@@ -19,7 +19,7 @@ class PoseList {
     /// continues that one.
     void arc(std::int64_t first, const Eigen::Vector2d& centre_mm, double angle_rad);
     std::int64_t last() const { return std::int64_t(poses_.size()) - 1; }
-    void into(Pass& pass) const;
+    void write_to(Pass& pass) const;
 
  private:
     std::vector<std::array<double, 3>> poses_;

@@ -14,22 +14,22 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// A move shorter than this [mm] has no meaningful direction.
-constexpr double kLeastMoveMm = 1e-6;
+constexpr double kMinMoveMm = 1e-6;
 /// Least advance of an edge that shows, per mm of the TCP's way. An edge that advances less is about to turn back, and
 /// where it does it is inside the mark.
-constexpr double kLeastAhead = 0.01;
+constexpr double kMinEdgeAdvance = 0.01;
 /// Largest corner between chords of a bend [rad]. A larger corner was drawn, or is made by the brush.
-constexpr double kBendRad = 0.14;
+constexpr double kMaxBendRad = 0.14;
 /// Half the step of a numerical derivative by depth [mm].
-constexpr double kSlopeStepMm = 1e-4;
+constexpr double kSlopeHalfStepMm = 1e-4;
 
 template <class Of>
 double slope(const Of& law, double depth_mm) {
-    const double from = std::max(0.0, depth_mm - kSlopeStepMm), to = depth_mm + kSlopeStepMm;
+    const double from = std::max(0.0, depth_mm - kSlopeHalfStepMm), to = depth_mm + kSlopeHalfStepMm;
     return (law(to) - law(from)) / (to - from);
 }
 
-Vector2d half_way(const Vector2d& a, const Vector2d& b) { return a.normalized() + b.normalized(); }
+Vector2d bisector(const Vector2d& a, const Vector2d& b) { return a.normalized() + b.normalized(); }
 
 }  // namespace
 
@@ -45,8 +45,8 @@ Edges edges_of(const Brush& brush, const LagLaw<double>& law, const LagState<dou
     for (int side : {0, 1}) {
         const double sign = side ? -1.0 : 1.0;
         const double forwards = ahead - sign * brush.half_width(depth_mm) * turn;
-        edges.way[side] = forwards * u + (brush.lever_to_widest(depth_mm) * turn + sign * wider) * across;
-        edges.shows[side] = forwards > kLeastAhead;
+        edges.direction[side] = forwards * u + (brush.lever_to_widest(depth_mm) * turn + sign * wider) * across;
+        edges.is_visible[side] = forwards > kMinEdgeAdvance;
     }
     return edges;
 }
@@ -54,8 +54,8 @@ Edges edges_of(const Brush& brush, const LagLaw<double>& law, const LagState<dou
 double corner_between(const Edges& before, const Edges& after) {
     double greatest = 0.0;
     for (int side : {0, 1}) {
-        if (!before.shows[side] || !after.shows[side]) continue;
-        const Vector2d &a = before.way[side], &b = after.way[side];
+        if (!before.is_visible[side] || !after.is_visible[side]) continue;
+        const Vector2d &a = before.direction[side], &b = after.direction[side];
         greatest = std::max(greatest, std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b))));
     }
     return greatest;
@@ -79,7 +79,7 @@ TracedPass::TracedPass(const Pass& pass, const Brush& brush, const LagLaw<double
         if (i > 0) along[i] = along[i - 1] + (tcp.row(i) - tcp.row(i - 1)).norm();
     }
     for (Index i = 0; i + 1 < n; ++i)
-        if (!(along[i + 1] - along[i] > kLeastMoveMm) || depth[i] <= 0.0 || depth[i + 1] <= 0.0) dragged[i] = false;
+        if (!(along[i + 1] - along[i] > kMinMoveMm) || depth[i] <= 0.0 || depth[i + 1] <= 0.0) dragged[i] = false;
     if (n > 0) dragged[n - 1] = false;
     for (const Arc& arc : pass.arcs)
         for (Index i = arc.first; i < arc.last; ++i) dragged[i] = false;
@@ -110,7 +110,7 @@ void TracedPass::find_edges(const Brush& brush, const LagLaw<double>& law) {
     const Index n = tcp.rows();
     reaching.resize(n);
     leaving.resize(n);
-    const auto of = [&](Index at, Index move) {
+    const auto edges_at = [&](Index at, Index move) {
         const Vector3d way = pose(move + 1) - pose(move);
         LagState<double> state;
         const Vector2d along_it = way.head<2>().normalized();
@@ -119,12 +119,12 @@ void TracedPass::find_edges(const Brush& brush, const LagLaw<double>& law) {
     };
     for (Index i = 0; i < n; ++i) {
         const bool reached = i > 0 && dragged[i - 1];
-        if (dragged[i]) leaving[i] = of(i, i);
-        if (reached) reaching[i] = of(i, i - 1);
-        if (!dragged[i] || !reached || corner_between(reaching[i], leaving[i]) > kBendRad) continue;
+        if (dragged[i]) leaving[i] = edges_at(i, i);
+        if (reached) reaching[i] = edges_at(i, i - 1);
+        if (!dragged[i] || !reached || corner_between(reaching[i], leaving[i]) > kMaxBendRad) continue;
         for (int side : {0, 1}) {
-            const Vector2d mean = half_way(reaching[i].way[side], leaving[i].way[side]);
-            reaching[i].way[side] = leaving[i].way[side] = mean;
+            const Vector2d mean = bisector(reaching[i].direction[side], leaving[i].direction[side]);
+            reaching[i].direction[side] = leaving[i].direction[side] = mean;
         }
     }
 }

@@ -13,9 +13,9 @@ namespace brushsvg {
 /// Directions in which the edges of a mark continue at one instant: the ways of both ends of the widest section, left
 /// and right of the heading, per mm of the TCP's way.
 struct Edges {
-    std::array<Eigen::Vector2d, 2> way{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+    std::array<Eigen::Vector2d, 2> direction{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
     /// The edge moves ahead; an inner edge that turns back paints over its own mark.
-    std::array<bool, 2> shows{};
+    std::array<bool, 2> is_visible{};
 };
 
 /// Return the edges of a taut brush whose TCP moves along a direction and gets deeper by `deeper` per mm.

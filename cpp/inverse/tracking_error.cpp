@@ -15,13 +15,13 @@ using Eigen::Index;
 
 /// Largest distance between checked points of the mark [mm]. The mark passes a corner of the line within 0.2 mm. At
 /// 0.5, a fifth of the error at the corner was not seen.
-constexpr double kLookEveryMm = 0.1;
+constexpr double kCheckSpacingMm = 0.1;
 
 namespace {
 
 /// A disc about a place where the brush turns round, or about a butt end. There the middle of the mark does not count,
 /// because it swings in corners.
-struct Disc {
+struct ExcludedDisc {
     Eigen::Vector2d middle_mm;
     double radius_mm;
     double distance(const Eigen::Vector2d& point) const {
@@ -31,7 +31,7 @@ struct Disc {
 
 /// Return the tangent at the start of a path, not the direction of the first chord. Half a width before the start,
 /// these two are 0.05 mm apart on an arc of 10 mm.
-Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
+Eigen::RowVector2d start_tangent(const Cubics& middle_mm) {
     Place first{0, 0.0};
     while (first.cubic + 1 < middle_mm.rows() && tangent_at(middle_mm, first).isZero()) ++first.cubic;
     return tangent_at(middle_mm, first).transpose();
@@ -39,20 +39,21 @@ Eigen::RowVector2d begins_along(const Cubics& middle_mm) {
 
 /// Return whether a mark comes near the place where a butt end's way back along the side ends. A mark on the path is as
 /// far from that place as the path is.
-bool is_butt(const Ring& widest, const ButtEnd& end) {
-    constexpr double kThere = 0.25;
+bool ends_butt(const Ring& widest, const ButtEnd& end) {
+    constexpr double kMaxEndDistanceShare = 0.25;
     const double off_path_mm = std::abs(end.end.left.dot(end.back_mm - end.end.at_mm));
-    return (widest.rowwise() - end.back_mm.transpose()).rowwise().norm().minCoeff() < kThere * off_path_mm;
+    return (widest.rowwise() - end.back_mm.transpose()).rowwise().norm().minCoeff() <
+           kMaxEndDistanceShare * off_path_mm;
 }
 
 TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, const Stroke& stroke, double tolerance_mm,
-                                const std::vector<Disc>& discs) {
+                                const std::vector<ExcludedDisc>& discs) {
     const MiddlePolyline line = flatten(stroke, std::min(0.005, 0.05 * tolerance_mm));
     // on its way back to a round start, a blunt front goes beyond the start of the path
     MiddlePolyline longer(line.rows() + 1, 4);
     longer << line.row(0), line;
-    longer.row(0).head<2>() -= line(0, 3) * begins_along(stroke.middle_mm);
-    Nearest nearest(line), before_turn(longer);
+    longer.row(0).head<2>() -= line(0, 3) * start_tangent(stroke.middle_mm);
+    NearestOnPolyline nearest(line), before_turn(longer);
     // check from the first taut row to the last: the landing and a slack lift do not count, a turn in place does, and
     // where the brush turns over it hardly touches
     std::size_t begin = 0, end = marks.taut.size();
@@ -60,11 +61,11 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
     while (end > begin && !marks.taut[end - 1]) --end;
     TrackingError error;
     double before = 0.0, travelled = 0.0;  // weighted by length: rows are closer where a tolerance needs it
-    const auto look = [&](std::size_t from, std::size_t to, auto& path) {
+    const auto check_rows = [&](std::size_t from, std::size_t to, auto& path) {
         std::optional<Eigen::Vector2d> last;
-        along(widest, Index(from), Index(to), kLookEveryMm, [&](const Eigen::Vector2d& point) {
+        visit_along(widest, Index(from), Index(to), kCheckSpacingMm, [&](const Eigen::Vector2d& point) {
             double d = path.distance(point);
-            for (const Disc& disc : discs) d = std::min(d, disc.distance(point));
+            for (const ExcludedDisc& disc : discs) d = std::min(d, disc.distance(point));
             if (d > error.largest_mm) {
                 error.largest_mm = d;
                 error.at_mm = {point.x(), point.y()};
@@ -76,11 +77,11 @@ TrackingError tracking_error_of(const PassMarks& marks, const Ring& widest, cons
             last = point;
         });
     };
-    for (const TurnOver& turn : turns_over(marks)) {
-        look(begin, turn.first, before_turn);
+    for (const TurnOver& turn : find_turn_overs(marks)) {
+        check_rows(begin, turn.first, before_turn);
         begin = turn.last;
     }
-    look(begin, end, nearest);
+    check_rows(begin, end, nearest);
     error.mean_mm = travelled > 0.0 ? error.mean_mm / travelled : error.largest_mm;
     error.within_tolerance = error.largest_mm <= tolerance_mm;
     return error;
@@ -93,25 +94,25 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     require_tolerance(tolerance_mm, stroke.id);
     const PassMarks marks = simulate(pass, brush, std::min(0.02, 0.1 * tolerance_mm), false);
     // a dot, or a stroke that begins or ends with a turn
-    const std::vector<Turned> all_turned = turned_round(marks);
+    const std::vector<FullTurn> all_turned = find_full_turns(marks);
     const auto is_taut_within = [&](std::size_t from, std::size_t to) {
         return std::any_of(marks.taut.begin() + Index(from), marks.taut.begin() + Index(to),
                            [](bool taut) { return taut; });
     };
     const bool is_dot =
-        !all_turned.empty() && turns_over(marks).empty() && !is_taut_within(0, all_turned.front().first);
+        !all_turned.empty() && find_turn_overs(marks).empty() && !is_taut_within(0, all_turned.front().first);
     const Ring widest = is_dot ? marks.contact_mm : widest_points(marks, brush);
-    std::vector<Disc> discs;
+    std::vector<ExcludedDisc> discs;
     if (!is_dot)
-        for (const Turned& turned : all_turned) {
+        for (const FullTurn& turned : all_turned) {
             const auto depth = marks.depth_mm.begin();
             discs.push_back({marks.contact_mm.row(Index(turned.last)).transpose(),
-                             reach_of_turn_mm(brush, *std::max_element(depth + Index(turned.first),
-                                                                       depth + Index(turned.last) + 1))});
+                             turn_radius_mm(brush, *std::max_element(depth + Index(turned.first),
+                                                                     depth + Index(turned.last) + 1))});
         }
-    const Stroke painted = as_wide_as_painted(stroke, brush);
+    const Stroke painted = clamp_widths(stroke, brush);
     // a blunt front goes beyond the path's end, and so does a point
-    Stroke whole = up_to_drawn_end(painted, brush);
+    Stroke whole = extend_to_drawn_end(painted, brush);
     if (stroke.settings.end == "pointed")
         if (auto pointed = pointed_end(painted, brush, Caps::round)) whole = std::move(pointed->stroke);
     const TrackingError error = tracking_error_of(marks, widest, whole, tolerance_mm, discs);
@@ -126,7 +127,7 @@ TrackingError tracking_error_of(const Pass& pass, const Stroke& stroke, const Br
     }
     const std::size_t before = discs.size();
     for (const Side side : {Side::start, Side::end})
-        if (const auto found = make_butt_end(painted, brush, Caps::straight, side); found && is_butt(widest, *found))
+        if (const auto found = make_butt_end(painted, brush, Caps::straight, side); found && ends_butt(widest, *found))
             discs.push_back({found->end.at_mm, found->reach_mm});
     return discs.size() == before ? error : tracking_error_of(marks, widest, whole, tolerance_mm, discs);
 }

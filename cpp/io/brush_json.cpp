@@ -12,7 +12,7 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/brush";
-constexpr double kMostFreedom = 1e9;  // Student's t is normal long before this limit
+constexpr double kMaxDegreesOfFreedom = 1e9;  // Student's t is normal long before this limit
 const std::set<std::string> kBrushKeys{
     "format",        "version",    "name",       "kind",           "depth_range_mm", "lag",  "tip_gap",
     "tip_to_widest", "half_width", "covariance", "max_speed_mm_s", "paint_depth_mm", "paint"};
@@ -45,7 +45,7 @@ Profile read_profile(Field field) {
     }
     if (const auto calibrated = fields.find("calibrated_mm")) profile.calibrated_mm = interval(*calibrated);
     if (const auto source = fields.find("source")) profile.source = text(*source);
-    if (const auto assumed = fields.find("assumed")) profile.assumed = truth(*assumed);
+    if (const auto assumed = fields.find("assumed")) profile.assumed = boolean_value(*assumed);
     if (const auto half = fields.find("half_interval_95")) {
         profile.half_interval_95 = numbers(*half);
         if (profile.half_interval_95.size() != profile.coefficients.size()) {
@@ -57,10 +57,10 @@ Profile read_profile(Field field) {
     if (const auto rmse = fields.find("rmse_mm")) profile.rmse_mm = number(*rmse);
     if (const auto freedom = fields.find("degrees_of_freedom")) {
         profile.degrees_of_freedom = number(*freedom);
-        if (!(*profile.degrees_of_freedom >= 1.0 && *profile.degrees_of_freedom <= kMostFreedom))
+        if (!(*profile.degrees_of_freedom >= 1.0 && *profile.degrees_of_freedom <= kMaxDegreesOfFreedom))
             throw Error("out-of-range",
-                        "degrees_of_freedom must be within [1, 1e9], not be " + in_words(*profile.degrees_of_freedom),
-                        freedom->path, *profile.degrees_of_freedom, std::array<double, 2>{1.0, kMostFreedom});
+                        "degrees_of_freedom must be within [1, 1e9], not be " + describe(*profile.degrees_of_freedom),
+                        freedom->path, *profile.degrees_of_freedom, std::array<double, 2>{1.0, kMaxDegreesOfFreedom});
     }
     profile.extra = fields.extra();
     return profile;
@@ -93,7 +93,7 @@ Paint read_paint(Field field) {
     if (const auto lasts = fields.find("lasts_mm")) paint.lasts_mm = number(*lasts);
     if (const auto calibrated = fields.find("calibrated_mm")) paint.calibrated_mm = interval(*calibrated);
     if (const auto source = fields.find("source")) paint.source = text(*source);
-    if (const auto assumed = fields.find("assumed")) paint.assumed = truth(*assumed);
+    if (const auto assumed = fields.find("assumed")) paint.assumed = boolean_value(*assumed);
     if (auto covariance = fields.find("covariance"))
         for (const Field& row : members(std::move(*covariance))) paint.covariance.push_back(numbers(row));
     if (const auto freedom = fields.find("degrees_of_freedom")) paint.degrees_of_freedom = number(*freedom);
@@ -121,9 +121,9 @@ std::vector<Footprint> read_outlines(Field field, Eigen::Index& vertex_count, Js
                                                     " points where the first one has " + std::to_string(vertex_count));
         }
         outlines.push_back(std::move(footprint));
-        if (!fields.rest().empty()) {
+        if (!fields.unknown_keys().empty()) {
             Json note{{"depth_mm", outlines.back().depth_mm}};
-            note.update(fields.rest());
+            note.update(fields.unknown_keys());
             notes.push_back(std::move(note));
         }
     }
@@ -142,7 +142,7 @@ FootprintTable read_footprints(Field field, Json& notes) {
     if (auto pressed = fields.find("pressed")) {
         table.pressed = read_outlines(std::move(*pressed), vertex_count, pressed_notes);
     }
-    notes = fields.rest();
+    notes = fields.unknown_keys();
     if (!dragged_notes.empty()) notes["dragged"] = std::move(dragged_notes);
     if (!pressed_notes.empty()) notes["pressed"] = std::move(pressed_notes);
     return table;
@@ -282,7 +282,7 @@ Brush read_brush(const std::string& text) {
     brush.footprints = read_footprints(fields.take("footprints"), notes);
     if (const auto speed = fields.find("max_speed_mm_s")) brush.max_speed_mm_s = positive(*speed);
     if (const auto depth = fields.find("paint_depth_mm")) brush.paint_depth_mm = number(*depth);
-    if (!notes.empty()) fields.rest()["footprints"] = std::move(notes);
+    if (!notes.empty()) fields.unknown_keys()["footprints"] = std::move(notes);
     brush.extra = fields.extra();
     return brush;
 }
@@ -291,7 +291,7 @@ std::string write_brush(const Brush& brush) {
     Json extra = parse_object(brush.extra, "extra", kBrushKeys);
     Json notes = extra.value("footprints", Json::object());
     if (!notes.is_object())
-        throw Error("wrong-type", "footprints must be an object, not " + in_words(notes), "extra.footprints");
+        throw Error("wrong-type", "footprints must be an object, not " + describe(notes), "extra.footprints");
     extra.erase("footprints");
 
     std::string out = std::string("{\n  \"format\": \"") + kFormat + "\",\n  \"version\": 1,\n  \"name\": ";

@@ -26,17 +26,18 @@ struct PassRows {
     /// Returns the rows of one pass as a matrix. `left`: the rest of the array after parsing, which are rows of another
     /// shape.
     template <class Matrix>
-    Matrix of_pass(std::size_t pass, const Field& left, const std::string& shape) const;
+    Matrix rows_of_pass(std::size_t pass, const Field& left, const std::string& shape) const;
 };
 
 /// Follows the parser through the document: tracks the key path, refuses keys that appear twice in one object,
 /// and collects the rows of passes.
-class Watcher {
+class ParseObserver {
  public:
-    explicit Watcher(std::vector<PassRows>* tables) : tables_(tables) {}
+    explicit ParseObserver(std::vector<PassRows>* tables) : tables_(tables) {}
 
     Json parse(const std::string& text) {
-        return Json::parse(text, [this](int, Json::parse_event_t event, Json& parsed) { return see(event, parsed); });
+        return Json::parse(
+            text, [this](int, Json::parse_event_t event, Json& parsed) { return handle_event(event, parsed); });
     }
 
     std::string path() const {
@@ -60,7 +61,7 @@ class Watcher {
     };
 
     /// Handles an event of the parser. Returns false to drop the value just read from the document.
-    bool see(Json::parse_event_t event, const Json& parsed) {
+    bool handle_event(Json::parse_event_t event, const Json& parsed) {
         checkpoint();
         using Event = Json::parse_event_t;
         switch (event) {
@@ -120,20 +121,20 @@ class Watcher {
 };
 
 template <class Matrix>
-Matrix PassRows::of_pass(std::size_t pass, const Field& left, const std::string& shape) const {
+Matrix PassRows::rows_of_pass(std::size_t pass, const Field& left, const std::string& shape) const {
     static const std::vector<double> none;
     const std::vector<double>& flat = pass < values.size() ? values[pass] : none;
     const std::size_t count = flat.size() / width;
     if (!left.value.is_array()) {
         left.refuse("wrong-type",
-                    left.name() + " must be an array of rows of " + shape + ", not " + in_words(left.value));
+                    left.name() + " must be an array of rows of " + shape + ", not " + describe(left.value));
     }
     if (!left.value.empty()) {
         const Json& fault = left.value[0];
         const std::string path = left.path + "[" + std::to_string(count) + "]";
         if (fault.is_array() && fault.size() == width) require_numbers(fault, path);
         throw Error("wrong-type",
-                    "each row of " + left.name() + " must be " + shape + ", not " + in_words(fault) +
+                    "each row of " + left.name() + " must be " + shape + ", not " + describe(fault) +
                         (fault.is_array() ? " of " + std::to_string(fault.size()) : ""),
                     path);
     }
@@ -153,7 +154,7 @@ inline std::string line_and_column(const std::string& text, std::size_t byte) {
 
 /// Returns the reason from the library's message "...syntax error while parsing X - REASON; last read: '...'; expected
 /// Y".
-inline std::string reason_of(const std::string& message) {
+inline std::string parse_error_reason(const std::string& message) {
     const std::size_t dash = message.find(" - ");
     std::string reason = dash == std::string::npos ? "it breaks off" : message.substr(dash + 3);
     return reason.substr(0, reason.find("; last read"));
@@ -168,17 +169,17 @@ struct Document {
 /// Parses a text that must be one JSON object with this format, of version 1 up to the newest one.
 inline Document parse_versions(const std::string& text, const std::string& format, int newest,
                                std::vector<PassRows>* tables) {
-    Watcher watcher(tables);
+    ParseObserver observer(tables);
     Json document;
     try {
-        document = watcher.parse(text);
+        document = observer.parse(text);
     } catch (const Json::parse_error& fault) {
-        throw Error(
-            "not-json",
-            "the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " + reason_of(fault.what()),
-            watcher.path());
+        throw Error("not-json",
+                    "the file is not valid JSON at " + line_and_column(text, fault.byte) + ": " +
+                        parse_error_reason(fault.what()),
+                    observer.path());
     } catch (const Json::out_of_range& fault) {  // for example 1e400
-        throw Error("not-finite", "the file holds a number that is too large to be finite", watcher.path());
+        throw Error("not-finite", "the file holds a number that is too large to be finite", observer.path());
     }
     Fields fields(Field{std::move(document), ""});
     const Field found = fields.take("format");
@@ -204,10 +205,10 @@ inline Fields parse_document(const std::string& text, const std::string& format)
 
 /// Parses the JSON object in a value type's `extra` or `settings`, which must not have keys of the writer itself.
 inline Json parse_object(const std::string& text, const std::string& path, const std::set<std::string>& own_keys = {}) {
-    Watcher watcher(nullptr);
+    ParseObserver observer(nullptr);
     Json object;
     try {
-        object = watcher.parse(text);
+        object = observer.parse(text);
     } catch (const Json::exception&) {
         object = nullptr;
     }

@@ -28,7 +28,7 @@ struct Field {
     std::string name() const { return path.empty() ? "the file" : path.substr(path.find_last_of('.') + 1); }
 };
 
-inline std::string in_words(const Json& value) {
+inline std::string describe(const Json& value) {
     switch (value.type()) {
         case Json::value_t::null:
             return "null";
@@ -47,14 +47,14 @@ inline std::string in_words(const Json& value) {
 
 inline double number(const Field& field) {
     if (!field.value.is_number())
-        field.refuse("wrong-type", field.name() + " must be a number, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be a number, not " + describe(field.value));
     return field.value.get<double>();
 }
 
 inline int whole(const Field& field) {
     const double value = number(field);
     if (value != std::floor(value) || std::abs(value) > 1e9)
-        throw Error("wrong-type", field.name() + " must be a whole number, not " + in_words(field.value), field.path,
+        throw Error("wrong-type", field.name() + " must be a whole number, not " + describe(field.value), field.path,
                     value);
     return static_cast<int>(value);
 }
@@ -62,7 +62,7 @@ inline int whole(const Field& field) {
 inline double positive(const Field& field) {
     const double value = number(field);
     if (!(value > 0.0)) {
-        throw Error("out-of-range", field.name() + " must be greater than 0, not " + in_words(field.value), field.path,
+        throw Error("out-of-range", field.name() + " must be greater than 0, not " + describe(field.value), field.path,
                     value);
     }
     return value;
@@ -70,13 +70,13 @@ inline double positive(const Field& field) {
 
 inline std::string text(const Field& field) {
     if (!field.value.is_string())
-        field.refuse("wrong-type", field.name() + " must be a string, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be a string, not " + describe(field.value));
     return field.value.get<std::string>();
 }
 
-inline bool truth(const Field& field) {
+inline bool boolean_value(const Field& field) {
     if (!field.value.is_boolean()) {
-        field.refuse("wrong-type", field.name() + " must be true or false, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be true or false, not " + describe(field.value));
     }
     return field.value.get<bool>();
 }
@@ -84,7 +84,7 @@ inline bool truth(const Field& field) {
 /// Returns the members of an array as fields, with the index in their paths.
 inline std::vector<Field> members(Field field) {
     if (!field.value.is_array())
-        field.refuse("wrong-type", field.name() + " must be an array, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be an array, not " + describe(field.value));
     std::vector<Field> fields;
     fields.reserve(field.value.size());
     for (std::size_t i = 0; i < field.value.size(); ++i) {
@@ -103,7 +103,7 @@ inline void require_numbers(const Json& row, const std::string& path) {
 
 inline std::vector<double> numbers(const Field& field) {
     if (!field.value.is_array()) {
-        field.refuse("wrong-type", field.name() + " must be an array of numbers, not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be an array of numbers, not " + describe(field.value));
     }
     require_numbers(field.value, field.path);
     return field.value.get<std::vector<double>>();
@@ -125,28 +125,29 @@ inline std::array<double, 2> interval(const Field& field) {
 }
 
 /// Largest coordinate [mm]. Greater ones are damaged data; squares of smaller ones can be added without overflow.
-inline constexpr double kFarthestMm = 1e6;
+inline constexpr double kMaxFileCoordinateMm = 1e6;
 
 inline void require_coordinates(const Ring& ring, const std::string& path) {
     for (Eigen::Index i = 0; i < ring.rows(); ++i)
         for (const double mm : {ring(i, 0), ring(i, 1)})
-            if (!(std::abs(mm) <= kFarthestMm))
+            if (!(std::abs(mm) <= kMaxFileCoordinateMm))
                 throw Error("geometry-out-of-range",
                             "a coordinate of " + Json(mm).dump() + " mm is outside [-1e6, 1e6] mm",
-                            path + "[" + std::to_string(i) + "]", mm, std::array<double, 2>{-kFarthestMm, kFarthestMm});
+                            path + "[" + std::to_string(i) + "]", mm,
+                            std::array<double, 2>{-kMaxFileCoordinateMm, kMaxFileCoordinateMm});
 }
 
 /// Reads points [[x, y], ...].
 inline Ring points(const Field& field) {
     if (!field.value.is_array()) {
-        field.refuse("wrong-type", field.name() + " must be an array of points [x, y], not " + in_words(field.value));
+        field.refuse("wrong-type", field.name() + " must be an array of points [x, y], not " + describe(field.value));
     }
     Ring ring(static_cast<Eigen::Index>(field.value.size()), 2);
     for (std::size_t i = 0; i < field.value.size(); ++i) {
         const Json& point = field.value[i];
         const auto path = [&] { return field.path + "[" + std::to_string(i) + "]"; };
         if (!point.is_array() || point.size() != 2) {
-            throw Error("wrong-type", "a point must be two numbers [x, y], not " + in_words(point), path());
+            throw Error("wrong-type", "a point must be two numbers [x, y], not " + describe(point), path());
         }
         if (!point[0].is_number() || !point[1].is_number()) require_numbers(point, path());
         ring.row(static_cast<Eigen::Index>(i)) << point[0].get<double>(), point[1].get<double>();
@@ -160,7 +161,7 @@ class Fields {
  public:
     explicit Fields(Field object) : object_(std::move(object)) {
         if (!object_.value.is_object()) {
-            object_.refuse("wrong-type", object_.name() + " must be an object, not " + in_words(object_.value));
+            object_.refuse("wrong-type", object_.name() + " must be an object, not " + describe(object_.value));
         }
     }
 
@@ -178,7 +179,7 @@ class Fields {
         return std::move(*field);
     }
 
-    Json& rest() { return object_.value; }
+    Json& unknown_keys() { return object_.value; }
     std::string extra() const { return object_.value.dump(); }
 
  private:

@@ -31,7 +31,7 @@ inline void append_exact(std::string& out, double value, const char* what) {
 }
 
 /// Formats a number for a message.
-inline std::string in_words(double value) {
+inline std::string describe(double value) {
     if (!std::isfinite(value)) return "a number that is not finite";
     if (std::abs(value) >= 1e9) {  // up to three hundred digits would not help
         std::array<char, 32> digits;

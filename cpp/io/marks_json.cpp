@@ -13,7 +13,7 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/marks";
-constexpr int kLeaning = 2;  // the version with the lean of a tilted brush; other marks are written without it
+constexpr int kLeanVersion = 2;  // the version with the lean of a tilted brush; other marks are written without it
 
 /// Throws Error unless the rows of a pass are parallel. `path`: key path of the pass.
 void require_parallel(const PassMarks& pass, const std::string& path) {
@@ -36,20 +36,20 @@ void require_within(const std::vector<double>& values, const std::string& path, 
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!(values[i] >= least && values[i] <= greatest))
             throw Error("out-of-range",
-                        "the number " + in_words(values[i]) + " is outside [" + in_words(least) + ", " +
-                            in_words(greatest) + "]",
+                        "the number " + describe(values[i]) + " is outside [" + describe(least) + ", " +
+                            describe(greatest) + "]",
                         path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
 }
 
 /// Throws Error where the brush leans by more than a plan permits.
 void require_lean(const PassMarks& pass, const std::string& path) {
-    static const double most = std::tan((kMostTiltDeg + kRoundedTiltDeg) * std::acos(-1.0) / 180.0);
+    static const double most = std::tan((kMaxTiltDeg + kTiltRoundingDeg) * std::acos(-1.0) / 180.0);
     for (Eigen::Index i = 0; i < pass.lean_mm_per_mm.rows(); ++i) {
         const double lean = pass.lean_mm_per_mm.row(i).norm();
         if (!(lean <= most + 1e-6))  // values are written with seven decimals
             throw Error("out-of-range",
-                        "row " + std::to_string(i) + " of stroke " + pass.stroke + " leans by " + in_words(lean) +
-                            " mm per mm, outside [0, " + in_words(most) + "]",
+                        "row " + std::to_string(i) + " of stroke " + pass.stroke + " leans by " + describe(lean) +
+                            " mm per mm, outside [0, " + describe(most) + "]",
                         path + "[" + std::to_string(i) + "]", lean, std::array<double, 2>{0.0, most});
     }
 }
@@ -68,15 +68,15 @@ PassMarks read_pass(Field field, std::size_t index, const std::vector<PassRows>&
     PassMarks pass;
     pass.stroke = text(fields.take("stroke"));
     pass.pose = numbers(fields.take("pose"));
-    pass.contact_mm = tables[0].of_pass<Ring>(index, fields.take("contact_mm"), "two numbers [x, y]");
+    pass.contact_mm = tables[0].rows_of_pass<Ring>(index, fields.take("contact_mm"), "two numbers [x, y]");
     pass.heading_rad = numbers(fields.take("heading_rad"));
     pass.depth_mm = numbers(fields.take("depth_mm"));
-    for (const Field& value : members(fields.take("taut"))) pass.taut.push_back(truth(value) ? 1 : 0);
+    for (const Field& value : members(fields.take("taut"))) pass.taut.push_back(boolean_value(value) ? 1 : 0);
     if (const auto lean = fields.find("lean_mm_per_mm")) {
-        if (version < kLeaning)
+        if (version < kLeanVersion)
             lean->refuse("version-unknown", "lean_mm_per_mm of stroke " + pass.stroke + " needs version 2 of " +
                                                 kFormat + "; the file says version 1");
-        pass.lean_mm_per_mm = tables[1].of_pass<Ring>(index, *lean, "two numbers [x, y]");
+        pass.lean_mm_per_mm = tables[1].rows_of_pass<Ring>(index, *lean, "two numbers [x, y]");
     }
     if (const auto share = fields.find("width_share")) pass.width_share = numbers(*share);
     pass.outline_mm = read_rings(fields);
@@ -85,8 +85,8 @@ PassMarks read_pass(Field field, std::size_t index, const std::vector<PassRows>&
     require_coordinates(pass.contact_mm, path + ".contact_mm");
     require_lean(pass, path + ".lean_mm_per_mm");
     require_within(pass.pose, path + ".pose", 0.0, 1e9);
-    require_within(pass.heading_rad, path + ".heading_rad", -kFarthestMm, kFarthestMm);
-    require_within(pass.depth_mm, path + ".depth_mm", -kFarthestMm, kFarthestMm);
+    require_within(pass.heading_rad, path + ".heading_rad", -kMaxFileCoordinateMm, kMaxFileCoordinateMm);
+    require_within(pass.depth_mm, path + ".depth_mm", -kMaxFileCoordinateMm, kMaxFileCoordinateMm);
     require_within(pass.width_share, path + ".width_share", 0.0, 1.0);
     return pass;
 }
@@ -130,7 +130,7 @@ void append_pass(std::string& out, const PassMarks& pass, const std::string& pat
 
 Marks read_marks(const std::string& text) {
     std::vector<PassRows> tables{{"contact_mm", 2, {}}, {"lean_mm_per_mm", 2, {}}};
-    auto [fields, version] = parse_versions(text, kFormat, kLeaning, &tables);
+    auto [fields, version] = parse_versions(text, kFormat, kLeanVersion, &tables);
     Marks marks;
     marks.outline_mm = read_rings(fields);
     for (Field& pass : members(fields.take("passes"))) {
@@ -143,7 +143,7 @@ std::string write_marks(const Marks& marks) {
     const bool leans = std::any_of(marks.passes.begin(), marks.passes.end(),
                                    [](const PassMarks& pass) { return pass.lean_mm_per_mm.rows() > 0; });
     std::string out = std::string("{\n  \"format\": \"") + kFormat +
-                      "\",\n  \"version\": " + std::to_string(leans ? kLeaning : 1) + ",\n  \"outline_mm\": ";
+                      "\",\n  \"version\": " + std::to_string(leans ? kLeanVersion : 1) + ",\n  \"outline_mm\": ";
     append_rings(out, marks.outline_mm, 4);
     out += ",\n  \"passes\": [";
     for (std::size_t i = 0; i < marks.passes.size(); ++i) {

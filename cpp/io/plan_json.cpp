@@ -15,14 +15,14 @@ namespace brushsvg::io {
 namespace {
 
 constexpr const char* kFormat = "brushsvg/plan";
-constexpr int kTilting = 2;  // the version with the tilt of the brush; other plans are written without it
+constexpr int kTiltVersion = 2;  // the version with the tilt of the brush; other plans are written without it
 const std::set<std::string> kPlanKeys{"format", "version", "brush", "brush_sha256", "sheet_mm", "passes"};
 const std::set<std::string> kPassKeys{"stroke", "poses_mm", "arcs", "speed_mm_s", "layer",
                                       "colour", "settings", "load", "tool_axes"};
 
 /// Throws Error for a pass that cannot be read or written. `path`: key path of the pass; `slack_mm`: height above the
 /// paper that still counts as on the paper.
-void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
+void require_valid_pass(const Pass& pass, const std::string& path, double slack_mm) {
     const auto where = [&](Eigen::Index i) { return path + ".poses_mm[" + std::to_string(i) + "]"; };
     if (pass.poses_mm.rows() == 0)
         throw Error("pass-empty", "stroke " + pass.stroke.name() + " has no poses", path + ".poses_mm");
@@ -32,23 +32,23 @@ void require_sound(const Pass& pass, const std::string& path, double slack_mm) {
         };
         if (!pass.poses_mm.row(i).allFinite()) throw Error("not-finite", sentence("is not finite"), where(i));
         const double largest_mm = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
-        if (largest_mm > kLargestMm) {
+        if (largest_mm > kMaxCoordinateMm) {
             throw Error("geometry-out-of-range",
-                        sentence("has a coordinate of " + in_words(largest_mm) + " mm, outside [-1e6, 1e6] mm"),
-                        where(i), largest_mm, std::array<double, 2>{-kLargestMm, kLargestMm});
+                        sentence("has a coordinate of " + describe(largest_mm) + " mm, outside [-1e6, 1e6] mm"),
+                        where(i), largest_mm, std::array<double, 2>{-kMaxCoordinateMm, kMaxCoordinateMm});
         }
         const double z_mm = pass.poses_mm(i, 2);
         if (z_mm > slack_mm) {
             throw Error("above-paper",
-                        sentence("has z = " + in_words(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
+                        sentence("has z = " + describe(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
                         z_mm, std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
         }
     }
-    if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kLargestMm)) {
+    if (!(pass.speed_mm_s > 0.0 && pass.speed_mm_s <= kMaxCoordinateMm)) {
         throw Error("out-of-range",
                     "speed_mm_s of stroke " + pass.stroke.name() + " must be " +
-                        (pass.speed_mm_s > kLargestMm ? "at most 1e6" : "greater than 0") + ", not " +
-                        in_words(pass.speed_mm_s),
+                        (pass.speed_mm_s > kMaxCoordinateMm ? "at most 1e6" : "greater than 0") + ", not " +
+                        describe(pass.speed_mm_s),
                     path + ".speed_mm_s", pass.speed_mm_s);
     }
     if (pass.load < 0) {
@@ -71,7 +71,7 @@ Arc read_arc(const Field& field) {
     for (const int k : {0, 1, 4}) {
         if (row[k] == std::floor(row[k]) && std::abs(row[k]) <= 1e9) continue;
         throw Error("wrong-type",
-                    "pose numbers and the direction of an arc must be whole numbers, not " + in_words(row[k]),
+                    "pose numbers and the direction of an arc must be whole numbers, not " + describe(row[k]),
                     field.path + "[" + std::to_string(k) + "]", row[k]);
     }
     return {static_cast<std::int64_t>(row[0]),
@@ -82,7 +82,7 @@ Arc read_arc(const Field& field) {
 
 void read_into(std::optional<std::string>& value, const Field& field) { value = text(field); }
 void read_into(std::optional<int>& value, const Field& field) { value = whole(field); }
-void read_into(std::optional<bool>& value, const Field& field) { value = truth(field); }
+void read_into(std::optional<bool>& value, const Field& field) { value = boolean_value(field); }
 void read_into(std::optional<double>& value, const Field& field) { value = number(field); }
 
 Settings read_settings(Field field) {
@@ -97,16 +97,16 @@ Settings read_settings(Field field) {
 
 /// Appends the settings, with unknown keys after the known ones.
 void append_settings(std::string& out, const Settings& settings, const std::string& path) {
-    Json said = Json::object();
+    Json json = Json::object();
     std::set<std::string> own_keys;
     each_setting(settings, [&](const char* key, const auto& value) {
         own_keys.insert(key);
-        if (value) said[key] = *value;
+        if (value) json[key] = *value;
     });
-    for (const auto& [key, value] : said.items())
+    for (const auto& [key, value] : json.items())
         if (value.is_number()) refuse_not_finite(value.get<double>(), path + "." + key);
-    said.update(parse_object(settings.extra, path + ".extra", own_keys));
-    append_json(out, said, path);
+    json.update(parse_object(settings.extra, path + ".extra", own_keys));
+    append_json(out, json, path);
 }
 
 Pass read_pass(Field field, std::size_t index, const std::vector<PassRows>& tables, int version) {
@@ -114,12 +114,12 @@ Pass read_pass(Field field, std::size_t index, const std::vector<PassRows>& tabl
     Fields fields(std::move(field));
     Pass pass;
     pass.stroke = text(fields.take("stroke"));
-    pass.poses_mm = tables[0].of_pass<Poses>(index, fields.take("poses_mm"), "three numbers [x, y, z]");
+    pass.poses_mm = tables[0].rows_of_pass<Poses>(index, fields.take("poses_mm"), "three numbers [x, y, z]");
     if (auto axes = fields.find("tool_axes")) {
-        if (version < kTilting)
+        if (version < kTiltVersion)
             axes->refuse("version-unknown", "tool_axes of stroke " + pass.stroke.name() + " needs version 2 of " +
                                                 kFormat + "; the file says version 1");
-        pass.tool_axes = tables[1].of_pass<Poses>(index, *axes, "three numbers [x, y, z]");
+        pass.tool_axes = tables[1].rows_of_pass<Poses>(index, *axes, "three numbers [x, y, z]");
     }
     if (auto arcs = fields.find("arcs"))
         for (const Field& arc : members(std::move(*arcs))) pass.arcs.push_back(read_arc(arc));
@@ -129,12 +129,12 @@ Pass read_pass(Field field, std::size_t index, const std::vector<PassRows>& tabl
     if (auto settings = fields.find("settings")) pass.settings = read_settings(std::move(*settings));
     if (const auto load = fields.find("load")) pass.load = whole(*load);
     pass.extra = fields.extra();
-    require_sound(pass, path, 0.0);
+    require_valid_pass(pass, path, 0.0);
     return pass;
 }
 
 void append_pass(std::string& out, const Pass& pass, const std::string& path) {
-    require_sound(pass, path, 0.5e-7);  // heights that are written as 0
+    require_valid_pass(pass, path, 0.5e-7);  // heights that are written as 0
     out += "    {\"stroke\": ";
     append_string(out, pass.stroke.name(), path + ".stroke");
     out += ", \"speed_mm_s\": ";
@@ -171,7 +171,7 @@ void append_pass(std::string& out, const Pass& pass, const std::string& path) {
 
 Plan read_plan(const std::string& text) {
     std::vector<PassRows> tables{{"poses_mm", 3, {}}, {"tool_axes", 3, {}}};
-    auto [fields, version] = parse_versions(text, kFormat, kTilting, &tables);
+    auto [fields, version] = parse_versions(text, kFormat, kTiltVersion, &tables);
     Plan plan;
     plan.brush = io::text(fields.take("brush"));
     if (const auto digest = fields.find("brush_sha256")) plan.brush_sha256 = io::text(*digest);
@@ -188,7 +188,7 @@ std::string write_plan(const Plan& plan) {
     const bool tilts =
         std::any_of(plan.passes.begin(), plan.passes.end(), [](const Pass& pass) { return pass.tool_axes.rows() > 0; });
     std::string out = std::string("{\n  \"format\": \"") + kFormat +
-                      "\",\n  \"version\": " + std::to_string(tilts ? kTilting : 1) + ",\n  \"brush\": ";
+                      "\",\n  \"version\": " + std::to_string(tilts ? kTiltVersion : 1) + ",\n  \"brush\": ";
     append_string(out, plan.brush, "brush");
     out += ",\n  \"brush_sha256\": ";
     append_string(out, plan.brush_sha256, "brush_sha256");

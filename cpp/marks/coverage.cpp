@@ -15,12 +15,12 @@
 namespace brushsvg {
 namespace {
 
-constexpr std::size_t kPassesAtOnce = 32;  // least number for one processor: fewer are not worth a thread
-constexpr double kLeastArea = 1e-6;        // mm^2: a piece may turn over by this much because of rounding
+constexpr std::size_t kMinPassesPerThread = 32;  // least number for one processor: fewer are not worth a thread
+constexpr double kMaxNegativeAreaMm2 = 1e-6;     // mm^2: a piece may turn over by this much because of rounding
 
 void require_finite(const Rings& rings) {
     for (const Ring& ring : rings)
-        if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm))
+        if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMaxPaintedCoordinateMm))
             throw Error("geometry-out-of-range", "a ring has a coordinate that is not finite, or beyond 1e7 mm");
 }
 
@@ -28,18 +28,18 @@ void require_finite(const Rings& rings) {
 
 Coverage coverage(const Marks& marks, const Brush& brush, const Window& window, double px_per_mm) {
     const std::size_t count = marks.passes.size();
-    const std::size_t parts = std::clamp<std::size_t>(count / kPassesAtOnce, 1, processors());
+    const std::size_t parts = std::clamp<std::size_t>(count / kMinPassesPerThread, 1, processor_count());
     std::vector<Rasterizer> rasters(parts, Rasterizer(window, px_per_mm));
-    on_all_processors(0, parts, [&](std::size_t part) {
+    parallel_for(0, parts, [&](std::size_t part) {
         Rasterizer& raster = rasters[part];
         for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i)
             sweep(
                 marks.passes[i], brush, [&](const Ring& a, const Ring& b) { raster.convex_pair(a, b); },
                 [&](const Ring& ring) { raster.polygon({ring}); },
                 [&](const Ring& piece) { raster.convex_pair(piece, piece); },
-                [&](const auto& low, const auto& high) { return raster.is_beside(low, high); });
+                [&](const auto& low, const auto& high) { return raster.is_outside(low, high); });
     });
-    for (std::size_t part = 1; part < parts; ++part) rasters[0].absorb(rasters[part]);
+    for (std::size_t part = 1; part < parts; ++part) rasters[0].add_shapes_of(rasters[part]);
     return rasters[0].coverage();
 }
 
@@ -107,7 +107,7 @@ Coverage coverage_of_pieces(const Rings& convex, const Window& window, double px
     Rasterizer raster(window, px_per_mm);
     for (const Ring& piece : convex) {
         if (piece.rows() == 0) continue;
-        if (const double mm2 = signed_area(piece); mm2 < -kLeastArea)
+        if (const double mm2 = signed_area(piece); mm2 < -kMaxNegativeAreaMm2)
             throw Error("outline-clockwise", "a piece runs clockwise: convex pieces go counter-clockwise", "", mm2);
         raster.convex_pair(piece, piece);
     }

@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kRoundedMm = 1e-9;  ///< rounding of depths
-constexpr double kSamePose = 1e-9;   ///< rounding of shares of a move
+constexpr double kDepthRoundingMm = 1e-9;  ///< rounding of depths
+constexpr double kPoseRounding = 1e-9;     ///< rounding of shares of a move
 
 /// The TCP's motion for walk_pass(), with the rows of marks as its poses.
 struct RowMotion {
@@ -25,12 +25,12 @@ struct RowMotion {
     RowMotion(const Pass& pass, const PassMarks& of) : marks(of), turn_rad(of.pose.size(), 0.0) {
         if (pass.arcs.empty()) return;
         auto arc = pass.arcs.begin();
-        const double last = double(pass.poses_mm.rows() - 1) + kSamePose;
+        const double last = double(pass.poses_mm.rows() - 1) + kPoseRounding;
         for (Index i = 0; i + 1 < count(); ++i) {
             const double from = marks.pose[std::size_t(i)], to = marks.pose[std::size_t(i) + 1];
-            if (!(from >= 0.0 && from <= to + kSamePose && to <= last))
+            if (!(from >= 0.0 && from <= to + kPoseRounding && to <= last))
                 throw Error("not-ascending", "rows of marks do not follow the poses of the pass", marks.stroke, to);
-            const Index pose = std::min(Index(from + kSamePose), pass.poses_mm.rows() - 2);
+            const Index pose = std::min(Index(from + kPoseRounding), pass.poses_mm.rows() - 2);
             while (arc != pass.arcs.end() && arc->last <= pose) ++arc;
             if (arc == pass.arcs.end() || arc->first > pose || from >= to || tcp(i) == tcp(i + 1)) continue;
             const Eigen::Vector2d a = pass.poses_mm.row(pose).head<2>(), b = pass.poses_mm.row(pose + 1).head<2>();
@@ -91,14 +91,14 @@ class Follower {
     bool moved_ = false, moved_once_ = false;
 };
 
-void refuse_unusable(const Pass& pass, const PassMarks& marks, const LagLaw<double>& lag) {
+void require_usable_rows(const Pass& pass, const PassMarks& marks, const LagLaw<double>& lag) {
     refuse_tilted(pass, "another lag is followed with a brush held upright");
     const std::size_t rows = marks.pose.size();
     if (std::size_t(marks.tcp_mm.rows()) != rows || marks.depth_mm.size() != rows)
         throw Error("sizes-differ", "rows of marks are not parallel", marks.stroke);
     const double hi = lag.pieces.back().hi;
     for (const double depth : marks.depth_mm) {
-        if (depth <= hi + kRoundedMm) continue;
+        if (depth <= hi + kDepthRoundingMm) continue;
         char text[120];
         std::snprintf(text, sizeof text, "depth %.3f mm is outside the range [0, %.1f] mm of the lag", depth, hi);
         throw Error("depth-out-of-range", text, marks.stroke, depth, std::array<double, 2>{0.0, hi});
@@ -108,7 +108,7 @@ void refuse_unusable(const Pass& pass, const PassMarks& marks, const LagLaw<doub
 }  // namespace
 
 FollowedRows follow_lag(const Pass& pass, const PassMarks& marks, const LagLaw<double>& lag) {
-    refuse_unusable(pass, marks, lag);
+    require_usable_rows(pass, marks, lag);
     const RowMotion motion(pass, marks);
     Follower follower(lag, motion.count());
     if (motion.count() == 0) return follower.rows();

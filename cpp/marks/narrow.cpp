@@ -7,17 +7,17 @@
 
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 namespace brushsvg {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 // Share of the width between two rows: linear interpolation is then off by 0.03 % of the width.
-constexpr double kFinest = 0.05;
+constexpr double kMaxWidthStep = 0.05;
 
 /// Rows of marks, collected one by one.
-struct Rows {
+struct RowCollector {
     const PassMarks& from;
     PassMarks to;
     std::vector<Eigen::RowVector2d> tcp, contact, lean;
@@ -45,7 +45,7 @@ struct Rows {
         to.width_share.push_back(share);
     }
 
-    PassMarks taken() {
+    PassMarks finish() {
         to.stroke = from.stroke;
         to.outline_mm = from.outline_mm;
         for (auto [points, rows] :
@@ -67,14 +67,14 @@ double narrow_pass(PassMarks& marks, const Paint& paint, const std::vector<doubl
         if (!(dips_mm[k] >= 0.0) || (k > 0 && !(dips_mm[k] > dips_mm[k - 1])))
             throw Error("not-ascending", "ways at which paint was fetched must ascend from 0", marks.stroke,
                         dips_mm[k]);
-    Rows rows{marks, {}, {}, {}, {}};
+    RowCollector rows{marks, {}, {}, {}, {}};
     std::size_t dip = 0;
     double way = 0.0, dipped_at = -before_mm;
     for (std::size_t i = 0; i < marks.pose.size(); ++i) {
         const bool painted = i > 0 && marks.depth_mm[i - 1] >= 0.0 && marks.depth_mm[i] >= 0.0;
         const Eigen::Index r = Eigen::Index(i);
         const double step = painted ? (marks.tcp_mm.row(r) - marks.tcp_mm.row(r - 1)).norm() : 0.0;
-        const int parts = std::max(1, int(std::ceil(1e-3 * paint.narrows_per_m * step / kFinest)));
+        const int parts = std::max(1, int(std::ceil(1e-3 * paint.narrows_per_m * step / kMaxWidthStep)));
         for (int k = 1; k <= parts; ++k) {
             checkpoint();
             const double to = way + step * k / parts;
@@ -91,7 +91,7 @@ double narrow_pass(PassMarks& marks, const Paint& paint, const std::vector<doubl
         }
         way += step;
     }
-    marks = rows.taken();
+    marks = rows.finish();
     return way - dipped_at;
 }
 

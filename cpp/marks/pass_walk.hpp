@@ -18,7 +18,7 @@ struct AboveStretch {
 
 /// The TCP's path as it is commanded in a pass. deeper_mm: how much deeper than -z the brush is pressed.
 template <class T>
-struct CommandedWay {
+struct CommandedPath {
     const Poses& poses;
     const std::vector<Arc>& arcs;
     T deeper_mm;
@@ -33,7 +33,7 @@ struct CommandedWay {
 };
 
 /// Walk along the TCP's path of a pass, stretch by stretch, with any scalar type: above the paper, set down, or on the
-/// paper. Way: a CommandedWay, or another type with places, depths and arcs. `i` is the pose before a stretch. Shares
+/// paper. Way: a CommandedPath, or another type with places, depths and arcs. `i` is the pose before a stretch. Shares
 /// refer to the move from there to the next pose. These functions are called:
 ///
 ///     to.above(i, stretch, end, touches)  above the paper, up to `end` of the move; whether it is set down there

@@ -9,17 +9,17 @@
 #include "base/parallel.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 namespace brushsvg {
 namespace {
 
 // a larger picture would not fit into most memories; finer pixels show no more of the paint
-constexpr double kMostPixels = 4e8;
-constexpr std::array<double, 2> kPxPerMm{1e-6, 1e6};
+constexpr double kMaxPixels = 4e8;
+constexpr std::array<double, 2> kPxPerMmRange{1e-6, 1e6};
 // rounding error of sums in single precision where nothing is painted
-constexpr float kRounding = 1e-6f;
-constexpr Eigen::Index kPixelsAtOnce = 1 << 18;  // size of a part of a picture that one processor makes
+constexpr float kRoundingShare = 1e-6f;
+constexpr Eigen::Index kPixelsPerPart = 1 << 18;  // size of a part of a picture that one processor makes
 
 }  // namespace
 
@@ -29,15 +29,15 @@ std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm)
         std::snprintf(text, sizeof text, pattern, numbers...);
         throw Error("picture-size", text);
     };
-    if (!(px_per_mm >= kPxPerMm[0] && px_per_mm <= kPxPerMm[1]))
-        refuse("the scale of the picture, %g px/mm, is outside the range [%g, %g] px/mm", px_per_mm, kPxPerMm[0],
-               kPxPerMm[1]);
-    if (!(std::abs(window.x_mm) <= kFarthestPaintedMm && std::abs(window.y_mm) <= kFarthestPaintedMm))
+    if (!(px_per_mm >= kPxPerMmRange[0] && px_per_mm <= kPxPerMmRange[1]))
+        refuse("the scale of the picture, %g px/mm, is outside the range [%g, %g] px/mm", px_per_mm, kPxPerMmRange[0],
+               kPxPerMmRange[1]);
+    if (!(std::abs(window.x_mm) <= kMaxPaintedCoordinateMm && std::abs(window.y_mm) <= kMaxPaintedCoordinateMm))
         refuse("the corner of the picture, (%g, %g) mm, is outside the range [-%g, %g] mm", window.x_mm, window.y_mm,
-               kFarthestPaintedMm, kFarthestPaintedMm);
+               kMaxPaintedCoordinateMm, kMaxPaintedCoordinateMm);
     const double w = std::ceil(window.width_mm * px_per_mm - 1e-9), h = std::ceil(window.height_mm * px_per_mm - 1e-9);
-    if (!(w >= 1.0 && h >= 1.0 && w * h <= kMostPixels))
-        refuse("the picture has %.10g x %.10g px, outside the range of 1 x 1 to %g px in all", w, h, kMostPixels);
+    if (!(w >= 1.0 && h >= 1.0 && w * h <= kMaxPixels))
+        refuse("the picture has %.10g x %.10g px, outside the range of 1 x 1 to %g px in all", w, h, kMaxPixels);
     return {Eigen::Index(w), Eigen::Index(h)};
 }
 
@@ -49,15 +49,15 @@ Rasterizer::Rasterizer(const Window& window, double px_per_mm) : window_(window)
     hi_.assign(height_ * kLinesPerPixel, -std::numeric_limits<float>::infinity());
 }
 
-bool Rasterizer::is_beside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const {
+bool Rasterizer::is_outside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const {
     return to_x(high.x()) <= 0.0 || to_x(low.x()) >= double(width_) || to_y(low.y()) <= 0.0 ||
            to_y(high.y()) >= double(lines());
 }
 
 void Rasterizer::convex_pair(const Ring& a, const Ring& b) {
     checkpoint(5);
-    if (is_beside(a.colwise().minCoeff().cwiseMin(b.colwise().minCoeff()),
-                  a.colwise().maxCoeff().cwiseMax(b.colwise().maxCoeff())))
+    if (is_outside(a.colwise().minCoeff().cwiseMin(b.colwise().minCoeff()),
+                   a.colwise().maxCoeff().cwiseMax(b.colwise().maxCoeff())))
         return;
     if (&a == &b) {
         chains(a, nullptr);
@@ -95,9 +95,9 @@ void Rasterizer::polygon(const Rings& rings) {
     }
 }
 
-void Rasterizer::absorb(const Rasterizer& other) {
+void Rasterizer::add_shapes_of(const Rasterizer& other) {
     for (int line = 0; line < lines(); ++line) add(line, other.lo_[line], other.hi_[line]);
-    more_.insert(more_.end(), other.more_.begin(), other.more_.end());
+    extra_spans_.insert(extra_spans_.end(), other.extra_spans_.begin(), other.extra_spans_.end());
     parts_.insert(parts_.end(), other.parts_.begin(), other.parts_.end());
 }
 
@@ -105,11 +105,11 @@ Coverage Rasterizer::coverage() {
     const auto by_place = [](const Span& a, const Span& b) {
         return a.line < b.line || (a.line == b.line && a.lo < b.lo);
     };
-    std::sort(more_.begin(), more_.end(), by_place);
+    std::sort(extra_spans_.begin(), extra_spans_.end(), by_place);
     std::sort(parts_.begin(), parts_.end(), by_place);
     Coverage out(height_, width_);
-    const Eigen::Index at_once = std::max<Eigen::Index>(1, kPixelsAtOnce / width_);
-    on_all_processors(0, std::size_t((height_ + at_once - 1) / at_once), [&](std::size_t k) {
+    const Eigen::Index at_once = std::max<Eigen::Index>(1, kPixelsPerPart / width_);
+    parallel_for(0, std::size_t((height_ + at_once - 1) / at_once), [&](std::size_t k) {
         rows(Eigen::Index(k) * at_once, std::min(height_, Eigen::Index(k + 1) * at_once), out);
     });
     return out;
@@ -123,7 +123,7 @@ void Rasterizer::rows(Eigen::Index first, Eigen::Index last, Coverage& out) cons
         const int line = int(first) * kLinesPerPixel;
         return std::size_t(std::lower_bound(spans.begin(), spans.end(), line, is_above) - spans.begin());
     };
-    std::size_t next = begin_of(more_), next_part = begin_of(parts_);
+    std::size_t next = begin_of(extra_spans_), next_part = begin_of(parts_);
     std::vector<Span> here, parts;
     for (Eigen::Index row = first; row < last; ++row) {
         checkpoint(20);
@@ -132,7 +132,8 @@ void Rasterizer::rows(Eigen::Index first, Eigen::Index last, Coverage& out) cons
             here.clear();
             parts.clear();
             if (lo_[line] < hi_[line]) here.push_back({line, lo_[line], hi_[line]});
-            for (; next < more_.size() && more_[next].line == line; ++next) here.push_back(more_[next]);
+            for (; next < extra_spans_.size() && extra_spans_[next].line == line; ++next)
+                here.push_back(extra_spans_[next]);
             for (; next_part < parts_.size() && parts_[next_part].line == line; ++next_part)
                 parts.push_back(parts_[next_part]);
             merge(here);
@@ -149,7 +150,7 @@ void Rasterizer::rows(Eigen::Index first, Eigen::Index last, Coverage& out) cons
         float* const pixels = out.row(row).data();
         Eigen::Index x = 0;
         const auto fill_until = [&](Eigen::Index end) {
-            std::fill(pixels + x, pixels + end, sum > kRounding ? std::min(1.0f, sum) : 0.0f);
+            std::fill(pixels + x, pixels + end, sum > kRoundingShare ? std::min(1.0f, sum) : 0.0f);
             x = end;
         };
         for (const Eigen::Index change : changes) {
@@ -206,7 +207,7 @@ void Rasterizer::add(int line, float lo, float hi) {
         lo_[line] = std::min(lo_[line], lo);
         hi_[line] = std::max(hi_[line], hi);
     } else {
-        if (lo_[line] < hi_[line]) more_.push_back({line, lo_[line], hi_[line]});
+        if (lo_[line] < hi_[line]) extra_spans_.push_back({line, lo_[line], hi_[line]});
         lo_[line] = lo;
         hi_[line] = hi;
     }

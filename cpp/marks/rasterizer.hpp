@@ -20,7 +20,7 @@ class Rasterizer {
 
     /// Return whether a box is on one side of the picture, so that none of it shows. The box is given by its lower left
     /// and its upper right corner.
-    bool is_beside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const;
+    bool is_outside(const Eigen::RowVector2d& low, const Eigen::RowVector2d& high) const;
 
     /// Add the hull of two convex counter-clockwise rings. Pass one ring twice to add it alone.
     void convex_pair(const Ring& a, const Ring& b);
@@ -29,7 +29,7 @@ class Rasterizer {
     void polygon(const Rings& rings);
 
     /// Add all shapes of another rasterizer of the same picture. The order of shapes does not matter.
-    void absorb(const Rasterizer& other);
+    void add_shapes_of(const Rasterizer& other);
 
     /// Return the coverage. Runs on all processors if the picture is large.
     Coverage coverage();
@@ -93,7 +93,7 @@ class Rasterizer {
     double scale_;
     Eigen::Index width_ = 0, height_ = 0;
     std::vector<float> lo_, hi_;
-    std::vector<Span> more_, parts_;
+    std::vector<Span> extra_spans_, parts_;
     std::vector<Point> left_a_, right_a_, left_b_, right_b_, left_, right_;
     std::vector<float> lo_here_, hi_here_;
 };

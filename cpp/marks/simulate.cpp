@@ -10,13 +10,13 @@
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
 #include "marks/pass_walk.hpp"
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 namespace brushsvg {
 namespace {
 
 /// Most rows of a pass. Real passes have one to twenty rows per pose; landings have some hundred.
-constexpr std::size_t kMostRows = 1000000, kMostRowsPerPose = 100;
+constexpr std::size_t kMaxRows = 1000000, kMaxRowsPerPose = 100;
 
 /// Extents of the footprint by depth, for the sampling: how far it reaches forward and to the sides.
 struct Extents {
@@ -46,10 +46,10 @@ struct Extents {
 };
 
 /// Poses nearer to each other on the paper than this [mm] are one place. Files are rounded to 1e-7 mm.
-constexpr double kOnTheSpotMm = 1e-6;
+constexpr double kMaxOnTheSpotMm = 1e-6;
 
 /// Tolerance of a pose index: rows at a pose have its index, up to the rounding of shares of a move.
-constexpr double kSamePose = 1e-9;
+constexpr double kPoseRounding = 1e-9;
 
 /// The path of the place where the brush's axis meets the paper, q + d s. The patch trails this place, which moves
 /// straight from pose to pose. An upright brush's axis is over its tip, so its path is that of the poses.
@@ -57,11 +57,11 @@ constexpr double kSamePose = 1e-9;
 /// While its tip goes straight down on the paper, or up from it, a leaning brush's axis wanders over the paper. The
 /// patch trails the axis from where it is at the deepest. Otherwise bristles that are pressed down would fall the way
 /// that the brush leans, even if it leans only a little. Real strokes (benchmarks/real_paint.py --tilt) fit worse so.
-struct AxisWay {
+struct AxisPath {
     Ring lean{0, 2};  ///< per pose, s = (a_x, a_y) / a_z of the tool axis a; empty: upright
     Poses poses_mm;
 
-    explicit AxisWay(const Pass& pass) : poses_mm(pass.poses_mm) {
+    explicit AxisPath(const Pass& pass) : poses_mm(pass.poses_mm) {
         if (pass.poses_mm.rows() == 0 || !is_tilted(pass)) return;
         const Poses& tip = pass.poses_mm;
         const Eigen::Index last = tip.rows() - 1;
@@ -69,9 +69,9 @@ struct AxisWay {
         const Ring axis = tip.leftCols<2>().array() - lean.array().colwise() * tip.col(2).array();
         poses_mm.leftCols<2>() = axis;
         // direction from pose i to the next one: 1 up on the spot, -1 down on the spot, 0 otherwise
-        const auto goes = [&](Eigen::Index i) {
+        const auto vertical_direction = [&](Eigen::Index i) {
             const Eigen::RowVector3d way = tip.row(i + 1) - tip.row(i);
-            return way.head<2>().norm() > kOnTheSpotMm ? 0 : (way.z() > 0.0) - (way.z() < 0.0);
+            return way.head<2>().norm() > kMaxOnTheSpotMm ? 0 : (way.z() > 0.0) - (way.z() < 0.0);
         };
         const auto hold = [&](Eigen::Index from, Eigen::Index to, Eigen::Index deepest) {
             for (Eigen::Index i = from; i <= to; ++i) poses_mm.row(i).head<2>() = axis.row(deepest);
@@ -79,12 +79,12 @@ struct AxisWay {
         for (Eigen::Index i = 0; i <= last; ++i) {
             Eigen::Index deepest = i;
             if (tip(i, 2) >= 0.0 || i == last) {
-                while (deepest > 0 && goes(deepest - 1) > 0) --deepest;
+                while (deepest > 0 && vertical_direction(deepest - 1) > 0) --deepest;
                 hold(deepest, i, deepest);
             }
             deepest = i;
             if (tip(i, 2) >= 0.0 || i == 0) {
-                while (deepest < last && goes(deepest) < 0) ++deepest;
+                while (deepest < last && vertical_direction(deepest) < 0) ++deepest;
                 if (deepest > i) hold(i, deepest, deepest);
             }
         }
@@ -94,7 +94,7 @@ struct AxisWay {
 class Tracer {
  public:
     Tracer(const Brush& brush, double tolerance_mm, bool for_outlines, const Window* window, const Pass& pass,
-           const AxisWay& way, PassMarks& out)
+           const AxisPath& way, PassMarks& out)
         : brush_(brush),
           window_(window),
           lean_(way.lean),
@@ -102,7 +102,7 @@ class Tracer {
           extents_(brush),
           tolerance_(tolerance_mm),
           for_outlines_(for_outlines),
-          most_rows_(kMostRows + kMostRowsPerPose * std::size_t(pass.poses_mm.rows())),
+          max_rows_(kMaxRows + kMaxRowsPerPose * std::size_t(pass.poses_mm.rows())),
           poses_mm_(pass.poses_mm),
           out_(out) {
         kinks_ = extents_.depth;
@@ -114,12 +114,12 @@ class Tracer {
     bool is_done() const { return false; }
     void begin_above(const Vec2<double>& q, double height) {
         place(0.0, 0.0);
-        lifted(q, height, 0.0);
+        add_lifted_row(q, height, 0.0);
     }
     void above(Eigen::Index i, const AboveStretch<double>& stretch, double, bool touches) {
         if (touches) return;
         place(double(i), 1.0);
-        lifted(stretch.to, -stretch.depth_to, 1.0);
+        add_lifted_row(stretch.to, -stretch.depth_to, 1.0);
     }
     void touch(Eigen::Index i, double at, const Vec2<double>& q) {
         place(double(i) + at, 0.0);
@@ -157,7 +157,7 @@ class Tracer {
         pose_ = pose;
         scale_ = scale;
     }
-    void lifted(const Vec2<double>& q, double z, double t) {
+    void add_lifted_row(const Vec2<double>& q, double z, double t) {
         LagState<double> away = state_;
         away.contact = q;
         away.taut = false;
@@ -193,10 +193,10 @@ class Tracer {
             now.state.contact = m.tcp(t);
             if (m.length > 0.0) now.state.heading = m.direction(t);
         } else {
-            now.state = within_phase(piece, m, start, begin, t);
+            now.state = state_in_phase(piece, m, start, begin, t);
         }
         now.depth = m.depth(t);
-        now.pull = pull_of(now.state, m.tcp(t), now.depth);
+        now.pull = pull_at(now.state, m.tcp(t), now.depth);
         const auto [front, half] = extents_.at(now.depth);
         const Vec2<double> u = now.state.heading, n(-u.y(), u.x()), tip = tip_of(now);
         now.corners << tip + half * n, tip - half * n, tip + front * u + half * n, tip + front * u - half * n,
@@ -213,7 +213,7 @@ class Tracer {
 
     template <class Piece, class Motion>
     void sample(const Piece& piece, const Motion& m, const LagState<double>& start, double begin, double end) {
-        if (law_.rigid && !moved_) take_heading(start);
+        if (law_.rigid && !moved_) apply_heading(start);
         // a row for the event that begins this phase, or for a pen's turn
         if (begin > 0.0 || tightens_at_once(start) || turns_at_once(start, m.depth(begin)))
             row(m.tcp(begin), m.depth(begin), start, begin);
@@ -232,7 +232,7 @@ class Tracer {
         double ta = begin;
         for (double tb : ends) {
             Instant b = instant(piece, m, start, begin, tb);
-            if (!is_beside(a, b, m)) split(piece, m, start, begin, ta, a, tb, b, 0);
+            if (!is_outside(a, b, m)) split(piece, m, start, begin, ta, a, tb, b, 0);
             if (tb < end) row(m.tcp(tb), m.depth(tb), b.state, tb);
             a = std::move(b);
             ta = tb;
@@ -242,7 +242,7 @@ class Tracer {
     /// Return whether a footprint stays on one side of the window on its way from one instant to the next. At both
     /// instants it is within its corners. In between, no corner is off by more than twice the length of the way.
     template <class Motion>
-    bool is_beside(const Instant& a, const Instant& b, const Motion& m) const {
+    bool is_outside(const Instant& a, const Instant& b, const Motion& m) const {
         if (!window_ || !moved_) return false;
         const double about = 2.0 * (m.length + std::abs(m.depth_by) + tolerance_);
         const Vec2<double> low = a.corners.rowwise().minCoeff().cwiseMin(b.corners.rowwise().minCoeff()),
@@ -308,10 +308,10 @@ class Tracer {
         return false;
     }
     const Columns& outline_of(const Instant& now) const {
-        if (now.outline.rows() == 0) now.outline = placed(now);
+        if (now.outline.rows() == 0) now.outline = place_outline(now);
         return now.outline;
     }
-    Ring placed(const Instant& now) const {
+    Ring place_outline(const Instant& now) const {
         const Vec2<double> u = now.state.heading, tip = tip_of(now);
         Eigen::Matrix2d turn;
         turn << u.x(), u.y(), -u.y(), u.x();
@@ -322,14 +322,14 @@ class Tracer {
     }
 
     /// Return r'/r, which is 1 when taut.
-    double pull_of(const LagState<double>& state, const Vec2<double>& q, double depth) const {
+    double pull_at(const LagState<double>& state, const Vec2<double>& q, double depth) const {
         const double r = law_.at(depth);
         return state.taut || law_.rigid || r <= 0.0 ? 1.0 : std::min(1.0, (q - state.contact).norm() / r);
     }
 
     /// Give the first known heading to all rows since touch-down, or since the pass began. A pen is taut before it has
     /// a heading.
-    void take_heading(const LagState<double>& state) {
+    void apply_heading(const LagState<double>& state) {
         if (!moved_ && (state.heading_known || (state.taut && !law_.rigid))) {
             std::fill(out_.heading_rad.begin() + first_row_, out_.heading_rad.end(),
                       std::atan2(state.heading.y(), state.heading.x()));
@@ -339,15 +339,15 @@ class Tracer {
     }
 
     void row(const Vec2<double>& q, double depth, const LagState<double>& state, double t) {
-        take_heading(state);
-        add(t, q, depth, state, pull_of(state, q, depth));
+        apply_heading(state);
+        add(t, q, depth, state, pull_at(state, q, depth));
     }
 
     void add(double t, const Vec2<double>& q, double depth, const LagState<double>& state, double pull) {
         checkpoint();
-        if (out_.pose.size() >= most_rows_)
+        if (out_.pose.size() >= max_rows_)
             throw Error("tolerance-too-fine",
-                        "the mark of the pass takes more than " + std::to_string(most_rows_) +
+                        "the mark of the pass takes more than " + std::to_string(max_rows_) +
                             " rows: it is too large for the tolerance",
                         out_.stroke, tolerance_);
         out_.pose.push_back(pose_ + scale_ * t);
@@ -367,7 +367,7 @@ class Tracer {
     std::vector<double> kinks_;
     double tolerance_;
     bool for_outlines_;
-    std::size_t most_rows_;
+    std::size_t max_rows_;
     const Poses& poses_mm_;
     PassMarks& out_;
     LagState<double> state_;
@@ -378,18 +378,18 @@ class Tracer {
     bool moved_ = false, moved_once_ = false;
 };
 
-void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
+void require_valid_poses(const Pass& pass, const Brush& brush, bool may_rise) {
     for (Eigen::Index i = 0; i < pass.poses_mm.rows(); ++i) {
         if (!pass.poses_mm.row(i).allFinite())
             throw Error("not-finite", "pose " + std::to_string(i) + " has a coordinate that is not finite",
                         pass.stroke);
         const double largest = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
-        if (largest > kLargestMm) {
+        if (largest > kMaxCoordinateMm) {
             char text[120];
             std::snprintf(text, sizeof text, "pose %ld is at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
                           largest);
             throw Error("geometry-out-of-range", text, pass.stroke, largest,
-                        std::array<double, 2>{-kLargestMm, kLargestMm});
+                        std::array<double, 2>{-kMaxCoordinateMm, kMaxCoordinateMm});
         }
         const double depth = -pass.poses_mm(i, 2);
         if (depth > brush.depth_range_mm[1] + 1e-9) {
@@ -402,7 +402,7 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
     const double lowest = pass.poses_mm.rows() > 0 ? pass.poses_mm.col(2).minCoeff() : 0.0;
     Eigen::Index highest = 0;
     if (lowest <= 0.0 && !may_rise && pass.poses_mm.rows() > 0 &&
-        pass.poses_mm.col(2).maxCoeff(&highest) > kOnTheSpotMm) {
+        pass.poses_mm.col(2).maxCoeff(&highest) > kMaxOnTheSpotMm) {
         const double z = pass.poses_mm(highest, 2);
         char text[200];
         std::snprintf(
@@ -427,20 +427,20 @@ void refuse_bad_poses(const Pass& pass, const Brush& brush, bool may_rise) {
 
 namespace {
 
-PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines, bool may_rise,
-                    const Window* window) {
+PassMarks simulate_pass(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines, bool may_rise,
+                        const Window* window) {
     require_usable(brush);
     require_tolerance(tolerance_mm, pass.stroke);
-    refuse_bad_poses(pass, brush, may_rise);
+    require_valid_poses(pass, brush, may_rise);
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     check_tool_axes(pass, pass.stroke);
     PassMarks marks;
     marks.stroke = pass.stroke;
-    const AxisWay way(pass);
+    const AxisPath way(pass);
     Tracer tracer(brush, tolerance_mm, for_outlines, window, pass, way, marks);
     if (const Poses& poses = way.poses_mm; poses.rows() > 0) {
         if (poses(0, 2) > 0.0) tracer.begin_above(poses.row(0).head<2>().transpose(), poses(0, 2));
-        walk_pass<double>(CommandedWay<double>{poses, pass.arcs, 0.0}, tracer);
+        walk_pass<double>(CommandedPath<double>{poses, pass.arcs, 0.0}, tracer);
     }
     tracer.finish();
     return marks;
@@ -449,11 +449,11 @@ PassMarks simulated(const Pass& pass, const Brush& brush, double tolerance_mm, b
 }  // namespace
 
 PassMarks simulate(const Pass& pass, const Brush& brush, double tolerance_mm, bool for_outlines, bool may_rise) {
-    return simulated(pass, brush, tolerance_mm, for_outlines, may_rise, nullptr);
+    return simulate_pass(pass, brush, tolerance_mm, for_outlines, may_rise, nullptr);
 }
 
 PassMarks simulate_near(const Pass& pass, const Brush& brush, const Window& window, double tolerance_mm) {
-    return simulated(pass, brush, tolerance_mm, true, false, &window);
+    return simulate_pass(pass, brush, tolerance_mm, true, false, &window);
 }
 
 Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm) {
@@ -467,7 +467,7 @@ std::vector<std::size_t> pose_rows(const PassMarks& marks) {
     require_usable(marks);
     std::vector<std::size_t> rows;
     const auto is_at = [&](std::size_t row, std::size_t pose) {
-        return std::abs(marks.pose[row] - double(pose)) <= kSamePose;
+        return std::abs(marks.pose[row] - double(pose)) <= kPoseRounding;
     };
     for (std::size_t row = 0; row < marks.pose.size(); ++row)
         if (is_at(row, rows.size())) rows.push_back(row);
@@ -490,7 +490,7 @@ Ring widest_points(const PassMarks& marks, const Brush& brush) {
     return points;
 }
 
-std::vector<TurnOver> turns_over(const PassMarks& marks) {
+std::vector<TurnOver> find_turn_overs(const PassMarks& marks) {
     require_usable(marks);
     std::vector<TurnOver> out;
     const std::size_t n = marks.taut.size();

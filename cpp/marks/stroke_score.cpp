@@ -15,29 +15,30 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kLineMm = 0.01;
-constexpr double kRingMm = 0.01;
-constexpr double kLeastSquareMm = 0.5;   // least size of the square in which paint and drawing differ most
-constexpr int kBlocks = 5;               // the square is moved in steps of a fifth of its size
-constexpr double kEveryMm = 0.5;         // spacing of the places where widths are measured
-constexpr double kMostWidths = 20000.0;  // most of these places, on a line of many metres
-constexpr double kMostReach = 1e5;       // longest reach in pixels; no picture has more across
+constexpr double kLineToleranceMm = 0.01;
+constexpr double kRingToleranceMm = 0.01;
+constexpr double kMinSquareMm = 0.5;     // least size of the square in which paint and drawing differ most
+constexpr int kBlocksPerSquare = 5;      // the square is moved in steps of a fifth of its size
+constexpr double kWidthSpacingMm = 0.5;  // spacing of the places where widths are measured
+constexpr double kMaxWidths = 20000.0;   // most of these places, on a line of many metres
+constexpr double kMaxReachPx = 1e5;      // longest reach in pixels; no picture has more across
 
 /// Sums of values over all squares of a number of blocks, from sums over blocks.
-class Squares {
+class BlockSums {
  public:
-    Squares(Index rows, Index columns) : up_(Sums::Zero(rows + 1, columns + 1)) {}
-    double& block(Index row, Index column) { return up_(row + 1, column + 1); }
+    BlockSums(Index rows, Index columns) : sums_(Sums::Zero(rows + 1, columns + 1)) {}
+    double& block(Index row, Index column) { return sums_(row + 1, column + 1); }
     void sum_up() {
-        for (Index r = 1; r < up_.rows(); ++r)
-            for (Index c = 1; c < up_.cols(); ++c) up_(r, c) += up_(r - 1, c) + up_(r, c - 1) - up_(r - 1, c - 1);
+        for (Index r = 1; r < sums_.rows(); ++r)
+            for (Index c = 1; c < sums_.cols(); ++c)
+                sums_(r, c) += sums_(r - 1, c) + sums_(r, c - 1) - sums_(r - 1, c - 1);
     }
     /// Return the largest sum, and where the first block of its square is.
     double largest(Index size, Index& row, Index& column) const {
         double most = -1.0;
-        for (Index r = 0; r + size < up_.rows(); ++r)
-            for (Index c = 0; c + size < up_.cols(); ++c) {
-                const double here = up_(r + size, c + size) - up_(r, c + size) - up_(r + size, c) + up_(r, c);
+        for (Index r = 0; r + size < sums_.rows(); ++r)
+            for (Index c = 0; c + size < sums_.cols(); ++c) {
+                const double here = sums_(r + size, c + size) - sums_(r, c + size) - sums_(r + size, c) + sums_(r, c);
                 if (here <= most) continue;
                 most = here;
                 row = r;
@@ -49,7 +50,7 @@ class Squares {
  private:
     // row by row, as it is read
     using Sums = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Sums up_;
+    Sums sums_;
 };
 
 /// Interpolate the share at a place between the middles of pixels, linear in both directions; 0 outside.
@@ -74,22 +75,22 @@ double median_half_width(const MiddlePolyline& line) {
 }  // namespace
 
 WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
-    const Index height = seen.wanted.rows(), width = seen.wanted.cols();
+    const Index height = seen.target.rows(), width = seen.target.cols();
     if (height == 0 || width == 0 || seen.painted.rows() != height || seen.painted.cols() != width)
         throw Error("sizes-differ", "paint and drawing are pictures of different sizes, or empty");
     if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= 1e15))
         throw Error("out-of-range", "the square in which the worst place is looked for has no size", "", size_mm);
-    const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocks)), Index(1),
+    const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocksPerSquare)), Index(1),
                                    std::min(height, width));  // the remainder at the edges is paper
     const Index rows = height / block, columns = width / block;
     const Index size =
         std::clamp(Index(std::lround(size_mm * seen.px_per_mm / double(block))), Index(1), std::min(rows, columns));
-    Squares missing(rows, columns), spilt(rows, columns);
+    BlockSums missing(rows, columns), spilt(rows, columns);
     for (Index y = 0; y < rows * block; ++y)
         for (Index c = 0; c < columns; ++c) {
             float less = 0.0f, more = 0.0f;
             for (Index x = c * block; x < (c + 1) * block; ++x) {
-                const float difference = seen.wanted(y, x) - seen.painted(y, x);
+                const float difference = seen.target(y, x) - seen.painted(y, x);
                 less += std::max(difference, 0.0f);
                 more += std::max(-difference, 0.0f);
             }
@@ -122,7 +123,7 @@ double width_across(const Coverage& shares, const MarkOverlap& seen, const Vecto
     const double step_mm = 1.0 / seen.px_per_mm;
     const Vector2d across = step_mm * Vector2d(-direction.y(), direction.x());
     const auto share = [&](int k) { return share_at(shares, seen, at_mm + double(k) * across); };
-    const int most = int(std::clamp(std::ceil(reach_mm * seen.px_per_mm), 0.0, kMostReach));
+    const int most = int(std::clamp(std::ceil(reach_mm * seen.px_per_mm), 0.0, kMaxReachPx));
     int inside = 0;  // the nearest place that is painted: 0, -1, 1, -2, 2 ...
     while (inside <= most && !(share(inside) > 0.5)) inside = inside < 0 ? -inside : -inside - 1;
     if (inside > most) return 0.0;
@@ -147,7 +148,7 @@ std::optional<double> width_error_mm(const MarkOverlap& seen, const MiddlePolyli
     double sum = 0.0;
     int count = 0;
     Index segment = 0;
-    const double every_mm = std::max(kEveryMm, length / kMostWidths);
+    const double every_mm = std::max(kWidthSpacingMm, length / kMaxWidths);
     for (double at = 0.5 * every_mm; at < length; at += every_mm) {
         checkpoint(5);
         while (segment + 2 < line.rows() && line(segment + 1, 2) <= at) ++segment;
@@ -156,21 +157,21 @@ std::optional<double> width_error_mm(const MarkOverlap& seen, const MiddlePolyli
         const double half = line(segment, 3) + t * (line(segment + 1, 3) - line(segment, 3));
         if (!((to - from).norm() > 0.0) || !(half > 0.0)) continue;
         const Vector2d place = from + t * (to - from), direction = (to - from).normalized();
-        const double wanted = width_across(seen.wanted, seen, place, direction, reach);
-        if (!(std::abs(wanted - 2.0 * half) < 0.1 * half + 0.05)) continue;
-        sum += std::abs(width_across(seen.painted, seen, place, direction, reach) - wanted);
+        const double target = width_across(seen.target, seen, place, direction, reach);
+        if (!(std::abs(target - 2.0 * half) < 0.1 * half + 0.05)) continue;
+        sum += std::abs(width_across(seen.painted, seen, place, direction, reach) - target);
         ++count;
     }
     if (count == 0) return {};
     return sum / count;
 }
 
-StrokeScore stroke_score(const PassMarks& painted, const Stroke& wanted, const Brush& brush) {
-    const MarkOverlap seen = mark_overlap({painted}, {wanted}, brush);
-    const MiddlePolyline line = flatten(wanted, kLineMm);
+StrokeScore stroke_score(const PassMarks& painted, const Stroke& target, const Brush& brush) {
+    const MarkOverlap seen = mark_overlap({painted}, {target}, brush);
+    const MiddlePolyline line = flatten(target, kLineToleranceMm);
     return {common_area(seen).overlap(), width_error_mm(seen, line),
-            excess_turning(outline(painted, brush), wanted_outline(wanted, kRingMm)),
-            worst_place(seen, std::max(kLeastSquareMm, median_half_width(line)))};
+            excess_turning(outline(painted, brush), target_outline(target, kRingToleranceMm)),
+            worst_place(seen, std::max(kMinSquareMm, median_half_width(line)))};
 }
 
 }  // namespace brushsvg

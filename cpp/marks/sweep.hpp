@@ -11,7 +11,7 @@
 #include "brushsvg/brush.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/marks.hpp"
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 namespace brushsvg {
 
@@ -60,7 +60,7 @@ void swept_by_edge(const Eigen::RowVector2d& a, const Eigen::RowVector2d& b, con
 }
 
 /// Default argument of sweep(): leave nothing out.
-struct Everywhere {};
+struct NothingOutside {};
 
 /// A box about an outline whose tip is at (0, 0) and whose axis is +x.
 struct OutlineBox {
@@ -107,11 +107,11 @@ class OutlineBoxes {
 /// Find the painted area of a pass as simple counter-clockwise polygons: for every two neighbouring rows the area that
 /// the footprint sweeps between them. If every outline is convex, `convex(a, b)` is called with the footprint at both
 /// rows: the swept area is their hull. Otherwise `polygon(ring)` is called for the footprint, and `piece(ring)`,
-/// convex, for the sweep of each edge. Convex footprints are skipped if `is_beside(low, high)` returns true for their
+/// convex, for the sweep of each edge. Convex footprints are skipped if `is_outside(low, high)` returns true for their
 /// box.
-template <class Convex, class Polygon, class Piece, class IsBeside = Everywhere>
+template <class Convex, class Polygon, class Piece, class IsOutside = NothingOutside>
 void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&& polygon, Piece&& piece,
-           [[maybe_unused]] IsBeside&& is_beside = {}) {
+           [[maybe_unused]] IsOutside&& is_outside = {}) {
     require_usable(brush);
     require_usable(marks);
     bool all_convex = true;
@@ -135,10 +135,10 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
         }
         return ring;
     };
-    constexpr bool is_everywhere = std::is_same_v<std::decay_t<IsBeside>, Everywhere>;
-    const bool leaves_out = !is_everywhere && all_convex && marks.lean_mm_per_mm.rows() == 0;
+    constexpr bool is_everywhere = std::is_same_v<std::decay_t<IsOutside>, NothingOutside>;
+    const bool skips_outside = !is_everywhere && all_convex && marks.lean_mm_per_mm.rows() == 0;
     std::optional<OutlineBoxes> boxes;
-    if (leaves_out) boxes.emplace(brush.footprints);
+    if (skips_outside) boxes.emplace(brush.footprints);
     using P = Eigen::RowVector2d;
     // box of the footprint at a row, slightly enlarged
     const auto box_of = [&](std::size_t i, P& low, P& high) {
@@ -168,7 +168,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
         // where the heading flips over at once (the TCP passes over the patch), nothing is swept in between
         const bool flipped = is_down && std::cos(marks.heading_rad[i] - marks.heading_rad[i - 1]) < 0.8;
         if constexpr (!is_everywhere) {
-            if (leaves_out) {
+            if (skips_outside) {
                 P low, high;
                 box_of(i, low, high);
                 const P here_low = low, here_high = high;
@@ -178,7 +178,7 @@ void sweep(const PassMarks& marks, const Brush& brush, Convex&& convex, Polygon&
                 }
                 low_before = here_low;
                 high_before = here_high;
-                if (is_beside(low, high)) {
+                if (is_outside(low, high)) {
                     before.resize(0, 2);
                     is_down = true;
                     continue;

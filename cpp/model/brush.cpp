@@ -18,17 +18,18 @@ std::string format(const char* pattern, Numbers... numbers) {
     return text;
 }
 
-constexpr double kDeepestMm = 1000.0;  // no brush is longer, and plans grow with the depth
-constexpr double kLargestLawMm = 1000.0;
-constexpr std::size_t kMostOutlines = 1000;
-constexpr Eigen::Index kMostVertices = 2000;             // of an outline: all pairs are compared
-constexpr std::array<double, 2> kSpeeds{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
+constexpr double kMaxDepthMm = 1000.0;  // no brush is longer, and plans grow with the depth
+constexpr double kMaxLawValueMm = 1000.0;
+constexpr std::size_t kMaxOutlines = 1000;
+constexpr Eigen::Index kMaxVertices = 2000;                     // of an outline: all pairs are compared
+constexpr std::array<double, 2> kSpeedRangeMmS{0.01, 10000.0};  // mm/s; a program writes feeds in steps of 0.1 mm/min
 /// Least half width that has a depth, as a share of the greatest one: lines may taper to nothing, no depth is 0.
-constexpr double kLeastWidthShare = 1e-6;
-constexpr double kUnseenMm = 0.05;  // largest invisible error of a mark's edge: the default tolerance
-constexpr double kPoorFit = 0.3;    // RMSE relative to the law; the article's worst, the tip gap from angles, has 0.6
-constexpr double kRounding = 1e-4;  // error of a correlation when a covariance is rounded to five digits
-constexpr double kLawAgainstOutlineMm = 0.5;  // outlines determine the mark, laws the inverse: they must agree
+constexpr double kMinWidthShare = 1e-6;
+constexpr double kMaxInvisibleErrorMm = 0.05;  // largest invisible error of a mark's edge: the default tolerance
+constexpr double kMaxRmseShare =
+    0.3;  // RMSE relative to the law; the article's worst, the tip gap from angles, has 0.6
+constexpr double kMaxCorrelationError = 1e-4;  // error of a correlation when a covariance is rounded to five digits
+constexpr double kMaxLawOutlineDifferenceMm = 0.5;  // outlines determine the mark, laws the inverse: they must agree
 
 std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
     return {{{&brush.lag, "lag"},
@@ -38,11 +39,11 @@ std::array<std::pair<const Profile*, const char*>, 4> laws(const Brush& brush) {
 }
 
 /// The least value of a profile over the depth range, and its depth.
-struct Least {
+struct LawMinimum {
     double depth, value;
 };
-Least least(const Profile& profile, double lo, double hi) {
-    Least found{lo, profile(lo)};
+LawMinimum find_minimum(const Profile& profile, double lo, double hi) {
+    LawMinimum found{lo, profile(lo)};
     for (const PolynomialPiece& piece : pieces(profile, lo, hi)) {
         std::vector<double> slope;
         for (std::size_t i = 1; i < piece.coefficients.size(); ++i) slope.push_back(double(i) * piece.coefficients[i]);
@@ -55,13 +56,13 @@ Least least(const Profile& profile, double lo, double hi) {
     return found;
 }
 
-struct Fall {
+struct Decrease {
     double mm, from_mm, to_mm;
 };
 
 /// Returns the greatest decrease of a law from one depth to a greater one.
-Fall greatest_fall(const Profile& profile, double lo, double hi) {
-    Fall fall{0.0, lo, lo};
+Decrease find_greatest_decrease(const Profile& profile, double lo, double hi) {
+    Decrease fall{0.0, lo, lo};
     double highest_at = lo;
     for (int i = 1; i <= 400; ++i) {
         const double d = lo + (hi - lo) * i / 400;
@@ -76,17 +77,17 @@ void check_lag(const Brush& brush) {
     if (brush.is_rigid()) {
         for (int i = 0; i <= 100; ++i) {
             const double d = lo + (hi - lo) * i / 100, e = brush.tip_to_widest(d) - brush.tip_gap(d);
-            if (!(std::abs(e) <= kUnseenMm))
+            if (!(std::abs(e) <= kMaxInvisibleErrorMm))
                 throw Error(
                     "pen-off-centre",
                     format("the lag is zero, so the mark has no heading, but at depth %.2f mm it is widest %.2f "
                            "mm away from where it touches",
                            d, e),
-                    "lag", e, std::array<double, 2>{-kUnseenMm, kUnseenMm});
+                    "lag", e, std::array<double, 2>{-kMaxInvisibleErrorMm, kMaxInvisibleErrorMm});
         }
         return;
     }
-    const Least worst = least(brush.lag, lo, hi);
+    const LawMinimum worst = find_minimum(brush.lag, lo, hi);
     if (worst.value < 0.0)
         throw Error("law-negative",
                     format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths %.2f and ",
@@ -94,7 +95,7 @@ void check_lag(const Brush& brush) {
                         format("%.2f mm", hi),
                     "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
     // A lag of zero is only valid at depth 0, where the lever begins to grow.
-    const Least inside = least(brush.lag, lo + 1e-3 * (hi - lo), hi);
+    const LawMinimum inside = find_minimum(brush.lag, lo + 1e-3 * (hi - lo), hi);
     if (!(inside.value > 0.0))
         throw Error("law-zero",
                     format("the lag is zero at depth %.2f mm but not everywhere: a brush lags over its whole range, a "
@@ -103,7 +104,7 @@ void check_lag(const Brush& brush) {
                     "lag", 0.0, std::array<double, 2>{0.0, INFINITY});
 }
 
-void check_rising(const Brush& brush) {
+void check_half_width(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     double before = brush.half_width(lo);
     if (before < 0.0)
@@ -125,11 +126,11 @@ void check_rising(const Brush& brush) {
 void check_range(const Profile& law, double lo, double hi, const char* where) {
     for (int i = 0; i <= 100; ++i) {
         const double d = lo + (hi - lo) * i / 100, value = law(d);
-        if (!(std::abs(value) <= kLargestLawMm))
+        if (!(std::abs(value) <= kMaxLawValueMm))
             throw Error("out-of-range",
                         format("the law says %.4g mm at depth %.2f mm; no more than %.0f mm is taken for true", value,
-                               d, kLargestLawMm),
-                        where, value, std::array<double, 2>{-kLargestLawMm, kLargestLawMm});
+                               d, kMaxLawValueMm),
+                        where, value, std::array<double, 2>{-kMaxLawValueMm, kMaxLawValueMm});
     }
     if (const auto& measured = law.calibrated_mm;
         measured && !((*measured)[0] < (*measured)[1] && (*measured)[0] < hi && (*measured)[1] > lo))
@@ -164,17 +165,17 @@ void check_covariance(const Brush& brush) {
     const Eigen::MatrixXd correlation = least.asDiagonal() * c * least.asDiagonal();
     for (Eigen::Index i = 0; i < n; ++i) {
         const std::string here = "covariance[" + std::to_string(i) + "]";
-        if (correlation(i, i) < -kRounding)
+        if (correlation(i, i) < -kMaxCorrelationError)
             throw Error("covariance-invalid", format("the variance %.4g must not be negative", c(i, i)),
                         here + "[" + std::to_string(i) + "]", c(i, i), std::array<double, 2>{0.0, INFINITY});
         for (Eigen::Index j = 0; j < i; ++j)
-            if (!(std::abs(correlation(i, j) - correlation(j, i)) <= kRounding))
+            if (!(std::abs(correlation(i, j) - correlation(j, i)) <= kMaxCorrelationError))
                 throw Error(
                     "covariance-invalid",
                     format("%.4g differs from %.4g on the other side: a covariance is symmetric", c(i, j), c(j, i)),
                     here + "[" + std::to_string(j) + "]");
     }
-    const Eigen::MatrixXd raised = correlation + kRounding * Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd raised = correlation + kMaxCorrelationError * Eigen::MatrixXd::Identity(n, n);
     if (raised.llt().info() != Eigen::Success)
         throw Error(
             "covariance-invalid",
@@ -188,14 +189,15 @@ void check_covariance(const Brush& brush) {
         for (double depth : {brush.depth_range_mm[0], brush.depth_range_mm[1]}) {
             Eigen::VectorXd powers = Eigen::VectorXd::Ones(count);
             for (Eigen::Index i = 1; i < count; ++i) powers[i] = powers[i - 1] * depth;
-            const double sure = deviations_of_95(law->degrees_of_freedom) *
-                                std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
-            if (!(sure <= kLargestLawMm))
+            const double half_interval =
+                interval_factor_95(law->degrees_of_freedom) *
+                std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
+            if (!(half_interval <= kMaxLawValueMm))
                 throw Error("out-of-range",
                             format("by the covariance the law is known to +- %.3g mm at depth %.2f mm; no more than "
                                    "%.0f mm is taken for true",
-                                   sure, depth, kLargestLawMm),
-                            where, sure, std::array<double, 2>{0.0, kLargestLawMm});
+                                   half_interval, depth, kMaxLawValueMm),
+                            where, half_interval, std::array<double, 2>{0.0, kMaxLawValueMm});
         }
         first += count;
     }
@@ -218,16 +220,16 @@ bool crosses_itself(const Ring& p) {
 
 void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, const std::string& where) {
     double depth_before = 0.0;
-    if (shapes.size() > kMostOutlines)
+    if (shapes.size() > kMaxOutlines)
         throw Error(
             "footprint-invalid",
-            format("there are %.0f outlines; at most %.0f are read", double(shapes.size()), double(kMostOutlines)),
+            format("there are %.0f outlines; at most %.0f are read", double(shapes.size()), double(kMaxOutlines)),
             where);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Footprint& shape = shapes[i];
         const std::string here = where + "[" + std::to_string(i) + "]";
         const double d = shape.depth_mm;
-        if (!(d <= kLargestLawMm) || !(d > depth_before))
+        if (!(d <= kMaxLawValueMm) || !(d > depth_before))
             throw Error("not-ascending",
                         format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm", d,
                                depth_before),
@@ -236,15 +238,15 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
         if (!shape.outline_mm.allFinite())
             throw Error("not-finite", "the outline has a coordinate that is not finite", here);
         const double largest = shape.outline_mm.size() > 0 ? shape.outline_mm.cwiseAbs().maxCoeff() : 0.0;
-        if (!(largest <= kLargestLawMm))
+        if (!(largest <= kMaxLawValueMm))
             throw Error("out-of-range",
                         format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
-                               kLargestLawMm),
-                        here, largest, std::array<double, 2>{0.0, kLargestLawMm});
-        if (shape.outline_mm.rows() > kMostVertices)
+                               kMaxLawValueMm),
+                        here, largest, std::array<double, 2>{0.0, kMaxLawValueMm});
+        if (shape.outline_mm.rows() > kMaxVertices)
             throw Error("footprint-invalid",
                         format("the outline has %.0f vertices; at most %.0f are read", double(shape.outline_mm.rows()),
-                               double(kMostVertices)),
+                               double(kMaxVertices)),
                         here);
         if (shape.outline_mm.rows() < 3)
             throw Error("footprint-invalid", "the outline needs at least 3 vertices", here);
@@ -262,14 +264,14 @@ void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, cons
         const WidestSection seen = widest_section(shape.outline_mm);
         // Several sections may be equally wide. The law must match one of them.
         const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
-        if (std::abs(seen.half_width_mm - h_law) > kLawAgainstOutlineMm)
+        if (std::abs(seen.half_width_mm - h_law) > kMaxLawOutlineDifferenceMm)
             throw Error(
                 "footprint-against-law",
                 format("at depth %.2f mm the outline is %.2f mm wide on each side but half_width says %.2f mm; they "
                        "must agree to 0.5 mm",
                        d, seen.half_width_mm, h_law),
                 here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
-        if (std::abs(seen.from_tip_mm - x_law) > kLawAgainstOutlineMm)
+        if (std::abs(seen.from_tip_mm - x_law) > kMaxLawOutlineDifferenceMm)
             throw Error(
                 "footprint-against-law",
                 format("at depth %.2f mm the outline is widest %.2f mm from the tip but tip_to_widest says %.2f mm; "
@@ -310,10 +312,11 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
                              : std::string("draw it wider")) +
                         ", or take another brush",
                     where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
-    half_width_mm = std::max(half_width_mm, kLeastWidthShare * wide);
+    half_width_mm = std::max(half_width_mm, kMinWidthShare * wide);
     double a = depth_range_mm[0], b = depth_range_mm[1];
     // At depth 0 a brush only touches the paper, and a program that goes no deeper paints nothing.
-    if (a == 0.0 && narrow > 0.0) half_width_mm = std::max(half_width_mm, std::min(narrow + kUnseenMm, wide));
+    if (a == 0.0 && narrow > 0.0)
+        half_width_mm = std::max(half_width_mm, std::min(narrow + kMaxInvisibleErrorMm, wide));
     if (half_width.coefficients.size() == 2 && std::isinf(half_width.floor))
         return std::clamp((half_width_mm - half_width.coefficients[0]) / half_width.coefficients[1], a, b);
     for (int i = 0; i < 200; ++i) {
@@ -341,9 +344,9 @@ void check(const Brush& brush) {
         std::any_of(brush.name.begin(), brush.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
         throw Error("name-invalid", "the name must be one line of text", "name");
     require_known_kind(brush);
-    if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kDeepestMm))
+    if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kMaxDepthMm))
         throw Error("out-of-range",
-                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
+                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kMaxDepthMm),
                     "depth_range_mm");
     for (const auto& [profile, where] : laws(brush)) {
         if (profile->coefficients.empty()) throw Error("law-terms", "the law has no coefficients", where);
@@ -359,15 +362,15 @@ void check(const Brush& brush) {
     check_covariance(brush);
     if (brush.paint) check(*brush.paint);
     check_lag(brush);
-    check_rising(brush);
+    check_half_width(brush);
     if (brush.footprints.dragged.empty()) throw Error("footprint-invalid", "there is no outline", "footprints.dragged");
     check_shapes(brush, brush.footprints.dragged, "footprints.dragged");
     check_shapes(brush, brush.footprints.pressed, "footprints.pressed");
-    if (!(brush.max_speed_mm_s >= kSpeeds[0] && brush.max_speed_mm_s <= kSpeeds[1]))
+    if (!(brush.max_speed_mm_s >= kSpeedRangeMmS[0] && brush.max_speed_mm_s <= kSpeedRangeMmS[1]))
         throw Error("out-of-range",
                     format("the speed limit %.3g mm/s is outside the range [%.2f, %.0f] mm/s", brush.max_speed_mm_s,
-                           kSpeeds[0], kSpeeds[1]),
-                    "max_speed_mm_s", brush.max_speed_mm_s, kSpeeds);
+                           kSpeedRangeMmS[0], kSpeedRangeMmS[1]),
+                    "max_speed_mm_s", brush.max_speed_mm_s, kSpeedRangeMmS);
     const double paints = brush.paint_depth_mm;
     if (!brush.width_follows_depth() && !(paints > 0.0))
         throw Error("out-of-range",
@@ -408,8 +411,8 @@ std::vector<Warning> remarks(const Brush& brush) {
         if (!gap)
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
                                   "the centre of friction is outside the footprint at some depths"});
-        const Fall fall = greatest_fall(brush.lag, lo, hi);
-        if (fall.mm > kUnseenMm)
+        const Decrease fall = find_greatest_decrease(brush.lag, lo, hi);
+        if (fall.mm > kMaxInvisibleErrorMm)
             out.push_back(
                 Warning{"law-falls", "lag",
                         format("the lag falls by %.2f mm from depth %.2f ", fall.mm, fall.from_mm) +
@@ -417,7 +420,7 @@ std::vector<Warning> remarks(const Brush& brush) {
         for (const Footprint& shape : brush.footprints.dragged) {
             if (shape.outline_mm.rows() == 0) continue;
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
-            if (!(shape.depth_mm <= hi && contact > front + kUnseenMm)) continue;
+            if (!(shape.depth_mm <= hi && contact > front + kMaxInvisibleErrorMm)) continue;
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
                                   format("at depth %.2f mm the centre of friction is %.2f mm from the tip, "
                                          "beyond the footprint, which is %.2f mm long",
@@ -427,7 +430,7 @@ std::vector<Warning> remarks(const Brush& brush) {
     }
     for (const auto& [profile, where] : laws(brush)) {
         const double largest = std::max(std::abs((*profile)(lo)), std::abs((*profile)(hi)));
-        if (profile->rmse_mm && *profile->rmse_mm > kPoorFit * largest)
+        if (profile->rmse_mm && *profile->rmse_mm > kMaxRmseShare * largest)
             out.push_back(
                 Warning{"law-scatters", where,
                         format("what was measured scatters by %.2f mm about a law of at most %.2f mm: measure "

@@ -7,7 +7,7 @@
 namespace brushsvg {
 namespace {
 
-std::vector<std::complex<double>> all_roots(const std::vector<double>& coefficients) {
+std::vector<std::complex<double>> find_roots(const std::vector<double>& coefficients) {
     const int n = int(coefficients.size()) - 1;
     if (n < 1) return {};
     Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
@@ -19,7 +19,7 @@ std::vector<std::complex<double>> all_roots(const std::vector<double>& coefficie
 
 /// Returns a bound of the absolute value of a polynomial's derivative of this order on [lo, hi]: the largest Bernstein
 /// coefficient.
-double bound_of_derivative(std::vector<double> c, int order, double lo, double hi) {
+double derivative_bound(std::vector<double> c, int order, double lo, double hi) {
     for (; order > 0; --order) {
         for (std::size_t i = 1; i < c.size(); ++i) c[i - 1] = double(i) * c[i];
         if (!c.empty()) c.pop_back();
@@ -63,12 +63,13 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
         piece.hi = from.hi;
         piece.degree = int(c.size()) - 1;
         std::copy(c.begin(), c.end(), piece.coefficients.begin());
-        piece.roots = all_roots(c);
-        piece.clear2 = std::numeric_limits<double>::infinity();
+        piece.roots = find_roots(c);
+        piece.root_distance2 = std::numeric_limits<double>::infinity();
         for (const auto& root : piece.roots)
-            piece.clear2 = std::min(piece.clear2, std::norm(root - std::clamp(root.real(), from.lo, from.hi)));
-        piece.steepest = bound_of_derivative(c, 1, from.lo, from.hi);
-        piece.most_twisted = bound_of_derivative(c, 3, from.lo, from.hi);
+            piece.root_distance2 =
+                std::min(piece.root_distance2, std::norm(root - std::clamp(root.real(), from.lo, from.hi)));
+        piece.max_slope = derivative_bound(c, 1, from.lo, from.hi);
+        piece.max_third_derivative = derivative_bound(c, 3, from.lo, from.hi);
         law.rigid = law.rigid && c.size() == 1 && c[0] == 0.0;
         law.pieces.push_back(std::move(piece));
     }
@@ -78,12 +79,12 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
 namespace detail {
 
 /// Number of coefficients of the square of a law, which is more than those of a parabola.
-constexpr std::size_t kMostCoefficients = 2 * kMaxLawDegree + 1;
+constexpr std::size_t kMaxCoefficients = 2 * kMaxLawDegree + 1;
 
 double first_positive(std::vector<double> f) {
     while (f.size() > 1 && f.back() == 0.0) f.pop_back();
     const int n = int(f.size()) - 1;
-    using Bernstein = std::array<double, kMostCoefficients>;
+    using Bernstein = std::array<double, kMaxCoefficients>;
     struct Span {
         double a, b;
         Bernstein c;
@@ -102,7 +103,7 @@ double first_positive(std::vector<double> f) {
         }
         whole.c[i] = sum;
     }
-    for (int looks = 0; top > 0 && looks < kMostLooks; ++looks) {
+    for (int intervals = 0; top > 0 && intervals < kMaxIntervals; ++intervals) {
         Span& span = stack[top - 1];  // the interval becomes its own right half
         if (std::all_of(span.c.begin(), span.c.begin() + n + 1, [](double c) { return c <= 0.0; })) {
             --top;

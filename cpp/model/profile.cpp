@@ -10,8 +10,8 @@ namespace brushsvg {
 namespace {
 
 /// Limit of the terms of a polynomial whose roots are searched, because all its derivatives have to be solved first.
-constexpr std::size_t kMostTerms = 64;
-constexpr double kRoundingMm = 1e-6;  // rounding error of depths that were computed or read from a plan
+constexpr std::size_t kMaxTerms = 64;
+constexpr double kDepthRoundingMm = 1e-6;  // rounding error of depths that were computed or read from a plan
 
 double evaluate(const std::vector<double>& c, double x) {
     double y = 0.0;
@@ -25,7 +25,7 @@ double Profile::at(double depth_mm) const {
     if (depth_range_mm) {
         // A brush passes the depths above its range when it is set down and lifted.
         const double deepest = (*depth_range_mm)[1];
-        if (!(depth_mm >= -kRoundingMm && depth_mm <= deepest + kRoundingMm)) {
+        if (!(depth_mm >= -kDepthRoundingMm && depth_mm <= deepest + kDepthRoundingMm)) {
             char text[160];
             std::snprintf(text, sizeof text, "depth %.4g mm is outside the range [0, %.4g] mm of the brush", depth_mm,
                           deepest);
@@ -40,7 +40,7 @@ std::vector<double> real_roots(const std::vector<double>& coefficients, double l
     std::vector<double> c = coefficients;
     while (!c.empty() && c.back() == 0.0) c.pop_back();
     if (c.size() < 2) return {};
-    if (c.size() > kMostTerms)
+    if (c.size() > kMaxTerms)
         throw Error("law-terms", "a polynomial of more than 64 terms is not solved", "", double(c.size()));
     // A polynomial is monotonic between the roots of its derivative.
     std::vector<double> slope(c.size() - 1);

@@ -17,26 +17,27 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kUnit = 1e4;                // units of the last decimal in a mm
-constexpr double kLeastMoveMm = 2.00125e-3;  // shortest move: rounding could turn a shorter one or remove it
-constexpr double kCircleMm = 1e-3;  // smallest distance between ends of a circle: rounding could make closer ends equal
+constexpr double kUnitsPerMm = 1e4;        // units of the last decimal in a mm
+constexpr double kMinMoveMm = 2.00125e-3;  // shortest move: rounding could turn a shorter one or remove it
+constexpr double kMinCircleChordMm =
+    1e-3;  // smallest distance between ends of a circle: rounding could make closer ends equal
 // Turn of one arc: rounding could make a longer arc empty or a full circle.
-constexpr double kPartRad = 3.5, kMostRad = 5.0;
-constexpr double kOnTheSpotMm = 1e-6;  // sideways: a move with less goes straight up or down
-constexpr double kSlowestMmS = 1e-6;
-constexpr std::size_t kCommentLetters = 118;
+constexpr double kArcPartRad = 3.5, kMaxArcRad = 5.0;
+constexpr double kMaxOnTheSpotMm = 1e-6;  // sideways: a move with less goes straight up or down
+constexpr double kMinSpeedMmS = 1e-6;
+constexpr std::size_t kMaxCommentLetters = 118;
 
 template <class... Numbers>
-std::string text_of(const char* format, Numbers... numbers) {
+std::string format_text(const char* format, Numbers... numbers) {
     char text[200];
     std::snprintf(text, sizeof text, format, numbers...);
     return text;
 }
 
-double rounded(double value) { return std::nearbyint(value * kUnit) / kUnit + 0.0; }  // -0.0 + 0.0 is 0.0
+double rounded(double value) { return std::nearbyint(value * kUnitsPerMm) / kUnitsPerMm + 0.0; }  // -0.0 + 0.0 is 0.0
 
 // The letters U+00C0 to U+017F without their accents.
-constexpr char kPlain[] =
+constexpr char kUnaccented[] =
     "AAAAAA?CEEEEIIII?NOOOOO??UUUUY??aaaaaa?ceeeeiiii?nooooo??uuuuy?yAaAaAaCcCcCcCcDd??EeEeEeEeEeGgGgGgGgHh??IiIiIiIiI?"
     "??JjKk?LlLlLl????NnNnNn???OoOoOo??RrRrRrSsSsSsSsTtTt??UuUuUuUuUuUuWwYyYZzZzZzs";
 
@@ -51,35 +52,35 @@ std::string comment(const std::string& text) {
         const unsigned letter = (byte & 0xE0) == 0xC0 ? (byte & 0x1Fu) << 6 | (next & 0x3Fu) : byte;
         if (letter >= 0x300 && letter <= 0x36F) continue;  // a separate accent
         if (byte >= 0xC3 && byte <= 0xC5)
-            out += kPlain[letter - 0xC0];
+            out += kUnaccented[letter - 0xC0];
         else if (byte > '~' || (byte < ' ' && !std::isspace(byte)))
             out += '?';
         else
             out += byte < ' ' ? ' ' : byte == '(' ? '[' : byte == ')' ? ']' : text[i];
     }
-    if (out.size() > kCommentLetters) out.replace(kCommentLetters - 3, std::string::npos, "...");
+    if (out.size() > kMaxCommentLetters) out.replace(kMaxCommentLetters - 3, std::string::npos, "...");
     return "(" + out + ")\n";
 }
 
-std::string clock(double seconds) {
+std::string format_duration(double seconds) {
     const long all = std::lrint(seconds), minutes = all / 60;
-    if (minutes >= 60) return text_of("%ld h %02ld min", minutes / 60, minutes % 60);
-    return minutes > 0 ? text_of("%ld min %02ld s", minutes, all % 60) : text_of("%ld s", all);
+    if (minutes >= 60) return format_text("%ld h %02ld min", minutes / 60, minutes % 60);
+    return minutes > 0 ? format_text("%ld min %02ld s", minutes, all % 60) : format_text("%ld s", all);
 }
 
 void require(double value, std::array<double, 2> range, const std::string& what, const std::string& unit,
              const std::string& where) {
     if (value >= range[0] && value <= range[1]) return;
     throw Error("out-of-range",
-                what + ", " + text_of("%.4g ", value) + unit +
-                    text_of(", is outside the range [%.4g, %.4g] ", range[0], range[1]) + unit,
+                what + ", " + format_text("%.4g ", value) + unit +
+                    format_text(", is outside the range [%.4g, %.4g] ", range[0], range[1]) + unit,
                 where, value, range);
 }
 
 /// Throws Error where the path, including its circles, leaves the range of the machine.
 void require_inside(const Pass& pass, const FlatCell& cell, const std::array<double, 2>& sheet_mm) {
     const std::string where = pass.stroke.name();
-    const auto look = [&](const Vector2d& place) {
+    const auto require_place_inside = [&](const Vector2d& place) {
         for (int axis = 0; axis < 2; ++axis)
             require(place[axis], {-cell.margin_mm, sheet_mm[std::size_t(axis)] + cell.margin_mm},
                     axis == 0 ? "x of the tool" : "y of the tool", "mm", where);
@@ -87,7 +88,7 @@ void require_inside(const Pass& pass, const FlatCell& cell, const std::array<dou
     for (Index i = 0; i < pass.poses_mm.rows(); ++i) {
         if (!pass.poses_mm.row(i).allFinite()) throw Error("not-finite", "a pose is not a finite number", where);
         require(pass.poses_mm(i, 2), {cell.lowest_mm, 0.0}, "z of the tool while it paints", "mm", where);
-        look(pass.poses_mm.row(i).head<2>().transpose());
+        require_place_inside(pass.poses_mm.row(i).head<2>().transpose());
     }
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) {
         check_arc(pass, k, where);
@@ -99,13 +100,14 @@ void require_inside(const Pass& pass, const FlatCell& cell, const std::array<dou
             for (const Vector2d& way :
                  {Vector2d(radius, 0), Vector2d(0, radius), Vector2d(-radius, 0), Vector2d(0, -radius)}) {
                 const double there = turn_between(arc, from, arc.centre_mm + way);
-                if (turn > 0.0 ? there > 0.0 && there < turn : there < 0.0 && there > turn) look(arc.centre_mm + way);
+                if (turn > 0.0 ? there > 0.0 && there < turn : there < 0.0 && there > turn)
+                    require_place_inside(arc.centre_mm + way);
             }
         }
     }
 }
 
-void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
+void require_valid_plan(const Plan& plan, const Brush& brush, const FlatCell& cell) {
     check_sheet(plan.sheet_mm);
     require(cell.clearance_mm, {0.01, 1e3}, "the clearance", "mm", "clearance_mm");
     require(cell.safe_mm, {std::max(0.5, cell.clearance_mm), 1e3}, "the safe height", "mm", "safe_mm");
@@ -116,8 +118,8 @@ void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
                                       {cell.press_mm_s, "press_mm_s"},
                                       {cell.paint_mm_s, "paint_mm_s"},
                                       {cell.travel_mm_s, "travel_mm_s"}})
-        require(speed, {kSlowestMmS, 1e5}, "the speed", "mm/s", name);
-    require(cell.acceleration_mm_s2, {kSlowestMmS, 1e6}, "the acceleration", "mm/s^2", "acceleration_mm_s2");
+        require(speed, {kMinSpeedMmS, 1e5}, "the speed", "mm/s", name);
+    require(cell.acceleration_mm_s2, {kMinSpeedMmS, 1e6}, "the acceleration", "mm/s^2", "acceleration_mm_s2");
     if (cell.name.empty()) throw Error("name-invalid", "the machine needs a name: that of its cell", "name");
     if (plan.brush != brush.name)
         throw Error("options-contradict", "the plan was made for brush " + plan.brush + ", not for " + brush.name);
@@ -129,21 +131,21 @@ void require_sound(const Plan& plan, const Brush& brush, const FlatCell& cell) {
         require_inside(pass, cell, plan.sheet_mm);
         const double deepest_mm = -pass.poses_mm.col(2).minCoeff();
         require(deepest_mm, {0.0, brush.depth_range_mm[1]}, "the depth", "mm", where);
-        if (!(deepest_mm >= 1.0 / kUnit))
+        if (!(deepest_mm >= 1.0 / kUnitsPerMm))
             throw Error("never-pressed", "the brush is never pressed to the paper: nothing would be painted", where);
-        require(pass.speed_mm_s, {kSlowestMmS, std::min(cell.paint_mm_s, brush.max_speed_mm_s)},
+        require(pass.speed_mm_s, {kMinSpeedMmS, std::min(cell.paint_mm_s, brush.max_speed_mm_s)},
                 "the speed of painting", "mm/s", where);
     }
 }
 
 /// Returns the rows of the poses that are written. Poses too close to the one before are left out, except the ends of
 /// circles.
-std::vector<Index> kept(const Poses& written, const std::vector<bool>& stays) {
+std::vector<Index> select_poses(const Poses& written, const std::vector<bool>& must_stay) {
     std::vector<Index> out{0};
-    const auto near = [&](Index i) { return (written.row(i) - written.row(out.back())).norm() < kLeastMoveMm; };
+    const auto near = [&](Index i) { return (written.row(i) - written.row(out.back())).norm() < kMinMoveMm; };
     for (Index i = 1; i < written.rows(); ++i) {
-        if (stays[std::size_t(i)])
-            while (!stays[std::size_t(out.back())] && near(i)) out.pop_back();
+        if (must_stay[std::size_t(i)])
+            while (!must_stay[std::size_t(out.back())] && near(i)) out.pop_back();
         else if (near(i))
             continue;
         out.push_back(i);
@@ -151,9 +153,9 @@ std::vector<Index> kept(const Poses& written, const std::vector<bool>& stays) {
     return out;
 }
 
-class Text {
+class ProgramText {
  public:
-    explicit Text(double acceleration_mm_s2) : acceleration_mm_s2_(acceleration_mm_s2) {}
+    explicit ProgramText(double acceleration_mm_s2) : acceleration_mm_s2_(acceleration_mm_s2) {}
     std::string all;
     double time_s = 0.0, painted_mm = 0.0;
 
@@ -163,13 +165,13 @@ class Text {
         here_ = to;
     }
     void feed(double mm_s) {  // in steps of 0.1 mm/min, rounded down to keep a limit
-        const std::string line = text_of("F%.1f\n", std::max(std::floor(600.0 * mm_s + 1e-6), 1.0) / 10.0);
+        const std::string line = format_text("F%.1f\n", std::max(std::floor(600.0 * mm_s + 1e-6), 1.0) / 10.0);
         if (line != feed_) all += line;
         feed_ = line;
     }
     void circle(int direction, const Eigen::RowVector3d& to, const Vector2d& centre_from_start, double length_mm) {
         all += (direction > 0 ? "G3" : "G2") + coordinates(to) +
-               text_of(" I%.4f J%.4f\n", rounded(centre_from_start.x()), rounded(centre_from_start.y()));
+               format_text(" I%.4f J%.4f\n", rounded(centre_from_start.x()), rounded(centre_from_start.y()));
         way_mm_ += length_mm;
         here_ = to;
     }
@@ -184,7 +186,7 @@ class Text {
 
  private:
     static std::string coordinates(const Eigen::RowVector3d& to) {
-        return text_of(" X%.4f Y%.4f Z%.4f", rounded(to.x()), rounded(to.y()), rounded(to.z()));
+        return format_text(" X%.4f Y%.4f Z%.4f", rounded(to.x()), rounded(to.y()), rounded(to.z()));
     }
     double acceleration_mm_s2_, way_mm_ = 0.0;
     std::optional<Eigen::RowVector3d> here_;
@@ -192,7 +194,7 @@ class Text {
 };
 
 /// Returns the pass as it is run: a pass that begins or ends below the paper is set down and lifted there.
-Pass on_the_paper(Pass pass) {
+Pass set_on_paper(Pass pass) {
     const Poses& poses = pass.poses_mm;
     const Index n = poses.rows(), before = poses(0, 2) < 0.0 ? 1 : 0, after = poses(n - 1, 2) < 0.0 ? 1 : 0;
     Poses all(before + n + after, 3);
@@ -207,7 +209,7 @@ Pass on_the_paper(Pass pass) {
 }
 
 /// Splits an arc of a full turn or more into parts, because after rounding it might be no circle, or lose a turn.
-std::vector<Arc> in_parts(const Arc& arc, const Poses& written) {
+std::vector<Arc> split_full_circle(const Arc& arc, const Poses& written) {
     std::vector<double> turned{0.0};
     for (Index i = arc.first; i < arc.last; ++i)
         turned.push_back(turned.back() + arc.direction * turn_between(arc, written.row(i).head<2>().transpose(),
@@ -215,11 +217,12 @@ std::vector<Arc> in_parts(const Arc& arc, const Poses& written) {
     const double all = turned.back();
     std::vector<Arc> parts;
     Arc part = arc;
-    if (all >= 2.0 * std::acos(-1.0) || (written.row(arc.last) - written.row(arc.first)).head<2>().norm() < kCircleMm) {
-        const double share = all / std::max(2.0, std::ceil(all / kPartRad)) - 1e-6;
+    if (all >= 2.0 * std::acos(-1.0) ||
+        (written.row(arc.last) - written.row(arc.first)).head<2>().norm() < kMinCircleChordMm) {
+        const double share = all / std::max(2.0, std::ceil(all / kArcPartRad)) - 1e-6;
         std::size_t first = 0;
         for (std::size_t k = 1; k + 1 < turned.size(); ++k) {
-            if (turned[k] - turned[first] < share && turned[k + 1] - turned[first] <= kMostRad) continue;
+            if (turned[k] - turned[first] < share && turned[k + 1] - turned[first] <= kMaxArcRad) continue;
             part.last = arc.first + std::int64_t(k);
             parts.push_back(part);
             part.first = part.last;
@@ -231,23 +234,24 @@ std::vector<Arc> in_parts(const Arc& arc, const Poses& written) {
     return parts;
 }
 
-void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, Text& text) {
-    const Pass pass = on_the_paper(planned);
+void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, ProgramText& text) {
+    const Pass pass = set_on_paper(planned);
     const Index last = pass.poses_mm.rows() - 1;
     const Poses written = pass.poses_mm.unaryExpr([](double value) { return rounded(value); });
     const auto apart = [&](Index a, Index b) { return (written.row(a) - written.row(b)).norm(); };
     std::vector<Arc> parts;
     for (const Arc& arc : pass.arcs)
-        for (const Arc& part : in_parts(arc, written)) parts.push_back(part);
+        for (const Arc& part : split_full_circle(arc, written)) parts.push_back(part);
     std::vector<const Arc*> circle_at(std::size_t(last + 1), nullptr);  // circles by their first pose
-    std::vector<bool> stays(std::size_t(last + 1), false);
-    stays.front() = stays.back() = true;
+    std::vector<bool> must_stay(std::size_t(last + 1), false);
+    must_stay.front() = must_stay.back() = true;
     Index done = 0;
     for (const Arc& arc : parts) {
-        const auto is_tiny = [&](Index a, Index b) { return a != b && apart(a, b) < kLeastMoveMm; };
-        if (apart(arc.first, arc.last) < kCircleMm || is_tiny(done, arc.first) || is_tiny(arc.last, last)) continue;
+        const auto is_tiny = [&](Index a, Index b) { return a != b && apart(a, b) < kMinMoveMm; };
+        if (apart(arc.first, arc.last) < kMinCircleChordMm || is_tiny(done, arc.first) || is_tiny(arc.last, last))
+            continue;
         circle_at[std::size_t(arc.first)] = &arc;
-        stays[std::size_t(arc.first)] = stays[std::size_t(arc.last)] = true;
+        must_stay[std::size_t(arc.first)] = must_stay[std::size_t(arc.last)] = true;
         done = arc.last;
     }
     const double press_mm_s = std::min(cell.press_mm_s, pass.speed_mm_s);
@@ -269,7 +273,7 @@ void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, T
         speed_mm_s = 0.0;
     };
     Index here = 0;
-    for (const Index i : kept(written, stays)) {
+    for (const Index i : select_poses(written, must_stay)) {
         checkpoint();
         if (i <= here) continue;
         if (const Arc* arc = circle_at[std::size_t(here)]) {
@@ -287,12 +291,12 @@ void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, T
             rest();
         } else {
             const Eigen::RowVector3d step = (written.row(i) - written.row(here)).cwiseAbs();
-            const bool is_on_the_spot = std::max(step.x(), step.y()) < kOnTheSpotMm && step.z() > kOnTheSpotMm;
-            const double wanted_mm_s = is_on_the_spot ? press_mm_s : pass.speed_mm_s;
-            if (wanted_mm_s != speed_mm_s) rest();
-            text.feed(wanted_mm_s);
+            const bool is_on_the_spot = std::max(step.x(), step.y()) < kMaxOnTheSpotMm && step.z() > kMaxOnTheSpotMm;
+            const double target_mm_s = is_on_the_spot ? press_mm_s : pass.speed_mm_s;
+            if (target_mm_s != speed_mm_s) rest();
+            text.feed(target_mm_s);
             text.go("G1", pass.poses_mm.row(i));
-            speed_mm_s = wanted_mm_s;
+            speed_mm_s = target_mm_s;
         }
         here = i;
     }
@@ -310,23 +314,23 @@ void write_pass(const Pass& planned, const Brush& brush, const FlatCell& cell, T
 }  // namespace
 
 std::string linuxcnc(const Plan& plan, const Brush& brush, const FlatCell& cell, const std::string& title) {
-    require_sound(plan, brush, cell);
+    require_valid_plan(plan, brush, cell);
     const std::string count = std::to_string(plan.passes.size());
-    Text text(cell.acceleration_mm_s2);
+    ProgramText text(cell.acceleration_mm_s2);
     for (std::size_t i = 0; i < plan.passes.size(); ++i) {
         text.all +=
             "\n" + comment("stroke " + std::to_string(i + 1) + " of " + count + ": " + plan.passes[i].stroke.name());
         write_pass(plan.passes[i], brush, cell, text);
     }
     const std::string path =
-        rounded(cell.blending_mm) > 0.0 ? text_of("G64 P%.4f\n", rounded(cell.blending_mm)) : "G61\n";
+        rounded(cell.blending_mm) > 0.0 ? format_text("G64 P%.4f\n", rounded(cell.blending_mm)) : "G61\n";
     return comment("title: " + title) + comment("brush: " + brush.name + ", " + count + " strokes") +
-           comment(text_of("sheet: %g x %g mm", plan.sheet_mm[0], plan.sheet_mm[1])) +
+           comment(format_text("sheet: %g x %g mm", plan.sheet_mm[0], plan.sheet_mm[1])) +
            comment("cell: " + cell.name + ", linuxcnc") +
            comment("frame: the sheet's lower left corner, mm; z 0 touches") +
-           comment("time: about " + clock(text.time_s)) +
-           comment(text_of("length: %.0f mm on the paper", text.painted_mm)) + "G21 G90 G94 G17 G40 G80 G91.1\n" +
-           path + text_of("G0 Z%.4f\n", rounded(cell.safe_mm)) + text.all + "\nM2\n";
+           comment("time: about " + format_duration(text.time_s)) +
+           comment(format_text("length: %.0f mm on the paper", text.painted_mm)) + "G21 G90 G94 G17 G40 G80 G91.1\n" +
+           path + format_text("G0 Z%.4f\n", rounded(cell.safe_mm)) + text.all + "\nM2\n";
 }
 
 }  // namespace brushsvg::posts

@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 
 constexpr double kPi = 3.14159265358979323846;
 /// Rounding error allowed for when a box is compared with an edge [mm].
-constexpr double kRounding = 1e-9;
+constexpr double kRoundingMm = 1e-9;
 
 /// Mark the corners that a polyline needs. The others are no further from it than the tolerance (Douglas, Peucker).
 void keep_corners(const Ring& ring, Index first, Index last, double tolerance, std::vector<bool>& keep) {
@@ -42,8 +42,8 @@ Ring outline_about_contact(const FootprintTable& table, const Brush& brush, doub
 }
 
 /// Number of edges, and of footprints, that are skipped together where they are far away.
-constexpr Index kEdgesTogether = 16;
-constexpr std::size_t kSamplesTogether = 8;
+constexpr Index kEdgesPerBox = 16;
+constexpr std::size_t kSamplesPerGroup = 8;
 
 /// Return unit vectors in even steps over half a turn: heading and across first.
 template <int n>
@@ -58,29 +58,29 @@ std::array<Vector2d, n> even_axes() {
 
 }  // namespace
 
-Edges::Edges(const Rings& rings) {
+FilledRings::FilledRings(const Rings& rings) {
     Index n = 0;
     for (const Ring& ring : rings) n += ring.rows();
     resize(n);
     Index first = 0;
     for (const Ring& ring : rings) {
-        put(ring, first);
+        store_ring(ring, first);
         first += ring.rows();
     }
-    gather();
+    update_derived();
 }
 
-void Edges::set(const Ring& ring) {
+void FilledRings::set(const Ring& ring) {
     resize(ring.rows());
-    put(ring, 0);
-    gather();
+    store_ring(ring, 0);
+    update_derived();
 }
 
-void Edges::resize(Index n) {
+void FilledRings::resize(Index n) {
     for (auto* column : {&ax_, &ay_, &bx_, &by_, &over_length2_, &x_per_y_}) column->resize(n);
 }
 
-void Edges::put(const Ring& ring, Index first) {
+void FilledRings::store_ring(const Ring& ring, Index first) {
     const Index n = ring.rows();
     if (n == 0) return;
     ax_.segment(first, n) = ring.col(0);
@@ -91,13 +91,13 @@ void Edges::put(const Ring& ring, Index first) {
     by_[first + n - 1] = ring(0, 1) - ring(n - 1, 1);
 }
 
-void Edges::gather() {
+void FilledRings::update_derived() {
     const Index n = size();
     over_length2_ = (bx_.square() + by_.square()).max(1e-18).inverse();
     x_per_y_ = (by_.abs() > 1e-12).select(bx_ / by_, 0.0);
     parts_.clear();
-    for (Index from = 0; from < n; from += kEdgesTogether) {
-        const Index count = std::min(kEdgesTogether, n - from);
+    for (Index from = 0; from < n; from += kEdgesPerBox) {
+        const Index count = std::min(kEdgesPerBox, n - from);
         const auto ax = ax_.segment(from, count), ay = ay_.segment(from, count);
         const auto to_x = ax + bx_.segment(from, count), to_y = ay + by_.segment(from, count);
         parts_.push_back({from, from + count, ax.min(to_x).minCoeff(), ay.min(to_y).minCoeff(), ax.max(to_x).maxCoeff(),
@@ -105,11 +105,11 @@ void Edges::gather() {
     }
 }
 
-EdgePoint Edges::nearest(const Vector2d& p) const {
+EdgePoint FilledRings::nearest(const Vector2d& p) const {
     EdgePoint found;
     double best = 1e300;
     int crossed = 0;
-    for (const Some& part : parts_) {
+    for (const EdgeBox& part : parts_) {
         const double beside_x = std::max({part.left - p.x(), p.x() - part.right, 0.0});
         const double beside_y = std::max({part.bottom - p.y(), p.y() - part.top, 0.0});
         // skip edges that are not nearer, unless a ray from the point to the right may meet them
@@ -129,7 +129,7 @@ EdgePoint Edges::nearest(const Vector2d& p) const {
     return found;
 }
 
-Vector2d Edges::outwards(const Vector2d& p, const EdgePoint& found) const {
+Vector2d FilledRings::outwards(const Vector2d& p, const EdgePoint& found) const {
     const Vector2d away = found.distance_mm < 0.0 ? place(found.edge, found.t) - p : p - place(found.edge, found.t);
     if (away.norm() > 1e-6) return away.normalized();
     return Vector2d(by_[found.edge], -bx_[found.edge]).normalized();
@@ -152,42 +152,42 @@ PaintedEdge::PaintedEdge(const Brush& brush, double tolerance_mm) : brush_(brush
     for (const Footprint& shape : brush.footprints.dragged) {
         Footprint few{shape.depth_mm, Ring(Index(kept.size()), 2)};
         for (Index i = 0; i < few.outline_mm.rows(); ++i) few.outline_mm.row(i) = shape.outline_mm.row(kept[i]);
-        few_.dragged.push_back(std::move(few));
+        simplified_.dragged.push_back(std::move(few));
     }
 }
 
-double PaintedEdge::Placed::at_least_mm(const Vector2d& seen) const {
-    static const std::array<Vector2d, kAxes> axes = even_axes<kAxes>();
+double PaintedEdge::Placed::distance_bound_mm(const Vector2d& seen) const {
+    static const std::array<Vector2d, kAxisCount> axes = even_axes<kAxisCount>();
     double least = -1e300;
-    for (std::size_t k = 0; k < kAxes; ++k) {
+    for (std::size_t k = 0; k < kAxisCount; ++k) {
         const double along = seen.dot(axes[k]);
         least = std::max(least, std::max(along - ahead[k], behind[k] - along));
     }
     return least;
 }
 
-void PaintedEdge::place(const PatchSamples& samples) {
-    static const std::array<Vector2d, kAxes> axes = even_axes<kAxes>();
+void PaintedEdge::place_footprints(const PatchSamples& samples) {
+    static const std::array<Vector2d, kAxisCount> axes = even_axes<kAxisCount>();
     placed_.resize(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         Placed& placed = placed_[i];
         placed.contact = samples[i].contact_mm;
         placed.heading = {std::cos(samples[i].heading_rad), std::sin(samples[i].heading_rad)};
         placed.depth = samples[i].depth_mm;
-        const Ring outline = outline_about_contact(few_, brush_, placed.depth);
+        const Ring outline = outline_about_contact(simplified_, brush_, placed.depth);
         placed.outline.set(outline);
         placed.by_depth.resize(0, 2);
         placed.reach = outline.rowwise().norm().maxCoeff();
-        for (std::size_t k = 0; k < kAxes; ++k) {
+        for (std::size_t k = 0; k < kAxisCount; ++k) {
             const Eigen::VectorXd along = outline * axes[k];
             placed.ahead[k] = along.maxCoeff();
             placed.behind[k] = along.minCoeff();
         }
     }
     groups_.clear();
-    for (std::size_t first = 0; first < placed_.size(); first += kSamplesTogether) {
-        const std::size_t last = std::min(first + kSamplesTogether, placed_.size());
-        Together group{first, last, placed_[(first + last) / 2].contact, 0.0};
+    for (std::size_t first = 0; first < placed_.size(); first += kSamplesPerGroup) {
+        const std::size_t last = std::min(first + kSamplesPerGroup, placed_.size());
+        SampleGroup group{first, last, placed_[(first + last) / 2].contact, 0.0};
         for (std::size_t i = first; i < last; ++i)
             group.radius = std::max(group.radius, (placed_[i].contact - group.middle).norm() + placed_[i].reach);
         groups_.push_back(group);
@@ -195,13 +195,13 @@ void PaintedEdge::place(const PatchSamples& samples) {
 }
 
 EdgePoint PaintedEdge::nearest(const Vector2d& p, std::size_t near) const {
-    EdgePoint best = placed_[near].outline.nearest(placed_[near].seen_from(p));
+    EdgePoint best = placed_[near].outline.nearest(placed_[near].in_footprint_frame(p));
     best.sample = near;
-    for (const Together& group : groups_) {
-        if ((p - group.middle).norm() - group.radius >= best.distance_mm + kRounding) continue;
+    for (const SampleGroup& group : groups_) {
+        if ((p - group.middle).norm() - group.radius >= best.distance_mm + kRoundingMm) continue;
         for (std::size_t i = group.first; i < group.last; ++i) {
-            const Vector2d seen = placed_[i].seen_from(p);
-            if (i == near || placed_[i].at_least_mm(seen) >= best.distance_mm + kRounding) continue;
+            const Vector2d seen = placed_[i].in_footprint_frame(p);
+            if (i == near || placed_[i].distance_bound_mm(seen) >= best.distance_mm + kRoundingMm) continue;
             EdgePoint other = placed_[i].outline.nearest(seen);
             if (other.distance_mm >= best.distance_mm) continue;
             best = other;
@@ -218,17 +218,17 @@ Vector2d PaintedEdge::place_of(const EdgePoint& place) const {
 
 SampleSlope PaintedEdge::slope(const Vector2d& p, const EdgePoint& found) const {
     const Placed& at = placed_[found.sample];
-    return moves(found, -at.on_paper(at.outline.outwards(at.seen_from(p), found)));
+    return motion_slope(found, -at.on_paper(at.outline.outwards(at.in_footprint_frame(p), found)));
 }
 
-SampleSlope PaintedEdge::moves(const EdgePoint& place, const Vector2d& direction) const {
+SampleSlope PaintedEdge::motion_slope(const EdgePoint& place, const Vector2d& direction) const {
     const Placed& at = placed_[place.sample];
     const Vector2d arm = at.on_paper(at.outline.place(place.edge, place.t));
-    constexpr double kStepMm = 1e-4;
+    constexpr double kDepthStepMm = 1e-4;
     if (at.by_depth.rows() == 0)
-        at.by_depth =
-            (outline_about_contact(few_, brush_, at.depth + kStepMm) - outline_about_contact(few_, brush_, at.depth)) /
-            kStepMm;
+        at.by_depth = (outline_about_contact(simplified_, brush_, at.depth + kDepthStepMm) -
+                       outline_about_contact(simplified_, brush_, at.depth)) /
+                      kDepthStepMm;
     const Index k = place.edge, next = k + 1 == at.by_depth.rows() ? 0 : k + 1;
     const Vector2d by_depth =
         at.on_paper((at.by_depth.row(k) + place.t * (at.by_depth.row(next) - at.by_depth.row(k))).transpose());

@@ -18,10 +18,10 @@ struct EdgePoint {
 };
 
 /// Filled rings, stored edge by edge in columns for vectorised code.
-class Edges {
+class FilledRings {
  public:
-    Edges() = default;
-    explicit Edges(const Rings& rings);
+    FilledRings() = default;
+    explicit FilledRings(const Rings& rings);
     void set(const Ring& ring);
 
     EdgePoint nearest(const Eigen::Vector2d& point_mm) const;
@@ -34,17 +34,17 @@ class Edges {
 
  private:
     /// Some consecutive edges, within a box.
-    struct Some {
+    struct EdgeBox {
         Eigen::Index first, last;
         double left, bottom, right, top;
     };
 
     void resize(Eigen::Index n);
-    void put(const Ring& ring, Eigen::Index first);
-    void gather();
+    void store_ring(const Ring& ring, Eigen::Index first);
+    void update_derived();
 
     Eigen::ArrayXd ax_, ay_, bx_, by_, over_length2_, x_per_y_;
-    std::vector<Some> parts_;
+    std::vector<EdgeBox> parts_;
 };
 
 /// Derivatives of a sum by a sample's x, y, heading and depth: per mm, per rad.
@@ -60,27 +60,27 @@ class PaintedEdge {
     /// `tolerance_mm`: how far the simplified footprint outlines may be off.
     PaintedEdge(const Brush& brush, double tolerance_mm);
 
-    void place(const PatchSamples& samples);
+    void place_footprints(const PatchSamples& samples);
     /// Find the nearest edge to a point. `near`: sample with which the search begins, the nearest known one.
     EdgePoint nearest(const Eigen::Vector2d& point_mm, std::size_t near) const;
     /// Return the derivatives of the distance of a point that was found.
     SampleSlope slope(const Eigen::Vector2d& point_mm, const EdgePoint& found) const;
     /// Return the derivatives of how far a place on a footprint's outline moves in a direction.
-    SampleSlope moves(const EdgePoint& place, const Eigen::Vector2d& direction) const;
+    SampleSlope motion_slope(const EdgePoint& place, const Eigen::Vector2d& direction) const;
     Eigen::Vector2d place_of(const EdgePoint& place) const;
-    Eigen::Index corners() const { return few_.vertex_count(); }
+    Eigen::Index corners() const { return simplified_.vertex_count(); }
 
  private:
-    static constexpr int kAxes = 8;
+    static constexpr int kAxisCount = 8;
     /// A footprint about its contact, heading along +x, and its extent along axes in both directions.
     struct Placed {
         Eigen::Vector2d contact, heading;
-        Edges outline;
-        std::array<double, kAxes> ahead, behind;
+        FilledRings outline;
+        std::array<double, kAxisCount> ahead, behind;
         double depth, reach;
         mutable Ring by_depth;  ///< derivative of the outline by depth, computed when first needed
 
-        Eigen::Vector2d seen_from(const Eigen::Vector2d& p) const {
+        Eigen::Vector2d in_footprint_frame(const Eigen::Vector2d& p) const {
             const Eigen::Vector2d from = p - contact;
             return {from.dot(heading), heading.x() * from.y() - heading.y() * from.x()};
         }
@@ -89,19 +89,19 @@ class PaintedEdge {
         }
         /// Return a lower bound of the point's signed distance: no place of the footprint is nearer, and no edge is
         /// deeper.
-        double at_least_mm(const Eigen::Vector2d& seen) const;
+        double distance_bound_mm(const Eigen::Vector2d& seen) const;
     };
     /// Neighbouring footprints, within a circle.
-    struct Together {
+    struct SampleGroup {
         std::size_t first, last;
         Eigen::Vector2d middle;
         double radius;
     };
 
     const Brush& brush_;
-    FootprintTable few_;
+    FootprintTable simplified_;
     std::vector<Placed> placed_;
-    std::vector<Together> groups_;
+    std::vector<SampleGroup> groups_;
 };
 
 }  // namespace brushsvg::fit

@@ -18,12 +18,12 @@ using Eigen::VectorXd;
 
 constexpr double kPi = 3.14159265358979323846;
 /// Path length that a turn in place counts for [mm per rad]: it needs samples and controls of its own.
-constexpr double kWayPerRadian = 1.0;
+constexpr double kPathLengthPerRad = 1.0;
 /// Limits that detect a turning over: the patch rests in one place and the headings of neighbours are more than 120
 /// degrees apart. Samples of a turn in place are closer.
-constexpr double kTurnedOver = -0.5, kRestsMm = 0.01;
+constexpr double kMaxTurnOverCosine = -0.5, kMaxTurnOverMoveMm = 0.01;
 /// Path length that a dab gets [mm]. Without a length no factor could make it a stroke.
-constexpr double kLeastWayMm = 1.0;
+constexpr double kMinPathLengthMm = 1.0;
 
 double unwrapped(double angle, double near) { return angle - 2.0 * kPi * std::round((angle - near) / (2.0 * kPi)); }
 
@@ -151,7 +151,7 @@ MatrixXd PatchPath::curvature(const PatchSamples& samples, const std::vector<Eig
     return half + half.transpose();
 }
 
-double way_of(const PatchSamples& samples) {
+double path_length(const PatchSamples& samples) {
     double way = 0.0;
     for (std::size_t i = 1; i < samples.size(); ++i) way += (samples[i].contact_mm - samples[i - 1].contact_mm).norm();
     return way;
@@ -160,18 +160,18 @@ double way_of(const PatchSamples& samples) {
 namespace {
 
 /// Rows of a trace as samples, without those where nothing moves, and the path length up to each.
-struct Rows {
+struct TraceRows {
     PatchSamples samples;
     std::vector<double> way;
 
-    Rows(const PassMarks& marks, std::size_t begin, std::size_t end, double heading_near) {
+    TraceRows(const PassMarks& marks, std::size_t begin, std::size_t end, double heading_near) {
         for (std::size_t i = begin; i < end; ++i) {
             PatchSample row{marks.contact_mm.row(Index(i)).transpose(), marks.heading_rad[i], marks.depth_mm[i]};
             row.heading_rad = unwrapped(row.heading_rad, samples.empty() ? heading_near : samples.back().heading_rad);
             double step = 0.0;
             if (!samples.empty()) {
                 step = (row.contact_mm - samples.back().contact_mm).norm() +
-                       kWayPerRadian * std::abs(row.heading_rad - samples.back().heading_rad);
+                       kPathLengthPerRad * std::abs(row.heading_rad - samples.back().heading_rad);
                 if (step == 0.0) continue;
             }
             way.push_back(samples.empty() ? 0.0 : way.back() + step);
@@ -179,7 +179,7 @@ struct Rows {
         }
     }
     /// Append the samples, evenly resampled to between `least` and `most`.
-    void into(PatchSamples& out, double step_mm, std::size_t least, std::size_t most) const {
+    void write_to(PatchSamples& out, double step_mm, std::size_t least, std::size_t most) const {
         const std::size_t n = std::clamp(std::size_t(std::ceil(way.back() / step_mm)) + 1, least, most);
         std::size_t j = 0;
         for (std::size_t i = 0; i < n; ++i) {
@@ -204,36 +204,38 @@ PatchSamples patch_path(const Pass& pass, const Brush& brush, double step_mm, st
     PatchSamples out;
     double heading = marks.heading_rad[begin];
     // P rests there: the part between both ends is not painted
-    for (const TurnOver& turn : turns_over(marks)) {
-        const Rows rows(marks, begin, turn.first, heading);
-        if (rows.samples.size() > 1) rows.into(out, step_mm, 2, most);
+    for (const TurnOver& turn : find_turn_overs(marks)) {
+        const TraceRows rows(marks, begin, turn.first, heading);
+        if (rows.samples.size() > 1) rows.write_to(out, step_mm, 2, most);
         begin = turn.last;
         heading = out.empty() ? marks.heading_rad[begin] : out.back().heading_rad;
     }
-    Rows rows(marks, begin, end, heading);
-    if (rows.way.back() < kLeastWayMm && out.empty()) {
+    TraceRows rows(marks, begin, end, heading);
+    if (rows.way.back() < kMinPathLengthMm && out.empty()) {
         rows.samples = {rows.samples.back(), rows.samples.back()};
-        rows.samples[0].contact_mm -= kLeastWayMm * direction(rows.samples[1].heading_rad);
-        rows.way = {0.0, kLeastWayMm};
+        rows.samples[0].contact_mm -= kMinPathLengthMm * direction(rows.samples[1].heading_rad);
+        rows.way = {0.0, kMinPathLengthMm};
     }
-    if (rows.samples.size() > 1) rows.into(out, step_mm, 8, most);
+    if (rows.samples.size() > 1) rows.write_to(out, step_mm, 8, most);
     return out;
 }
 
 bool turns_over(const PatchSample& a, const PatchSample& b) {
-    return std::cos(b.heading_rad - a.heading_rad) < kTurnedOver && (b.contact_mm - a.contact_mm).norm() < kRestsMm;
+    return std::cos(b.heading_rad - a.heading_rad) < kMaxTurnOverCosine &&
+           (b.contact_mm - a.contact_mm).norm() < kMaxTurnOverMoveMm;
 }
 
 namespace {
 
 /// Return the path with additional samples in turns. They keep the heading between poses close to the samples'
 /// headings.
-PatchSamples turns_in_steps(const PatchSamples& samples) {
+PatchSamples add_turn_samples(const PatchSamples& samples) {
     PatchSamples out{samples[0]};
     for (std::size_t i = 1; i < samples.size(); ++i) {
         const PatchSample &a = samples[i - 1], &b = samples[i];
-        const int n =
-            turns_over(a, b) ? 1 : std::max(1, int(std::ceil(std::abs(b.heading_rad - a.heading_rad) / kTurnStepRad)));
+        const int n = turns_over(a, b)
+                          ? 1
+                          : std::max(1, int(std::ceil(std::abs(b.heading_rad - a.heading_rad) / kMaxTurnStepRad)));
         for (int k = 1; k <= n; ++k) out.push_back(between(a, b, double(k) / n));
     }
     return out;
@@ -242,7 +244,7 @@ PatchSamples turns_in_steps(const PatchSamples& samples) {
 }  // namespace
 
 Poses poses_along(const PatchSamples& coarse, const Brush& brush, double tolerance_mm) {
-    const PatchSamples samples = turns_in_steps(coarse);
+    const PatchSamples samples = add_turn_samples(coarse);
     const auto tcp = [&](const PatchSample& s) {
         return Vector2d(s.contact_mm + brush.lag(s.depth_mm) * direction(s.heading_rad));
     };
@@ -254,7 +256,7 @@ Poses poses_along(const PatchSamples& coarse, const Brush& brush, double toleran
     std::size_t from = 0;
     // as long a chord as the samples between its ends allow
     const auto fits = [&](std::size_t a, std::size_t b) {
-        if (std::abs(samples[b].heading_rad - samples[a].heading_rad) > kTurnStepRad) return false;
+        if (std::abs(samples[b].heading_rad - samples[a].heading_rad) > kMaxTurnStepRad) return false;
         const Vector2d q = tcp(samples[a]), by = tcp(samples[b]) - q;
         for (std::size_t k = a + 1; k < b; ++k) {
             const Vector2d to = tcp(samples[k]) - q;
@@ -278,7 +280,7 @@ Poses poses_along(const PatchSamples& coarse, const Brush& brush, double toleran
     }
     lift(stance(samples.back()), brush, list);
     Pass pass;
-    list.into(pass);
+    list.write_to(pass);
     return pass.poses_mm;
 }
 

@@ -58,7 +58,7 @@ class PatchPath {
 };
 
 /// Return the length of the patch's path [mm].
-double way_of(const PatchSamples& samples);
+double path_length(const PatchSamples& samples);
 
 /// Return the path of the patch that a pass draws, evenly resampled, from the first to the last place where the brush
 /// is taut.

@@ -28,7 +28,7 @@ struct RefinedPass {
     /// 0.005. They decide where the gain is not larger than that.
     double overlap_closed = 0.0;
     double overlap = 0.0;
-    bool bettered = false;  ///< false: this plan is the one in closed form
+    bool is_improved = false;  ///< false: this plan is the one in closed form
 };
 
 /// Move the plan in closed form until the outline of its mark fits the target best. The fit changes the patch's path,

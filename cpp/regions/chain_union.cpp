@@ -22,16 +22,16 @@ struct Corner {
 };
 using Corners = std::vector<Corner>;
 
-constexpr double kFarthest = 5e8;  // units: up to here, products of two lengths are exact
-constexpr double kLeastMm2 = 1e-6;
-constexpr std::size_t kMostPairs = 1 << 22;  // most pairs of edges: with more, a sweep is quicker
+constexpr double kMaxUnits = 5e8;  // units: up to here, products of two lengths are exact
+constexpr double kMinAreaMm2 = 1e-6;
+constexpr std::size_t kMaxEdgePairs = 1 << 22;  // most pairs of edges: with more, a sweep is quicker
 
 Unit cross(const Corner& a, const Corner& b) { return a.x * b.y - a.y * b.x; }
 int sign(Unit value) { return (value > 0) - (value < 0); }
 
 bool is_left_of(const Corner& a, const Corner& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; }
 
-Corners corners_of(const Ring& ring, double units_per_mm) {
+Corners to_corners(const Ring& ring, double units_per_mm) {
     Corners corners;
     for (Eigen::Index i = 0; i < ring.rows(); ++i) {
         const Corner corner{std::lround(ring(i, 0) * units_per_mm), std::lround(ring(i, 1) * units_per_mm)};
@@ -60,7 +60,7 @@ int side_of_first(const Corner& from, const Corner& to, const Corner& corner) {
 /// along them are exact fractions with the common denominator `slant`. `ways`: vectors of both edges.
 struct Crossing {
     std::size_t edge[2];
-    Corner ways[2];
+    Corner edge_vectors[2];
     Unit along[2], slant;
     bool first_enters;
     Corner place;
@@ -73,13 +73,13 @@ struct Crossing {
         const int order = sign(slant) * sign(other.slant);
         if (mine != others) return (mine < others) == (order > 0);
         // the shift moves a crossing along by e y - e^2 x of the other edge, over the slant
-        const Corner &way = ways[1 - of], &way_there = other.ways[1 - of];
+        const Corner &other_edge = edge_vectors[1 - of], &other_edge_there = other.edge_vectors[1 - of];
         const auto farther = [&](Unit here, Unit there) {
             return order * sign(Unit((Exact(there) * slant > Exact(here) * other.slant) -
                                      (Exact(there) * slant < Exact(here) * other.slant)));
         };
-        const int first = farther(way.y, way_there.y);
-        return first != 0 ? first > 0 : farther(-way.x, -way_there.x) > 0;
+        const int first = farther(other_edge.y, other_edge_there.y);
+        return first != 0 ? first > 0 : farther(-other_edge.x, -other_edge_there.x) > 0;
     }
 };
 
@@ -113,13 +113,13 @@ std::vector<Edge> edges_in(const Corners& corners, const Box& window) {
 }
 
 /// Find all crossings. None if too many pairs of edges would have to be compared.
-std::optional<std::vector<Crossing>> crossings(const Corners& first, const Corners& second) {
+std::optional<std::vector<Crossing>> find_crossings(const Corners& first, const Corners& second) {
     const Box of_second = box_of(second), of_first = box_of(first);
     const Box window{std::max(of_first.left, of_second.left), std::max(of_first.bottom, of_second.bottom),
                      std::min(of_first.right, of_second.right), std::min(of_first.top, of_second.top)};
     const std::vector<Edge> near = edges_in(first, window);
     std::vector<Edge> others = edges_in(second, window);
-    if (near.size() * others.size() > kMostPairs) return std::nullopt;
+    if (near.size() * others.size() > kMaxEdgePairs) return std::nullopt;
     const auto is_lower = [](const Edge& a, const Edge& b) { return a.box.bottom < b.box.bottom; };
     std::sort(others.begin(), others.end(), is_lower);
     Unit tallest = 0;
@@ -152,7 +152,7 @@ std::optional<std::vector<Crossing>> crossings(const Corners& first, const Corne
 
 /// Sort the crossings into the order in which an outline meets them. Return false if the outline does not enter and
 /// leave alternately. Only shapes that cross themselves do that.
-bool in_turn(const std::vector<Crossing>& all, int of, std::vector<std::size_t>& order) {
+bool sort_along_outline(const std::vector<Crossing>& all, int of, std::vector<std::size_t>& order) {
     order.resize(all.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -165,7 +165,7 @@ bool in_turn(const std::vector<Crossing>& all, int of, std::vector<std::size_t>&
 }
 
 /// Return 1 if a place is inside of an outline, -1 if it is outside, 0 if it is on it.
-int depth_in(const Corners& corners, const Corner& place) {
+int side_of_outline(const Corners& corners, const Corner& place) {
     bool inside = false;
     for (std::size_t i = 0, n = corners.size(); i < n; ++i) {
         const Corner &a = corners[i], &b = corners[i + 1 == n ? 0 : i + 1];
@@ -180,10 +180,10 @@ int depth_in(const Corners& corners, const Corner& place) {
 /// Return whether a part of an outline is on the side of the other outline that its crossings imply. The first corner
 /// of the part that is not exactly on the other outline decides. Crossings are wrong where rounding has made a shape
 /// cross itself.
-bool lies(const Corners& corners, std::size_t after, std::size_t last, int depth, const Corners& other) {
+bool is_on_expected_side(const Corners& corners, std::size_t after, std::size_t last, int depth, const Corners& other) {
     for (std::size_t i = after, n = corners.size(); i != last;) {
         i = i + 1 == n ? 0 : i + 1;
-        if (const int found = depth_in(other, corners[i]); found != 0) return found == depth;
+        if (const int found = side_of_outline(other, corners[i]); found != 0) return found == depth;
     }
     return true;
 }
@@ -230,25 +230,25 @@ bool touches_itself(Corners corners) {
 }
 
 /// Unite two shapes if the outline of both is one ring, which replaces `first`. Return whether it is one ring.
-bool grow(Corners& first, const Corners& second, double least_area) {
-    const std::optional<std::vector<Crossing>> found = crossings(first, second);
+bool unite_into(Corners& first, const Corners& second, double least_area) {
+    const std::optional<std::vector<Crossing>> found = find_crossings(first, second);
     if (!found) return false;
     const std::vector<Crossing>& all = *found;
     if (all.empty()) {
-        if (depth_in(first, second[0]) > 0) return true;
-        if (depth_in(second, first[0]) < 1) return false;
+        if (side_of_outline(first, second[0]) > 0) return true;
+        if (side_of_outline(second, first[0]) < 1) return false;
         first = second;
         return true;
     }
     const Corners* shapes[2] = {&first, &second};
     std::vector<std::size_t> order[2], at[2];
     for (int of : {0, 1}) {
-        if (!in_turn(all, of, order[of])) return false;
+        if (!sort_along_outline(all, of, order[of])) return false;
         at[of].resize(all.size());
         for (std::size_t k = 0; k < all.size(); ++k) {
             const Crossing &here = all[order[of][k]], &next = all[order[of][k + 1 == all.size() ? 0 : k + 1]];
             const int depth = here.first_enters == (of == 0) ? 1 : -1;
-            if (!lies(*shapes[of], here.edge[of], next.edge[of], depth, *shapes[1 - of])) return false;
+            if (!is_on_expected_side(*shapes[of], here.edge[of], next.edge[of], depth, *shapes[1 - of])) return false;
             at[of][order[of][k]] = k;
         }
     }
@@ -292,13 +292,13 @@ bool grow(Corners& first, const Corners& second, double least_area) {
 
 }  // namespace
 
-std::optional<Rings> united_in_chain(const Rings& rings, double units_per_mm) {
+std::optional<Rings> unite_chain(const Rings& rings, double units_per_mm) {
     std::vector<Corners> level;
-    const double least_area = kLeastMm2 * units_per_mm * units_per_mm;
+    const double least_area = kMinAreaMm2 * units_per_mm * units_per_mm;
     for (const Ring& ring : rings) {
-        if (!(ring.rows() > 0 && (ring * units_per_mm).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kFarthest))
+        if (!(ring.rows() > 0 && (ring * units_per_mm).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < kMaxUnits))
             return std::nullopt;
-        if (Corners corners = corners_of(ring, units_per_mm); corners.size() > 2) level.push_back(std::move(corners));
+        if (Corners corners = to_corners(ring, units_per_mm); corners.size() > 2) level.push_back(std::move(corners));
     }
     // by halves, so that each corner is visited only a few times
     for (std::size_t before = 0; before != level.size();) {
@@ -306,7 +306,7 @@ std::optional<Rings> united_in_chain(const Rings& rings, double units_per_mm) {
         std::vector<Corners> next;
         for (std::size_t k = 0; k < before; ++k) {
             next.push_back(std::move(level[k]));
-            if (k + 1 < before && grow(next.back(), level[k + 1], least_area)) ++k;
+            if (k + 1 < before && unite_into(next.back(), level[k + 1], least_area)) ++k;
         }
         level = std::move(next);
     }

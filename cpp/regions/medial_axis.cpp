@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/meanwhile.hpp"
+#include "base/run_cancellable.hpp"
 #include "regions/outline.hpp"
 #include "regions/skeleton_pruning.hpp"
 #include "regions/voronoi_axis.hpp"
@@ -21,11 +21,11 @@ Ring ring_of(const std::vector<Vector2d>& points) {
 
 /// Return the part of the shape nearest to the branch with the given first and last half edges. It follows the outline
 /// along the branch's right side forward, along its left side back, and round its free ends.
-Rings part_of(const VoronoiAxis& axis, const Outline& outline, std::size_t first, std::size_t last) {
+Rings nearest_part(const VoronoiAxis& axis, const Outline& outline, std::size_t first, std::size_t last) {
     const auto is_free = [&](std::size_t p) { return axis.out[p].size() == 1; };
     const std::size_t a = axis.from[first], b = axis.to(last);
-    if (is_free(a) && !is_free(b)) return part_of(axis, outline, last ^ 1, first ^ 1);
-    const Foot right = axis.begin(first), left = axis.foot(first);
+    if (is_free(a) && !is_free(b)) return nearest_part(axis, outline, last ^ 1, first ^ 1);
+    const OutlinePlace right = axis.begin(first), left = axis.foot(first);
     // the branch is the whole axis: return whole rings
     if ((is_free(a) && is_free(b)) || (a == b && axis.out[a].size() == 2)) {
         Rings rings{outline.ring(right.edge)};
@@ -36,7 +36,7 @@ Rings part_of(const VoronoiAxis& axis, const Outline& outline, std::size_t first
     // a side that ends where it began has gone round a hole, unless it never left that place
     const auto moves = [&](std::size_t h, std::size_t end) {
         for (const Vector2d start = outline.at(axis.foot(h));; h = axis.next[h]) {
-            if ((outline.at(axis.foot(h)) - start).norm() > Outline::kNothing) return true;
+            if ((outline.at(axis.foot(h)) - start).norm() > Outline::kSamePlaceUnits) return true;
             if (h == end) return false;
         }
     };
@@ -51,7 +51,7 @@ Rings part_of(const VoronoiAxis& axis, const Outline& outline, std::size_t first
     return {ring_of(points)};
 }
 
-MedialAxis collected(const VoronoiAxis& axis, const Outline& outline, const KeptBranches& branches) {
+MedialAxis collect_axis(const VoronoiAxis& axis, const Outline& outline, const KeptBranches& branches) {
     MedialAxis result;
     std::vector<int> number(axis.points.size(), -1);
     const auto node = [&](std::size_t p, double radius) {
@@ -78,7 +78,7 @@ MedialAxis collected(const VoronoiAxis& axis, const Outline& outline, const Kept
             seen[first] = seen[h ^ 1] = true;
             branch.to = node(axis.to(h), axis.radius(h ^ 1));
             branch.line = Eigen::Map<const AxisLine>(line[0].data(), Index(line.size()), 3);
-            branch.part = part_of(axis, outline, first, h);
+            branch.part = nearest_part(axis, outline, first, h);
             result.branches.push_back(std::move(branch));
         }
     }
@@ -86,28 +86,29 @@ MedialAxis collected(const VoronoiAxis& axis, const Outline& outline, const Kept
     return result;
 }
 
-MedialAxis axis_of(const Rings& rings, double least_share, double least_limb) {
+MedialAxis compute_axis(const Rings& rings, double min_share, double min_limb_share) {
     const Outline outline(rings);
     if (outline.edges() == 0) return {};
     VoronoiAxis axis(outline);
     KeptBranches branches(axis);
-    branches.drop(least_share, least_limb);
-    return collected(axis, outline, branches);
+    branches.drop(min_share, min_limb_share);
+    return collect_axis(axis, outline, branches);
 }
 
 // The diagram checks for cancellation while it is made, but not while its builder sorts, which takes seconds for a
 // million edges.
-constexpr Index kManyCorners = 20000;
+constexpr Index kMinCornersForThread = 20000;
 
 }  // namespace
 
-MedialAxis medial_axis(const Rings& rings, double least_share) { return medial_axis(rings, least_share, least_share); }
+MedialAxis medial_axis(const Rings& rings, double min_share) { return medial_axis(rings, min_share, min_share); }
 
-MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb) {
+MedialAxis medial_axis(const Rings& rings, double min_share, double min_limb_share) {
     Index corners = 0;
     for (const Ring& ring : rings) corners += ring.rows();
-    if (corners < kManyCorners) return axis_of(rings, least_share, least_limb);
-    return asking_meanwhile([rings, least_share, least_limb] { return axis_of(rings, least_share, least_limb); });
+    if (corners < kMinCornersForThread) return compute_axis(rings, min_share, min_limb_share);
+    return run_cancellable(
+        [rings, min_share, min_limb_share] { return compute_axis(rings, min_share, min_limb_share); });
 }
 
 }  // namespace brushsvg

@@ -14,13 +14,13 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-bool is_behind(const Foot& from, const Foot& to) {
+bool is_behind(const OutlinePlace& from, const OutlinePlace& to) {
     return to.edge < from.edge || (to.edge == from.edge && to.at < from.at);
 }
 
-/// How far corners at one place are moved apart: more than kNothing, and far less than is visible. If another edge is
-/// near, they are moved by kShareOfWay of the distance to it. Edges that cross have no diagram.
-constexpr double kApart = 40.0, kShareOfWay = 0.4;  // units
+/// How far corners at one place are moved apart: more than kSamePlaceUnits, and far less than is visible. If another
+/// edge is near, they are moved by kMaxGapShare of the distance to it. Edges that cross have no diagram.
+constexpr double kSeparationUnits = 40.0, kMaxGapShare = 0.4;  // units
 
 double distance(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
     const Vector2d along = b - a;
@@ -35,7 +35,7 @@ bool is_between(const Vector2d& a, const Vector2d& b, const Vector2d& direction)
 }
 
 /// Return where a corner that touches another one is moved: into the smaller of its two angles.
-Vector2i apart(const Vector2d& before, const Vector2d& at, const Vector2d& after, double way) {
+Vector2i separated_corner(const Vector2d& before, const Vector2d& at, const Vector2d& after, double way) {
     const Vector2d in = (before - at).normalized(), out = (after - at).normalized();
     Vector2d into = in + out;
     if (into.norm() < 1e-6) into = Vector2d(-out.y(), out.x());
@@ -61,12 +61,12 @@ Outline::Outline(const Rings& rings) {
         ring_of_.resize(starts_.size(), rings_.size());
         rings_.push_back({first, starts_.size()});
     }
-    move_apart();
+    separate_touching_rings();
     twice_area_.push_back(0.0);
     for (std::size_t k = 0; k < edges(); ++k) twice_area_.push_back(twice_area_.back() + cross(start(k), end(k)));
 }
 
-void Outline::move_apart() {
+void Outline::separate_touching_rings() {
     std::vector<std::size_t> order(edges());
     std::iota(order.begin(), order.end(), std::size_t(0));
     const auto is_before = [this](std::size_t a, std::size_t b) {
@@ -92,7 +92,7 @@ void Outline::move_apart() {
     }
     if (touching.empty()) return;
     // return the distance of an edge from edges that share no end with it, or `room` if none is nearer
-    const auto room_beside = [&](std::size_t k, double room) {
+    const auto free_distance = [&](std::size_t k, double room) {
         const Vector2d a = place(k), b = place(after(k));
         const Eigen::Array2d low = a.cwiseMin(b).array() - room, high = a.cwiseMax(b).array() + room;
         for (std::size_t j = 0; j < edges(); ++j) {
@@ -105,14 +105,14 @@ void Outline::move_apart() {
     };
     for (const std::size_t k : touching) {
         checkpoint(1 + int(edges() / 100));
-        const double room = room_beside(k, room_beside(before(k), kApart / kShareOfWay));
-        starts_[k] = apart(place(before(k)), place(k), place(after(k)), kShareOfWay * room);
+        const double room = free_distance(k, free_distance(before(k), kSeparationUnits / kMaxGapShare));
+        starts_[k] = separated_corner(place(before(k)), place(k), place(after(k)), kMaxGapShare * room);
     }
 }
 
-double Outline::twice_area(const Foot& from, const Foot& to) const {
+double Outline::twice_area(const OutlinePlace& from, const OutlinePlace& to) const {
     if (!same_ring(from, to)) return cross(at(from), at(to));
-    const auto up_to = [this](const Foot& f) { return twice_area_[f.edge] + cross(start(f.edge), at(f)); };
+    const auto up_to = [this](const OutlinePlace& f) { return twice_area_[f.edge] + cross(start(f.edge), at(f)); };
     double sum = up_to(to) - up_to(from);
     if (is_behind(from, to)) {
         const Span& whole = rings_[ring_of_[from.edge]];
@@ -121,10 +121,10 @@ double Outline::twice_area(const Foot& from, const Foot& to) const {
     return sum;
 }
 
-void Outline::walk(const Foot& from, const Foot& to, bool round, std::vector<Vector2d>& out) const {
+void Outline::walk(const OutlinePlace& from, const OutlinePlace& to, bool round, std::vector<Vector2d>& out) const {
     out.push_back(at(from));
     // the ends of an empty walk may be in the wrong order because of rounding
-    const bool is_near = (at(from) - at(to)).norm() < kNothing;
+    const bool is_near = (at(from) - at(to)).norm() < kSamePlaceUnits;
     const bool is_far = is_near ? round : from.edge != to.edge || is_behind(from, to);
     if (same_ring(from, to) && is_far) {
         std::size_t k = from.edge;

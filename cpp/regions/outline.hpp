@@ -14,7 +14,7 @@ constexpr double kUnitsPerMm = 1e5;  // as in region.cpp, whose rings have whole
 inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// A place on the outline: the number of an edge and a fraction of it.
-struct Foot {
+struct OutlinePlace {
     std::size_t edge = 0;
     double at = 0.0;
 };
@@ -22,7 +22,7 @@ struct Foot {
 /// A shape's edges in whole units, ring after ring, the shape to the left of each.
 class Outline {
  public:
-    static constexpr double kNothing = 10.0;  // units: nearer places may be one place, because of rounding
+    static constexpr double kSamePlaceUnits = 10.0;  // units: nearer places may be one place, because of rounding
 
     /// Rings of less than three points are left out. Rings that touch in a corner are moved apart by less than a
     /// micrometre: a middle line through the corner would have no width. Throws Error beyond 20 m.
@@ -37,14 +37,14 @@ class Outline {
     std::size_t after(std::size_t k) const {
         return k + 1 == rings_[ring_of_[k]].last ? rings_[ring_of_[k]].first : k + 1;
     }
-    bool same_ring(const Foot& a, const Foot& b) const { return ring_of_[a.edge] == ring_of_[b.edge]; }
-    Eigen::Vector2d at(const Foot& f) const { return start(f.edge) + f.at * (end(f.edge) - start(f.edge)); }
+    bool same_ring(const OutlinePlace& a, const OutlinePlace& b) const { return ring_of_[a.edge] == ring_of_[b.edge]; }
+    Eigen::Vector2d at(const OutlinePlace& f) const { return start(f.edge) + f.at * (end(f.edge) - start(f.edge)); }
 
     /// Return twice the area between the origin and the outline from one place forward to another; 0 for an empty walk.
-    double twice_area(const Foot& from, const Foot& to) const;
+    double twice_area(const OutlinePlace& from, const OutlinePlace& to) const;
     /// Append the points of the outline from one place forward to another. round: the way from a place to itself is the
     /// whole ring.
-    void walk(const Foot& from, const Foot& to, bool round, std::vector<Eigen::Vector2d>& out) const;
+    void walk(const OutlinePlace& from, const OutlinePlace& to, bool round, std::vector<Eigen::Vector2d>& out) const;
     /// Return the whole ring of an edge [mm].
     Ring ring(std::size_t k) const;
 
@@ -52,7 +52,7 @@ class Outline {
     struct Span {
         std::size_t first, last;
     };
-    void move_apart();
+    void separate_touching_rings();
 
     std::vector<Eigen::Vector2i> starts_;  // start of each edge
     std::vector<std::size_t> ring_of_;     // ring of each edge

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/meanwhile.hpp"
+#include "base/run_cancellable.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "regions/chain_union.hpp"
@@ -32,12 +32,12 @@ using Set = bp::polygon_set_data<int>;
 constexpr double kUnitsPerMm = 1e5;
 // Largest area [mm^2] of slivers that rounding leaves between touching shapes. Slivers narrower than two units are
 // removed as well.
-constexpr double kLeastArea = 1e-6;
+constexpr double kMinAreaMm2 = 1e-6;
 // Boost works in one piece and cannot be cancelled. A thousand corners take it a hundredth of a second, or a second if
 // each edge crosses all others. A thread costs less than the work on a hundred corners.
-constexpr Eigen::Index kManyCorners = 300;
+constexpr Eigen::Index kMinCornersForThread = 300;
 // Half the width [mm] below which a piece of a hull is not worth its corners: a hundred times the rounding error.
-constexpr double kThinnest = 2e-3;
+constexpr double kMinPieceHalfWidthMm = 2e-3;
 
 Polygon to_polygon(const Ring& ring) {
     std::vector<Point> points;
@@ -69,7 +69,7 @@ Rings to_rings(const Set& set) {
     set.get(polygons);
     Rings rings;
     const auto keep = [&](Ring ring) {
-        if (std::abs(signed_area(ring)) > std::max(kLeastArea, length_around(ring) / kUnitsPerMm))
+        if (std::abs(signed_area(ring)) > std::max(kMinAreaMm2, length_around(ring) / kUnitsPerMm))
             rings.push_back(std::move(ring));
     };
     for (const PolygonWithHoles& polygon : polygons) {
@@ -84,7 +84,7 @@ Rings to_rings(const Set& set) {
 /// silently.
 void require_outer_rings(const Rings& rings) {
     const double sum = area(rings);
-    if (sum < -kLeastArea)
+    if (sum < -kMinAreaMm2)
         throw Error("outline-clockwise", "the rings run clockwise: outer ones go counter-clockwise, holes clockwise",
                     "", sum);
 }
@@ -114,7 +114,7 @@ void require_finite(const Ring& ring) {
 
 /// Return the indices of the points from left to right, and from below where one is above the other. Most points are
 /// corners of convex rings, which run there and back: such runs are merged.
-std::vector<Eigen::Index> from_left_to_right(const Ring& points) {
+std::vector<Eigen::Index> order_left_to_right(const Ring& points) {
     const Eigen::Index n = points.rows();
     const auto is_before = [&](Eigen::Index a, Eigen::Index b) {
         return points(a, 0) < points(b, 0) || (points(a, 0) == points(b, 0) && points(a, 1) < points(b, 1));
@@ -149,7 +149,7 @@ std::vector<Eigen::Index> from_left_to_right(const Ring& points) {
 
 /// Return the indices of the points that are corners of their convex hull, counter-clockwise.
 std::vector<Eigen::Index> hull_order(const Ring& points) {
-    std::vector<Eigen::Index> order = from_left_to_right(points);
+    std::vector<Eigen::Index> order = order_left_to_right(points);
     std::vector<Eigen::Index> hull;
     if (order.empty()) return hull;
     const auto turns_right = [&](Eigen::Index c) {
@@ -170,13 +170,13 @@ std::vector<Eigen::Index> hull_order(const Ring& points) {
     return hull;
 }
 
-Ring rows_of(const Ring& points, const std::vector<Eigen::Index>& numbers) {
+Ring select_rows(const Ring& points, const std::vector<Eigen::Index>& numbers) {
     Ring ring(Eigen::Index(numbers.size()), 2);
     for (Eigen::Index i = 0; i < ring.rows(); ++i) ring.row(i) = points.row(numbers[i]);
     return ring;
 }
 
-Ring both(const Ring& a, const Ring& b) {
+Ring concatenate(const Ring& a, const Ring& b) {
     Ring points(a.rows() + b.rows(), 2);
     points << a, b;
     return points;
@@ -184,15 +184,15 @@ Ring both(const Ring& a, const Ring& b) {
 
 /// Run work(rings ...) so that it can be cancelled at any step of Boost.
 template <class Work, class... Shapes>
-auto heard(const Work& work, const Shapes&... shapes) {
+auto run_in_thread_if_large(const Work& work, const Shapes&... shapes) {
     Eigen::Index corners = 0;
     for (const Rings* rings : {&shapes...})
         for (const Ring& ring : *rings) corners += ring.rows();
-    if (corners < kManyCorners) return work(shapes...);
-    return asking_meanwhile([=] { return work(shapes...); });
+    if (corners < kMinCornersForThread) return work(shapes...);
+    return run_cancellable([=] { return work(shapes...); });
 }
 
-Rings united(const Rings& rings) {
+Rings unite_in_tree(const Rings& rings) {
     require_outer_rings(rings);
     // unite in a tree: neighbours overlap most, and one sweep over all rings would meet every crossing twice
     std::vector<Set> level;
@@ -219,12 +219,12 @@ Rings united(const Rings& rings) {
 }
 
 // Each turn costs a sweep over everything. Letters turn twice. Nested contours are cheaper one by one. A single ring
-// that winds more than kMostTurns is a star or a spiral of a hundred points, not lettering.
-constexpr int kFewTurns = 3, kMostTurns = 32;
+// that winds more than kMaxTurns is a star or a spiral of a hundred points, not lettering.
+constexpr int kMaxTurnsTogether = 3, kMaxTurns = 32;
 
 /// Return where the outlines run counter-clockwise `turns` times or more round a point; reversed: clockwise. The sweep
 /// keeps areas that count once or more, so a frame about everything subtracts turns - 1.
-Set wound(const Rings& outlines, int turns, bool reversed) {
+Set fill_by_winding(const Rings& outlines, int turns, bool reversed) {
     const auto insert = [reversed](Set& set, const Ring& ring, bool once) {
         const Polygon polygon = to_polygon(ring);
         const bool positive = once != reversed;
@@ -253,11 +253,11 @@ Set wound(const Rings& outlines, int turns, bool reversed) {
 
 /// Return where the outlines run round a point an odd number of times. None if they do so more than `most` times
 /// anywhere.
-std::optional<Set> wound_oddly(const Rings& outlines, int most) {
+std::optional<Set> fill_odd_windings(const Rings& outlines, int most) {
     Set filled;
     for (bool reversed : {false, true}) {
         for (int turns = 1;; ++turns) {
-            const Set level = wound(outlines, turns, reversed);
+            const Set level = fill_by_winding(outlines, turns, reversed);
             if (level.empty()) break;
             if (turns > most) return std::nullopt;
             filled.insert(level, turns % 2 == 0);  // each level is in the one before
@@ -269,14 +269,14 @@ std::optional<Set> wound_oddly(const Rings& outlines, int most) {
 
 /// Return where the outlines run round a point an odd number of times, however often they are nested. Each outline is
 /// filled by itself. Then the fills are combined in a tree.
-Set in_an_odd_number(const Rings& outlines) {
+Set fill_odd_nesting(const Rings& outlines) {
     using namespace bp::operators;
     std::vector<Set> level;
     for (const Ring& ring : outlines) {
-        std::optional<Set> alone = wound_oddly({ring}, kMostTurns);
+        std::optional<Set> alone = fill_odd_windings({ring}, kMaxTurns);
         if (!alone)
             throw Error("outline-too-complex",
-                        "an outline runs more than " + std::to_string(kMostTurns) + " times round a point");
+                        "an outline runs more than " + std::to_string(kMaxTurns) + " times round a point");
         level.push_back(std::move(*alone));
     }
     while (level.size() > 1) {
@@ -291,31 +291,31 @@ Set in_an_odd_number(const Rings& outlines) {
     return level.empty() ? Set() : level.front();
 }
 
-Rings filled_by(const Rings& outlines, FillRule rule) {
+Rings fill_outlines(const Rings& outlines, FillRule rule) {
     if (rule == FillRule::evenodd) {
-        const std::optional<Set> filled = wound_oddly(outlines, kFewTurns);
-        return to_rings(filled ? *filled : in_an_odd_number(outlines));
+        const std::optional<Set> filled = fill_odd_windings(outlines, kMaxTurnsTogether);
+        return to_rings(filled ? *filled : fill_odd_nesting(outlines));
     }
     Set filled;
-    for (bool reversed : {false, true}) filled.insert(wound(outlines, 1, reversed));
+    for (bool reversed : {false, true}) filled.insert(fill_by_winding(outlines, 1, reversed));
     filled.clean();
     return to_rings(filled);
 }
 
 /// Return the sides of a window that a corner is beyond, one bit for each of the four sides.
-int beyond_sides(const Eigen::RowVector2d& corner, const Eigen::AlignedBox2d& window) {
+int outcode(const Eigen::RowVector2d& corner, const Eigen::AlignedBox2d& window) {
     return (corner.x() < window.min().x()) | (corner.x() > window.max().x()) << 1 |
            (corner.y() < window.min().y()) << 2 | (corner.y() > window.max().y()) << 3;
 }
 
 /// Return the ring without corners between two others beyond the same side of a window. Nothing changes inside the
 /// window.
-Ring seen_in(const Ring& ring, const Eigen::AlignedBox2d& window) {
+Ring clip_to_window(const Ring& ring, const Eigen::AlignedBox2d& window) {
     std::vector<Eigen::Index> kept;
     int last = 0;
     for (Eigen::Index i = 0; i < ring.rows(); ++i) {
-        const int side = beyond_sides(ring.row(i), window);
-        const int next = i + 1 < ring.rows() ? beyond_sides(ring.row(i + 1), window) : 0;
+        const int side = outcode(ring.row(i), window);
+        const int next = i + 1 < ring.rows() ? outcode(ring.row(i + 1), window) : 0;
         if (last & side & next) continue;
         kept.push_back(i);
         last = side;
@@ -328,7 +328,7 @@ Ring seen_in(const Ring& ring, const Eigen::AlignedBox2d& window) {
 }
 
 /// Return the parts of some rings that can meet others. A box is often compared with a whole letter.
-Rings seen_near(const Rings& rings, const Rings& others) {
+Rings clip_to_others(const Rings& rings, const Rings& others) {
     Eigen::AlignedBox2d window;
     for (const Ring& ring : others)
         for (Eigen::Index i = 0; i < ring.rows(); ++i) window.extend(ring.row(i).transpose());
@@ -337,12 +337,12 @@ Rings seen_near(const Rings& rings, const Rings& others) {
     for (const Ring& ring : rings) {
         Eigen::AlignedBox2d box;
         for (Eigen::Index i = 0; i < ring.rows(); ++i) box.extend(ring.row(i).transpose());
-        if (box.intersects(window)) out.push_back(seen_in(ring, window));
+        if (box.intersects(window)) out.push_back(clip_to_window(ring, window));
     }
     return out;
 }
 
-Rings in_common(const Rings& a, const Rings& b) {
+Rings intersect_sets(const Rings& a, const Rings& b) {
     using namespace bp::operators;
     const Set first = to_set(a), second = to_set(b);
     Set both;
@@ -350,7 +350,7 @@ Rings in_common(const Rings& a, const Rings& b) {
     return to_rings(both);
 }
 
-double common_share(const Rings& a, const Rings& b) {
+double overlap_share(const Rings& a, const Rings& b) {
     using namespace bp::operators;
     require_outer_rings(a);
     require_outer_rings(b);
@@ -365,20 +365,20 @@ double common_share(const Rings& a, const Rings& b) {
 
 Rings unite(const Rings& rings) {
     require_outer_rings(rings);
-    const InSight fewer = united_in_sight(rings);
-    const std::optional<Rings> chains = fewer.are_stars ? united_in_chain(fewer.rings, kUnitsPerMm) : std::nullopt;
+    const StarUnion fewer = unite_stars(rings);
+    const std::optional<Rings> chains = fewer.are_stars ? unite_chain(fewer.rings, kUnitsPerMm) : std::nullopt;
     if (chains && chains->size() == 1) return *chains;
-    return heard(united, chains ? *chains : fewer.rings);
+    return run_in_thread_if_large(unite_in_tree, chains ? *chains : fewer.rings);
 }
 
 Rings fill(const Rings& outlines, FillRule rule) {
-    return heard([rule](const Rings& rings) { return filled_by(rings, rule); }, outlines);
+    return run_in_thread_if_large([rule](const Rings& rings) { return fill_outlines(rings, rule); }, outlines);
 }
 
 Rings intersect(const Rings& a, const Rings& b) {
     require_outer_rings(a);
     require_outer_rings(b);
-    return heard(in_common, seen_near(a, b), seen_near(b, a));
+    return run_in_thread_if_large(intersect_sets, clip_to_others(a, b), clip_to_others(b, a));
 }
 
 double area(const Rings& rings) {
@@ -388,11 +388,11 @@ double area(const Rings& rings) {
     return sum;
 }
 
-double overlap(const Rings& a, const Rings& b) { return heard(common_share, a, b); }
+double overlap(const Rings& a, const Rings& b) { return run_in_thread_if_large(overlap_share, a, b); }
 
 Ring convex_hull(const Ring& points) {
     require_finite(points);
-    return rows_of(points, hull_order(points));
+    return select_rows(points, hull_order(points));
 }
 
 std::vector<double> clearance(const Rings& rings, const Ring& points) {
@@ -400,8 +400,8 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
     for (const Ring& ring : rings) require_finite(ring);
     Rings closed;
     for (const Ring& ring : rings)
-        if (ring.rows() > 0) closed.push_back(both(ring, ring.row(0)));
-    std::vector<Nearest<Ring>> outlines(closed.begin(), closed.end());
+        if (ring.rows() > 0) closed.push_back(concatenate(ring, ring.row(0)));
+    std::vector<NearestOnPolyline<Ring>> outlines(closed.begin(), closed.end());
     std::vector<double> distances;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
         double least = std::numeric_limits<double>::infinity();
@@ -452,7 +452,7 @@ Rings pieces_between(const Rings& chain) {
     std::vector<Numbers> hulls;  // hulls of the pairs; corners of F_i+1 are numbered after the corners of F_i
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
         checkpoint(10);
-        pairs.push_back(both(chain[i], chain[i + 1]));
+        pairs.push_back(concatenate(chain[i], chain[i + 1]));
         hulls.push_back(hull_order(pairs.back()));
     }
     // Between two corners of F_i that stay, others of F_i can go: the area that they enclose is in F_i, so in the hull
@@ -491,8 +491,9 @@ Rings pieces_between(const Rings& chain) {
                 kept.push_back(hull[k]);
         }
         // a shape that grows or turns in place leaves strips that are so thin that rounding would fray the outline
-        Ring piece = rows_of(pairs[i], kept);
-        if (kept.size() < 3 || signed_area(piece) < kThinnest * length_around(piece)) piece = rows_of(pairs[i], hull);
+        Ring piece = select_rows(pairs[i], kept);
+        if (kept.size() < 3 || signed_area(piece) < kMinPieceHalfWidthMm * length_around(piece))
+            piece = select_rows(pairs[i], hull);
         pieces.push_back(std::move(piece));
     }
     return pieces;

@@ -18,12 +18,12 @@ using Eigen::Vector2d;
 using Star = std::vector<Vector2d>;
 
 /// Most rings that are united at once: a brush leaves a place within that many pieces.
-constexpr std::size_t kMostRings = 64;
+constexpr std::size_t kMaxRings = 64;
 /// Edges nearer than this count as one [mm]: half the resolution of coordinates.
-constexpr double kSameMm = 5e-6;
+constexpr double kSameEdgeMm = 5e-6;
 /// Least distance at which the line of an edge passes the point, as a share of the edge's distance. Seen along an edge,
 /// an angle hardly determines a place on the edge.
-constexpr double kLeastSlant = 0.02;
+constexpr double kMinSlant = 0.02;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 bool is_below(const Vector2d& a) { return a.y() < 0.0 || (a.y() == 0.0 && a.x() < 0.0); }
@@ -33,7 +33,7 @@ bool comes_before(const Vector2d& a, const Vector2d& b) {
 
 /// Fill `star` with the ring, from its corner of the least angle on. Return false if the point does not see all of it,
 /// once around.
-bool seen_from(const Vector2d& point, const Ring& ring, Star& star) {
+bool make_star(const Vector2d& point, const Ring& ring, Star& star) {
     const Index n = ring.rows();
     if (n < 3) return false;
     star.resize(std::size_t(n));
@@ -42,7 +42,7 @@ bool seen_from(const Vector2d& point, const Ring& ring, Star& star) {
     for (Index i = 0; i < n; ++i) {
         const Vector2d &a = star[std::size_t(i)], &b = star[std::size_t(i + 1 == n ? 0 : i + 1)];
         const double twice = cross(a, b), far = std::max(a.squaredNorm(), b.squaredNorm());
-        if (!(twice > 0.0 && twice * twice > kLeastSlant * kLeastSlant * far * (b - a).squaredNorm())) return false;
+        if (!(twice > 0.0 && twice * twice > kMinSlant * kMinSlant * far * (b - a).squaredNorm())) return false;
         if (!comes_before(a, b)) {
             if (first >= 0) return false;  // a second time around
             first = i + 1 == n ? 0 : i + 1;
@@ -54,7 +54,7 @@ bool seen_from(const Vector2d& point, const Ring& ring, Star& star) {
 }
 
 /// Return how far a place is beyond the line through an edge, as seen from the point.
-double beyond(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
+double distance_beyond_edge(const Vector2d& from, const Vector2d& to, const Vector2d& place) {
     const Vector2d edge = to - from;
     return -cross(edge, place - from) / edge.norm();
 }
@@ -65,8 +65,8 @@ struct Edges {
 
     /// Return which one reaches further in the direction of a corner of one of them: 1 a, -1 b, else `before`.
     int outer_at(const Vector2d& corner, bool is_of_a, int before) const {
-        const double by = is_of_a ? beyond(b0, b1, corner) : -beyond(a0, a1, corner);
-        return by > kSameMm ? 1 : by < -kSameMm ? -1 : before;
+        const double by = is_of_a ? distance_beyond_edge(b0, b1, corner) : -distance_beyond_edge(a0, a1, corner);
+        return by > kSameEdgeMm ? 1 : by < -kSameEdgeMm ? -1 : before;
     }
     /// Return where they cross between two directions. If rounding puts the crossing elsewhere, return a place on the
     /// edge that is then the outer one, in the direction `from`. The edges are so near there that they count as one.
@@ -84,10 +84,10 @@ struct Edges {
 };
 
 /// Find the outer one of two stars at each angle.
-void outer(const Star& a, const Star& b, Star& out) {
+void unite_two_stars(const Star& a, const Star& b, Star& out) {
     out.clear();
     const auto add = [&](const Vector2d& corner) {
-        if (out.empty() || (corner - out.back()).squaredNorm() > kSameMm * kSameMm) out.push_back(corner);
+        if (out.empty() || (corner - out.back()).squaredNorm() > kSameEdgeMm * kSameEdgeMm) out.push_back(corner);
     };
     Edges edges{a.back(), a.front(), b.back(), b.front()};
     Vector2d last = comes_before(a.back(), b.back()) ? b.back() : a.back();
@@ -115,7 +115,7 @@ void outer(const Star& a, const Star& b, Star& out) {
     // the first one again: they may cross on the way there
     const bool is_of_a = !comes_before(b.front(), a.front());
     reach(is_of_a ? a.front() : b.front(), is_of_a);
-    while (out.size() > 1 && (out.front() - out.back()).squaredNorm() <= kSameMm * kSameMm) out.pop_back();
+    while (out.size() > 1 && (out.front() - out.back()).squaredNorm() <= kSameEdgeMm * kSameEdgeMm) out.pop_back();
     if (comes_before(out.back(), out.front())) std::rotate(out.begin(), out.end() - 1, out.end());
 }
 
@@ -126,12 +126,12 @@ Ring ring_of(const Star& star, const Vector2d& point) {
 }
 
 /// Return the outer edge of all stars. Neighbours overlap most, so stars are united by halves.
-Star outermost(std::vector<Star> stars) {
+Star outer_envelope(std::vector<Star> stars) {
     while (stars.size() > 1) {
         std::vector<Star> next((stars.size() + 1) / 2);
         for (std::size_t k = 0; k < stars.size(); k += 2) {
             if (k + 1 < stars.size())
-                outer(stars[k], stars[k + 1], next[k / 2]);
+                unite_two_stars(stars[k], stars[k + 1], next[k / 2]);
             else
                 next[k / 2] = std::move(stars[k]);
         }
@@ -142,7 +142,7 @@ Star outermost(std::vector<Star> stars) {
 
 }  // namespace
 
-InSight united_in_sight(const Rings& rings) {
+StarUnion unite_stars(const Rings& rings) {
     std::vector<bool> is_outer;
     for (const Ring& ring : rings) is_outer.push_back(ring.rows() >= 3 && signed_area(ring) > 0.0);
     const auto is_alone = [&](std::size_t k) { return is_outer[k] && (k + 1 == rings.size() || is_outer[k + 1]); };
@@ -151,23 +151,23 @@ InSight united_in_sight(const Rings& rings) {
     std::vector<Star> stars;
     for (std::size_t first = 0; first < rings.size();) {
         std::size_t most = first;
-        while (most < rings.size() && most - first < kMostRings && is_alone(most)) ++most;
+        while (most < rings.size() && most - first < kMaxRings && is_alone(most)) ++most;
         std::size_t count = most - first;
         for (; count > 1; count = 3 * count / 4) {
             checkpoint(int(count));
             const Vector2d point = rings[first + count / 2].colwise().mean().transpose();
             stars.resize(count);
             std::size_t seen = 0;
-            while (seen < count && seen_from(point, rings[first + seen], stars[seen])) ++seen;
+            while (seen < count && make_star(point, rings[first + seen], stars[seen])) ++seen;
             if (seen < count) continue;
-            out.push_back(ring_of(outermost(std::move(stars)), point));
+            out.push_back(ring_of(outer_envelope(std::move(stars)), point));
             stars.clear();
             break;
         }
         if (count < 2) {
             const Ring& ring = rings[first];
             stars.resize(1);
-            are_stars = are_stars && is_alone(first) && seen_from(ring.colwise().mean().transpose(), ring, stars[0]);
+            are_stars = are_stars && is_alone(first) && make_star(ring.colwise().mean().transpose(), ring, stars[0]);
             out.push_back(ring);
             count = 1;
         }

@@ -30,7 +30,7 @@ class Diagram : public bp::voronoi_diagram<double> {
 
 constexpr double kPi = 3.14159265358979323846;
 
-void construct(const Outline& outline, Diagram& diagram) {
+void build_diagram(const Outline& outline, Diagram& diagram) {
     bp::default_voronoi_builder builder;
     for (std::size_t k = 0; k < outline.edges(); ++k) {
         const Vector2d a = outline.start(k), b = outline.end(k);
@@ -39,7 +39,7 @@ void construct(const Outline& outline, Diagram& diagram) {
     builder.construct(&diagram);
 }
 
-Site site_of(const Diagram::cell_type& cell, const Outline& outline) {
+Site find_site(const Diagram::cell_type& cell, const Outline& outline) {
     const std::size_t k = cell.source_index();
     const bool is_end = cell.source_category() == bp::SOURCE_CATEGORY_SEGMENT_END_POINT;
     return {is_end ? outline.after(k) : k, cell.contains_point()};
@@ -59,10 +59,12 @@ bool is_inside(const Site& a, const Site& b, const Vector2d& p, const Vector2d& 
     return cross(in, go) < 0.0 ? left_of_in || left_of_go : left_of_in && left_of_go;
 }
 
-AxisPoint in_mm(const Vector2d& p, double r) { return {p.x() / kUnitsPerMm, p.y() / kUnitsPerMm, r / kUnitsPerMm}; }
+AxisPoint to_axis_point(const Vector2d& p, double r) {
+    return {p.x() / kUnitsPerMm, p.y() / kUnitsPerMm, r / kUnitsPerMm};
+}
 
 /// Return a number of pieces so that none is much longer than a fifth of the radius.
-int pieces(double length, double radius) {
+int piece_count(double length, double radius) {
     return radius > 0.0 ? int(std::clamp(length / (0.2 * radius), 0.0, 200.0)) + 1 : 1;
 }
 
@@ -70,7 +72,7 @@ int pieces(double length, double radius) {
 
 VoronoiAxis::VoronoiAxis(const Outline& outline) : outline_(outline) {
     Diagram diagram;
-    construct(outline, diagram);
+    build_diagram(outline, diagram);
     std::vector<std::size_t> vertex(diagram.vertices().size(), none);
     const auto number = [&](const Diagram::vertex_type* v) {
         std::size_t& k = vertex[std::size_t(v - diagram.vertices().data())];
@@ -84,7 +86,7 @@ VoronoiAxis::VoronoiAxis(const Outline& outline) : outline_(outline) {
     for (const Diagram::edge_type& edge : diagram.edges()) {
         if (!edge.is_primary() || !edge.is_finite() || &edge > edge.twin()) continue;
         const Vector2d p(edge.vertex0()->x(), edge.vertex0()->y()), q(edge.vertex1()->x(), edge.vertex1()->y());
-        const Site a = site_of(*edge.cell(), outline), b = site_of(*edge.twin()->cell(), outline);
+        const Site a = find_site(*edge.cell(), outline), b = find_site(*edge.twin()->cell(), outline);
         if (!is_inside(a, b, p, q, outline)) continue;
         for (const Diagram::edge_type* half : {&edge, edge.twin()}) {
             half_of[std::size_t(half - diagram.edges().data())] = from.size();
@@ -106,7 +108,7 @@ VoronoiAxis::VoronoiAxis(const Outline& outline) : outline_(outline) {
     }
 }
 
-Foot VoronoiAxis::foot(const Site& site, const Vector2d& p) const {
+OutlinePlace VoronoiAxis::foot(const Site& site, const Vector2d& p) const {
     if (site.is_corner) return {site.edge, 0.0};
     const Vector2d a = outline_.start(site.edge), d = outline_.end(site.edge) - a;
     return {site.edge, std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0)};
@@ -114,7 +116,7 @@ Foot VoronoiAxis::foot(const Site& site, const Vector2d& p) const {
 
 double VoronoiAxis::share(std::size_t h) const {
     const Vector2d& centre = points[from[h]];
-    const Foot right = foot_right(h), to_left = foot(h);
+    const OutlinePlace right = foot_right(h), to_left = foot(h);
     const Vector2d a = outline_.at(right), b = outline_.at(to_left);
     const double r2 = (b - centre).squaredNorm();
     if (!(r2 > 0.0)) return 0.0;
@@ -124,14 +126,14 @@ double VoronoiAxis::share(std::size_t h) const {
     return area / r2 - 0.5 * angle;
 }
 
-Foot VoronoiAxis::begin(std::size_t h) const {
+OutlinePlace VoronoiAxis::begin(std::size_t h) const {
     const auto& leaving = out[from[h]];
     if (leaving.size() < 2) return foot_right(h);
     const auto found = std::find(leaving.begin(), leaving.end(), h);
     return foot(found == leaving.begin() ? leaving.back() : *(found - 1));
 }
 
-AxisPoint VoronoiAxis::at_start(std::size_t h) const { return in_mm(points[from[h]], radius(h)); }
+AxisPoint VoronoiAxis::at_start(std::size_t h) const { return to_axis_point(points[from[h]], radius(h)); }
 
 void VoronoiAxis::sample(std::size_t h, std::vector<AxisPoint>& line) const {
     checkpoint();
@@ -145,24 +147,24 @@ void VoronoiAxis::sample(std::size_t h, std::vector<AxisPoint>& line) const {
         const Vector2d up(-along.y(), along.x());
         const double height = (f - o).dot(up), middle = (f - o).dot(along);
         const double x0 = (p - o).dot(along) - middle, x1 = (q - o).dot(along) - middle;
-        const int n = height > 0.0 ? pieces(std::abs(x1 - x0), height) : 1;
+        const int n = height > 0.0 ? piece_count(std::abs(x1 - x0), height) : 1;
         for (int i = 1; i < n; ++i) {
             const double x = x0 + (x1 - x0) * i / n, y = (x * x + height * height) / (2.0 * height);
-            line.push_back(in_mm(o + (x + middle) * along + y * up, y));
+            line.push_back(to_axis_point(o + (x + middle) * along + y * up, y));
         }
     } else if (a.is_corner) {
         const Vector2d f = outline_.start(a.edge);
-        const int n = pieces((q - p).norm(), std::min((p - f).norm(), (q - f).norm()));
+        const int n = piece_count((q - p).norm(), std::min((p - f).norm(), (q - f).norm()));
         for (int i = 1; i < n; ++i) {
             const Vector2d x = p + (q - p) * i / n;
-            line.push_back(in_mm(x, (x - f).norm()));
+            line.push_back(to_axis_point(x, (x - f).norm()));
         }
     } else {
         const double r0 = radius(h), r1 = radius(h ^ 1);
-        const int n = pieces((q - p).norm(), std::max(r0, r1));
-        for (int i = 1; i < n; ++i) line.push_back(in_mm(p + (q - p) * i / n, r0 + (r1 - r0) * i / n));
+        const int n = piece_count((q - p).norm(), std::max(r0, r1));
+        for (int i = 1; i < n; ++i) line.push_back(to_axis_point(p + (q - p) * i / n, r0 + (r1 - r0) * i / n));
     }
-    line.push_back(in_mm(q, radius(h ^ 1)));
+    line.push_back(to_axis_point(q, radius(h ^ 1)));
 }
 
 }  // namespace brushsvg

@@ -26,15 +26,15 @@ class VoronoiAxis {
     std::size_t to(std::size_t h) const { return from[h ^ 1]; }
     /// Return where the disc about a half edge's start touches the outline: on the left, and on the right of the half
     /// edge.
-    Foot foot(std::size_t h) const { return foot(left[h], points[from[h]]); }
-    Foot foot_right(std::size_t h) const { return foot(left[h ^ 1], points[from[h]]); }
+    OutlinePlace foot(std::size_t h) const { return foot(left[h], points[from[h]]); }
+    OutlinePlace foot_right(std::size_t h) const { return foot(left[h ^ 1], points[from[h]]); }
     double radius(std::size_t h) const { return (points[from[h]] - outline_.at(foot(h))).norm(); }
     /// Return the area that the branch beginning with this half edge adds to the disc about its start, up to its free
     /// end. The area is in squares of the disc's radius.
     double share(std::size_t h) const;
     /// Return where the outline begins that belongs to the branch which leaves by h. It includes branches dropped
     /// before h.
-    Foot begin(std::size_t h) const;
+    OutlinePlace begin(std::size_t h) const;
     AxisPoint at_start(std::size_t h) const;
     /// Append points along a half edge, without its first one.
     void sample(std::size_t h, std::vector<AxisPoint>& line) const;
@@ -47,7 +47,7 @@ class VoronoiAxis {
     std::vector<std::vector<std::size_t>> out;
 
  private:
-    Foot foot(const Site& site, const Eigen::Vector2d& p) const;
+    OutlinePlace foot(const Site& site, const Eigen::Vector2d& p) const;
     const Outline& outline_;
 };
 

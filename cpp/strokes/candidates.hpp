@@ -33,7 +33,7 @@ class ShapeOutline {
  private:
     const Canvas& canvas_;
     Rings closed_;
-    std::vector<Nearest<Ring>> nearest_;
+    std::vector<NearestOnPolyline<Ring>> nearest_;
     OutlineEdges edges_;
 };
 
@@ -45,21 +45,21 @@ using Candidates = std::vector<WideLine>;
 
 /// Return lines straight out from the nearest place on a middle line, to the middle of the area and to its farthest
 /// place. They stay in the shape and are as wide as it has room. half_mm: the brush's least and greatest half width.
-Candidates straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
-                        const std::array<double, 2>& half_mm);
+Candidates lines_straight_out(const BareArea& area, const std::vector<MiddlePolyline>& middles, ShapeOutline& outline,
+                              const std::array<double, 2>& half_mm);
 
 /// Return lines along the middle lines of strokes that have another path now: the stretch that meets the area, as wide
 /// as the stroke was there, in both directions.
-Candidates along_middles(const BareArea& area, const std::vector<MiddlePolyline>& former,
-                         const std::array<double, 2>& half_mm);
+Candidates lines_along_middles(const BareArea& area, const std::vector<MiddlePolyline>& former,
+                               const std::array<double, 2>& half_mm);
 
 /// Return lines along each stretch of the outline that the area touches, in both directions and in several widths.
-Candidates along_edges(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
+Candidates lines_along_edges(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
 
 /// Return lines inwards from each corner that the area touches. They are as wide as the shape has room, up to a width.
-Candidates from_corners(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
+Candidates lines_from_corners(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
 
 /// Return lines along and across an area that is surrounded by paint.
-Candidates across(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
+Candidates lines_across(const BareArea& area, ShapeOutline& outline, const std::array<double, 2>& half_mm);
 
 }  // namespace brushsvg

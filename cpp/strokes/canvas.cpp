@@ -13,14 +13,14 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kPxPerMm = 6.0;   // coarser pixels miss visible details of 0.15 mm, finer ones take longer
-constexpr double kMostSide = 2e3;  // pixels: a shape of half a metre has coarser pixels
+constexpr double kMaxPxPerMm = 6.0;  // coarser pixels miss visible details of 0.15 mm, finer ones take longer
+constexpr double kMaxSidePx = 2e3;   // pixels: a shape of half a metre has coarser pixels
 // Length of the parts into which long edges are split: each part handles the pixels about it.
-constexpr double kStepMm = 2.0;
-constexpr double kRowsMm = 0.05;  // tolerance of the rows of marks: a third of a pixel
+constexpr double kMaxEdgePartMm = 2.0;
+constexpr double kRowToleranceMm = 0.05;  // tolerance of the rows of marks: a third of a pixel
 
 /// Return the distance [mm] of each pixel from an outline. Pixels further away than the reach get the largest value.
-Coverage distances(const Rings& rings, const Canvas& canvas, Index rows, Index columns, double reach_mm) {
+Coverage edge_distances(const Rings& rings, const Canvas& canvas, Index rows, Index columns, double reach_mm) {
     Coverage out = Coverage::Constant(rows, columns, std::numeric_limits<float>::max());
     const auto near = [&](const Vector2d& a, const Vector2d& b) {
         const Vector2d reach(reach_mm, reach_mm), way = b - a;
@@ -37,7 +37,7 @@ Coverage distances(const Rings& rings, const Canvas& canvas, Index rows, Index c
         for (Index i = 0, n = ring.rows(); i < n; ++i) {
             checkpoint(10);
             const Vector2d a = ring.row(i).transpose(), b = ring.row((i + 1) % n).transpose();
-            const int parts = std::max(1, int(std::ceil((b - a).norm() / kStepMm)));
+            const int parts = std::max(1, int(std::ceil((b - a).norm() / kMaxEdgePartMm)));
             for (int k = 0; k < parts; ++k) near(a + double(k) / parts * (b - a), a + double(k + 1) / parts * (b - a));
         }
     return out;
@@ -45,7 +45,7 @@ Coverage distances(const Rings& rings, const Canvas& canvas, Index rows, Index c
 
 }  // namespace
 
-Canvas::Canvas(const Rings& target_mm, const ObjectiveWeights& weights, double beside_mm) : weights_(weights) {
+Canvas::Canvas(const Rings& target_mm, const ObjectiveWeights& weights, double margin_mm) : weights_(weights) {
     Vector2d low(0.0, 0.0), high(0.0, 0.0);
     bool is_first = true;
     for (const Ring& ring : target_mm) {
@@ -55,13 +55,13 @@ Canvas::Canvas(const Rings& target_mm, const ObjectiveWeights& weights, double b
         high = is_first ? hi : high.cwiseMax(hi).eval();
         is_first = false;
     }
-    const Vector2d size = (high - low).array() + 2.0 * beside_mm;
-    px_per_mm_ = std::min(kPxPerMm, kMostSide / size.maxCoeff());
+    const Vector2d size = (high - low).array() + 2.0 * margin_mm;
+    px_per_mm_ = std::min(kMaxPxPerMm, kMaxSidePx / size.maxCoeff());
     const Vector2d pixels = (size * px_per_mm_).array().ceil();
-    window_ = {low.x() - beside_mm, low.y() - beside_mm, pixels.x() / px_per_mm_, pixels.y() / px_per_mm_};
+    window_ = {low.x() - margin_mm, low.y() - margin_mm, pixels.x() / px_per_mm_, pixels.y() / px_per_mm_};
     target_ = coverage(target_mm, window_, px_per_mm_);
     const double seen_mm = weights.seen_mm;
-    const Coverage edge = distances(target_mm, *this, target_.rows(), target_.cols(), seen_mm + 1.0 / px_per_mm_);
+    const Coverage edge = edge_distances(target_mm, *this, target_.rows(), target_.cols(), seen_mm + 1.0 / px_per_mm_);
     inner_ = outer_ = target_;
     for (Index i = 0; i < target_.size(); ++i) {
         const bool is_in = target_.data()[i] >= 0.5f;
@@ -102,7 +102,7 @@ bool Canvas::is_inside(const Vector2d& at_mm) const {
 
 Tile Canvas::paint(const Pass& pass, const Brush& brush) const {
     Marks marks;
-    marks.passes.push_back(simulate_near(pass, brush, window_, kRowsMm));
+    marks.passes.push_back(simulate_near(pass, brush, window_, kRowToleranceMm));
     const std::array<double, 4> bounds = painted_bounds(marks.passes.front(), brush);
     Tile tile;
     if (!(bounds[0] <= bounds[2])) return tile;

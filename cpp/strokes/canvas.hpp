@@ -26,8 +26,8 @@ struct Tile {
 /// A shape in pixels, the cost of paint on it, and the places of its pixels. Row 0 is the top.
 class Canvas {
  public:
-    /// beside_mm: margin round the shape in which paint counts.
-    Canvas(const Rings& target_mm, const ObjectiveWeights& weights, double beside_mm);
+    /// margin_mm: margin round the shape in which paint counts.
+    Canvas(const Rings& target_mm, const ObjectiveWeights& weights, double margin_mm);
 
     double px_per_mm() const { return px_per_mm_; }
     PixelBox whole() const { return {0, 0, target_.rows(), target_.cols()}; }

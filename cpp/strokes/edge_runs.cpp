@@ -13,12 +13,12 @@ using Eigen::Vector2d;
 namespace bg = boost::geometry;
 using Point = bg::model::d2::point_xy<double>;
 
-constexpr double kCornerRad = 30.0 / 180.0 * 3.14159265358979323846;
-constexpr double kFlatMm = 0.02;  // bends of edges that are smaller are ignored, as in flattened outlines
-constexpr double kChordMm = 0.1;  // length in both directions over which a direction is measured
+constexpr double kMinCornerRad = 30.0 / 180.0 * 3.14159265358979323846;
+constexpr double kSimplifyToleranceMm = 0.02;  // bends of edges that are smaller are ignored, as in flattened outlines
+constexpr double kDirectionReachMm = 0.1;      // length in both directions over which a direction is measured
 
-/// Return a ring with fewer points, at most kFlatMm away from the original.
-Ring simpler(const Ring& ring) {
+/// Return a ring with fewer points, at most kSimplifyToleranceMm away from the original.
+Ring simplify_ring(const Ring& ring) {
     const Index n = ring.rows();
     Index farthest = 0;
     (ring.rowwise() - ring.row(0)).rowwise().squaredNorm().maxCoeff(&farthest);
@@ -26,7 +26,7 @@ Ring simpler(const Ring& ring) {
     for (const auto& [first, last] : {std::pair(Index(0), farthest), std::pair(farthest, n)}) {
         bg::model::linestring<Point> line, few;
         for (Index i = first; i <= last; ++i) line.emplace_back(ring(i % n, 0), ring(i % n, 1));
-        bg::simplify(line, few, kFlatMm);
+        bg::simplify(line, few, kSimplifyToleranceMm);
         kept.insert(kept.end(), few.begin(), few.end() - 1);
     }
     Ring out(Index(kept.size()), 2);
@@ -34,7 +34,7 @@ Ring simpler(const Ring& ring) {
     return out;
 }
 
-EdgeRun run_of(const Ring& ring, Index first, Index last) {
+EdgeRun make_run(const Ring& ring, Index first, Index last) {
     EdgeRun run;
     run.points.resize(last - first + 1, 2);
     for (Index i = first; i <= last; ++i) {
@@ -56,7 +56,7 @@ std::pair<Vector2d, Vector2d> EdgeRun::at(double arc_mm) const {
         const double t = step > 0.0 ? (at - from) / step : 0.0;
         return (points.row(next - 1) + t * (points.row(next) - points.row(next - 1))).transpose();
     };
-    const double reach = std::min(kChordMm, length / 2.0);
+    const double reach = std::min(kDirectionReachMm, length / 2.0);
     const double near = std::clamp(arc_mm, reach, length - reach);
     const Vector2d a = point(near - reach), b = point(near + reach);
     const Vector2d along = (b - a).normalized();
@@ -77,11 +77,11 @@ std::pair<double, double> EdgeRun::nearest(const Vector2d& place_mm) const {
     return {std::sqrt(best), where};
 }
 
-OutlineEdges edge_runs(const Rings& rings) {
+OutlineEdges find_edge_runs(const Rings& rings) {
     OutlineEdges out;
     for (const Ring& whole : rings) {
         if (whole.rows() < 3) continue;
-        const Ring ring = simpler(whole);
+        const Ring ring = simplify_ring(whole);
         const Index n = ring.rows();
         if (n < 3) continue;
         std::vector<Index> corners;
@@ -91,20 +91,20 @@ OutlineEdges edge_runs(const Rings& rings) {
             const Vector2d after = (ring.row((i + 1) % n) - ring.row(i)).transpose();
             const double turn = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
             turns[std::size_t(i)] = turn;
-            if (std::abs(turn) <= kCornerRad) continue;
+            if (std::abs(turn) <= kMinCornerRad) continue;
             corners.push_back(i);
             if (turn > 0.0)
                 out.corners.push_back(
                     {ring.row(i).transpose(), (after.normalized() - before.normalized()).normalized()});
         }
         if (corners.empty()) {
-            out.runs.push_back(run_of(ring, 0, n));
+            out.runs.push_back(make_run(ring, 0, n));
             out.runs.back().is_ring = true;
             continue;
         }
         for (std::size_t k = 0; k < corners.size(); ++k) {
             const Index first = corners[k], last = k + 1 < corners.size() ? corners[k + 1] : corners[0] + n;
-            out.runs.push_back(run_of(ring, first, last));
+            out.runs.push_back(make_run(ring, first, last));
             out.runs.back().turns_rad = {turns[std::size_t(first)], turns[std::size_t(last % n)]};
         }
     }

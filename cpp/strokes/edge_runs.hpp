@@ -35,6 +35,6 @@ struct OutlineEdges {
 };
 
 /// Split outlines at their corners of more than 30 degrees.
-OutlineEdges edge_runs(const Rings& rings);
+OutlineEdges find_edge_runs(const Rings& rings);
 
 }  // namespace brushsvg

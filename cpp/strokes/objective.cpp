@@ -18,8 +18,8 @@ void check(const ObjectiveWeights& weights) {
     require_within(weights.stroke, any_weight, "the weight of a stroke", "stroke");
 }
 
-Detail detail_named(const std::string& name) {
-    for (const auto& [known, value] : kDetails)
+Detail parse_detail(const std::string& name) {
+    for (const auto& [known, value] : kDetailNames)
         if (name == known) return value;
     throw Error("choice-unknown", "detail is draft, normal or fine, not \"" + name + "\"");
 }

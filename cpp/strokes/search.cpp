@@ -14,7 +14,7 @@
 #include "brushsvg/stroke_search.hpp"
 #include "inverse/closed_form.hpp"
 #include "inverse/ends/end_styles.hpp"
-#include "marks/half_painted.hpp"
+#include "marks/coverage_contours.hpp"
 #include "strokes/candidates.hpp"
 #include "strokes/canvas.hpp"
 #include "strokes/variants.hpp"
@@ -25,25 +25,25 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr std::size_t kMostAreas = 200;  // bare areas of one shape that are tried at most: limits the work
+constexpr std::size_t kMaxAreas = 200;  // bare areas of one shape that are tried at most: limits the work
 // Tolerance of a trial's steps: coarser ones paint thorns that plans do not have.
-constexpr double kStepMm = 0.01;
-constexpr double kSmoothed = 0.03;  // how far a curve may be off its line, in half widths of the line
+constexpr double kStepToleranceMm = 0.01;
+constexpr double kCurveToleranceHalfWidths = 0.03;  // how far a curve may be off its line, in half widths of the line
 // Margin round a shape, in the brush's greatest half widths: no paint further away counts.
-constexpr double kBesideHalves = 2.0;
-constexpr double kMiddleMm = 0.1;  // tolerance of flattened middle lines, used to find the nearest place
+constexpr double kMarginHalfWidths = 2.0;
+constexpr double kMiddleToleranceMm = 0.1;  // tolerance of flattened middle lines, used to find the nearest place
 // Changes of a stroke's path that are tried: shares of its width, and half widths by which it is cut short.
-constexpr std::array<double, 2> kNarrower{0.95, 0.88};
-constexpr std::array<double, 4> kCuts{0.1, 0.4, 0.8, 1.5};
-constexpr double kNoiseMm2 = 0.4;  // weighted area of paint outside of a shape: less is a pixel's noise
+constexpr std::array<double, 2> kWidthFactors{0.95, 0.88};
+constexpr std::array<double, 4> kCutHalfWidths{0.1, 0.4, 0.8, 1.5};
+constexpr double kPixelNoiseMm2 = 0.4;  // weighted area of paint outside of a shape: less is a pixel's noise
 // Least gain of another way to paint a stroke: less is not worth differing from the request.
-constexpr double kWorthMm2 = 0.05;
+constexpr double kMinGainMm2 = 0.05;
 // Margin round a stroke, in its half widths: no variant of it paints further away.
-constexpr double kBesideStroke = 3.0;
-constexpr std::size_t kMostLedBack = 40;  // strokes of one shape that are changed at most
+constexpr double kStrokeMarginHalfWidths = 3.0;
+constexpr std::size_t kMaxChangedStrokes = 40;  // strokes of one shape that are changed at most
 // Share of a pixel without paint above which it is bare, as at the edges of strips.
-constexpr float kBare = 0.4f;
-constexpr int kTurnedPx = 3;  // margin round a change, in which the outline's turning is compared
+constexpr float kMinBareShare = 0.4f;
+constexpr int kTurnMarginPx = 3;  // margin round a change, in which the outline's turning is compared
 
 /// The search for strokes that paint the bare parts of one shape.
 class Search {
@@ -52,7 +52,7 @@ class Search {
         : brush_(brush),
           weights_(weights),
           half_mm_(brush.half_width_range_mm()),
-          canvas_(shape.target_mm, weights, kBesideHalves * half_mm_[1]),
+          canvas_(shape.target_mm, weights, kMarginHalfWidths * half_mm_[1]),
           outline_(shape.target_mm, canvas_),
           paint_(Coverage::Zero(canvas_.whole().rows, canvas_.whole().columns)),
           refused_(Mask::Zero(paint_.rows(), paint_.cols())) {
@@ -62,12 +62,12 @@ class Search {
     }
 
     /// Return the areas that the strokes leave bare, from `least_mm2` on, the largest first.
-    std::vector<UncoveredArea> uncovered(double least_mm2) const {
+    std::vector<UncoveredArea> find_uncovered(double least_mm2) const {
         std::vector<UncoveredArea> found;
-        each_bare([&](Pixels&& pixels, std::size_t) {
-            Rings outline = bare_rings(pixels);
+        for_each_bare_area([&](Pixels&& pixels, std::size_t) {
+            Rings outline = trace_bare_area(pixels);
             const double mm2 = area(outline);
-            if (mm2 >= least_mm2) found.push_back({std::move(outline), deepest_of(pixels), mm2});
+            if (mm2 >= least_mm2) found.push_back({std::move(outline), find_deepest(pixels), mm2});
         });
         std::stable_sort(found.begin(), found.end(),
                          [](const UncoveredArea& a, const UncoveredArea& b) { return a.mm2 > b.mm2; });
@@ -81,10 +81,10 @@ class Search {
         found.changed.assign(strokes.size(), false);
         if (are_free) improve(found);
         for (std::size_t k = 0; k < strokes.size(); ++k) {
-            middles_.push_back(middle_of(found.strokes[k]));
-            if (found.changed[k]) former_.push_back(middle_of({strokes[k]}));
+            middles_.push_back(flatten_middles(found.strokes[k]));
+            if (found.changed[k]) former_middles_.push_back(flatten_middles({strokes[k]}));
         }
-        found.added = add();
+        found.added = add_strokes();
         return found;
     }
 
@@ -95,7 +95,7 @@ class Search {
         for (std::size_t k = 0; k < tiles_.size(); ++k)
             if (sticks_out(tiles_[k])) beyond.push_back({-canvas_.bulge_mm2(tiles_[k]), k});
         std::sort(beyond.begin(), beyond.end());
-        if (beyond.size() > kMostLedBack) beyond.resize(kMostLedBack);
+        if (beyond.size() > kMaxChangedStrokes) beyond.resize(kMaxChangedStrokes);
         for (const auto& [mm2, k] : beyond) {
             const Stroke given = found.strokes[k].front();
             if (is_set(given.settings.start) || is_set(given.settings.end)) continue;  // set by the artist
@@ -103,7 +103,7 @@ class Search {
             Painting painting{{given}, tiles_[k]};
             if (!improve_stroke(painting, k, {fills, true, fills && k > 0, false})) continue;
             tiles_[k] = std::move(painting.tile);
-            repaint(about(given));
+            repaint(box_around(given));
             found.strokes[k] = std::move(painting.strokes);
             found.changed[k] = true;
         }
@@ -111,7 +111,7 @@ class Search {
 
     static bool is_set(const std::optional<std::string>& end) { return end && *end != "auto"; }
 
-    bool sticks_out(const Tile& tile) const { return weights_.bulge * canvas_.bulge_mm2(tile) > kNoiseMm2; }
+    bool sticks_out(const Tile& tile) const { return weights_.bulge * canvas_.bulge_mm2(tile) > kPixelNoiseMm2; }
 
     /// The strokes that replace a stroke, and their paint.
     struct Painting {
@@ -121,31 +121,31 @@ class Search {
 
     /// The changes that improve_stroke may make. is_last: no stroke is added after this one, so that the areas which it
     /// leaves bare count in full.
-    struct Allowed {
+    struct AllowedChanges {
         bool reversed, cut, left_out, is_last;
     };
 
     /// Change a stroke, of the tile k, so that it costs less. Return false if no change does. k: the number of tiles if
     /// the stroke has none yet.
-    bool improve_stroke(Painting& painting, std::size_t k, const Allowed& may) {
+    bool improve_stroke(Painting& painting, std::size_t k, const AllowedChanges& allowed) {
         const Stroke given = painting.strokes.front();
-        const PixelBox box = about(given);
+        const PixelBox box = box_around(given);
         if (box.is_empty()) return false;
-        Coverage rest = Coverage::Zero(box.rows, box.columns);
+        Coverage other_paint = Coverage::Zero(box.rows, box.columns);
         for (std::size_t other = 0; other < tiles_.size(); ++other)
-            if (other != k) paint_over(rest, box, tiles_[other]);
+            if (other != k) paint_over(other_paint, box, tiles_[other]);
         const auto picture_with = [&](const Painting& now) {
-            Coverage both = rest;
+            Coverage both = other_paint;
             paint_over(both, box, now.tile);
             return both;
         };
         const auto area_cost = [&](const Painting& now, const Coverage& both) {
-            return canvas_.cost_mm2(box, both, may.is_last) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
+            return canvas_.cost_mm2(box, both, allowed.is_last) + (double(now.strokes.size()) - 1.0) * stroke_mm2();
         };
         const double own_turns = target_turns(box);
         const auto excess = [&](const Coverage& both) { return std::max(0.0, turns(both, box) - own_turns); };
         const Coverage given_picture = picture_with(painting);
-        double least_area = area_cost(painting, given_picture) - kWorthMm2;
+        double least_area = area_cost(painting, given_picture) - kMinGainMm2;
         double least = least_area + turn_mm2() * excess(given_picture);
         bool is_changed = false;
         const auto keep_better = [&](Painting other) {
@@ -160,26 +160,26 @@ class Search {
             painting = std::move(other);
             return is_changed = true;
         };
-        const Stroke in_room = within_room(given, outline_, kStepMm);
+        const Stroke in_room = within_room(given, outline_, kStepToleranceMm);
         Variant best;
-        const auto look = [&](const Variant& variant) {
+        const auto try_variant = [&](const Variant& variant) {
             checkpoint(100);
-            const std::optional<Stroke> stroke = varied(variant.is_in_room ? in_room : given, variant, half_mm_);
-            const std::optional<Tile> tile = stroke ? painted({*stroke}, box) : std::nullopt;
+            const std::optional<Stroke> stroke = apply_variant(variant.is_in_room ? in_room : given, variant, half_mm_);
+            const std::optional<Tile> tile = stroke ? paint_strokes({*stroke}, box) : std::nullopt;
             if (tile && keep_better({{*stroke}, *tile})) best = variant;
         };
         // try one choice after the other: the direction, the ends, the room, the width, the length
         for (const bool reversed : {false, true}) {
-            if (reversed && !may.reversed) break;
+            if (reversed && !allowed.reversed) break;
             Variant from;
             from.is_reversed = reversed;
-            if (reversed) look(from);
+            if (reversed) try_variant(from);
             for (const auto& [square, pointed] : {std::pair{true, true}, {false, false}, {false, true}}) {
-                if (square != given.wanted_mm.empty()) continue;  // without a shape no end is square
+                if (square != given.target_mm.empty()) continue;  // without a shape no end is square
                 Variant variant = from;
                 variant.is_square = square;
                 variant.is_pointed = pointed;
-                look(variant);
+                try_variant(variant);
             }
         }
         const auto try_each = [&](const auto& values, auto&& set) {
@@ -187,34 +187,34 @@ class Search {
             for (const double value : values) {
                 Variant variant = so_far;
                 set(variant, value);
-                look(variant);
+                try_variant(variant);
             }
         };
         Variant narrow = best;
         narrow.is_in_room = true;
-        look(narrow);
-        try_each(kNarrower, [](Variant& variant, double width) { variant.width = width; });
+        try_variant(narrow);
+        try_each(kWidthFactors, [](Variant& variant, double width) { variant.width = width; });
         for (const std::size_t end : {0u, 1u})
-            if (!given.closed) try_each(kCuts, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
+            if (!given.closed) try_each(kCutHalfWidths, [&](Variant& variant, double cut) { variant.cut[end] = cut; });
         const Stroke whole = painting.strokes.front();
         std::vector<Gap> gaps;
-        for (bool is_better = may.cut; is_better;) {
+        for (bool is_better = allowed.cut; is_better;) {
             is_better = false;
             std::vector<Gap> best_gaps;
-            for (const Gap& gap : gaps_of(whole)) {
+            for (const Gap& gap : find_gaps(whole)) {
                 std::vector<Gap> all = gaps;
                 const auto meets = [&](const Gap& other) { return gap[0] <= other[1] && other[0] <= gap[1]; };
                 if (std::any_of(all.begin(), all.end(), meets)) continue;
                 all.insert(std::upper_bound(all.begin(), all.end(), gap), gap);
-                const std::vector<Stroke> parts = brushsvg::cut(whole, all);
-                const std::optional<Tile> tile = painted(parts, box);
+                const std::vector<Stroke> parts = brushsvg::cut_at_gaps(whole, all);
+                const std::optional<Tile> tile = paint_strokes(parts, box);
                 if (!tile || !keep_better({parts, *tile})) continue;
                 best_gaps = all;
                 is_better = true;
             }
             if (is_better) gaps = best_gaps;
         }
-        if (may.left_out) keep_better({{}, Tile{}});
+        if (allowed.left_out) keep_better({{}, Tile{}});
         return is_changed;
     }
 
@@ -225,10 +225,10 @@ class Search {
         paint_.block(box.row, box.column, box.rows, box.columns) = paint;
     }
 
-    static MiddlePolyline middle_of(const std::vector<Stroke>& parts) {
+    static MiddlePolyline flatten_middles(const std::vector<Stroke>& parts) {
         MiddlePolyline all(0, 4);
         for (const Stroke& part : parts) {
-            const MiddlePolyline line = flatten(part, kMiddleMm);
+            const MiddlePolyline line = flatten(part, kMiddleToleranceMm);
             const Index rows = all.rows();
             all.conservativeResize(rows + line.rows(), 4);
             all.bottomRows(line.rows()) = line;
@@ -236,16 +236,16 @@ class Search {
         return all;
     }
 
-    PixelBox about(const Stroke& stroke) const {
-        const MiddlePolyline line = flatten(stroke, kMiddleMm);
-        const double beside = kBesideStroke * line.col(3).maxCoeff();
+    PixelBox box_around(const Stroke& stroke) const {
+        const MiddlePolyline line = flatten(stroke, kMiddleToleranceMm);
+        const double beside = kStrokeMarginHalfWidths * line.col(3).maxCoeff();
         const Vector2d low = line.leftCols<2>().colwise().minCoeff().transpose().array() - beside;
         const Vector2d high = line.leftCols<2>().colwise().maxCoeff().transpose().array() + beside;
         return canvas_.box_of(low, high);
     }
 
     /// Return the paint of strokes in a box, as a plan would paint them. None if one of them cannot be painted.
-    std::optional<Tile> painted(const std::vector<Stroke>& strokes, const PixelBox& box) const {
+    std::optional<Tile> paint_strokes(const std::vector<Stroke>& strokes, const PixelBox& box) const {
         CompensateOptions options;
         options.start = Terminal::automatic;
         options.end = Terminal::automatic;
@@ -261,17 +261,17 @@ class Search {
         return all;
     }
 
-    std::vector<AddedStroke> add() {
+    std::vector<AddedStroke> add_strokes() {
         std::vector<AddedStroke> added;
-        for (std::size_t k = 0; k < kMostAreas; ++k) {
-            const std::optional<BareArea> area = largest_bare();
+        for (std::size_t k = 0; k < kMaxAreas; ++k) {
+            const std::optional<BareArea> area = find_largest_bare_area();
             if (!area) break;
-            std::optional<AddedStroke> best = best_into(*area);
+            std::optional<AddedStroke> best = find_best_stroke(*area);
             if (best) {
-                middles_.push_back(flatten(best->stroke, kMiddleMm));
+                middles_.push_back(flatten(best->stroke, kMiddleToleranceMm));
                 added.push_back(std::move(*best));
             } else {
-                refuse();
+                mark_refused();
             }
         }
         return added;
@@ -284,7 +284,7 @@ class Search {
 
     /// Return how much the outlines in a picture of a box turn, in full turns.
     double turns(const Coverage& picture, const PixelBox& box) const {
-        return excess_turning(half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm()), {});
+        return excess_turning(trace_half_coverage(picture, canvas_.window_of(box), canvas_.px_per_mm()), {});
     }
 
     /// Return the shape's own turning in a box. A mark that turns less than the shape gains nothing.
@@ -293,18 +293,18 @@ class Search {
     }
 
     bool is_bare(Index row, Index column) const {
-        return !refused_(row, column) && canvas_.inner()(row, column) - paint_(row, column) > kBare;
+        return !refused_(row, column) && canvas_.inner()(row, column) - paint_(row, column) > kMinBareShare;
     }
 
     using Pixels = std::vector<std::array<Index, 2>>;
 
     /// Call `visit` with the pixels of each bare area, and with the number of their neighbours that are not bare.
     template <class Visit>
-    void each_bare(Visit&& visit) const {
+    void for_each_bare_area(Visit&& visit) const {
         Mask seen = Mask::Zero(paint_.rows(), paint_.cols());
         for (Index row = 1; row + 1 < paint_.rows(); ++row) {
             checkpoint(1);
-            if ((canvas_.inner().row(row) - paint_.row(row)).maxCoeff() <= kBare) continue;
+            if ((canvas_.inner().row(row) - paint_.row(row)).maxCoeff() <= kMinBareShare) continue;
             for (Index column = 1; column + 1 < paint_.cols(); ++column) {
                 if (seen(row, column) || !is_bare(row, column)) continue;
                 Pixels pixels{{row, column}};
@@ -327,27 +327,27 @@ class Search {
     }
 
     /// Return the bare area that is worth most, if a stroke that paints all of it is worth its cost.
-    std::optional<BareArea> largest_bare() const {
+    std::optional<BareArea> find_largest_bare_area() const {
         const double px_mm = 1.0 / canvas_.px_per_mm();
         Pixels largest;
         double most = stroke_mm2();
-        each_bare([&](Pixels&& pixels, std::size_t edges) {
-            const double worth = px_mm * (px_mm * double(pixels.size()) * (weights_.missing + weights_.notch) +
-                                          double(edges) / 3.0 * weights_.seen_mm * weights_.missing);
-            if (worth <= most) return;
-            most = worth;
+        for_each_bare_area([&](Pixels&& pixels, std::size_t edges) {
+            const double gain = px_mm * (px_mm * double(pixels.size()) * (weights_.missing + weights_.notch) +
+                                         double(edges) / 3.0 * weights_.seen_mm * weights_.missing);
+            if (gain <= most) return;
+            most = gain;
             largest = std::move(pixels);
         });
         if (largest.empty()) return std::nullopt;
         BareArea area;
         for (const auto& [row, column] : largest) area.places.push_back(canvas_.place(row, column));
-        area.deepest = deepest_of(largest);
+        area.deepest = find_deepest(largest);
         pixels_ = std::move(largest);
         return area;
     }
 
     /// Return the place farthest from the edge of an area, found by removing rings of pixels.
-    Vector2d deepest_of(const Pixels& pixels) const {
+    Vector2d find_deepest(const Pixels& pixels) const {
         Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
         for (const auto& [row, column] : pixels) {
             top = std::min(top, row), bottom = std::max(bottom, row);
@@ -370,65 +370,66 @@ class Search {
         return canvas_.place(last[0], last[1]);
     }
 
-    void refuse() {
+    void mark_refused() {
         for (const auto& [row, column] : pixels_) refused_(row, column) = 1;
     }
 
-    Candidates candidates_into(const BareArea& area) {
-        Candidates all = straight_out(area, middles_, outline_, half_mm_);
+    Candidates find_candidates(const BareArea& area) {
+        Candidates all = lines_straight_out(area, middles_, outline_, half_mm_);
         const auto take = [&](Candidates&& more) { all.insert(all.end(), more.begin(), more.end()); };
-        take(along_middles(area, former_, half_mm_));
-        take(along_edges(area, outline_, half_mm_));
-        take(from_corners(area, outline_, half_mm_));
+        take(lines_along_middles(area, former_middles_, half_mm_));
+        take(lines_along_edges(area, outline_, half_mm_));
+        take(lines_from_corners(area, outline_, half_mm_));
         double edge_mm = std::numeric_limits<double>::infinity();
         for (const Vector2d& place : area.places) edge_mm = std::min(edge_mm, outline_.edge_mm(place));
-        if (edge_mm > 2.0 * weights_.seen_mm) take(across(area, outline_, half_mm_));
+        if (edge_mm > 2.0 * weights_.seen_mm) take(lines_across(area, outline_, half_mm_));
         return all;
     }
 
     struct Trial {
         Stroke stroke;
         Tile tile;
-        double won_mm2;
+        double gain_mm2;
     };
 
-    std::optional<Trial> tried(const WideLine& line) const {
+    std::optional<Trial> try_line(const WideLine& line) const {
         Trial trial;
-        FittedLine fitted = fit_curve(line, kSmoothed * line.col(2).mean(), false);
+        FittedLine fitted = fit_curve(line, kCurveToleranceHalfWidths * line.col(2).mean(), false);
         trial.stroke.middle_mm = std::move(fitted.middle_mm);
         trial.stroke.half_width = std::move(fitted.half_width);
         for (WidthKnot& knot : trial.stroke.half_width)
             knot.half_width_mm = std::clamp(knot.half_width_mm, half_mm_[0], half_mm_[1]);
         try {
             bool turns = false;
-            const auto moves = kStartStyles.front().moves(up_to_drawn_end(trial.stroke, brush_), brush_, Caps::round);
-            const auto poses = moves ? closed_form(*moves, brush_, kStepMm, turns) : std::nullopt;
+            const auto moves =
+                kStartStyles.front().moves(extend_to_drawn_end(trial.stroke, brush_), brush_, Caps::round);
+            const auto poses = moves ? closed_form(*moves, brush_, kStepToleranceMm, turns) : std::nullopt;
             if (!poses) return std::nullopt;
             Pass pass;
-            poses->into(pass);
+            poses->write_to(pass);
             trial.tile = canvas_.paint(pass, brush_);
         } catch (const Error&) {
             return std::nullopt;
         }
         // a mark that is finer than a pixel everywhere has no outline
-        if (trial.tile.box.is_empty() || trial.tile.share.maxCoeff() <= kHalfPainted) return std::nullopt;
-        trial.won_mm2 = area_won_mm2(trial.tile);
+        if (trial.tile.box.is_empty() || trial.tile.share.maxCoeff() <= kHalfCoverage) return std::nullopt;
+        trial.gain_mm2 = area_gain_mm2(trial.tile);
         return trial;
     }
 
     /// Return how much less the areas cost with a tile, less the price of its stroke.
-    double area_won_mm2(const Tile& tile) const {
+    double area_gain_mm2(const Tile& tile) const {
         const PixelBox& box = tile.box;
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
         return canvas_.cost_mm2(box, before) - canvas_.cost_mm2(box, before.cwiseMax(tile.share)) - stroke_mm2();
     }
 
     /// Return how much more the outline of the paint turns with a tile, in full turns.
-    double turned(const Tile& tile) const {
-        PixelBox box{std::max<Index>(tile.box.row - kTurnedPx, 0), std::max<Index>(tile.box.column - kTurnedPx, 0), 0,
-                     0};
-        box.rows = std::min(tile.box.row + tile.box.rows + kTurnedPx, paint_.rows()) - box.row;
-        box.columns = std::min(tile.box.column + tile.box.columns + kTurnedPx, paint_.cols()) - box.column;
+    double turning_gain(const Tile& tile) const {
+        PixelBox box{std::max<Index>(tile.box.row - kTurnMarginPx, 0),
+                     std::max<Index>(tile.box.column - kTurnMarginPx, 0), 0, 0};
+        box.rows = std::min(tile.box.row + tile.box.rows + kTurnMarginPx, paint_.rows()) - box.row;
+        box.columns = std::min(tile.box.column + tile.box.columns + kTurnMarginPx, paint_.cols()) - box.column;
         const Coverage before = paint_.block(box.row, box.column, box.rows, box.columns);
         Coverage after = before;
         paint_over(after, box, tile);
@@ -436,30 +437,30 @@ class Search {
         return std::max(own, turns(after, box)) - std::max(own, turns(before, box));
     }
 
-    std::optional<AddedStroke> best_into(const BareArea& area) {
+    std::optional<AddedStroke> find_best_stroke(const BareArea& area) {
         std::optional<Trial> best;
-        for (const WideLine& line : candidates_into(area)) {
+        for (const WideLine& line : find_candidates(area)) {
             checkpoint(50);
-            std::optional<Trial> trial = tried(line);
-            if (!trial || trial->won_mm2 + turn_mm2() <= (best ? best->won_mm2 : 0.0)) continue;
-            trial->won_mm2 -= turn_mm2() * turned(trial->tile);
-            if (trial->won_mm2 > (best ? best->won_mm2 : 0.0)) best = std::move(trial);
+            std::optional<Trial> trial = try_line(line);
+            if (!trial || trial->gain_mm2 + turn_mm2() <= (best ? best->gain_mm2 : 0.0)) continue;
+            trial->gain_mm2 -= turn_mm2() * turning_gain(trial->tile);
+            if (trial->gain_mm2 > (best ? best->gain_mm2 : 0.0)) best = std::move(trial);
         }
         if (!best) return std::nullopt;
-        const Rings area_mm = bare_rings(pixels_);
+        const Rings area_mm = trace_bare_area(pixels_);
         best->stroke.settings.start = "pointed";  // under the paint of other strokes
         best->stroke.settings.end = "round";
-        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kWorthMm2) {
+        if (weights_.bulge * canvas_.bulge_mm2(best->tile) > kMinGainMm2) {
             Painting painting{{best->stroke}, best->tile};
             improve_stroke(painting, tiles_.size(), {true, false, false, true});
             // It must still win as the trials are measured: otherwise the same trial wins again and again.
-            const double won_mm2 = area_won_mm2(painting.tile) - turn_mm2() * turned(painting.tile);
-            if (won_mm2 > 0.0) best = Trial{std::move(painting.strokes.front()), std::move(painting.tile), won_mm2};
+            const double gain_mm2 = area_gain_mm2(painting.tile) - turn_mm2() * turning_gain(painting.tile);
+            if (gain_mm2 > 0.0) best = Trial{std::move(painting.strokes.front()), std::move(painting.tile), gain_mm2};
         }
         tiles_.push_back(best->tile);
         paint_over(paint_, canvas_.whole(), best->tile);
         AddedStroke added;
-        added.mark_mm = half_painted(best->tile.share, canvas_.window_of(best->tile.box), canvas_.px_per_mm());
+        added.mark_mm = trace_half_coverage(best->tile.share, canvas_.window_of(best->tile.box), canvas_.px_per_mm());
         added.stroke = std::move(best->stroke);
         added.neighbour = nearest_middle(area.deepest);
         added.area_mm = area_mm;
@@ -479,7 +480,7 @@ class Search {
     }
 
     /// Return the outline of a bare area, up to the edges of shape and paint.
-    Rings bare_rings(const Pixels& pixels) const {
+    Rings trace_bare_area(const Pixels& pixels) const {
         const int steps = 1 + int(std::ceil(weights_.seen_mm * canvas_.px_per_mm()));
         Index top = pixels[0][0], left = pixels[0][1], bottom = top, right = left;
         for (const auto& [row, column] : pixels) {
@@ -499,13 +500,13 @@ class Search {
             for (const auto& [row, column] : rim)
                 for (Index r = std::max<Index>(row - 1, 0); r <= std::min(row + 1, box.rows - 1); ++r)
                     for (Index c = std::max<Index>(column - 1, 0); c <= std::min(column + 1, box.columns - 1); ++c)
-                        if (picture(r, c) == 0.0f && bare(r, c) > kBare) {
+                        if (picture(r, c) == 0.0f && bare(r, c) > kMinBareShare) {
                             picture(r, c) = 1.0f;
                             next.push_back({r, c});
                         }
             rim = std::move(next);
         }
-        return half_painted(picture, canvas_.window_of(box), canvas_.px_per_mm());
+        return trace_half_coverage(picture, canvas_.window_of(box), canvas_.px_per_mm());
     }
 
     const Brush& brush_;
@@ -517,8 +518,8 @@ class Search {
     Mask refused_;
     std::vector<Tile> tiles_;  ///< paint of all strokes, with their current paths
     std::vector<MiddlePolyline> middles_;
-    std::vector<MiddlePolyline> former_;  ///< old middle lines of the strokes that have another path now
-    mutable Pixels pixels_;               ///< pixels of the bare area that is being painted
+    std::vector<MiddlePolyline> former_middles_;  ///< old middle lines of the strokes that have another path now
+    mutable Pixels pixels_;                       ///< pixels of the bare area that is being painted
 };
 
 }  // namespace
@@ -527,19 +528,18 @@ std::vector<SearchedShape> search_strokes(const std::vector<PaintedShape>& shape
                                           const ObjectiveWeights& weights, bool are_free) {
     check(weights);
     std::vector<SearchedShape> found(shapes.size());
-    on_all_processors(0, shapes.size(), [&](std::size_t k) {
-        found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free);
-    });
+    parallel_for(0, shapes.size(),
+                 [&](std::size_t k) { found[k] = Search(shapes[k], brush, weights).run(shapes[k].strokes, are_free); });
     return found;
 }
 
 std::vector<std::vector<UncoveredArea>> uncovered_areas(const std::vector<PaintedShape>& shapes, const Brush& brush,
-                                                        double least_share) {
-    require_within(least_share, {0.0, 1.0}, "the least share of a shape's area");
+                                                        double min_share) {
+    require_within(min_share, {0.0, 1.0}, "the least share of a shape's area");
     std::vector<std::vector<UncoveredArea>> found(shapes.size());
     const ObjectiveWeights weights;
-    on_all_processors(0, shapes.size(), [&](std::size_t k) {
-        found[k] = Search(shapes[k], brush, weights).uncovered(least_share * area(shapes[k].target_mm));
+    parallel_for(0, shapes.size(), [&](std::size_t k) {
+        found[k] = Search(shapes[k], brush, weights).find_uncovered(min_share * area(shapes[k].target_mm));
     });
     return found;
 }

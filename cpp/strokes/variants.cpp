@@ -12,14 +12,14 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 // Tolerances of flattened lines, for their length and for their bends.
-constexpr double kMiddleMm = 0.1, kRowMm = 0.01;
+constexpr double kLengthToleranceMm = 0.1, kBendToleranceMm = 0.01;
 // A brush can go round a bend that turns less.
-constexpr double kCornerRad = 30.0 / 180.0 * 3.14159265358979323846;
-constexpr std::size_t kMostBends = 8;  // bends at which one stroke may be cut at most: limits the work
-constexpr double kLeastLeft = 0.8;     // least length of a stroke that is cut short, in half widths
+constexpr double kMinBendRad = 30.0 / 180.0 * 3.14159265358979323846;
+constexpr std::size_t kMaxBends = 8;             // bends at which one stroke may be cut at most: limits the work
+constexpr double kMinRemainingHalfWidths = 0.8;  // least length of a stroke that is cut short, in half widths
 
 /// Return a cubic between two parameters (de Casteljau).
-Eigen::Matrix<double, 1, 8> between(Eigen::Matrix<double, 1, 8> cubic, double t0, double t1) {
+Eigen::Matrix<double, 1, 8> sub_cubic(Eigen::Matrix<double, 1, 8> cubic, double t0, double t1) {
     const auto point = [&](Index k) { return cubic.segment<2>(2 * k); };
     for (Index last = 3; last > 0; --last)  // cut off the part after t1
         for (Index k = 3; k > 3 - last; --k)
@@ -41,7 +41,7 @@ Stroke reversed(Stroke stroke) {
 
 }  // namespace
 
-Stroke stretch(const Stroke& stroke, double from_mm, double to_mm) {
+Stroke part_between(const Stroke& stroke, double from_mm, double to_mm) {
     Stroke part = stroke;
     const Index count = stroke.middle_mm.rows();
     std::vector<Eigen::Matrix<double, 1, 8>> cubics;
@@ -52,7 +52,7 @@ Stroke stretch(const Stroke& stroke, double from_mm, double to_mm) {
         if (last > first) {
             const double t0 = first > 0.0 ? parameter_at(stroke.middle_mm, k, first) : 0.0;
             const double t1 = last < own ? parameter_at(stroke.middle_mm, k, last) : 1.0;
-            cubics.push_back(between(stroke.middle_mm.row(k), t0, t1));
+            cubics.push_back(sub_cubic(stroke.middle_mm.row(k), t0, t1));
         }
         at += own;
     }
@@ -69,26 +69,26 @@ Stroke stretch(const Stroke& stroke, double from_mm, double to_mm) {
     return part;
 }
 
-std::optional<Stroke> varied(const Stroke& given, const Variant& way, const std::array<double, 2>& half_mm) {
+std::optional<Stroke> apply_variant(const Stroke& given, const Variant& variant, const std::array<double, 2>& half_mm) {
     Stroke stroke = given;
-    if (!way.is_square) stroke.wanted_mm.clear();
-    if (way.is_pointed) stroke.settings.start = "pointed";
-    if (way.cut[0] > 0.0 || way.cut[1] > 0.0) {
-        const MiddlePolyline line = flatten(given, kMiddleMm);
+    if (!variant.is_square) stroke.target_mm.clear();
+    if (variant.is_pointed) stroke.settings.start = "pointed";
+    if (variant.cut[0] > 0.0 || variant.cut[1] > 0.0) {
+        const MiddlePolyline line = flatten(given, kLengthToleranceMm);
         const double half = line.col(3).maxCoeff(), length = line(line.rows() - 1, 2);
-        const double first = way.cut[0] * half, last = length - way.cut[1] * half;
-        if (last - first < kLeastLeft * half) return std::nullopt;
-        stroke = stretch(stroke, first, last);
+        const double first = variant.cut[0] * half, last = length - variant.cut[1] * half;
+        if (last - first < kMinRemainingHalfWidths * half) return std::nullopt;
+        stroke = part_between(stroke, first, last);
     }
     for (WidthKnot& knot : stroke.half_width)
-        knot.half_width_mm = std::clamp(way.width * knot.half_width_mm, half_mm[0], half_mm[1]);
-    return way.is_reversed ? reversed(stroke) : stroke;
+        knot.half_width_mm = std::clamp(variant.width * knot.half_width_mm, half_mm[0], half_mm[1]);
+    return variant.is_reversed ? reversed(stroke) : stroke;
 }
 
-std::vector<Gap> gaps_of(const Stroke& stroke) {
+std::vector<Gap> find_gaps(const Stroke& stroke) {
     std::vector<Gap> gaps;
     if (stroke.closed) return gaps;
-    const MiddlePolyline line = flatten(stroke, kRowMm);
+    const MiddlePolyline line = flatten(stroke, kBendToleranceMm);
     const double length = line(line.rows() - 1, 2);
     const auto place = [&](double at) -> Vector2d {
         Index i = 0;
@@ -99,14 +99,14 @@ std::vector<Gap> gaps_of(const Stroke& stroke) {
     };
     std::vector<std::pair<double, double>> bends;  // the turn, and where it is
     for (Index i = 1; i + 1 < line.rows(); ++i) {
-        const double at = line(i, 2), reach = std::max(line(i, 3), kMiddleMm);
+        const double at = line(i, 2), reach = std::max(line(i, 3), kLengthToleranceMm);
         if (at < reach || at > length - reach) continue;
         const Vector2d here = place(at);
         const double turn = std::abs(angle_between(here - place(at - reach), place(at + reach) - here));
-        if (turn < kCornerRad) continue;
+        if (turn < kMinBendRad) continue;
         if (!bends.empty() && at - bends.back().second < reach) {
             if (turn > bends.back().first) bends.back() = {turn, at};
-        } else if (bends.size() < kMostBends) {
+        } else if (bends.size() < kMaxBends) {
             bends.push_back({turn, at});
         }
     }
@@ -117,13 +117,13 @@ std::vector<Gap> gaps_of(const Stroke& stroke) {
     return gaps;
 }
 
-std::vector<Stroke> cut(const Stroke& stroke, const std::vector<Gap>& gaps) {
-    const MiddlePolyline line = flatten(stroke, kRowMm);
+std::vector<Stroke> cut_at_gaps(const Stroke& stroke, const std::vector<Gap>& gaps) {
+    const MiddlePolyline line = flatten(stroke, kBendToleranceMm);
     std::vector<Stroke> parts;
     double from = 0.0;
     for (std::size_t k = 0; k <= gaps.size(); ++k) {
         const bool is_last = k == gaps.size();
-        parts.push_back(stretch(stroke, from, is_last ? line(line.rows() - 1, 2) : gaps[k][0]));
+        parts.push_back(part_between(stroke, from, is_last ? line(line.rows() - 1, 2) : gaps[k][0]));
         if (k > 0) parts.back().settings.start = "pointed";
         if (!is_last) {
             parts.back().settings.end = "round";

@@ -18,11 +18,12 @@ using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 using Cubic = std::array<Vector2d, 4>;
 
-constexpr int kMoves = 6;      // of the parameters: more moves improve the fit less than a split
-constexpr double kStep = 8.0;  // tolerances between points: greater steps cut bends short, smaller ones only cost time
-constexpr double kLeastPieces = 8.0, kMostPieces = 2000.0;
+constexpr int kMaxParameterMoves = 6;  // of the parameters: more moves improve the fit less than a split
+constexpr double kPointSpacingTolerances =
+    8.0;  // tolerances between points: greater steps cut bends short, smaller ones only cost time
+constexpr double kMinPieces = 8.0, kMaxPieces = 2000.0;
 // Tolerances between points that determine a direction. Nearer points would show the noise.
-constexpr double kTangentReach = 12.0;
+constexpr double kTangentReachTolerances = 12.0;
 
 Vector2d at(const Cubic& c, double t) {
     const double u = 1.0 - t;
@@ -31,40 +32,40 @@ Vector2d at(const Cubic& c, double t) {
 
 /// Smallest speed in the middle of a cubic, relative to its mean speed along the chord. Slower cubics turn around
 /// there, in a cusp or a loop.
-constexpr double kSlowest = 0.25;
+constexpr double kMinSpeedRatio = 0.25;
 
 /// Returns whether a cubic almost stops along its chord, or goes back, before it continues. The derivative along the
 /// chord is a quadratic polynomial, here in Bernstein form.
-bool folds(const Cubic& c) {
+bool turns_back(const Cubic& c) {
     const Vector2d chord = c[3] - c[0];
     const double first = chord.dot(c[1] - c[0]), amid = chord.dot(c[2] - c[1]), last = chord.dot(c[3] - c[2]);
-    const double slowest = kSlowest * chord.squaredNorm() / 3.0;
+    const double slowest = kMinSpeedRatio * chord.squaredNorm() / 3.0;
     return std::min(first, last) > 0.0 && amid < 0.0 &&
            first * last - amid * amid < slowest * (first - 2.0 * amid + last);
 }
 
-class Fit {
+class CurveFitter {
  public:
-    Fit(Points points, double tolerance, bool closed) : p_(std::move(points)), tolerance_(tolerance) {
+    CurveFitter(Points points, double tolerance, bool closed) : p_(std::move(points)), tolerance_(tolerance) {
         const std::size_t last = p_.size() - 1;
-        Vector2d start = towards(0, 1), end = towards(last, -1);
+        Vector2d start = direction_from(0, 1), end = direction_from(last, -1);
         if (closed) {
             start = (start - end).normalized();
             end = -start;
         }
-        stretch(0, last, start, end);
+        fit_stretch(0, last, start, end);
     }
     std::vector<Cubic> cubics;
     std::vector<std::vector<double>> parameters;  // of each cubic's points, including its first one
 
  private:
-    void keep(const Cubic& cubic, const std::vector<double>& t) {
+    void append_cubic(const Cubic& cubic, const std::vector<double>& t) {
         cubics.push_back(cubic);
         parameters.push_back(t);
     }
     /// Returns the direction from a point to the points after it (step 1) or before it (step -1).
-    Vector2d towards(std::size_t i, int step) const {
-        const double reach = kTangentReach * tolerance_;
+    Vector2d direction_from(std::size_t i, int step) const {
+        const double reach = kTangentReachTolerances * tolerance_;
         Vector2d sum = Vector2d::Zero();
         for (std::ptrdiff_t k = std::ptrdiff_t(i) + step; k >= 0 && k < std::ptrdiff_t(p_.size()); k += step) {
             const Vector2d d = p_[std::size_t(k)] - p_[i];
@@ -73,13 +74,13 @@ class Fit {
         }
         return sum.norm() > 0.0 ? Vector2d(sum.normalized()) : Vector2d(1.0, 0.0);
     }
-    void stretch(std::size_t first, std::size_t last, const Vector2d& start, const Vector2d& end) {
+    void fit_stretch(std::size_t first, std::size_t last, const Vector2d& start, const Vector2d& end) {
         std::vector<double> t(last - first + 1, 0.0);
         for (std::size_t i = first + 1; i <= last; ++i) t[i - first] = t[i - first - 1] + (p_[i] - p_[i - 1]).norm();
         for (double& each : t) each /= t.back();
         Cubic cubic{};
         std::size_t worst = first;
-        for (int k = 0; k <= kMoves; ++k) {
+        for (int k = 0; k <= kMaxParameterMoves; ++k) {
             cubic = least_squares(first, last, t, start, end);
             double most = 0.0;
             worst = (first + last) / 2;
@@ -91,22 +92,22 @@ class Fit {
                 }
             }
             if (most <= tolerance_) {
-                keep(cubic, t);
+                append_cubic(cubic, t);
                 return;
             }
             if (most > 8.0 * tolerance_) break;
             checkpoint(int(t.size()));
-            move(cubic, first, t);
+            improve_parameters(cubic, first, t);
         }
         if (last - first < 2) {
-            keep(cubic, t);
+            append_cubic(cubic, t);
             return;
         }
         worst = std::clamp(worst, first + 1, last - 1);
-        Vector2d through = towards(worst, 1) - towards(worst, -1);
-        through = through.norm() > 1e-9 ? Vector2d(through.normalized()) : towards(worst, 1);
-        stretch(first, worst, start, -through);
-        stretch(worst, last, through, end);
+        Vector2d through = direction_from(worst, 1) - direction_from(worst, -1);
+        through = through.norm() > 1e-9 ? Vector2d(through.normalized()) : direction_from(worst, 1);
+        fit_stretch(first, worst, start, -through);
+        fit_stretch(worst, last, through, end);
     }
     Cubic least_squares(std::size_t first, std::size_t last, const std::vector<double>& t, const Vector2d& start,
                         const Vector2d& end) const {
@@ -130,13 +131,13 @@ class Fit {
             const Eigen::Vector2d found = c.inverse() * x;
             // Handles that turn back or make a loop show that the stretch is too long.
             if (found.minCoeff() > 1e-3 * chord && found.maxCoeff() < 3.0 * chord + 1e-9 &&
-                !folds({a, a + found(0) * start, b + found(1) * end, b}))
+                !turns_back({a, a + found(0) * start, b + found(1) * end, b}))
                 alpha = found;
         }
         return {a, a + alpha(0) * start, b + alpha(1) * end, b};
     }
     /// Makes one Newton step towards the parameters of the nearest points, which stay in order and inside.
-    void move(const Cubic& c, std::size_t first, std::vector<double>& t) const {
+    void improve_parameters(const Cubic& c, std::size_t first, std::vector<double>& t) const {
         for (std::size_t i = 1; i + 1 < t.size(); ++i) {
             const double v = t[i], u = 1.0 - v;
             const Vector2d off = at(c, v) - p_[first + i];
@@ -151,12 +152,12 @@ class Fit {
 };
 
 /// Resamples the line at even steps, because the fit weights points and not lengths. Half widths are not negative.
-void evenly(const WideLine& line, double step, Points& points, std::vector<double>& half) {
+void resample_evenly(const WideLine& line, double step, Points& points, std::vector<double>& half) {
     std::vector<double> at{0.0};
     for (Index i = 1; i < line.rows(); ++i) at.push_back(at.back() + (line.row(i) - line.row(i - 1)).head<2>().norm());
     if (line.rows() == 0) return;
     const double length = at.back();
-    const int n = length > 1e-9 ? int(std::clamp(length / step, kLeastPieces, kMostPieces)) : 0;
+    const int n = length > 1e-9 ? int(std::clamp(length / step, kMinPieces, kMaxPieces)) : 0;
     Index i = 0;
     for (int k = 0; k <= n; ++k) {
         const double s = n > 0 ? length * k / n : 0.0;
@@ -172,8 +173,8 @@ void evenly(const WideLine& line, double step, Points& points, std::vector<doubl
 
 /// Selects as few places (fraction, half width) as keep the others within the tolerance, by splitting at the worst
 /// place.
-void few(const std::vector<WidthKnot>& all, std::size_t first, std::size_t last, double tolerance,
-         std::vector<WidthKnot>& out) {
+void select_knots(const std::vector<WidthKnot>& all, std::size_t first, std::size_t last, double tolerance,
+                  std::vector<WidthKnot>& out) {
     double most = tolerance;
     std::size_t worst = first;
     for (std::size_t i = first + 1; i < last; ++i) {
@@ -190,8 +191,8 @@ void few(const std::vector<WidthKnot>& all, std::size_t first, std::size_t last,
         out.push_back(all[last]);
         return;
     }
-    few(all, first, worst, tolerance, out);
-    few(all, worst, last, tolerance, out);
+    select_knots(all, first, worst, tolerance, out);
+    select_knots(all, worst, last, tolerance, out);
 }
 
 }  // namespace
@@ -203,7 +204,7 @@ FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
     FittedLine result;
     Points points;
     std::vector<double> half;
-    evenly(line, kStep * tolerance_mm, points, half);
+    resample_evenly(line, kPointSpacingTolerances * tolerance_mm, points, half);
     if (points.empty()) return result;
     if (points.size() == 1) {
         const Vector2d& p = points[0];
@@ -212,7 +213,7 @@ FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
         result.half_width = {{0.0, half[0]}};
         return result;
     }
-    const Fit fit(std::move(points), tolerance_mm, closed);
+    const CurveFitter fit(std::move(points), tolerance_mm, closed);
     result.middle_mm.resize(Index(fit.cubics.size()), 8);
     for (Index i = 0; i < result.middle_mm.rows(); ++i)
         for (int k = 0; k < 4; ++k)
@@ -227,16 +228,16 @@ FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
     for (WidthKnot& knot : all) knot.at /= s;
     all.back().at = 1.0;
     result.half_width.push_back(all.front());
-    few(all, 0, all.size() - 1, 0.5 * tolerance_mm, result.half_width);
+    select_knots(all, 0, all.size() - 1, 0.5 * tolerance_mm, result.half_width);
     return result;
 }
 
 namespace {
 
-constexpr int kMostFits = 2000;  // of one line: the rest then becomes straight lines
+constexpr int kMaxFits = 2000;  // of one line: the rest then becomes straight lines
 
 /// Returns the points that differ from the one before. Throws Error for points that are not a stroke.
-WideLine need_line(const StrokeId& id, const WideLine& points) {
+WideLine require_line(const StrokeId& id, const WideLine& points) {
     WideLine line(points.rows(), 3);
     Index n = 0;
     for (Index i = 0; i < points.rows(); ++i) {
@@ -260,26 +261,26 @@ WideLine need_line(const StrokeId& id, const WideLine& points) {
 
 /// Appends cubics along rows first to last, split at the point with the largest distance from the curve. at: arc
 /// length of each row [mm].
-void smooth(const WideLine& line, const std::vector<double>& at, Index first, Index last, double tolerance, bool closed,
-            int& fits, std::vector<Eigen::Matrix<double, 1, 8>>& out) {
-    const auto straight = [&](Index i) {
+void append_smooth_cubics(const WideLine& line, const std::vector<double>& at, Index first, Index last,
+                          double tolerance, bool closed, int& fits, std::vector<Eigen::Matrix<double, 1, 8>>& out) {
+    const auto append_line = [&](Index i) {
         const Eigen::RowVector2d a = line.row(i).head<2>(), b = line.row(i + 1).head<2>(), d = (b - a) / 3.0;
         out.emplace_back();
         out.back() << a, a + d, b - d, b;
     };
-    std::vector<std::array<Index, 2>> ahead{{first, last}};
-    while (!ahead.empty()) {
-        const auto [from, to] = ahead.back();
-        ahead.pop_back();
+    std::vector<std::array<Index, 2>> pending{{first, last}};
+    while (!pending.empty()) {
+        const auto [from, to] = pending.back();
+        pending.pop_back();
         checkpoint();
-        if (to == from + 1 || fits >= kMostFits) {
-            for (Index i = from; i < to; ++i) straight(i);
+        if (to == from + 1 || fits >= kMaxFits) {
+            for (Index i = from; i < to; ++i) append_line(i);
             continue;
         }
-        if (at[std::size_t(to)] - at[std::size_t(from)] > kMostPieces * kStep * 0.5 * tolerance) {
+        if (at[std::size_t(to)] - at[std::size_t(from)] > kMaxPieces * kPointSpacingTolerances * 0.5 * tolerance) {
             // too long for one fit: its points would be further apart than the tolerance needs
-            ahead.push_back({(from + to) / 2, to});
-            ahead.push_back({from, (from + to) / 2});
+            pending.push_back({(from + to) / 2, to});
+            pending.push_back({from, (from + to) / 2});
             closed = false;
             continue;
         }
@@ -288,7 +289,7 @@ void smooth(const WideLine& line, const std::vector<double>& at, Index first, In
         part.middle_mm = fit_curve(line.middleRows(from, to - from + 1), 0.5 * tolerance, closed).middle_mm;
         part.half_width = {{0.0, 1.0}};
         const MiddlePolyline way = flatten(part, 0.1 * tolerance);
-        Nearest<MiddlePolyline> nearest(way);
+        NearestOnPolyline<MiddlePolyline> nearest(way);
         double most = 0.9 * tolerance;  // a margin, because distances are from a polyline and not from the curve itself
         Index worst = -1;
         for (Index i = from + 1; i < to; ++i) {
@@ -299,14 +300,14 @@ void smooth(const WideLine& line, const std::vector<double>& at, Index first, In
         }
         if (worst < 0) {
             if (part.middle_mm.rows() > to - from)  // more cubics than points: the fit follows the chords
-                for (Index i = from; i < to; ++i) straight(i);
+                for (Index i = from; i < to; ++i) append_line(i);
             else
                 for (Index i = 0; i < part.middle_mm.rows(); ++i) out.emplace_back(part.middle_mm.row(i));
             continue;
         }
         closed = false;
-        ahead.push_back({worst, to});
-        ahead.push_back({from, worst});
+        pending.push_back({worst, to});
+        pending.push_back({from, worst});
     }
 }
 
@@ -314,7 +315,7 @@ void smooth(const WideLine& line, const std::vector<double>& at, Index first, In
 
 Stroke stroke_along(const StrokeId& id, const WideLine& points, std::optional<double> tolerance_mm) {
     if (tolerance_mm) require_tolerance(*tolerance_mm, id);
-    const WideLine line = need_line(id, points);
+    const WideLine line = require_line(id, points);
     const Index last = line.rows() - 1;
     Stroke stroke;
     stroke.id = id;
@@ -322,8 +323,8 @@ Stroke stroke_along(const StrokeId& id, const WideLine& points, std::optional<do
     std::vector<double> at{0.0};
     for (Index i = 1; i <= last; ++i) at.push_back(at.back() + (line.row(i) - line.row(i - 1)).head<2>().norm());
     std::vector<Eigen::Matrix<double, 1, 8>> cubics;
-    int fits = tolerance_mm ? 0 : kMostFits;
-    smooth(line, at, 0, last, tolerance_mm.value_or(1.0), stroke.closed, fits, cubics);
+    int fits = tolerance_mm ? 0 : kMaxFits;
+    append_smooth_cubics(line, at, 0, last, tolerance_mm.value_or(1.0), stroke.closed, fits, cubics);
     stroke.middle_mm.resize(Index(cubics.size()), 8);
     for (Index i = 0; i < stroke.middle_mm.rows(); ++i) stroke.middle_mm.row(i) = cubics[std::size_t(i)];
     for (Index i = 0; i <= last; ++i) {

@@ -12,16 +12,16 @@ namespace {
 using Eigen::Vector2d;
 
 /// Files are rounded to 1e-7 mm. Depths that differ by more than this limit are different.
-constexpr double kSameDepthMm = 1e-6;
+constexpr double kMaxArcDepthDifferenceMm = 1e-6;
 /// For a turn this close to half a turn, the direction of the chord does not show on which side the arc is.
-constexpr double kAlmostHalfTurnRad = 1e-6;
+constexpr double kHalfTurnMarginRad = 1e-6;
 
 constexpr double kPi = 3.14159265358979323846;
 
-constexpr double kLargestSheetMm = 1e6;  // same limit as for files and strokes
+constexpr double kMaxSheetSideMm = 1e6;  // same limit as for files and strokes
 
 template <class... Numbers>
-std::string text_of(const char* format, Numbers... numbers) {
+std::string format_text(const char* format, Numbers... numbers) {
     char text[200];
     std::snprintf(text, sizeof text, format, numbers...);
     return text;
@@ -33,9 +33,10 @@ double tilt_deg(const Eigen::RowVector3d& axis) { return std::atan2(axis.head<2>
 
 void check_sheet(const std::array<double, 2>& sheet_mm) {
     for (const double side_mm : sheet_mm) {
-        if (side_mm > 0.0 && side_mm <= kLargestSheetMm) continue;
-        throw Error("out-of-range", text_of("both sides of the sheet must be within (0, 1e6] mm, not be %g", side_mm),
-                    "sheet_mm", side_mm, std::array<double, 2>{0.0, kLargestSheetMm});
+        if (side_mm > 0.0 && side_mm <= kMaxSheetSideMm) continue;
+        throw Error("out-of-range",
+                    format_text("both sides of the sheet must be within (0, 1e6] mm, not be %g", side_mm), "sheet_mm",
+                    side_mm, std::array<double, 2>{0.0, kMaxSheetSideMm});
     }
 }
 
@@ -52,34 +53,34 @@ void check_arc(const Pass& pass, std::size_t k, const std::string& where) {
     };
     const long long first = arc.first, last = arc.last, poses = pass.poses_mm.rows();
     if (first < 0 || last >= poses)
-        refuse(text_of("names poses %lld to %lld, where the stroke has 0 to %lld", first, last, poses - 1));
-    if (first >= last) refuse(text_of("runs from pose %lld to pose %lld, not to a later one", first, last));
+        refuse(format_text("names poses %lld to %lld, where the stroke has 0 to %lld", first, last, poses - 1));
+    if (first >= last) refuse(format_text("runs from pose %lld to pose %lld, not to a later one", first, last));
     if (k > 0 && first < pass.arcs[k - 1].last)
-        refuse(text_of("begins at pose %lld, before the arc ahead of it ends at pose %lld", first,
-                       static_cast<long long>(pass.arcs[k - 1].last)));
+        refuse(format_text("begins at pose %lld, before the arc ahead of it ends at pose %lld", first,
+                           static_cast<long long>(pass.arcs[k - 1].last)));
     if (arc.direction != 1 && arc.direction != -1)
-        refuse(text_of("has the direction %d, not 1 (counter-clockwise) or -1", arc.direction));
+        refuse(format_text("has the direction %d, not 1 (counter-clockwise) or -1", arc.direction));
     const auto pose = [&](Eigen::Index i) -> Vector2d { return pass.poses_mm.row(i).head<2>().transpose(); };
     const double radius_mm = (pose(first) - arc.centre_mm).norm();
-    if (!(radius_mm >= kArcRadiusMm[0] && radius_mm <= kArcRadiusMm[1]))
-        refuse(text_of("has a radius of %.6g mm, outside the range [%g, %g] mm", radius_mm, kArcRadiusMm[0],
-                       kArcRadiusMm[1]),
-               radius_mm, kArcRadiusMm);
+    if (!(radius_mm >= kArcRadiusRangeMm[0] && radius_mm <= kArcRadiusRangeMm[1]))
+        refuse(format_text("has a radius of %.6g mm, outside the range [%g, %g] mm", radius_mm, kArcRadiusRangeMm[0],
+                           kArcRadiusRangeMm[1]),
+               radius_mm, kArcRadiusRangeMm);
     for (Eigen::Index i = first + 1; i <= last; ++i) {
         const long long at = i;
         const double off_mm = (pose(i) - arc.centre_mm).norm() - radius_mm;
-        if (!(std::abs(off_mm) <= kOnCircleMm))
-            refuse(text_of("has pose %lld %.6g mm off its circle of radius %.6g mm", at, off_mm, radius_mm), off_mm,
-                   std::array<double, 2>{-kOnCircleMm, kOnCircleMm});
+        if (!(std::abs(off_mm) <= kMaxCircleErrorMm))
+            refuse(format_text("has pose %lld %.6g mm off its circle of radius %.6g mm", at, off_mm, radius_mm), off_mm,
+                   std::array<double, 2>{-kMaxCircleErrorMm, kMaxCircleErrorMm});
         const double rise_mm = pass.poses_mm(i, 2) - pass.poses_mm(first, 2);
-        if (!(std::abs(rise_mm) <= kSameDepthMm))
-            refuse(text_of("has z = %.6g mm at pose %lld and %.6g mm at pose %lld; an arc has one depth",
-                           pass.poses_mm(first, 2), first, pass.poses_mm(i, 2), at),
+        if (!(std::abs(rise_mm) <= kMaxArcDepthDifferenceMm))
+            refuse(format_text("has z = %.6g mm at pose %lld and %.6g mm at pose %lld; an arc has one depth",
+                               pass.poses_mm(first, 2), first, pass.poses_mm(i, 2), at),
                    rise_mm);
         const double turn_rad = arc.direction * turn_between(arc, pose(i - 1), pose(i));
-        if (!(turn_rad > 0.0) || turn_rad > std::acos(-1.0) - kAlmostHalfTurnRad)
-            refuse(text_of("does not go %s from pose %lld to pose %lld by less than 180 degrees",
-                           arc.direction > 0 ? "counter-clockwise" : "clockwise", at - 1, at));
+        if (!(turn_rad > 0.0) || turn_rad > std::acos(-1.0) - kHalfTurnMarginRad)
+            refuse(format_text("does not go %s from pose %lld to pose %lld by less than 180 degrees",
+                               arc.direction > 0 ? "counter-clockwise" : "clockwise", at - 1, at));
     }
 }
 
@@ -97,17 +98,17 @@ void check_tool_axes(const Pass& pass, const std::string& where) {
     for (Eigen::Index i = 0; i < axes.rows(); ++i) {
         const std::string row = "row " + std::to_string(i) + " of tool_axes of " + stroke;
         const double length = axes.row(i).norm();
-        if (!(std::abs(length - 1.0) <= kUnitLength))
+        if (!(std::abs(length - 1.0) <= kMaxUnitLengthError))
             throw Error("tool-axis-invalid",
-                        row + text_of(" has length %.6g, outside the range [%g, %g]", length, 1.0 - kUnitLength,
-                                      1.0 + kUnitLength),
-                        where, length, std::array<double, 2>{1.0 - kUnitLength, 1.0 + kUnitLength});
+                        row + format_text(" has length %.6g, outside the range [%g, %g]", length,
+                                          1.0 - kMaxUnitLengthError, 1.0 + kMaxUnitLengthError),
+                        where, length, std::array<double, 2>{1.0 - kMaxUnitLengthError, 1.0 + kMaxUnitLengthError});
         const double tilt = tilt_deg(axes.row(i));
-        if (!(tilt <= kMostTiltDeg + kRoundedTiltDeg))
+        if (!(tilt <= kMaxTiltDeg + kTiltRoundingDeg))
             throw Error("tool-axis-invalid",
-                        row + text_of(" is tilted by %.4g degrees, outside the range [0, %g] degrees from upright",
-                                      tilt, kMostTiltDeg),
-                        where, tilt, std::array<double, 2>{0.0, kMostTiltDeg});
+                        row + format_text(" is tilted by %.4g degrees, outside the range [0, %g] degrees from upright",
+                                          tilt, kMaxTiltDeg),
+                        where, tilt, std::array<double, 2>{0.0, kMaxTiltDeg});
     }
 }
 
@@ -120,7 +121,7 @@ void refuse_tilted(const Pass& pass, const std::string& upright) {
     if (!is_tilted(pass)) return;
     double most = 0.0;
     for (const auto& axis : pass.tool_axes.rowwise()) most = std::max(most, tilt_deg(axis));
-    throw Error("tilt-unsupported", upright + text_of(", and this stroke tilts it by up to %.4g degrees", most),
+    throw Error("tilt-unsupported", upright + format_text(", and this stroke tilts it by up to %.4g degrees", most),
                 pass.stroke, most, std::array<double, 2>{0.0, 0.0});
 }
 

@@ -19,15 +19,15 @@ using Eigen::Index;
 using Eigen::Vector2d;
 
 /// Largest gap between joined lines. A wider gap would be painted across by a straight line.
-constexpr double kGapMm = 0.01;
+constexpr double kMaxGapMm = 0.01;
 
 /// Precision of the parameter at a length: a cubic halved 47 times, which is far below a hair's width on a metre.
 constexpr double kParameterStep = 0x1p-47;
 /// Number of these steps that are checked where Newton's method ends, because rounding sometimes ends it next to the
 /// right step.
-constexpr int kStepsBeside = 4;
+constexpr int kNeighbourSteps = 4;
 /// After a Newton step of at most this length, the next step is exact to rounding.
-constexpr double kLastStep = 1e-6;
+constexpr double kNewtonTolerance = 1e-6;
 
 void require_cubic(const Cubics& c, Index i) {
     if (i < 0 || i >= c.rows())
@@ -52,7 +52,7 @@ struct Derivative {
     }
     /// Returns |B'(t)| of several parameters, with the same bits as one at a time.
     template <class Numbers>
-    Numbers sizes(const Numbers& t) const {
+    Numbers speeds(const Numbers& t) const {
         const Numbers u = 1.0 - t, p = u * u, q = 2.0 * u * t, r = t * t;
         const Numbers x = 3.0 * (p * a.x() + q * b.x() + r * d.x()), y = 3.0 * (p * a.y() + q * b.y() + r * d.y());
         return (x * x + y * y).sqrt();
@@ -99,7 +99,7 @@ double arc_length(const Cubics& c, Index i, double t0, double t1) {
         const double a = t0 + (t1 - t0) * k / n, half = 0.5 * (t1 - t0) / n;
         Eigen::Array<double, 6, 1> t;  // all nodes at once by vector instructions; the sixth is not used
         for (int j = 0; j < 6; ++j) t[j] = a + half * (1.0 + x[std::min(j, 4)]);
-        const Eigen::Array<double, 6, 1> speed = derivative.sizes(t);
+        const Eigen::Array<double, 6, 1> speed = derivative.speeds(t);
         for (int j = 0; j < 5; ++j) sum += w[j] * half * speed[j];
     }
     return sum;
@@ -117,7 +117,7 @@ double parameter_at(const Cubics& c, Index i, double length_mm) {
         const double before = t, step = missing / derivative(t).norm();
         t += step;
         if (!(t > 0.0 && t < 1.0)) break;
-        const bool is_last = std::abs(step) < kLastStep;
+        const bool is_last = std::abs(step) < kNewtonTolerance;
         missing = is_last ? length_mm - arc_length(c, i, 0.0, t) : missing - arc_length(c, i, before, t);
         if (!is_last) continue;
         t += missing / derivative(t).norm();
@@ -126,16 +126,16 @@ double parameter_at(const Cubics& c, Index i, double length_mm) {
     // The result is never before the place, not even by a rounding error: a lever that is not extended at all is loose
     // for one move.
     double a = std::floor(t / kParameterStep) * kParameterStep, b = a + kParameterStep;
-    bool holds = false;
-    for (int k = 0; !holds && k < kStepsBeside && a >= 0.0 && b <= 1.0; ++k) {
+    bool is_found = false;
+    for (int k = 0; !is_found && k < kNeighbourSteps && a >= 0.0 && b <= 1.0; ++k) {
         if (!is_before(a))
             b = a, a -= kParameterStep;
         else if (is_before(b))
             a = b, b += kParameterStep;
         else
-            holds = true;
+            is_found = true;
     }
-    if (!holds) a = 0.0, b = 1.0;
+    if (!is_found) a = 0.0, b = 1.0;
     while (b - a > kParameterStep) {
         const double middle = 0.5 * (a + b);
         (is_before(middle) ? a : b) = middle;
@@ -167,13 +167,13 @@ void check(const Stroke& stroke) {
     for (Eigen::Index i = stroke.closed ? 0 : 1; i <= last; ++i) {
         const Eigen::Index before = i > 0 ? i - 1 : last;
         const double gap_mm = (stroke.middle_mm.row(i).head<2>() - stroke.middle_mm.row(before).tail<2>()).norm();
-        if (gap_mm <= kGapMm) continue;
+        if (gap_mm <= kMaxGapMm) continue;
         char away[32];
         std::snprintf(away, sizeof away, "%.3g mm", gap_mm);
         throw Error("geometry-out-of-range",
                     "cubic " + std::to_string(i) + " of the middle line begins " + away + " away from where cubic " +
                         std::to_string(before) + " ends: a stroke is one line",
-                    stroke.id, gap_mm, std::array<double, 2>{0.0, kGapMm});
+                    stroke.id, gap_mm, std::array<double, 2>{0.0, kMaxGapMm});
     }
     if (stroke.half_width.empty()) throw Error("stroke-empty", "the stroke has no width", stroke.id);
     double before = -1.0;
@@ -185,7 +185,7 @@ void check(const Stroke& stroke) {
             throw Error("not-ascending", "the widths along the stroke are not in ascending order", stroke.id, knot.at);
         before = knot.at;
     }
-    for (const Ring& ring : stroke.wanted_mm)
+    for (const Ring& ring : stroke.target_mm)
         if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
             throw Error("geometry-out-of-range",
                         "the target outline has a coordinate that is not finite or beyond 1e6 mm", stroke.id);
@@ -194,8 +194,8 @@ void check(const Stroke& stroke) {
 namespace {
 
 /// Adds points (x, y, arc length) where the width has a knot, because the width is linear between rows.
-std::vector<std::array<double, 3>> with_places_of_knots(const std::vector<std::array<double, 3>>& points,
-                                                        const Stroke& stroke, double length) {
+std::vector<std::array<double, 3>> insert_knot_places(const std::vector<std::array<double, 3>>& points,
+                                                      const Stroke& stroke, double length) {
     std::vector<std::array<double, 3>> out{points.front()};
     auto knot = stroke.half_width.begin();
     for (std::size_t i = 1; i < points.size(); ++i) {
@@ -215,7 +215,7 @@ std::vector<std::array<double, 3>> with_places_of_knots(const std::vector<std::a
 
 /// Limit of the points of a line. A longer line, such as kilometres of curves with fine details, becomes as fine as
 /// this limit permits.
-constexpr double kMostPoints = 4e6;
+constexpr double kMaxPoints = 4e6;
 
 MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
     check(stroke);
@@ -228,12 +228,12 @@ MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
         const double second = 6.0 * std::max((p0 - 2.0 * p1 + p2).norm(), (p1 - 2.0 * p2 + p3).norm());
         steps.push_back(std::max(1.0, std::ceil(std::sqrt(second / (8.0 * tolerance_mm)))));
     }
-    const double coarser = std::max(1.0, std::accumulate(steps.begin(), steps.end(), 0.0) / kMostPoints);
+    const double coarsening = std::max(1.0, std::accumulate(steps.begin(), steps.end(), 0.0) / kMaxPoints);
     std::vector<std::array<double, 3>> points;
     double s = 0.0;
     for (Index i = 0; i < c.rows(); ++i) {
         const Vector2d p0 = control(c, i, 0), p3 = control(c, i, 3);
-        const int n = int(std::ceil(steps[std::size_t(i)] / coarser));
+        const int n = int(std::ceil(steps[std::size_t(i)] / coarsening));
         if (i == 0) points.push_back({p0.x(), p0.y(), 0.0});
         for (int k = 1; k <= n; ++k) {
             const Vector2d p = k == n ? p3 : point_at(c, {i, double(k) / n});
@@ -244,7 +244,7 @@ MiddlePolyline flatten(const Stroke& stroke, double tolerance_mm) {
             points.push_back({p.x(), p.y(), s});
         }
     }
-    points = with_places_of_knots(points, stroke, s);
+    points = insert_knot_places(points, stroke, s);
     MiddlePolyline out(Index(points.size()), 4);
     for (Index i = 0; i < out.rows(); ++i) {
         const auto& p = points[i];

@@ -105,10 +105,10 @@ Named<Stroke> strokes() {
         add("a width" + with, line, {{0.0, x}, {1.0, 1.0}});
         add("a knot" + with, line, {{0.0, 1.0}, {x, 1.0}});
         add("an outline" + with, line, wide);
-        out.back().second.wanted_mm = {Ring::Constant(4, 2, x)};
+        out.back().second.target_mm = {Ring::Constant(4, 2, x)};
     }
     add("an outline of nothing", line, wide);
-    out.back().second.wanted_mm = {Ring(0, 2), Ring::Zero(1, 2)};
+    out.back().second.target_mm = {Ring(0, 2), Ring::Zero(1, 2)};
     return out;
 }
 
@@ -202,9 +202,9 @@ TEST_CASE("any brush with a valid stroke, pass and marks gives a result or Error
         for (const Compensation method : {Compensation::none, Compensation::constant, Compensation::closed})
             ends([&, &b = brush] { compensate(stroke, b, {method}); });
         ends([&, &b = brush] { simulate(pass, b); });
-        ends([&, &b = brush] { thin_out(pass, b, 0.05); });
+        ends([&, &b = brush] { simplify_pass(pass, b, 0.05); });
         ends([&, &b = brush] { tracking_error_of(pass, stroke, b, 0.05); });
-        ends([&, &b = brush] { interrupted(pass, b, {10.0, 30.0, 5.0}); });
+        ends([&, &b = brush] { split_into_loads(pass, b, {10.0, 30.0, 5.0}); });
         ends([&, &b = brush] { outline(mark, b); });
         ends([&, &b = brush] { painted_bounds(mark, b); });
         ends([&, &b = brush] { coverage(Marks{{mark}, {}}, b, {0, 0, 40, 20}, 4.0); });
@@ -239,13 +239,13 @@ TEST_CASE("any stroke with a valid brush gives a result or Error") {
             ends([&] { point_at(s.middle_mm, {0, x}); });
             ends([&] { tangent_at(s.middle_mm, {5, x}); });
         }
-        ends([&] { wanted_pieces(s, 0.01); });
-        ends([&] { wanted_outline(s, 0.05); });
-        ends([&] { wanted_coverage({s}, {0, 0, 40, 20}, 4.0); });
+        ends([&] { target_pieces(s, 0.01); });
+        ends([&] { target_outline(s, 0.05); });
+        ends([&] { target_coverage({s}, {0, 0, 40, 20}, 4.0); });
         ends([&] { mark_overlap({mark}, {s}, brush); });
         ends([&] { stroke_score(mark, s, brush); });
         ends([&] { tracking_error_of(passes()[1].second, s, brush, 0.05); });
-        ends([&] { touching({s, s}); });
+        ends([&] { group_touching({s, s}); });
     }
 }
 
@@ -257,9 +257,9 @@ TEST_CASE("any pass with a valid brush gives a result or Error") {
         const Pass& p = pass;
         for (const Brush* b : {&brush, &pen}) {
             ends([&] { simulate(p, *b); });
-            ends([&] { thin_out(p, *b, 0.05); });
+            ends([&] { simplify_pass(p, *b, 0.05); });
             ends([&] { tracking_error_of(p, stroke, *b, 0.05); });
-            ends([&] { interrupted(p, *b, {10.0, 30.0, 5.0}); });
+            ends([&] { split_into_loads(p, *b, {10.0, 30.0, 5.0}); });
         }
         for (std::size_t k = 0; k < p.arcs.size(); ++k) ends([&] { check_arc(p, k, ""); });
         ends([&] { io::write_plan({"b", "", {100.0, 100.0}, {p}, "{}"}); });
@@ -327,11 +327,11 @@ TEST_CASE("any number as an argument gives a result or Error") {
         options = {Compensation::closed, 0.05, {}, x};
         ends([&] { compensate(stroke, brush, options); });
         ends([&] { simulate(pass, brush, x); });
-        ends([&] { thin_out(pass, brush, x); });
+        ends([&] { simplify_pass(pass, brush, x); });
         ends([&] { tracking_error_of(pass, stroke, brush, x); });
         for (const double y : kNumbers) {
-            ends([&] { interrupted(pass, brush, {x, y, 0.0}); });
-            ends([&] { interrupted(pass, brush, {0.0, x, y}); });
+            ends([&] { split_into_loads(pass, brush, {x, y, 0.0}); });
+            ends([&] { split_into_loads(pass, brush, {0.0, x, y}); });
             ends([&] { coverage(Marks{{mark}, {}}, brush, {x, 0, y, 20}, 4.0); });
             ends([&] { coverage(Rings{box(0, 0, 9, 9)}, {0, x, 20, y}, 4.0); });
             ends([&] { width_across(seen.painted, seen, {x, y}, {0, 1}, 2.0); });

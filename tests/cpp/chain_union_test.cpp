@@ -35,13 +35,13 @@ TEST_CASE("touching neighbours become one ring, with any shared edges and corner
                 rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbouring rings share edges
         }
         if (rings.empty()) continue;
-        const Rings wanted = fill(rings, FillRule::nonzero), fewer = united_in_chain(rings, 1e5).value();
+        const Rings target = fill(rings, FillRule::nonzero), fewer = unite_chain(rings, 1e5).value();
         before += rings.size();
         after += fewer.size();
         const Rings found = fill(fewer, FillRule::nonzero);
         CHECK(apart(rings, fewer) < 1e-5);
-        CHECK(found.size() == wanted.size());
-        with_holes += wanted.size() > 1 && area({wanted[1]}) < 0.0;
+        CHECK(found.size() == target.size());
+        with_holes += target.size() > 1 && area({target[1]}) < 0.0;
         for (const Ring& ring : fewer) {
             // the ring may touch itself, but does not cross itself
             CHECK(area(fill({ring}, FillRule::evenodd)) == doctest::Approx(area({ring})).epsilon(1e-6));
@@ -53,8 +53,8 @@ TEST_CASE("touching neighbours become one ring, with any shared edges and corner
 }
 
 TEST_CASE("rings that enclose a hole, are apart or reach too far are not joined") {
-    const auto count = [](const Rings& rings) { return united_in_chain(rings, 1e5).value().size(); };
-    const auto area_of = [](const Rings& rings) { return area(united_in_chain(rings, 1e5).value()); };
+    const auto count = [](const Rings& rings) { return unite_chain(rings, 1e5).value().size(); };
+    const auto area_of = [](const Rings& rings) { return area(unite_chain(rings, 1e5).value()); };
     const Ring all = box(0, 0, 4, 4);
     CHECK(area_of({all}) == doctest::Approx(16.0));
     CHECK(area_of({all, all, box(1, 1, 3, 3)}) == doctest::Approx(16.0));
@@ -65,6 +65,6 @@ TEST_CASE("rings that enclose a hole, are apart or reach too far are not joined"
     CHECK(count({box(0, 0, 1e-6, 1e-6)}) == 0);
     CHECK(count({all, box(5, 0, 9, 4)}) == 2);
     CHECK(count({box(0, 0, 9, 1), box(8, 0, 9, 9), box(0, 8, 9, 9), box(0, 0, 1, 9)}) == 2);
-    CHECK_FALSE(united_in_chain({box(0, 0, 1e4, 1), all}, 1e5));
-    CHECK_FALSE(united_in_chain({box(0, 0, std::nan(""), 1), all}, 1e5));
+    CHECK_FALSE(unite_chain({box(0, 0, 1e4, 1), all}, 1e5));
+    CHECK_FALSE(unite_chain({box(0, 0, std::nan(""), 1), all}, 1e5));
 }

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "base/meanwhile.hpp"
 #include "base/parallel.hpp"
+#include "base/run_cancellable.hpp"
 #include "brushsvg/compensate.hpp"
 #include "brushsvg/medial_axis.hpp"
 #include "brushsvg/region.hpp"
@@ -63,7 +63,7 @@ TEST_CASE("worker threads end with the main thread, and only the main thread is 
         CHECK(std::this_thread::get_id() == here);
         return ++asked == 2;
     });
-    CHECK_THROWS_AS(on_all_processors(0, 64, [](std::size_t) { work_for(100000); }), Cancelled);
+    CHECK_THROWS_AS(parallel_for(0, 64, [](std::size_t) { work_for(100000); }), Cancelled);
 }
 
 TEST_CASE("the work on a single stroke can be cancelled") {
@@ -86,7 +86,7 @@ TEST_CASE("work without checkpoints can be cancelled from outside, and ends at i
             CHECK(std::this_thread::get_id() == here);
             return ++asked == 2;
         });
-        CHECK_THROWS_AS(asking_meanwhile([&]() -> int {
+        CHECK_THROWS_AS(run_cancellable([&]() -> int {
                             while (goes_on) std::this_thread::yield();
                             try {
                                 work_for(100000);
@@ -100,8 +100,8 @@ TEST_CASE("work without checkpoints can be cancelled from outside, and ends at i
     goes_on = false;
     while (!ended) std::this_thread::yield();
     CHECK(asked == 2);
-    CHECK(asking_meanwhile([] { return 7; }) == 7);
-    CHECK_THROWS_AS(asking_meanwhile([]() -> int { throw std::logic_error("no"); }), std::logic_error);
+    CHECK(run_cancellable([] { return 7; }) == 7);
+    CHECK_THROWS_AS(run_cancellable([]() -> int { throw std::logic_error("no"); }), std::logic_error);
 }
 
 TEST_CASE("unions of large rings and the axis of a large shape can be cancelled") {

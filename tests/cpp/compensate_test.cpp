@@ -28,7 +28,7 @@ Ring at_poses(const PassMarks& marks) {
 }
 
 double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
-    return overlap(outline(simulate(pass, brush, 0.01), brush), wanted_outline(stroke));
+    return overlap(outline(simulate(pass, brush, 0.01), brush), target_outline(stroke));
 }
 
 }  // namespace
@@ -255,7 +255,7 @@ TEST_CASE("a round start turns over while its patch rests") {
     const CompensatedPass begun = compensate(s, brush, options);
     CHECK(begun.tracking_error.within_tolerance);
     const PassMarks marks = simulate(begun.pass, brush);
-    const auto turns = turns_over(marks);
+    const auto turns = find_turn_overs(marks);
     REQUIRE(turns.size() == 1);
     const auto contact = [&](std::size_t row) { return V(marks.contact_mm.row(Eigen::Index(row)).transpose()); };
     CHECK((contact(turns[0].first) - contact(turns[0].last)).norm() < 1e-6);
@@ -265,7 +265,7 @@ TEST_CASE("a round start turns over while its patch rests") {
     CHECK(bounds[0] == doctest::Approx(30.0 - h).epsilon(1e-3));  // the front reaches as far as a round cap
     CHECK(overlap_of(s, begun.pass, brush) > 0.99);
     CHECK(overlap_of(s, compensate(s, brush).pass, brush) < 0.98);
-    CHECK(turns_over(simulate(compensate(s, brush).pass, brush)).empty());
+    CHECK(find_turn_overs(simulate(compensate(s, brush).pass, brush)).empty());
 
     const Brush pen = shipped("rigid");
     const Stroke line = stroke_of(polyline({V(30, 20), V(70, 20)}), {{0.0, pen.half_width(pen.paint_depth_mm)}});
@@ -324,7 +324,7 @@ TEST_CASE("steps around a cusp terminate at any tolerance") {
     const Brush brush = shipped("round-6");
     const Line line(stroke, brush);
     for (const double tolerance : {1e-2, 3.5e-3, 1.4e-3, 1e-4, 1e-5}) {
-        Samples samples = line.coarse(0.0, line.length(), {});
+        Samples samples = line.coarse_samples(0.0, line.length(), {});
         int rounds = 0;
         std::size_t most = 0;
         refine_steps(line, samples, tolerance, [&](Samples& all) {

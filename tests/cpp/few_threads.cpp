@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "base/meanwhile.hpp"
 #include "base/parallel.hpp"
+#include "base/run_cancellable.hpp"
 
 unsigned std::thread::hardware_concurrency() noexcept { return 8; }
 
@@ -36,12 +36,12 @@ int main() {
     for (int threads = 0; threads <= 7; ++threads) {
         allowed = threads;
         std::atomic<int> sum{0};
-        brushsvg::on_all_processors(0, 1000, [&](std::size_t i) { sum += int(i); });
+        brushsvg::parallel_for(0, 1000, [&](std::size_t i) { sum += int(i); });
         require(sum == 999 * 1000 / 2, "some of the work was not done once", threads);
         allowed = threads;
         bool is_refused = false;
         try {
-            brushsvg::on_all_processors(0, 100, [](std::size_t i) {
+            brushsvg::parallel_for(0, 100, [](std::size_t i) {
                 if (i == 40) throw std::runtime_error("no");
             });
         } catch (const std::runtime_error&) {
@@ -51,7 +51,7 @@ int main() {
     }
     for (int threads = 0; threads <= 1; ++threads) {
         allowed = threads;
-        require(brushsvg::asking_meanwhile([] { return 42; }) == 42, "the result was lost", threads);
+        require(brushsvg::run_cancellable([] { return 42; }) == 42, "the result was lost", threads);
     }
     return wrong;
 }

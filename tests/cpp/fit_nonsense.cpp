@@ -59,7 +59,7 @@ struct Sheet {
             marks.push_back({pass.stroke, pass.poses_mm, outline(simulate(pass, brush), brush)});
         }
         options.spacing_mm = 3.0;
-        options.most_iterations = 5;
+        options.max_iterations = 5;
     }
 };
 
@@ -154,7 +154,7 @@ TEST_CASE("fit_marks refuses invalid sheets") {
         {"five terms", [](Sheet& s) { s.options.lag_terms = 5; }},
         {"minus three terms of a ratio", [](Sheet& s) { s.options.widest_terms = -3; }},
         {"no terms of the other ratio", [](Sheet& s) { s.options.front_terms = 0; }},
-        {"no iterations", [](Sheet& s) { s.options.most_iterations = -1; }},
+        {"no iterations", [](Sheet& s) { s.options.max_iterations = -1; }},
         {"start of nothing", [](Sheet& s) { s.start = MarkLaws{{kNan}, {}, {}}; }},
     };
     for (const double x : {kNan, kInf, -kInf, 1e300, -1.0}) {

@@ -58,8 +58,8 @@ TEST_CASE("the TCP's place on an arc and its chord are inverse at every radius a
         for (double turn : {1e-9, 0.01, -0.2, 1.0, -3.0, 3.14}) {
             const ArcMove<double> arc = arc_of({3, 4}, 0.7, radius, turn);
             const V centre = arc.from + (turn > 0 ? radius : -radius) * V(-arc.along.y(), arc.along.x());
-            const V wanted = centre + turned_by(V(arc.from - centre), turn);
-            CHECK((arc.tcp(1.0) - wanted).norm() < 1e-15 * radius + 1e-14);
+            const V target = centre + rotated(V(arc.from - centre), turn);
+            CHECK((arc.tcp(1.0) - target).norm() < 1e-15 * radius + 1e-14);
             if (radius * std::abs(turn) < 1e-5) continue;
             const ArcMove<double> same = arc_between<double>(arc.from, arc.tcp(1.0), turn, 2.0);
             CHECK(std::abs(same.radius / radius - 1.0) < 1e-8);

@@ -50,8 +50,8 @@ TEST_CASE("depth 2 to 8 over 20 mm with the article's quartic") {
     const auto law = law_of({3.1, 0.86, 0.31, -0.05, 0.0021});
     CHECK(std::abs(lag_exponent(law.pieces[0], 2.0, 8.0, 20.0) - 2.138103176) < 1e-9);
     // only article (7): the loose rule would apply here, since cos(1.2) < dr/ds
-    const auto state = within_phase(law.pieces[0], Move<double>(V(0, 0), V(20, 0), 2.0, 8.0),
-                                    taut(V(0, 0), law.at(2.0), 1.2), 0.0, 1.0);
+    const auto state = state_in_phase(law.pieces[0], Move<double>(V(0, 0), V(20, 0), 2.0, 8.0),
+                                      taut(V(0, 0), law.at(2.0), 1.2), 0.0, 1.0);
     CHECK(std::abs(std::atan2(state.heading.y(), state.heading.x()) - 0.160941370) < 1e-8);
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("dual numbers carry derivatives through drags and events") {
     const auto& from = plain.pieces[0];
     piece.lo = from.lo, piece.hi = from.hi, piece.degree = from.degree;
     for (int i = 0; i <= from.degree; ++i) piece.coefficients[i] = from.coefficients[i];
-    piece.roots = from.roots, piece.steepest = from.steepest, piece.most_twisted = from.most_twisted;
+    piece.roots = from.roots, piece.max_slope = from.max_slope, piece.max_third_derivative = from.max_third_derivative;
 
     // A path with a reversal: taut, loose, taut again. The derivative is by the depth of the second half.
     const auto path = [](auto scalar, auto depth, const auto& law_) {

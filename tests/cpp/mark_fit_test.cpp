@@ -15,8 +15,8 @@
 #include "mark_problem.hpp"
 #include "no_brush.hpp"
 #include "noise_covariance.hpp"
+#include "realised_path.hpp"
 #include "refusal.hpp"
-#include "run_way.hpp"
 
 using namespace brushsvg;
 using namespace brushsvg::fit;
@@ -85,10 +85,10 @@ TEST_CASE("along a straight stroke of any width the edge is straight, and crossi
             const Eigen::Vector2d still = Eigen::Vector2d::Zero();
             VectorXd distance;
             REQUIRE(model.distances(0, x.data(), still.data(), distance, nullptr, nullptr));
-            const Ring placed = model.placed(0, x.data(), still.data());
+            const Ring points_in_plan_frame = model.points_in_plan_frame(0, x.data(), still.data());
             const VectorXd width = model.widths(0, x.data(), still.data());
-            for (Eigen::Index k = 0; k < placed.rows(); ++k) {
-                if (!(placed(k, 0) > 11.0 && placed(k, 0) < 29.0)) continue;
+            for (Eigen::Index k = 0; k < points_in_plan_frame.rows(); ++k) {
+                if (!(points_in_plan_frame(k, 0) > 11.0 && points_in_plan_frame(k, 0) < 29.0)) continue;
                 CHECK(distance[k] == doctest::Approx(up - half).epsilon(2e-3).scale(0.1));
                 CHECK(width[k] == doctest::Approx(2.0 * half).epsilon(0.01).scale(0.1));
             }
@@ -110,20 +110,20 @@ TEST_CASE("points without weight have no effect") {
     laws.tip_gap = {0.0, 0.5};
     laws.half_width = {0.0, 0.8};
     MarkProblem alone({{"s", along, {ring}}}, options), both({{"s", along, {ring}}, {"t", up, {other}}}, options);
-    both.says[1].setZero();
+    both.point_weights[1].setZero();
     for (MarkProblem* fit : {&alone, &both}) {
-        fit->begin(laws);
-        fit->find_displaced();
+        fit->start_at(laws);
+        fit->correct_displaced_marks();
         fit->solve(10, 1e-9);
-        fit->weighing = weighed(*fit);
+        fit->weighing = estimate_weighing(*fit);
     }
     CHECK((both.shared - alone.shared).cwiseAbs().maxCoeff() < 1e-6);
-    CHECK((both.own[0] - alone.own[0]).norm() < 1e-6);
+    CHECK((both.displacements_mm[0] - alone.displacements_mm[0]).norm() < 1e-6);
     CHECK(both.loss() == doctest::Approx(alone.loss()));
     CHECK(both.weighing.noise_mm == doctest::Approx(alone.weighing.noise_mm));
-    CHECK(both.weighing.repeats == doctest::Approx(alone.weighing.repeats));
+    CHECK(both.weighing.points_per_independent == doctest::Approx(alone.weighing.points_per_independent));
     CHECK(covariance(both).isApprox(covariance(alone), 1e-4));
-    CHECK(doubts(both) == doubts(alone));
+    CHECK(describe_open_unknowns(both) == describe_open_unknowns(alone));
 }
 
 TEST_CASE("specks alone are refused") {
@@ -258,7 +258,7 @@ TEST_CASE("impossible marks are refused, and one of them is named") {
     };
     Ring square(4, 2);
     square << 0, 0, 40, 0, 40, 40, 0, 40;  // huge footprints overlap here, and the work is counted
-    const std::string sentence = no_brush_paints("this one").what();
+    const std::string sentence = no_brush_error("this one").what();
     const auto check_refused = [&](const std::function<void()>& does) {
         try {
             does();
@@ -274,7 +274,7 @@ TEST_CASE("impossible marks are refused, and one of them is named") {
     };
     // If nothing fits, it is chance where a search ends. The refusal must not depend on it.
     MarkOptions hasty;
-    hasty.most_iterations = 1;
+    hasty.max_iterations = 1;
     for (const int points : {12, 16, 20, 24, 28}) {
         CAPTURE(points);
         check_no_fit(poses, star(points));
@@ -287,9 +287,9 @@ TEST_CASE("impossible marks are refused, and one of them is named") {
     above.col(2).setConstant(1.0);
     check_no_fit(above, square);
     MarkProblem fit({{"this one", poses, {square}}}, {});
-    fit.begin({{3.0}, {0.0, 0.3}, {0.0, 400.0}});  // laws that predict no mark
-    check_refused([&] { weighed(fit); });
-    fit.begin({{3.0}, {0.0, 0.3}, {0.0, 4.0}});  // more work than the mark of a brush needs
+    fit.start_at({{3.0}, {0.0, 0.3}, {0.0, 400.0}});  // laws that predict no mark
+    check_refused([&] { estimate_weighing(fit); });
+    fit.start_at({{3.0}, {0.0, 0.3}, {0.0, 4.0}});  // more work than the mark of a brush needs
     REQUIRE(std::isfinite(fit.loss()));
     check_refused([&] {
         for (int i = 0; i < 100000; ++i) fit.loss();
@@ -307,7 +307,7 @@ TEST_CASE("a starting brush that paints no mark is refused") {
     for (const MarkOptions& options : {MarkOptions{}, expected}) {
         const auto refused = refusal([&] { fit_marks({{"s", poses, {ring}}}, huge, options); });
         CHECK(agrees(refused, "fit-failed", "s"));
-        CHECK(std::string(refused->what()) != no_brush_paints("s").what());
+        CHECK(std::string(refused->what()) != no_brush_error("s").what());
     }
 }
 
@@ -333,9 +333,9 @@ TEST_CASE("a reversing axis stands still for exactly its backlash") {
     poses << 0.0, 5.0, 0.0, 10.0, 5.0, -1.0, 9.9, 5.0, -1.0, 9.7, 5.0, -1.0, 9.5, 5.0, -1.0, 5.0, 5.0, 0.0;
     const FieldBox box;
     for (const double backlash : {0.4, 0.0, -0.4}) {
-        MachineHere machine{{}, {0.0, 0.0}, {-1.0, 1.0}, box, false};
-        machine.by[MachineAt::backlash] = machine.by[MachineAt::backlash + 1] = backlash;
-        const auto behind = behind_by(poses, machine, machine.by);
+        MachineState machine{{}, {0.0, 0.0}, {-1.0, 1.0}, box, false};
+        machine.by[MachineIndex::backlash] = machine.by[MachineIndex::backlash + 1] = backlash;
+        const auto behind = backlash_offsets(poses, machine, machine.by);
         const double sign = backlash < 0.0 ? -1.0 : 1.0, all = std::abs(backlash);
         const std::array<double, 6> commanded{0.0, 10.0, 9.9, 9.7, 9.5, 5.0};
         // The axis arrived from the right, pulled along by a slot as wide as the backlash.

@@ -10,7 +10,7 @@
 using namespace brushsvg;
 
 TEST_CASE("the more detail, the less a stroke costs") {
-    const double draft = weights_for(detail_named("draft")).stroke, fine = weights_for(detail_named("fine")).stroke;
+    const double draft = weights_for(parse_detail("draft")).stroke, fine = weights_for(parse_detail("fine")).stroke;
     CHECK(weights_for(Detail::normal).stroke == ObjectiveWeights().stroke);
     CHECK(draft > ObjectiveWeights().stroke);
     CHECK(fine < ObjectiveWeights().stroke);
@@ -29,7 +29,7 @@ TEST_CASE("weights and depths outside their ranges are refused") {
 
 TEST_CASE("an unknown detail setting is refused") {
     try {
-        detail_named("high");
+        parse_detail("high");
         FAIL("taken");
     } catch (const Error& refusal) {
         CHECK(refusal.code() == "choice-unknown");

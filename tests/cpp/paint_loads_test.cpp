@@ -47,7 +47,7 @@ TEST_CASE("no gap shows where a stroke was interrupted") {
         const Pass whole = wave(brush, h0, h1);
         const Rings meant = painted({whole}, brush);
         for (double every : {25.0, 40.0, 90.0}) {
-            const std::vector<Pass> parts = interrupted(whole, brush, {every, every, 5.0});
+            const std::vector<Pass> parts = split_into_loads(whole, brush, {every, every, 5.0});
             CHECK(parts.size() >= std::size_t(length(whole) / every));
             const Rings found = painted(parts, brush);
             CAPTURE(h0);
@@ -61,7 +61,7 @@ TEST_CASE("no gap shows where a stroke was interrupted") {
 TEST_CASE("loads are no longer than the paint lasts, and are named and complete") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);
-    const std::vector<Pass> parts = interrupted(whole, brush, {15.0, 40.0, 5.0});
+    const std::vector<Pass> parts = split_into_loads(whole, brush, {15.0, 40.0, 5.0});
     REQUIRE(parts.size() >= 4);
     const double lift = 7.5;  // length of the lift, which goes back over its own patch
     CHECK(length(parts[0]) < 15.0 + lift);
@@ -80,7 +80,7 @@ TEST_CASE("loads are no longer than the paint lasts, and are named and complete"
 TEST_CASE("a paint that lasts leaves the pass unchanged") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);
-    const std::vector<Pass> parts = interrupted(whole, brush, {1000.0, 1000.0, 5.0});
+    const std::vector<Pass> parts = split_into_loads(whole, brush, {1000.0, 1000.0, 5.0});
     REQUIRE(parts.size() == 1);
     CHECK(parts[0].poses_mm == whole.poses_mm);
     CHECK(parts[0].load == 0);
@@ -96,7 +96,7 @@ TEST_CASE("a straight line has possible stops between its few poses") {
         stroke.half_width = {{0.0, h}, {1.0, h}};
         const Pass whole = compensate(stroke, brush).pass;
         REQUIRE(whole.poses_mm.rows() < 20);
-        const std::vector<Pass> parts = interrupted(whole, brush, {100.0, 100.0, 5.0});
+        const std::vector<Pass> parts = split_into_loads(whole, brush, {100.0, 100.0, 5.0});
         CHECK(parts.size() >= 4);
         for (const Pass& part : parts) {
             CHECK(length(part) < 100.0 + 7.0);
@@ -122,7 +122,7 @@ TEST_CASE("arcs stay whole in their load") {
     REQUIRE(whole.arcs.size() == 1);
     const Rings meant = painted({whole}, brush);
     for (double every = 20.0; every < 90.0; every += 3.0) {
-        const std::vector<Pass> parts = interrupted(whole, brush, {every, every, 4.0});
+        const std::vector<Pass> parts = split_into_loads(whole, brush, {every, every, 4.0});
         std::size_t arcs = 0;
         for (const Pass& part : parts) {
             for (std::size_t k = 0; k < part.arcs.size(); ++k) CHECK_NOTHROW(check_arc(part, k, ""));
@@ -149,7 +149,7 @@ TEST_CASE("a long bend is cut inside its arcs") {
     stroke.half_width = {{0.0, 1.5}};
     const Pass whole = compensate(stroke, brush).pass;
     REQUIRE(!whole.arcs.empty());
-    const std::vector<Pass> parts = interrupted(whole, brush, {60.0, 60.0, 4.0});
+    const std::vector<Pass> parts = split_into_loads(whole, brush, {60.0, 60.0, 4.0});
     CHECK(parts.size() >= 5);
     for (const Pass& part : parts) {
         for (std::size_t k = 0; k < part.arcs.size(); ++k) CHECK_NOTHROW(check_arc(part, k, ""));
@@ -161,9 +161,9 @@ TEST_CASE("a long bend is cut inside its arcs") {
 TEST_CASE("impossible lengths of paint are refused") {
     const Brush brush = shipped("round-6");
     const Pass whole = wave(brush, 1.5, 1.5);
-    CHECK_THROWS_AS(interrupted(whole, brush, {10.0, 8.0, 5.0}), Error);
-    CHECK_THROWS_AS(interrupted(whole, brush, {-1.0, 80.0, 5.0}), Error);
-    CHECK_THROWS_AS(interrupted(whole, brush, {10.0, std::nan(""), 5.0}), Error);
+    CHECK_THROWS_AS(split_into_loads(whole, brush, {10.0, 8.0, 5.0}), Error);
+    CHECK_THROWS_AS(split_into_loads(whole, brush, {-1.0, 80.0, 5.0}), Error);
+    CHECK_THROWS_AS(split_into_loads(whole, brush, {10.0, std::nan(""), 5.0}), Error);
 }
 
 TEST_CASE("a stroke of more than a thousand loads is refused") {
@@ -171,7 +171,7 @@ TEST_CASE("a stroke of more than a thousand loads is refused") {
     Pass line;
     line.poses_mm.resize(2, 3);
     line.poses_mm << 0, 0, -2, 150000, 0, -2;
-    CHECK_THROWS_AS(interrupted(line, brush, {100.0, 100.0, 1.0}), Error);
+    CHECK_THROWS_AS(split_into_loads(line, brush, {100.0, 100.0, 1.0}), Error);
 }
 
 TEST_CASE("a brush that turns in place is not interrupted") {
@@ -186,7 +186,7 @@ TEST_CASE("a brush that turns in place is not interrupted") {
     const Pass whole = compensate(dot, brush, options).pass;
     REQUIRE(whole.arcs.size() == 1);
     REQUIRE(length(whole) > 30.0);
-    for (const double first : {5.0, 15.0, 25.0}) CHECK(interrupted(whole, brush, {first, 80.0, 1.0}).size() == 1);
+    for (const double first : {5.0, 15.0, 25.0}) CHECK(split_into_loads(whole, brush, {first, 80.0, 1.0}).size() == 1);
 }
 
 TEST_CASE("a brush that still trails loosely is not interrupted") {
@@ -194,7 +194,7 @@ TEST_CASE("a brush that still trails loosely is not interrupted") {
     Pass line;  // pressed on the spot: the patch rests until the lag is drawn out
     line.poses_mm.resize(4, 3);
     line.poses_mm << 10, 10, 0, 10, 10, -3, 70, 10, -3, 70, 10, 0;
-    const std::vector<Pass> parts = interrupted(line, brush, {4.0, 40.0, 0.0});
+    const std::vector<Pass> parts = split_into_loads(line, brush, {4.0, 40.0, 0.0});
     REQUIRE(parts.size() > 1);
     CHECK(parts[0].poses_mm.col(0).maxCoeff() > 10.0 + 0.95 * brush.lag(3.0));
 }

@@ -24,8 +24,8 @@ TEST_CASE("two paths use as much paint as one of their joint length, and the pat
     CHECK(paint.width_share(0.0) == 1.0);
     CHECK(paint.width_share(1000.0) == doctest::Approx(std::exp(-0.7)));
     CHECK(paint.width_share(120.0) * paint.width_share(345.0) == doctest::Approx(paint.width_share(465.0)));
-    CHECK(paint.width_share(paint.way_to_share_mm(0.95)) == doctest::Approx(0.95));
-    CHECK(std::isinf(paint_of(0.0).way_to_share_mm(0.95)));
+    CHECK(paint.width_share(paint.path_to_share_mm(0.95)) == doctest::Approx(0.95));
+    CHECK(std::isinf(paint_of(0.0).path_to_share_mm(0.95)));
 }
 
 TEST_CASE("impossible paint is refused with its key") {

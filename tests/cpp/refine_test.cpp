@@ -29,9 +29,9 @@ Stroke hook() { return stroke_of(polyline({V(50, 60), V(50, 20), V(41, 28)}), {{
 /// Return a blunt head across the line. The pointed footprint must come in from the side.
 Stroke head() {
     Stroke s = stroke_of(polyline({V(39, 38), V(30.5, 30)}), {{0.0, 3.1}, {1.0, 0.6}});
-    Ring wanted(9, 2);
-    wanted << 30, 29.3, 38, 31.5, 44, 33, 45, 34.5, 44.5, 37, 38.5, 44, 36, 45, 34.5, 44, 29.5, 30.5;
-    s.wanted_mm = {wanted};
+    Ring target(9, 2);
+    target << 30, 29.3, 38, 31.5, 44, 33, 45, 34.5, 44.5, 37, 38.5, 44, 36, 45, 34.5, 44, 29.5, 30.5;
+    s.target_mm = {target};
     return s;
 }
 Stroke curve() {
@@ -57,7 +57,7 @@ Stroke mirrored(Stroke s) {
 
 /// Return the overlap as the report computes it.
 double overlap_of(const Stroke& stroke, const Pass& pass, const Brush& brush) {
-    return overlap(outline(simulate(pass, brush), brush), wanted_outline(stroke, 0.01));
+    return overlap(outline(simulate(pass, brush), brush), target_outline(stroke, 0.01));
 }
 
 Eigen::VectorXd anything(int n, std::mt19937& random) {
@@ -97,7 +97,7 @@ TEST_CASE("derivatives of path and edge agree with differences") {
     const Stroke s = curve();
     const PatchPath path = path_of(s, brush, 7);
     PaintedEdge edge(brush, 0.02);
-    const Rings wanted = wanted_outline(s, 0.5);
+    const Rings target = target_outline(s, 0.5);
     const double h = 1e-6;
     for (int trial = 0; trial < 3; ++trial) {
         const Eigen::VectorXd x = 0.3 * anything(path.unknowns(), random);
@@ -121,9 +121,9 @@ TEST_CASE("derivatives of path and edge agree with differences") {
                       doctest::Approx(by_depth[k]).epsilon(1e-4).scale(1.0));
             }
         }
-        for (Eigen::Index j = 0; j < wanted[0].rows(); j += 3) {
-            const V p = wanted[0].row(j).transpose();
-            edge.place(samples);
+        for (Eigen::Index j = 0; j < target[0].rows(); j += 3) {
+            const V p = target[0].row(j).transpose();
+            edge.place_footprints(samples);
             const EdgePoint found = edge.nearest(p, 0);
             const SampleSlope slope = edge.slope(p, found);
             const auto difference = [&](PatchSample change) {
@@ -132,7 +132,7 @@ TEST_CASE("derivatives of path and edge agree with differences") {
                 one.contact_mm += change.contact_mm;
                 one.heading_rad += change.heading_rad;
                 one.depth_mm += change.depth_mm;
-                edge.place(after);
+                edge.place_footprints(after);
                 return (edge.nearest(p, found.sample).distance_mm - found.distance_mm) / h;
             };
             CHECK(difference({V(h, 0), 0, 0}) == doctest::Approx(slope.x()).epsilon(1e-3).scale(1.0));
@@ -176,20 +176,20 @@ TEST_CASE("the nearest edge is found among all edges, with any of them left out"
     const PatchPath path = path_of(curve(), brush, 8);
     const PatchSamples samples = path.at(0.3 * anything(path.unknowns(), random));
     PaintedEdge edge(brush, 0.02);
-    edge.place(samples);
-    const Rings wanted = wanted_outline(curve(), 0.01);
-    const Edges edges(wanted);
+    edge.place_footprints(samples);
+    const Rings target = target_outline(curve(), 0.01);
+    const FilledRings edges(target);
     for (int trial = 0; trial < 300; ++trial) {
         const V p(place(random), place(random));
         double least = 1e9, other = 1e9;
         for (std::size_t i = 0; i < samples.size(); ++i) {
             PaintedEdge alone(brush, 0.02);
-            alone.place({samples[i]});
+            alone.place_footprints({samples[i]});
             least = std::min(least, alone.nearest(p, 0).distance_mm);
         }
         CHECK(edge.nearest(p, std::size_t(trial) % samples.size()).distance_mm == doctest::Approx(least).epsilon(1e-9));
         int crossed = 0;
-        for (const Ring& ring : wanted)
+        for (const Ring& ring : target)
             for (Eigen::Index i = 0; i < ring.rows(); ++i) {
                 const V a = ring.row(i).transpose(), b = ring.row((i + 1) % ring.rows()).transpose();
                 const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
@@ -241,7 +241,7 @@ TEST_CASE("a line, a taper, a corner, a hook, a curve and a blunt head are paint
         const RefinedPass r = refine(each.stroke, brush);
         const double refined = overlap_of(each.stroke, r.plan.pass, brush);
         MESSAGE(closed << " -> " << refined);
-        CHECK(r.bettered);
+        CHECK(r.is_improved);
         CHECK(refined > closed);
         CHECK(refined >= each.at_least);
         CHECK(std::abs(r.overlap - refined) < 0.003);
@@ -288,7 +288,7 @@ TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left u
         CHECK(r.plan.pass.poses_mm.allFinite());
     }
     const Brush pen = shipped("rigid");
-    CHECK_FALSE(refine(line(), pen).bettered);
+    CHECK_FALSE(refine(line(), pen).is_improved);
     CHECK(refine(line(), pen).plan.pass.poses_mm == compensate(line(), pen).pass.poses_mm);
 }
 

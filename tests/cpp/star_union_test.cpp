@@ -34,7 +34,7 @@ TEST_CASE("rings visible from one point become one ring, with any shared edges a
                 rings[n - 2] = convex_hull(both(hull, rings[n - 2]));  // neighbouring rings share edges
         }
         if (rings.empty()) continue;
-        const Rings fewer = united_in_sight(rings).rings;
+        const Rings fewer = unite_stars(rings).rings;
         before += rings.size();
         after += fewer.size();
         CHECK(apart(rings, fewer) < 1e-5);
@@ -49,18 +49,18 @@ TEST_CASE("rings without a common visible point, and holes with their rings, sta
     far = box.array() + 10.0;
     Ring hole = (0.25 * box).array() + 1.0;
     hole = hole.colwise().reverse().eval();
-    CHECK(united_in_sight({}).rings.empty());
-    CHECK(united_in_sight({box, box, box}).rings.size() == 1);
-    CHECK(area(united_in_sight({box, box, box}).rings) == doctest::Approx(16.0));
-    CHECK(united_in_sight({box, far}).rings.size() == 2);
-    const Rings with_hole = united_in_sight({box, box, hole, box}).rings;
+    CHECK(unite_stars({}).rings.empty());
+    CHECK(unite_stars({box, box, box}).rings.size() == 1);
+    CHECK(area(unite_stars({box, box, box}).rings) == doctest::Approx(16.0));
+    CHECK(unite_stars({box, far}).rings.size() == 2);
+    const Rings with_hole = unite_stars({box, box, hole, box}).rings;
     CHECK(with_hole.size() == 4);
     CHECK(area({with_hole[2]}) == doctest::Approx(-1.0));
     Ring twice(8, 2);  // runs round the box twice: not a star, although every corner turns to the left
     twice << box, box;
-    CHECK(united_in_sight({twice, box}).rings.size() == 2);
+    CHECK(unite_stars({twice, box}).rings.size() == 2);
     const double nan = std::nan("");
     Ring broken = box;
     broken(2, 1) = nan;
-    CHECK(united_in_sight({broken, box}).rings.size() == 2);
+    CHECK(unite_stars({broken, box}).rings.size() == 2);
 }

@@ -16,9 +16,9 @@ namespace {
 
 Ring hole(double x0, double y0, double x1, double y1) { return box(x0, y0, x1, y1).colwise().reverse(); }
 
-MarkOverlap laid(const Rings& wanted, const Rings& painted) {
+MarkOverlap laid(const Rings& target, const Rings& painted) {
     const Window window{-12.0, -12.0, 64.0, 64.0};
-    return {window, 10.0, coverage(wanted, window, 10.0), coverage(painted, window, 10.0)};
+    return {window, 10.0, coverage(target, window, 10.0), coverage(painted, window, 10.0)};
 }
 
 MiddlePolyline line_of(const V& a, const V& b, double half) {
@@ -53,18 +53,18 @@ TEST_CASE("the width across a line is measured in any direction") {
             }
             const MarkOverlap seen = laid(rings, {});
             const V along(std::cos(turn), std::sin(turn));
-            CHECK(std::abs(width_across(seen.wanted, seen, V(20, 20), along, 3.0) - each.width) < 0.03);
+            CHECK(std::abs(width_across(seen.target, seen, V(20, 20), along, 3.0) - each.width) < 0.03);
         }
 }
 
 TEST_CASE("the width error is the mean absolute difference where the width can be measured") {
     const MiddlePolyline line = line_of(V(0, 0), V(40, 0), 2.0);
-    const Rings wanted{box(-2, -2, 42, 2)};
+    const Rings target{box(-2, -2, 42, 2)};
     Ring half_right(6, 2);
     half_right << -2, -2, 42, -2, 42, 2, 20, 2, 20, 2.5, -2, 2.5;
-    CHECK(*width_error_mm(laid(wanted, wanted), line) < 1e-6);
-    CHECK(std::abs(*width_error_mm(laid(wanted, {half_right}), line) - 0.25) < 0.01);
-    CHECK(std::abs(*width_error_mm(laid(wanted, {}), line) - 4.0) < 0.01);
+    CHECK(*width_error_mm(laid(target, target), line) < 1e-6);
+    CHECK(std::abs(*width_error_mm(laid(target, {half_right}), line) - 0.25) < 0.01);
+    CHECK(std::abs(*width_error_mm(laid(target, {}), line) - 4.0) < 0.01);
     // where the line crosses itself, the mark is wider than the line, so its width cannot be measured
     const MiddlePolyline thin = line_of(V(0, 0), V(40, 0), 1.0);
     const Rings crossing{box(0, -1, 18, 1), box(18, -9, 22, 1), box(22, -1, 40, 1)};
@@ -76,16 +76,16 @@ TEST_CASE("the width error is the mean absolute difference where the width can b
 }
 
 TEST_CASE("the worst place is found, for missing and for additional paint") {
-    const Rings wanted{box(0, 0, 20, 4)};
-    const WorstPlace missing = worst_place(laid(wanted, {box(0, 0, 18, 4), box(5, 4, 6, 5)}), 2.0);
+    const Rings target{box(0, 0, 20, 4)};
+    const WorstPlace missing = worst_place(laid(target, {box(0, 0, 18, 4), box(5, 4, 6, 5)}), 2.0);
     CHECK(missing.is_missing);
     CHECK((V(missing.at_mm[0], missing.at_mm[1]) - V(19, 2)).cwiseAbs().maxCoeff() < 1.1);
     CHECK(missing.area_mm2 == doctest::Approx(4.0).epsilon(0.01));
-    const WorstPlace spilt = worst_place(laid(wanted, {box(0, 0, 20, 4), box(5, 4, 6, 5)}), 1.0);
+    const WorstPlace spilt = worst_place(laid(target, {box(0, 0, 20, 4), box(5, 4, 6, 5)}), 1.0);
     CHECK_FALSE(spilt.is_missing);
     CHECK((V(spilt.at_mm[0], spilt.at_mm[1]) - V(5.5, 4.5)).cwiseAbs().maxCoeff() < 0.11);
     CHECK(spilt.area_mm2 == doctest::Approx(1.0).epsilon(0.03));
-    CHECK(worst_place(laid(wanted, wanted), 1e6).area_mm2 == 0.0);  // a square larger than the picture
+    CHECK(worst_place(laid(target, target), 1e6).area_mm2 == 0.0);  // a square larger than the picture
 }
 
 TEST_CASE("a verdict has the overlap of the pixels and a place near the stroke") {

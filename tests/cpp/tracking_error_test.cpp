@@ -80,7 +80,7 @@ TEST_CASE("the distance to a polyline is the distance to its nearest piece") {
         for (Eigen::Index i = 0; i < n; ++i)
             line.row(i) << (i % 7 == 3 ? line.row(i - 1).eval()
                                        : Eigen::RowVector2d(anywhere(random), anywhere(random)));
-        Nearest<Ring> nearest(line);
+        NearestOnPolyline<Ring> nearest(line);
         for (int k = 0; k < 50; ++k) {
             const V p(anywhere(random), anywhere(random));
             double least = (p - line.row(0).transpose()).norm();

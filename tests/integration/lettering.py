@@ -81,7 +81,7 @@ def swept(strokes) -> list[np.ndarray]:
     The lines' own outlines are not used.
     """
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in strokes]
-    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.02)])
+    return _core.unite([ring for stroke in bare for ring in _core.target_outline(stroke, 0.02)])
 
 
 def covered(paint, shape) -> float:

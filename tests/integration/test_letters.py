@@ -135,7 +135,7 @@ def painted(design, brush, method="closed", lag_mm=None, wide="clamp") -> float:
     plan = _core.compensate(made, brush, design.sheet_mm, method, 0.05, lag_mm).plan
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
-    shape = _core.unite([ring for stroke in target for ring in _core.wanted_outline(stroke, 0.02)])
+    shape = _core.unite([ring for stroke in target for ring in _core.target_outline(stroke, 0.02)])
     return _core.overlap(marks.outline_mm, shape)
 
 
@@ -219,7 +219,7 @@ def test_strokes_wider_than_the_brush_are_painted_in_passes(lettering):
     brush = find_brush("round-6")
 
     def overlap(design, wide: str) -> float:
-        rings = [ring for stroke in strokes(design)[0] for ring in stroke.wanted_mm]
+        rings = [ring for stroke in strokes(design)[0] for ring in stroke.target_mm]
         return _core.overlap(predict(prepare(design, Options(brush=brush, wide=wide))).outline_mm, _core.unite(rings))
 
     designs = [letter(lettering.font("script"), text, 100.0) for text in TEXT]

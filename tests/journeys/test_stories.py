@@ -156,7 +156,7 @@ def test_a_researcher_works_in_python(user):
 
     strokes, notices = brushsvg.strokes(brushsvg.read_drawing("word.svg"))
     assert [stroke.id for stroke in strokes] == ["arch", "line", "wave", "slash"] and not notices
-    target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.01)])
+    target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.target_outline(stroke, 0.01)])
 
     reached = {}
     for method in ("none", "closed"):

@@ -633,7 +633,7 @@ def test_a_start_without_space_for_the_way_back_turns_first(middle, half_width, 
     assert turned[0, 2] == turned[-1, 2] == 0.0
     assert (turned[1:-1, 2] < 0.0).all()  # one touch
     np.testing.assert_array_equal(poses_of(middle, half_width, start="auto"), turned)
-    target = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.01)])
+    target = shapely.union_all([shapely.Polygon(ring) for ring in core.target_outline(stroke, 0.01)])
     near = shapely.Point(middle[0, :2]).buffer(2 * half_width[0][1])
 
     def overlap(poses):
@@ -684,7 +684,7 @@ def test_a_dot_with_corners_is_square(sides, turned_rad, least):
     box = shapely.box(-length / 2, -width / 2, length / 2, width / 2)
     target = shapely.affinity.translate(shapely.affinity.rotate(box, turned_rad, (0, 0), use_radians=True), *middle)
     stroke = stroke_of(line(middle - off, middle + off), [(0.0, width / 2)])
-    stroke.wanted_mm = [np.asarray(target.exterior.coords)[:-1]]
+    stroke.target_mm = [np.asarray(target.exterior.coords)[:-1]]
 
     def overlap(start):
         found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
@@ -720,7 +720,7 @@ def test_dots_keep_other_corners(corners, rounded_mm, least):
     drawn = shapely.Polygon(np.add(corners, 50.0)).buffer(-rounded_mm).buffer(rounded_mm)
     disc = shapely.maximum_inscribed_circle(drawn, 0.001)
     stroke = stroke_of(line(disc.coords[0], disc.coords[0]), [(0.0, disc.length)])
-    stroke.wanted_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
+    stroke.target_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
 
     def overlap(start):
         found = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
@@ -737,7 +737,7 @@ def test_a_disc_wider_than_the_brush_gets_a_ring_if_no_gap_remains(radius_mm, le
 
     drawn = shapely.Point(50, 50).buffer(radius_mm, 64)
     stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 4.2)])
-    stroke.wanted_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
+    stroke.target_mm = [np.asarray(shapely.geometry.polygon.orient(drawn).exterior.coords)[:-1]]
     automatic, rounded = (
         core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan.passes[0].poses_mm
         for start in ("auto", "round")
@@ -753,7 +753,7 @@ def test_a_disc_wider_than_the_brush_gets_a_ring_if_no_gap_remains(radius_mm, le
 def test_a_dot_without_corners_stays_round(corners):
     angles = np.arange(corners) * 2 * np.pi / corners
     stroke = stroke_of(line((50, 50), (50, 50)), [(0.0, 3.0)])
-    stroke.wanted_mm = [np.column_stack([50 + 3 * np.cos(angles), 50 + 3 * np.sin(angles)])]
+    stroke.target_mm = [np.column_stack([50 + 3 * np.cos(angles), 50 + 3 * np.sin(angles)])]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("auto", "round")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
@@ -773,7 +773,7 @@ def test_wide_lines_start_round_for_any_bend(cubic, half_width):
     Lines without space for this once began pointed, with an overlap of 0.94.
     """
     stroke = stroke_of(np.array([cubic], float), [(0.0, half_width)])
-    drawn = shapely.union_all([shapely.Polygon(ring) for ring in core.wanted_outline(stroke, 0.02)])
+    drawn = shapely.union_all([shapely.Polygon(ring) for ring in core.target_outline(stroke, 0.02)])
 
     def overlap(start):
         done = core.compensate([stroke], ROUND, (200.0, 200.0), start=start)
@@ -806,7 +806,7 @@ def test_auto_chooses_a_suitable_start_and_a_stroke_can_override_it():
     # This beginning is drawn like the footprint's tail, pointed by 3.8 mm, so there is nothing to hide.
     points = [[18, 20], [21.8, 18], [60, 18], [60, 22], [21.8, 22]]
     sharp = stroke_of(bar, [(0.0, 2.0)])
-    sharp.wanted_mm = [np.array(points, float)]
+    sharp.target_mm = [np.array(points, float)]
     plan = core.compensate([sharp], ROUND, (99.0, 99.0), start="auto").plan
     np.testing.assert_array_equal(plan.passes[0].poses_mm, pointed)
     with_setting = core.Stroke(id="s", middle_mm=bar, half_width=[(0.0, 2.0)], settings=core.Settings(start="round"))
@@ -850,7 +850,7 @@ def end_of_bar(half_width, slope, **options):
     import shapely
 
     stroke = stroke_of(line((20, 20), (40, 20)), [(0.0, half_width)])
-    stroke.wanted_mm = [np.array(cut_bar(half_width, slope))]
+    stroke.target_mm = [np.array(cut_bar(half_width, slope))]
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
     poses = np.asarray(found.plan.passes[0].poses_mm)
     assert found.tracking_errors[0].within_tolerance
@@ -890,7 +890,7 @@ def plan_of_bar(half_width, slope, **options):
     The plan has one touch and is no deeper than its line requires.
     """
     stroke = stroke_of(line((20, 20), (80, 20)), [(0.0, half_width)])
-    stroke.wanted_mm = [np.array(begun_bar(half_width, slope))]
+    stroke.target_mm = [np.array(begun_bar(half_width, slope))]
     found = core.compensate([stroke], ROUND, (200.0, 200.0), **options)
     poses = np.asarray(found.plan.passes[0].poses_mm)
     assert found.tracking_errors[0].within_tolerance
@@ -938,7 +938,7 @@ def test_a_stroke_can_have_butt_ends_on_both_sides():
     points = oracle.bezier(middle[0], np.linspace(0, 1, 200))
     flat = shapely.LineString(points).buffer(2.0, cap_style="square")
     stroke = stroke_of(middle, [(0.0, 2.0)])
-    stroke.wanted_mm = [np.array(flat.exterior.coords)[:-1]]
+    stroke.target_mm = [np.array(flat.exterior.coords)[:-1]]
     plain = core.compensate([stroke], ROUND, (200.0, 200.0), start="round", end="round")
     found = core.compensate([stroke], ROUND, (200.0, 200.0), start="auto", end="auto")
     assert found.tracking_errors[0].within_tolerance
@@ -973,7 +973,7 @@ ROUND_CAP = [
 )
 def test_an_outline_without_a_cut_at_its_end_ends_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
-    stroke.wanted_mm = [np.array(target, float)]
+    stroke.target_mm = [np.array(target, float)]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), end=end).plan for end in ("round", "butt")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 
@@ -992,7 +992,7 @@ def test_an_outline_without_a_cut_at_its_end_ends_round(half_width, target):
 )
 def test_an_outline_without_a_cut_at_its_start_starts_round(half_width, target):
     stroke = stroke_of(line((20, 20), (60, 20)), [(0.0, half_width)])
-    stroke.wanted_mm = [np.array(target, float)]
+    stroke.target_mm = [np.array(target, float)]
     plans = [core.compensate([stroke], ROUND, (200.0, 200.0), start=start).plan for start in ("round", "butt")]
     np.testing.assert_array_equal(*(plan.passes[0].poses_mm for plan in plans))
 

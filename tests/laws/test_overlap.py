@@ -57,8 +57,8 @@ def stepped(plan, brush):
 
 def target_region(stroke):
     """Return the union of the discs along the middle line, from hulls of neighbours."""
-    if stroke.wanted_mm:
-        return shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in stroke.wanted_mm])
+    if stroke.target_mm:
+        return shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in stroke.target_mm])
     t = np.linspace(0, 1, 81)
     points = np.vstack([oracle.bezier(cubic, t) for cubic in stroke.middle_mm])
     along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])

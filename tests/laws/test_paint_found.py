@@ -100,7 +100,7 @@ def chart_sheet(seed, law):
 
 def rate_of(made):
     paint = made.brush.paint
-    return paint.narrows_per_m, core.deviations_of_95(paint.degrees_of_freedom) * np.sqrt(paint.covariance[0][0])
+    return paint.narrows_per_m, core.interval_factor_95(paint.degrees_of_freedom) * np.sqrt(paint.covariance[0][0])
 
 
 @sample(("seed", "rate"), [(0, 0.7), (3, 0.25), (3, 0.0)], keep=1)

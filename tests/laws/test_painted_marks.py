@@ -198,7 +198,7 @@ def test_a_mark_displaced_by_its_width_is_found(widths):
     made = calibrate_marks(read_painted(plan, marks, None), "b")
     found = np.array(made.fit.marks[k].displacement_mm)
     np.testing.assert_allclose(found, painted.displacements[k] + displaced, atol=0.7)
-    assert made.fit.left_aside < 0.002
+    assert made.fit.outlier_share < 0.002
 
 
 def test_blots_and_gaps_are_masked():
@@ -213,7 +213,7 @@ def test_blots_and_gaps_are_masked():
     made = calibrate_marks(read_painted(plan, marks, None), "b")
     for depth in DEPTHS * brush.deepest:
         assert made.brush.lag(depth) == pytest.approx(brush.law("lag")(depth), rel=0.05)
-    assert made.fit.left_aside > 0.003
+    assert made.fit.outlier_share > 0.003
 
 
 def test_depths_that_were_not_painted_are_refused():
@@ -353,7 +353,7 @@ def test_a_foreign_ring_does_not_shorten_other_intervals(seed):
     marks[5]["outline_mm"].append(frame.tolist())
     framed = calibrate_marks(read_painted(plan, marks, None), "b")
     assert max(framed.round_tail_gain, alone.round_tail_gain) < -40
-    assert framed.fit.left_aside > 0.1
+    assert framed.fit.outlier_share > 0.1
     assert "[0, 10] %" in report(framed).text(True)
     assert "[0, 10] %" not in report(alone).text(True)
     if seed == 3:  # the departure of brush 5 from the usual laws has one of two sizes, which the last bits decide

@@ -22,7 +22,7 @@ DRAWN = 400
 
 def sure_of(brush, law):
     """Return half of a 95 % interval in standard deviations."""
-    return _core.deviations_of_95(getattr(brush, law).degrees_of_freedom)
+    return _core.interval_factor_95(getattr(brush, law).degrees_of_freedom)
 
 
 @pytest.fixture(scope="module")

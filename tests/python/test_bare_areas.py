@@ -153,7 +153,7 @@ def test_an_extra_stroke_begins_under_paint_and_stays_inside_the_shape(tmp_path)
     for at, half in limb.half_width:
         place = limb.middle_mm[0][:2] + at * (limb.middle_mm[-1][-2:] - limb.middle_mm[0][:2])
         assert shape.boundary.distance(shapely.Point(place)) > half - 0.15
-    assert shapely.union_all([shapely.Polygon(ring) for ring in limb.wanted_mm]).within(shape.buffer(1e-3))
+    assert shapely.union_all([shapely.Polygon(ring) for ring in limb.target_mm]).within(shape.buffer(1e-3))
 
 
 def test_each_stroke_is_compared_with_its_own_part_of_the_shape(tmp_path):
@@ -165,7 +165,7 @@ def test_each_stroke_is_compared_with_its_own_part_of_the_shape(tmp_path):
     work = prepared(tmp_path, FLAG)
     rows, _ = report.measure(report.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert all(row.overlap > 0.9 for row in rows)
-    stem, limb = (region(stroke.wanted_mm) for stroke in work.strokes)
+    stem, limb = (region(stroke.target_mm) for stroke in work.strokes)
     shape = shape_of(FLAG)
     assert shapely.union(stem, limb).area == pytest.approx(shape.area, rel=1e-3)
     tip = shape.intersection(shapely.box(0, 60 - 7, 60, 60))

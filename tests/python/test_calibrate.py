@@ -632,11 +632,11 @@ def test_five_readings_report_a_single_interval_for_one_number(tmp_path, capsys)
 
 @pytest.mark.parametrize("freedom", [1, 2, 3.5, 10, 200])
 def test_quantiles_agree_with_scipy(freedom):
-    assert _core.deviations_of_95(freedom) == pytest.approx(special.stdtrit(freedom, 0.975), rel=1e-9)
-    assert _core.deviations_of_95() == pytest.approx(special.ndtri(0.975), rel=1e-12)
+    assert _core.interval_factor_95(freedom) == pytest.approx(special.stdtrit(freedom, 0.975), rel=1e-9)
+    assert _core.interval_factor_95() == pytest.approx(special.ndtri(0.975), rel=1e-12)
     t = np.array([-30.0, -2.0, 0.0, 0.5, 4.0])
     np.testing.assert_allclose(
-        _core.as_normal(t, freedom), -special.ndtri(special.stdtr(freedom, -np.abs(t))), rtol=1e-7, atol=1e-12
+        _core.normal_equivalent(t, freedom), -special.ndtri(special.stdtr(freedom, -np.abs(t))), rtol=1e-7, atol=1e-12
     )
 
 

@@ -44,7 +44,7 @@ def test_a_closed_line_starts_in_the_middle_of_its_longest_side_without_a_thorn(
     assert start == pytest.approx([35, 35], abs=1e-9) or start == pytest.approx([35, 5], abs=1e-9)
     assert made.middle_mm[-1, 6:] == pytest.approx(start, abs=1e-12)
     assert length_mm(made) == pytest.approx(140, abs=1e-6)
-    target = _core.wanted_outline(made, 0.01)
+    target = _core.target_outline(made, 0.01)
     points = np.concatenate(marks_of([made], brush))
     box = np.concatenate(target)
     beyond = np.maximum(box.min(axis=0) - points.min(axis=0), points.max(axis=0) - box.max(axis=0))
@@ -80,7 +80,7 @@ def test_the_brush_lifts_at_sharp_corners_where_a_turn_would_leave_a_blot(brush,
     assert [part.id for part in parts] == ["p", *(f"p~{k}" for k in range(2, count + 1))]
     assert sum(map(length_mm, parts)) == pytest.approx(length_mm(made[0]), abs=1e-6)
     assert all(a.middle_mm[-1, 6:] == pytest.approx(b.middle_mm[0, :2]) for a, b in itertools.pairwise(parts))
-    target = _core.wanted_outline(made[0], 0.01)
+    target = _core.target_outline(made[0], 0.01)
     turned, lifted = (_core.overlap(marks_of(some, brush), target) for some in (made, parts))
     assert lifted > turned + 0.004
 

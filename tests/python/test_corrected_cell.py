@@ -166,7 +166,7 @@ def test_a_learned_brush_narrows_the_expected_lag_error():
     free, held = (
         {n.name: n.sigma for n in FaultModel(plan, brush, ("s",), MIDDLE, learned).numbers} for learned in (False, True)
     )
-    share = brush.lag.rmse_mm / core.deviations_of_95() / brush.lag(4.0)
+    share = brush.lag.rmse_mm / core.interval_factor_95() / brush.lag(4.0)
     assert held["lag"] == pytest.approx(share) and held["lag"] < 0.5 * free["lag"] == 0.075
     assert held["tilt in x"] == free["tilt in x"]
 

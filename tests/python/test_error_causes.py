@@ -17,7 +17,7 @@ def stroke(points, half, closed=False, target=None):
     cubics = np.hstack([a, a + (b - a) / 3, a + 2 * (b - a) / 3, b])
     halves = np.broadcast_to(half, 2)
     made = _core.Stroke("s", cubics, closed, [(0.0, float(halves[0])), (1.0, float(halves[1]))])
-    made.wanted_mm = target or []
+    made.target_mm = target or []
     return made
 
 

@@ -59,7 +59,7 @@ def intended_by(made):
 
     This is the area of the passes' discs, and the rest of their targets in the corners of square ends.
     """
-    return shapely.union_all([painted_area(made), *(region(each.wanted_mm) for each in made if each.wanted_mm)])
+    return shapely.union_all([painted_area(made), *(region(each.target_mm) for each in made if each.target_mm)])
 
 
 def share_left(shape, made) -> float:
@@ -70,7 +70,7 @@ def share_left(shape, made) -> float:
 @sample("d", SHAPES.values(), ids=SHAPES, keep=5)
 def test_passes_fill_a_shape_and_stay_inside_it(brush, d):
     made = of(d)
-    shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
+    shape = region(_core.unite([ring for stroke in made for ring in stroke.target_mm]))
     passes, target, _ = within_reach(made, brush, "passes")
     paint = paint_of(passes_of(made, brush), brush)
     assert shape.difference(paint).area < 0.015 * shape.area
@@ -81,10 +81,10 @@ def test_passes_fill_a_shape_and_stay_inside_it(brush, d):
     assert len({each.id for each in passes}) == len(passes)
     # Each target is its own mark, up to the tips of corners in which the pass ends. With the whole shape as
     # target, `refined` would pull the pass towards that shape.
-    for each in (each for each in passes if each.wanted_mm):
+    for each in (each for each in passes if each.target_mm):
         beyond = HALF_MM * (1 / np.sin(np.radians(58 / 2)) - 1)
-        assert region(each.wanted_mm).difference(painted_area([each]).buffer(beyond)).area < 0.01
-    expected = region(_core.unite([ring for each in target for ring in _core.wanted_outline(each, 0.01)]))
+        assert region(each.target_mm).difference(painted_area([each]).buffer(beyond)).area < 0.01
+    expected = region(_core.unite([ring for each in target for ring in _core.target_outline(each, 0.01)]))
     assert expected.symmetric_difference(shape).area < 0.006 * shape.area
     assert paint.intersection(shape).area / paint.union(shape).area > 0.97
 
@@ -92,7 +92,7 @@ def test_passes_fill_a_shape_and_stay_inside_it(brush, d):
 def test_holes_belong_to_no_stroke():
     made = of(SHAPES["plate with a hole"], 'fill="red" fill-rule="evenodd" stroke="none"')
     assert len(made) > 1
-    part = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
+    part = _core.unite([ring for stroke in made for ring in stroke.target_mm])
     assert _core.area(part) == pytest.approx(45 * 45 - np.pi * 4.5**2, rel=1e-3)
 
 
@@ -120,7 +120,7 @@ def test_a_disc_hardly_wider_than_the_brush_is_a_dot_and_a_ring(brush, times):
 def test_the_target_of_the_first_pass_is_its_own_mark(brush):
     passes, target, _ = within_reach(of(SQUARE), brush, "passes")
     own = intended_by(passes[:1]).area
-    assert _core.area(target[0].wanted_mm) == pytest.approx(own, rel=0.03)
+    assert _core.area(target[0].target_mm) == pytest.approx(own, rel=0.03)
     assert own < 0.7 * 45 * 45
 
 
@@ -177,7 +177,7 @@ def test_a_ring_without_corners_starts_where_it_bends_least(brush, wide, high):
     At the top of an oval, where it bends most, the mark once stuck out by 0.23 to 0.48 mm.
     """
     made = of(f"M30 {30 - high / 2}A{wide / 2} {high / 2} 0 1 1 29.99 {30 - high / 2}Z")
-    shape = region(made[0].wanted_mm)
+    shape = region(made[0].target_mm)
     paint = paint_of(passes_of(made, brush), brush)
     places = shapely.points(shapely.get_coordinates(paint))
     assert shapely.distance(shape, places).max() < 0.3
@@ -199,7 +199,7 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
     six-pointed star stuck out by 0.4 mm where a line begins square.
     """
     made = of(d)
-    shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
+    shape = region(_core.unite([ring for stroke in made for ring in stroke.target_mm]))
     paint = paint_of(passes_of(made, brush), brush)
     places = shapely.points(shapely.get_coordinates(paint))
     assert shapely.distance(shape, places).max() < 0.35
@@ -230,7 +230,7 @@ def test_no_other_way_to_fill_a_shape_plainly_paints_more_of_it(brush, name):
 
 
 def like(stroke, line):
-    return stroke.replaced(middle_mm=line.middle_mm, closed=line.closed, half_width=line.half_width, wanted_mm=[])
+    return stroke.replaced(middle_mm=line.middle_mm, closed=line.closed, half_width=line.half_width, target_mm=[])
 
 
 @pytest.mark.slow
@@ -242,7 +242,7 @@ def test_marks_of_passes_follow_straight_edges_up_to_the_corners(brush, d):
     to an inward corner, where the brush turns, this holds from 5 mm on.
     """
     made = of(d)
-    shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm])).simplify(0.01)
+    shape = region(_core.unite([ring for stroke in made for ring in stroke.target_mm])).simplify(0.01)
     paint = paint_of(passes_of(made, brush), brush)
     corners = [shapely.Point(each) for each in shape.exterior.coords]
     inward = [shape.intersection(each.buffer(1)).area > 2 for each in corners]
@@ -296,7 +296,7 @@ def test_a_line_of_changing_width_has_the_widths_of_its_knots():
     """
     knots = [(0.0, 0.1), (0.4, 4.2), (1.0, 4.2)]
     stroke = _core.Stroke(middle_mm=np.array([[0, 0, 10 / 3, 0, 20 / 3, 0, 10, 0]]), half_width=knots)
-    target = _core.area(_core.wanted_outline(stroke, 0.005))
+    target = _core.area(_core.target_outline(stroke, 0.005))
     assert target == pytest.approx(painted_area([stroke]).area, rel=2e-3)
     assert target == pytest.approx(105.8, abs=0.3)
 
@@ -341,7 +341,7 @@ def test_a_pen_fills_a_shape_in_passes_of_its_one_width(name):
     """
     pen = new_brush("pen", 0.0, [(1.0, 2.4)])
     made = of(SHAPES[name])
-    shape = region(_core.unite([ring for stroke in made for ring in stroke.wanted_mm]))
+    shape = region(_core.unite([ring for stroke in made for ring in stroke.target_mm]))
     passes, _, _ = within_reach(made, pen, "passes")
     marks = _core.simulate(_core.compensate(passes, pen, (100.0, 100.0)).plan, pen)
     _core.trace_outlines(marks, pen)
@@ -363,7 +363,7 @@ def test_slits_between_parts_of_a_shape_are_not_edges(brush):
     """
     made = of(SHAPES["star"])
     (filling,) = find_wide_shapes(made, list(range(len(made))), *brush.half_width_range_mm())
-    parts = _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
+    parts = _core.unite([ring for stroke in made for ring in stroke.target_mm])
     corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in filling.rings]
     assert corners == [10]
     assert region(filling.rings).symmetric_difference(region(parts)).area < 0.1

@@ -20,7 +20,7 @@ EDGE_MM = 0.15
 def swept(points_mm: np.ndarray, half_mm: float) -> list[np.ndarray]:
     line = np.column_stack([points_mm, np.full(len(points_mm), half_mm)])
     middle_mm, half_width = _core.fit_curve(line, 0.002, False)
-    return _core.wanted_outline(_core.Stroke(middle_mm=middle_mm, half_width=half_width), 0.005)
+    return _core.target_outline(_core.Stroke(middle_mm=middle_mm, half_width=half_width), 0.005)
 
 
 def straight(*ends) -> np.ndarray:
@@ -79,7 +79,7 @@ def found(name: str):
 @pytest.mark.parametrize("name", SHAPES)
 def test_thick_limbs_leave_no_bare_wedge_and_no_overspill(name):
     shape, strokes = found(name)
-    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    painted = region(_core.unite([ring for each in strokes for ring in _core.target_outline(each, 0.01)]))
     bare = shapely.difference(shape.buffer(-SEEN_MM), painted).area
     near_by = shapely.difference(painted, shape.buffer(SEEN_MM)).area
     assert bare < (2.5 if name == "a" else 1.0) and near_by < 0.05, (bare, near_by)
@@ -88,7 +88,7 @@ def test_thick_limbs_leave_no_bare_wedge_and_no_overspill(name):
 @pytest.mark.parametrize("name", ["a", "thin a", "d", "q"])
 def test_a_stem_next_to_a_bowl_keeps_its_straight_edge(name):
     _, strokes = found(name)
-    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    painted = region(_core.unite([ring for each in strokes for ring in _core.target_outline(each, 0.01)]))
     (x, top), (_, bottom) = SHAPES[name][1][0][[0, -1]]
     near_by = shapely.box(x, bottom + 2, x + 10, top - 2)
     edge = shapely.get_coordinates(shapely.intersection(painted, near_by).boundary)
@@ -112,7 +112,7 @@ def test_the_arm_of_a_k_continues_into_its_stem_at_full_width():
 @pytest.mark.parametrize("name", LIMBS)
 def test_limbs_that_meet_next_to_a_stem_leave_no_bare_wedges(name):
     shape, strokes = found(name)
-    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    painted = region(_core.unite([ring for each in strokes for ring in _core.target_outline(each, 0.01)]))
     bare = shapely.difference(shape.buffer(-SEEN_MM), painted)
     assert bare.intersection(shapely.box(-4, -8, 12, 8)).area < 0.3
     assert shapely.difference(painted, shape.buffer(SEEN_MM)).area < 0.05
@@ -136,7 +136,7 @@ def test_a_bowl_that_widens_towards_a_thin_bar_leaves_no_wedge_in_the_counter():
     counter = [(-3, 10.5), (-1, 8.5), (-0.2, 5), (0, 2), (0, 0), (-12, 0)]
     rings = _core.unite([np.array(outside + counter, float)])
     strokes = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width) for s in outline_strokes(rings)]
-    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    painted = region(_core.unite([ring for each in strokes for ring in _core.target_outline(each, 0.01)]))
     bare = shapely.difference(region(rings).buffer(-SEEN_MM), painted)
     assert bare.intersection(shapely.box(-2, -2.6, 4, 6)).area < 0.3
     bar = min((_core.flatten(each, 0.02) for each in strokes), key=lambda line: line[:, 0].min())
@@ -153,5 +153,5 @@ def test_no_line_of_a_bold_4_crosses_its_counter():
         _core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width)
         for s in outline_strokes([np.array(outside), counter])
     ]
-    painted = region(_core.unite([ring for each in strokes for ring in _core.wanted_outline(each, 0.01)]))
+    painted = region(_core.unite([ring for each in strokes for ring in _core.target_outline(each, 0.01)]))
     assert shapely.Polygon(counter).intersection(painted).area < 0.2 * shapely.Polygon(counter).area

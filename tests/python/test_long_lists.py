@@ -49,7 +49,7 @@ def test_overlong_nested_lists_are_refused(what):
     with pytest.raises(brushsvg.Error) as refused:
         CALLS[what]()
     assert refused.value.code == "list-too-long"
-    assert refused.value.value > 10**7 == refused.value.range[1] == _core.MOST_ENTRIES
+    assert refused.value.value > 10**7 == refused.value.range[1] == _core.MAX_ENTRIES
 
 
 UNLIKE = {

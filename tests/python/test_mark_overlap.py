@@ -28,14 +28,14 @@ def test_groups_contain_the_marks_that_touch():
         straight("c", (10, 6), (30, 30), 1.0),
         straight("diagonal", (28, 8), (40, 20), 1.0),  # inside the box of c
     ]
-    assert _core.touching(strokes) == [[0, 1, 3]]
+    assert _core.group_touching(strokes) == [[0, 1, 3]]
     halves = [straight("left", (0, 40), (5, 40), 1), straight("right", (9, 40), (15, 40), 1)]
-    assert _core.touching(halves) == []
-    halves[0].wanted_mm, halves[1].wanted_mm = (
+    assert _core.group_touching(halves) == []
+    halves[0].target_mm, halves[1].target_mm = (
         [box(0, 38, 7, 42)],
         [box(7, 38, 15, 42)],
     )  # both are parts of one letter
-    assert _core.touching(halves) == [[0, 1]]
+    assert _core.group_touching(halves) == [[0, 1]]
 
 
 def test_pixels_agree_with_rings():
@@ -53,10 +53,10 @@ def test_pixels_agree_with_rings():
     trace_outlines(marks, brush)
     for some in (slice(0, 1), slice(0, 12)):
         painted = _core.unite([ring for trace in marks.passes[some] for ring in trace.outline_mm])
-        target = _core.unite([ring for s in strokes[some] for ring in _core.wanted_outline(s, 0.01)])
+        target = _core.unite([ring for s in strokes[some] for ring in _core.target_outline(s, 0.01)])
         found = _core.common_area(marks.passes[some], strokes[some], brush)
         assert found.overlap == pytest.approx(_core.overlap(painted, target), abs=1e-3)
-        assert found.together_mm2 == pytest.approx(_core.area(_core.unite([*painted, *target])), rel=1e-3)
+        assert found.union_mm2 == pytest.approx(_core.area(_core.unite([*painted, *target])), rel=1e-3)
 
 
 def test_groups_have_the_same_overlap_alone_and_together():

@@ -55,7 +55,7 @@ def test_each_law_gets_its_own_covariance_rows_if_another_law_lacks_a_term():
     laws = _core.MarkLaws([3.0, 1.0], [0.0, 0.4], [0.0, 0.5, -0.01], 1.9, 1.0, False, ratio)
     variances = np.array([1, 2, 3, 4, 5, *[6] * len(ratio), 7, 8, 9, 10, 11]) * 1e-4
     brush = brush_of(laws, "b", (0.0, 8.0), np.diag(variances))
-    target = _core.deviations_of_95() * np.sqrt([0.0, 4e-4, 5e-4])
+    target = _core.interval_factor_95() * np.sqrt([0.0, 4e-4, 5e-4])
     assert brush.half_width.half_interval_95 == pytest.approx(target)
     assert len(brush.tip_to_widest.coefficients) == len(brush.tip_to_widest.half_interval_95) == 6
 

@@ -36,11 +36,11 @@ def ends(stroke) -> list[list[float]]:
 def marks(made) -> list:
     """Return the area that discs of the found widths paint along the found lines."""
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
-    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
+    return _core.unite([ring for stroke in bare for ring in _core.target_outline(stroke, 0.01)])
 
 
 def target(made) -> list:
-    return _core.unite([ring for stroke in made for ring in stroke.wanted_mm])
+    return _core.unite([ring for stroke in made for ring in stroke.target_mm])
 
 
 def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
@@ -49,7 +49,7 @@ def test_a_bar_is_one_stroke_that_ends_half_a_width_inside():
     assert (bar.colour, bar.closed, len(bar.middle_mm)) == ("#123456", False, 1)
     assert ends(bar) == [[13, 23], [57, 23]]
     assert {round(half, 3) for _, half in bar.half_width} == {3}
-    assert _core.area(bar.wanted_mm) == pytest.approx(300)
+    assert _core.area(bar.target_mm) == pytest.approx(300)
 
 
 @pytest.mark.parametrize(("slant_mm", "is_straight"), [(0.6, True), (2.2, True), (6.0, True), (10.0, False)])
@@ -130,9 +130,9 @@ def test_a_corner_in_which_two_strokes_end_belongs_to_both():
     for y in (5.1, 44.7):
         corner = np.array([(20.1, y), (20.3, y), (20.3, y + 0.2), (20.1, y + 0.2)])
         for stroke in dee:
-            assert _core.area(_core.intersect(stroke.wanted_mm, [corner])) == pytest.approx(0.04, abs=1e-4)
+            assert _core.area(_core.intersect(stroke.target_mm, [corner])) == pytest.approx(0.04, abs=1e-4)
     tee = painted(path("M10 10H50V16H33V45H27V16H10Z"))
-    parts = sum(_core.area(stroke.wanted_mm) for stroke in tee)
+    parts = sum(_core.area(stroke.target_mm) for stroke in tee)
     assert parts < _core.area(target(tee)) + 6 * 6 + 1
 
 
@@ -270,7 +270,7 @@ def test_crossing_lines_stay_straight_and_both_cover_the_crossing():
     assert np.abs(line[:, 1] - 42).max() < 0.1, "the bar does not sag towards the stem"
     assert ends(bar) == [[13, 8], [47, 8]]
     assert ends(stem)[0][1] < 11, "the stem begins under the bar"
-    assert _core.area(bar.wanted_mm) == pytest.approx(40 * 6, abs=1.5)
+    assert _core.area(bar.target_mm) == pytest.approx(40 * 6, abs=1.5)
 
 
 @pytest.mark.parametrize(("half_mm", "bar_half_mm"), [(4, 2.5), (5, 3)])
@@ -399,7 +399,7 @@ def test_branches_in_the_middle_of_a_sun_without_nearest_area_are_dropped():
     turn, random = np.linspace(0, 2 * np.pi, 88, endpoint=False), np.random.default_rng(2)
     radius = np.where(np.arange(88) % 2, 24.0, 7.3 + random.uniform(0, 1e-3, 88))
     made = outline_strokes([radius[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])])
-    assert len(made) > 40 and all(stroke.wanted_mm for stroke in made)
+    assert len(made) > 40 and all(stroke.target_mm for stroke in made)
 
 
 def test_strokes_of_random_shapes_cover_the_shape_and_stay_inside_it():
@@ -440,7 +440,7 @@ def test_a_bulge_in_a_line_is_painted_at_full_width():
     (line,) = painted(path(polygon(body)))
     assert max(half for _, half in line.half_width) == pytest.approx(4, abs=0.1)
     mark = shapely.union_all([shapely.Polygon(ring) for ring in marks([line])])
-    want = shapely.union_all([shapely.Polygon(ring) for ring in line.wanted_mm])
+    want = shapely.union_all([shapely.Polygon(ring) for ring in line.target_mm])
     assert mark.intersection(want).area > 0.95 * want.area
 
 
@@ -457,8 +457,8 @@ def test_dots_that_touch_stay_separate_dots(turned_deg, apart_mm):
     for dot in made:
         assert np.ptp(dot.middle_mm.reshape(-1, 2), axis=0).max() == 0
         assert dot.half_width[0][1] == pytest.approx(3, abs=0.01)
-        assert _core.area(dot.wanted_mm) == pytest.approx(pair.area / 2, rel=0.01)
-    assert _core.area(_core.intersect(made[0].wanted_mm, made[1].wanted_mm)) < 1e-3
+        assert _core.area(dot.target_mm) == pytest.approx(pair.area / 2, rel=0.01)
+    assert _core.area(_core.intersect(made[0].target_mm, made[1].target_mm)) < 1e-3
 
 
 @pytest.mark.parametrize("waist_mm", [4.4, 2.4])
@@ -491,18 +491,18 @@ def test_fill_with_stroke_is_the_shape_grown_by_half_the_stroke_width():
     body = path(BAR, 'fill="red" stroke="red" stroke-width="2"')
     (grown,) = painted(body)
     assert {round(half, 2) for _, half in grown.half_width} == {4}
-    assert _core.area(grown.wanted_mm) == pytest.approx(300 + 2 * 56 + np.pi, abs=0.1)
+    assert _core.area(grown.target_mm) == pytest.approx(300 + 2 * 56 + np.pi, abs=0.1)
     (line,) = painted(body, paths_as="stroke")
-    assert line.closed and line.half_width == ((0.0, 1.0),) and line.wanted_mm == ()
+    assert line.closed and line.half_width == ((0.0, 1.0),) and line.target_mm == ()
     (shape,) = painted(body, paths_as="outline")
     assert {round(half, 2) for _, half in shape.half_width} == {3}
 
 
 def test_a_fill_hidden_by_its_stroke_becomes_a_line():
     (line,) = painted(path("M10 10L30 11L50 10", 'stroke="red" stroke-width="4"'))
-    assert line.wanted_mm == ()
+    assert line.target_mm == ()
     assert ends(line) == [[10, 10], [50, 10]]
-    assert len(painted(path("M10 10L30 30L50 10", 'stroke="red" stroke-width="4"'))[0].wanted_mm) == 1
+    assert len(painted(path("M10 10L30 30L50 10", 'stroke="red" stroke-width="4"'))[0].target_mm) == 1
 
 
 def test_hairline_contours_can_be_read_as_shapes():
@@ -527,7 +527,7 @@ def test_a_drawing_without_paintable_shapes_is_refused():
 
 def test_open_paths_are_closed_and_fill_rules_are_kept():
     (bar,) = painted(path("M10 20H60V26H10"))
-    assert _core.area(bar.wanted_mm) == pytest.approx(300)
+    assert _core.area(bar.target_mm) == pytest.approx(300)
     square = "M10 5H50V45H10ZM20 15H40V35H20Z"
     assert _core.area(target(painted(path(square)))) == pytest.approx(1600)
     assert _core.area(target(painted(path(square, 'fill-rule="evenodd"')))) == pytest.approx(1200)
@@ -536,7 +536,7 @@ def test_open_paths_are_closed_and_fill_rules_are_kept():
 def test_the_same_shape_gives_the_same_strokes():
     d = "M10 5H50V11H33V45H27V11H10Z"
     one, two = (
-        [(s.middle_mm.tolist(), s.half_width, [r.tolist() for r in s.wanted_mm]) for s in painted(path(d))]
+        [(s.middle_mm.tolist(), s.half_width, [r.tolist() for r in s.target_mm]) for s in painted(path(d))]
         for _ in range(2)
     )
     assert one == two
@@ -571,7 +571,7 @@ def test_hostile_outlines_are_read_or_refused(name, rule):
     for stroke in made:
         assert np.isfinite(stroke.middle_mm).all()
         assert all(np.isfinite(knot).all() and knot[1] >= 0 for knot in stroke.half_width)
-        assert stroke.wanted_mm
+        assert stroke.target_mm
     from brushsvg.strokes.skeleton import filled_rings
 
     shape = filled_rings(design.elements[0])

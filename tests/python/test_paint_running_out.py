@@ -69,7 +69,7 @@ def mean_overlap(work, rate):
     for trace, stroke in zip(marks.passes, work.strokes, strict=True):
         mark, drawn = (
             shapely.union_all([shapely.Polygon(ring).buffer(0) for ring in rings])
-            for rings in (trace.outline_mm, _core.wanted_outline(stroke, 0.02))
+            for rings in (trace.outline_mm, _core.target_outline(stroke, 0.02))
         )
         found.append(mark.intersection(drawn).area / mark.union(drawn).area)
     return np.mean(found)

@@ -77,7 +77,7 @@ def test_appending_to_a_list_of_the_plan_raises():
     plan, brush = plan_of(_core.Pass("a", [[0, 0, 0], [5, 0, -1]])), find_brush("round-6")
     marks = _core.simulate(plan, brush)
     stroke = _core.Stroke("s", np.zeros((1, 8)), half_width=[(0, 1)])
-    stroke.wanted_mm = [np.zeros((3, 2))]
+    stroke.target_mm = [np.zeros((3, 2))]
     fit = _core.fit_law([1, 2, 3, 4], [1, 2, 3, 5], _core.LawShape((0, 4), 1))
     held = {
         "passes": plan.passes,
@@ -92,7 +92,7 @@ def test_appending_to_a_list_of_the_plan_raises():
         "coefficients": brush.lag.coefficients,
         "intervals": brush.lag.half_interval_95,
         "knots": stroke.half_width,
-        "wanted": stroke.wanted_mm,
+        "wanted": stroke.target_mm,
         "tracking_errors": _core.compensate([], brush, (9, 9)).tracking_errors,
         "fit": fit.covariance[0],
         "residuals": fit.residual_mm,
@@ -100,7 +100,7 @@ def test_appending_to_a_list_of_the_plan_raises():
     assert {name: type(value) for name, value in held.items()} == dict.fromkeys(held, tuple)
     with pytest.raises(AttributeError):
         plan.passes.append(_core.Pass("b"))
-    arrays = [stroke.middle_mm, stroke.wanted_mm[0], brush.footprints.dragged[0].outline_mm]
+    arrays = [stroke.middle_mm, stroke.target_mm[0], brush.footprints.dragged[0].outline_mm]
     arrays += [getattr(marks.passes[0], name) for name in ("depth_mm", "taut", "tcp_mm", "contact_mm", "pose")]
     assert not any(array.flags.writeable for array in arrays)
 

@@ -29,7 +29,7 @@ def brush():
 
 def painted(made) -> list:
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
-    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
+    return _core.unite([ring for stroke in bare for ring in _core.target_outline(stroke, 0.01)])
 
 
 def test_reachable_shapes_and_drawn_lines_stay_unchanged(brush):
@@ -62,7 +62,7 @@ def test_clamp_paints_the_nearest_width_with_the_outline_as_target(brush):
     halves = np.array(narrower.half_width)
     assert halves[:, 1].max() == pytest.approx(4.2)
     assert np.interp(0.2, *halves.T) == pytest.approx(np.interp(0.2, *np.array(made[0].half_width).T))
-    assert [r.tolist() for r in narrower.wanted_mm] == [r.tolist() for r in made[0].wanted_mm]
+    assert [r.tolist() for r in narrower.target_mm] == [r.tolist() for r in made[0].target_mm]
     widest = 2 * max(half for _, half in made[0].half_width)
     assert agrees(notice, f"width-out-of-reach '{widest:.3g} mm wide' '[0, 8.4] mm' round-6", "p")
     assert re.findall(r"[\d.]+", notice.sentence) == [f"{widest:.3g}", "0", "8.4", "6"], "no count of widths"
@@ -84,7 +84,7 @@ def test_passes_cover_the_shape_and_stay_inside_it(brush):
         assert [each.id for each in passes] == ["p", *(f"p~{k}" for k in range(2, len(passes) + 1))]
         assert len(passes) > 1
         assert max(half for each in passes for _, half in each.half_width) <= 4.2 + 1e-9
-        shape, paint = made[0].wanted_mm, mark_of(passes_of(made, brush), brush)
+        shape, paint = made[0].target_mm, mark_of(passes_of(made, brush), brush)
         beyond = region(paint).difference(region(shape).buffer(0.1))
         assert beyond.area < 0.001 * _core.area(shape)
         assert _core.overlap(paint, shape) > 0.97, d
@@ -158,7 +158,7 @@ def test_a_shape_wider_than_the_brush_is_painted_whole_except_with_clamp(brush, 
     Half of a bar of 16 mm was once left blank, and a disc of 9.4 mm became a drop.
     """
     made = of(d)
-    shape = made[0].wanted_mm
+    shape = made[0].target_mm
     assert _core.overlap(mark_of(passes_of(made, brush), brush), shape) > 0.975
     (narrower,), (expected,), (notice,) = within_reach(made, brush, "clamp")
     assert expected is made[0]
@@ -174,7 +174,7 @@ def test_the_stems_of_a_drawing_have_one_weight(brush):
     for d in ("M10 40H90V49H10Z", "M10 5H90V29H10Z"):
         made = of(d)
         mark = region(mark_of(passes_of(made, brush), brush))
-        assert mark.bounds == pytest.approx(region(made[0].wanted_mm).bounds, abs=0.3)
+        assert mark.bounds == pytest.approx(region(made[0].target_mm).bounds, abs=0.3)
 
 
 def test_a_width_hardly_out_of_reach_causes_no_warning(brush):

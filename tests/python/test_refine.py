@@ -50,12 +50,12 @@ def with_teeth(stroke):
     The target is as ragged as pieces from which other strokes were cut. Every mark turns less than this
     target.
     """
-    rim = np.array(shapely.Polygon(_core.wanted_outline(stroke, 0.01)[0]).exterior.segmentize(0.4).coords)[:-1]
+    rim = np.array(shapely.Polygon(_core.target_outline(stroke, 0.01)[0]).exterior.segmentize(0.4).coords)[:-1]
     outwards = np.roll(rim, 1, axis=0) - np.roll(rim, -1, axis=0)
     outwards = outwards[:, ::-1] * (-1, 1) / np.linalg.norm(outwards, axis=1)[:, None]
     ragged = shapely.Polygon(rim + 0.25 * (-1) ** np.arange(len(rim))[:, None] * outwards).buffer(0)
     whole = max(shapely.get_parts(ragged), key=shapely.area)
-    return stroke.replaced(wanted_mm=[np.array(shapely.Polygon(whole.exterior).normalize().exterior.coords)[-2::-1]])
+    return stroke.replaced(target_mm=[np.array(shapely.Polygon(whole.exterior).normalize().exterior.coords)[-2::-1]])
 
 
 def looks(stroke, method: str) -> tuple[float, float, int]:
@@ -63,7 +63,7 @@ def looks(stroke, method: str) -> tuple[float, float, int]:
     plan = _core.compensate([stroke], BRUSH, SHEET, method, start="auto", end="auto").plan
     marks = _core.simulate(plan, BRUSH)
     _core.trace_outlines(marks, BRUSH)
-    target = _core.wanted_outline(stroke, 0.01)
+    target = _core.target_outline(stroke, 0.01)
     overlap = _core.common_area(marks.passes, [stroke], BRUSH).overlap
     mark = marks.outline_mm
     return overlap, _core.excess_turning(mark, target), _core.thorns(mark, target)

@@ -59,15 +59,15 @@ def bar(half, target=True):
     stroke = _core.Stroke("bar", p, half_width=[(0, half), (1, half)])
     if target:
         x0, x1, y0, y1 = 30 - half, 90 + half, 50 - half, 50 + half
-        stroke.wanted_mm = [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])]
+        stroke.target_mm = [np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])]
     return stroke
 
 
 def test_outlines_up_to_slightly_beyond_reach_are_refinement_targets():
     greatest = BRUSH.half_width_range_mm()[1]
     for half in (0.5 * greatest, 1.05 * greatest):
-        assert towards_reach(bar(min(half, greatest)), bar(half), BRUSH).wanted_mm
-    assert not towards_reach(bar(greatest), bar(1.2 * greatest), BRUSH).wanted_mm
+        assert towards_reach(bar(min(half, greatest)), bar(half), BRUSH).target_mm
+    assert not towards_reach(bar(greatest), bar(1.2 * greatest), BRUSH).target_mm
 
 
 @pytest.mark.parametrize(("away_mm", "is_reported"), [(0.8, [True, False]), (2.5, [True, True])])

@@ -27,7 +27,7 @@ def drawn(*cubics, half_mm=HALF_MM):
         points = np.array(cubic, float).reshape(-1, 2)
         middle = [points[k : k + 4].ravel() for k in range(0, len(points) - 1, 3)]
         line = _core.Stroke(middle_mm=np.array(middle), half_width=[(0.0, half_mm)])
-        rings += _core.wanted_outline(line, 0.005)
+        rings += _core.target_outline(line, 0.005)
     return _core.unite(rings)
 
 
@@ -80,7 +80,7 @@ def region(rings):
 def overlap(strokes, rings) -> float:
     """Return the intersection over union of the disc paint along strokes and a shape."""
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in strokes]
-    painted = region(_core.unite([ring for each in bare for ring in _core.wanted_outline(each, 0.01)]))
+    painted = region(_core.unite([ring for each in bare for ring in _core.target_outline(each, 0.01)]))
     shape = region(rings)
     return painted.intersection(shape).area / painted.union(shape).area
 

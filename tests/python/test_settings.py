@@ -78,8 +78,8 @@ def test_settings_that_are_not_replaced_stay():
         assert now == Settings(**{key: value for key, value in ALL.items() if key != name})
     assert settings.replaced(order=9) == Settings(**{**ALL, "order": 9})
     stroke = _core.Stroke("a/1", [[0, 0, 5, 0, 9, 0, 20, 0]], False, [(0, 1)], "ink", "#123456", settings)
-    stroke.wanted_mm = [np.array([[0, 0], [5, 0], [0, 5]])]
-    fields = ("id", "middle_mm", "closed", "half_width", "layer", "colour", "settings", "wanted_mm")
+    stroke.target_mm = [np.array([[0, 0], [5, 0], [0, 5]])]
+    fields = ("id", "middle_mm", "closed", "half_width", "layer", "colour", "settings", "target_mm")
     for name, value in (("id", "b"), ("closed", True), ("layer", "x"), ("settings", Settings())):
         now = stroke.replaced(**{name: value})
         assert getattr(now, name) == value

@@ -126,11 +126,11 @@ def test_sizes_are_tried_with_passes_if_requested(tmp_path):
 
 def test_scaling_a_stroke_scales_its_line_width_and_target():
     stroke = line(50, 2.0)
-    stroke.wanted_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
+    stroke.target_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
     twice = size_advice.scaled(stroke, 2.0)
     assert twice.middle_mm == pytest.approx(2 * stroke.middle_mm)
     assert twice.half_width == ((0.0, 4.0), (1.0, 4.0))
-    assert twice.wanted_mm[0] == pytest.approx(2 * stroke.wanted_mm[0])
+    assert twice.target_mm[0] == pytest.approx(2 * stroke.target_mm[0])
 
 
 @pytest.fixture

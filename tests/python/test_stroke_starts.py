@@ -12,7 +12,7 @@ from brushsvg import _core, compensate, find_brush
 def overlap(stroke, brush, start, end="auto"):
     marks = _core.simulate(compensate([stroke], brush, (200, 200), start=start, end=end).plan, brush)
     _core.trace_outlines(marks, brush)
-    return _core.overlap(marks.outline_mm, _core.wanted_outline(stroke, 0.01))
+    return _core.overlap(marks.outline_mm, _core.target_outline(stroke, 0.01))
 
 
 def test_a_wide_stroke_that_bends_at_once_begins_round():

@@ -20,7 +20,7 @@ def found(d: str):
 
 def swept(made) -> list:
     bare = [_core.Stroke(middle_mm=s.middle_mm, half_width=s.half_width, closed=s.closed) for s in made]
-    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, 0.01)])
+    return _core.unite([ring for stroke in bare for ring in _core.target_outline(stroke, 0.01)])
 
 
 def reached(made, x0: float, y0: float, x1: float, y1: float) -> float:

@@ -140,8 +140,8 @@ def read_chart_of(of):
 CORRECTION = Correction("tilted", (20.0, 20.0), (40.0, 20.0), (1.0, 0.0), 0.0)
 
 READERS = {
-    "thin_out": lambda of: _core.thin_out(of.passes[1], BRUSH, 0.5),
-    "interrupted": lambda of: _core.interrupted(of.passes[1], BRUSH, 20, 20),
+    "simplify_pass": lambda of: _core.simplify_pass(of.passes[1], BRUSH, 0.5),
+    "interrupted": lambda of: _core.split_into_loads(of.passes[1], BRUSH, 20, 20),
     "in_loads": lambda of: split_into_loads(of, BRUSH, brushsvg.find_cell("linuxcnc-3axis")),
     "on_way": lambda of: on_way(of.passes[1], POSES, ()),
     "as_run": lambda of: as_run(of.passes, Machine()),
@@ -163,7 +163,7 @@ def test_functions_without_tilt_support_refuse_tilted_plans(name):
 @pytest.mark.parametrize("name", [name for name in READERS if not name.startswith("read_")])
 def test_functions_without_tilt_support_accept_upright_axes(name):
     made = READERS[name](plan(axes(0, 0, 0, 0)))
-    passes = {"thin_out": [made], "on_way": [made], "interrupted": made, "as_run": made}.get(name, [])
+    passes = {"simplify_pass": [made], "on_way": [made], "interrupted": made, "as_run": made}.get(name, [])
     for one in passes:
         assert len(one.tool_axes) in (0, len(one.poses_mm))
 

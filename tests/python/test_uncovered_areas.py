@@ -121,7 +121,7 @@ def test_the_unpainted_part_of_a_blunt_start_is_reported_with_place_and_share(tm
 
     work = prepared(tmp_path, BLOCK, start="pointed")
     assert work.unreached == ()
-    blank = region(work.drawn[0].wanted_mm).difference(region(predict(work).outline_mm))
+    blank = region(work.drawn[0].target_mm).difference(region(predict(work).outline_mm))
     assert shapely.area(blank) / (8 * 25) == pytest.approx(sum(piece.share for piece in work.missed), abs=0.05)
     assert all(blank.contains(shapely.Point(piece.at_mm)) for piece in work.missed)
     (notice,) = [each for each in work.notices if each.code == "mark-misses"]
@@ -152,7 +152,7 @@ def test_the_report_names_an_uncovered_area_as_the_reason(tmp_path):
     brush = find_brush("round-6")
     drawn, _ = bar_less(tmp_path)
     stem = _core.Stroke("p", np.array([[25, 51, 25, 40, 25, 30, 25, 19]], float), False, [(0.0, 4.215)])
-    stem.wanted_mm = _core.unite([ring for stroke in drawn for ring in stroke.wanted_mm])
+    stem.target_mm = _core.unite([ring for stroke in drawn for ring in stroke.target_mm])
     painted, target, _ = within_reach([stem], brush)
     plan = _core.compensate(painted, brush, (60, 60), "closed", 0.05, None).plan
     marks = _core.simulate(plan, brush)

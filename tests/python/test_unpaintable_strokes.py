@@ -48,11 +48,11 @@ def test_an_array_of_degrees_of_freedom_is_refused():
     The code once built the full product of a column and a row of a hundred thousand values each.
     """
     with pytest.raises(TypeError):
-        _core.as_normal(np.ones((100_000, 1)), np.ones(100_000))
+        _core.normal_equivalent(np.ones((100_000, 1)), np.ones(100_000))
 
 
 @pytest.mark.parametrize("freedom", [0.0, -1.0, 1e-300, float("nan")])
 def test_an_interval_without_degrees_of_freedom_is_refused(freedom):
-    for ask in (lambda: _core.deviations_of_95(freedom), lambda: _core.as_normal(np.ones(3), freedom)):
+    for ask in (lambda: _core.interval_factor_95(freedom), lambda: _core.normal_equivalent(np.ones(3), freedom)):
         with pytest.raises(Error):
             ask()

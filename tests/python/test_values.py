@@ -169,7 +169,7 @@ VALUES_OF = {
                 "middle_mm": np.array(LINE) + 1,
                 "closed": True,
                 "half_width": [(0, 1), (1, 3)],
-                "wanted_mm": [SQUARE],
+                "target_mm": [SQUARE],
                 "start_covered": True,
                 "end_covered": True,
                 "layer": "x",

@@ -52,7 +52,7 @@ def test_a_word_in_a_raw_string_is_found(tmp_path):
     ("name", "text"),
     [
         ("a.py", "# the key \"told\", and `beside`\nx = {'told': 1}\n"),
-        ("a.py", "stroke.wanted_mm = []\n"),
+        ("a.py", "stroke.target_mm = []\n"),
         ("a.cpp", '// a "told" and `beside`\nconst char* key = "told";\n'),
     ],
 )

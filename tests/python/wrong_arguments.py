@@ -86,7 +86,7 @@ def some_strokes():
         yield stroke(np.array(LINE) * value)
         yield stroke(width=[(0, value), (1, 1)])
         yield stroke(width=[(value, 1), (1, 1)])
-        yield stroke(wanted_mm=[np.full((4, 2), value), np.zeros((0, 2))])
+        yield stroke(target_mm=[np.full((4, 2), value), np.zeros((0, 2))])
     yield stroke(settings=_core.Settings(extra="{"), id="\0")
 
 
@@ -371,7 +371,7 @@ ARGUMENTS = {
     "text_svg": [["AA", *TEXTS], [FONT.encode(), b"", b"\0" * 99, b"OTTO" + bytes(99), FONT[:99].encode()]],
     "trace_outlines": [marks, brushes],
     "unite": [rings],
-    "wanted_outline": [some_strokes, [0.01, *NUMBERS]],
+    "target_outline": [some_strokes, [0.01, *NUMBERS]],
     "within_reach": [
         lambda: ([each] for each in some_strokes()),
         brushes,
@@ -485,7 +485,7 @@ def starts():
 
 def mark_options(**changes):
     made = _core.MarkOptions()
-    made.most_iterations, made.spacing_mm = 2, 4.0
+    made.max_iterations, made.spacing_mm = 2, 4.0
     for name, value in changes.items():
         setattr(made, name, value)
     return made

@@ -20,8 +20,8 @@ using Eigen::VectorXd;
 // alpha0 afterwards, so that (7), (11), (12) and all equations derived from them do not hold. Angles are only read to
 // a degree or two, however, and readings of a turn by 90 degrees may be above or below 90. (19) is off by 0.0005 lags
 // at 95 degrees, by 0.004 at 100 and by 0.1 at 120.
-constexpr double kGreatestAlpha0 = 95.0 * M_PI / 180.0 + 1e-9;
-constexpr double kLongestMm = 1e6;  // a longer drag is damaged data
+constexpr double kMaxAlpha0Rad = 95.0 * M_PI / 180.0 + 1e-9;
+constexpr double kMaxLengthMm = 1e6;  // a longer drag is damaged data
 
 /// Returns k of the line y = k x through the origin.
 double slope(const VectorXd& x, const VectorXd& y, Lines lines) {
@@ -46,7 +46,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
         throw Error("sizes-differ", "there are " + std::to_string(n) + " distances and " +
                                         std::to_string(series.alpha.size()) +
                                         " angles; each distance needs its angles");
-    if (!(series.alpha0 > 0.0 && series.alpha0 <= kGreatestAlpha0)) {
+    if (!(series.alpha0 > 0.0 && series.alpha0 <= kMaxAlpha0Rad)) {
         const double degrees = series.alpha0 * 180.0 / M_PI;
         char text[200];
         std::snprintf(text, sizeof text,
@@ -59,7 +59,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     std::vector<std::size_t> used;
     for (std::size_t i = 0; i < n; ++i) {
         const std::string reading = "reading " + std::to_string(i + 1);
-        require_within(series.s_mm[i], {-kLongestMm, kLongestMm}, "the distance of " + reading);
+        require_within(series.s_mm[i], {-kMaxLengthMm, kMaxLengthMm}, "the distance of " + reading);
         require_within(series.alpha[i], {-2.0 * M_PI, 2.0 * M_PI}, "the angle [rad] of " + reading);
         if (series.s_mm[i] > 0.0 && series.alpha[i] > 0.0 && series.alpha[i] < series.alpha0)
             used.push_back(i);
@@ -78,7 +78,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     }
     out.lag_mm = -slope(f, s, lines);  // (20)
     // The logarithm of an angle that has hardly changed is lost in rounding, and the lag may then have any size.
-    require_within(out.lag_mm, {0.0, kLongestMm}, "the lag from the angles", "alpha");
+    require_within(out.lag_mm, {0.0, kMaxLengthMm}, "the lag from the angles", "alpha");
     out.lag_rmse_mm = rmse(s + out.lag_mm * f);
     if (series.beta.empty()) return out;
 
@@ -95,7 +95,7 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     }
     const double mu = slope(integral, s, lines);  // (22)
     out.tip_gap_mm = (mu - 1.0) * out.lag_mm;     // (23)
-    require_within(out.tip_gap_mm, {-kLongestMm, kLongestMm}, "the tip gap from the angles", "beta");
+    require_within(out.tip_gap_mm, {-kMaxLengthMm, kMaxLengthMm}, "the tip gap from the angles", "beta");
     out.tip_gap_rmse_mm = rmse(s - mu * integral);
     return out;
 }

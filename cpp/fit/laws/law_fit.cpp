@@ -22,21 +22,22 @@ using Eigen::VectorXd;
 
 // Lower limit of an absolute residual in the denominator of a weight: far below what a ruler or a camera resolves, far
 // above rounding.
-constexpr double kLeastResidualMm = 1e-9;
-constexpr int kMostReweightings = 500;
+constexpr double kMinResidualMm = 1e-9;
+constexpr int kMaxReweightings = 500;
 // Largest number of sign patterns relative to the floor that are tried. For a cubic at about 20 depths these are all
 // patterns, in about 10 ms. With more depths, the law may cross its floor less often. With absolute residuals, each
 // pattern needs about thirty times as long.
-constexpr std::size_t kMostWays = 4000, kMostWaysAbsolute = 500;
-constexpr double kHeld = 1e6;  // weight that holds a law to its floor within about 1e-10 mm without loss of digits
+constexpr std::size_t kMaxPatterns = 4000, kMaxPatternsAbsolute = 500;
+constexpr double kFloorWeight =
+    1e6;  // weight that holds a law to its floor within about 1e-10 mm without loss of digits
 // Greater lengths of a brush, weights and depths are damaged data, and their powers overflow.
-constexpr double kGreatest = 1e6;
-constexpr double kLeastPositiveMm = 0.01;  // minimum of a positive law: a lever without length has no heading
+constexpr double kMaxMagnitude = 1e6;
+constexpr double kMinPositiveMm = 0.01;  // minimum of a positive law: a lever without length has no heading
 
 struct Problem {
     VectorXd depth, value;
     LawShape shape;
-    VectorXd worth;  ///< 1 / scatter of each value, root mean square 1
+    VectorXd value_weight;  ///< 1 / scatter of each value, root mean square 1
     Index terms() const { return shape.degree + (shape.through_zero ? 0 : 1); }
 };
 
@@ -48,13 +49,13 @@ MatrixXd powers(const VectorXd& depth, const LawShape& shape) {
     return out;
 }
 
-std::vector<double> coefficients_of(const VectorXd& free, bool through_zero) {
+std::vector<double> all_coefficients(const VectorXd& free, bool through_zero) {
     std::vector<double> out(through_zero ? 1 : 0, 0.0);
     out.insert(out.end(), free.data(), free.data() + free.size());
     return out;
 }
 
-bool keeps(const std::vector<double>& c, const LawShape& shape) {
+bool satisfies(const std::vector<double>& c, const LawShape& shape) {
     const double lo = shape.range_mm[0], hi = shape.range_mm[1];
     const auto value = [](const std::vector<double>& p, double x) {
         double y = 0.0;
@@ -72,7 +73,7 @@ bool keeps(const std::vector<double>& c, const LawShape& shape) {
         return out;
     };
     const bool from_zero = shape.through_zero && lo == 0.0;
-    if (shape.positive && !(from_zero ? least(c) >= 0.0 : least(c) >= kLeastPositiveMm)) return false;
+    if (shape.positive && !(from_zero ? least(c) >= 0.0 : least(c) >= kMinPositiveMm)) return false;
     return !shape.rising || (value(c, lo) >= 0.0 && least(slope_of(c)) >= -1e-12);
 }
 
@@ -110,7 +111,7 @@ VectorXd least_squares_above_zero(const MatrixXd& a, const VectorXd& y) {
     return x;
 }
 
-/// Solves for the values of the law's control points on the range: all at least kLeastPositiveMm, or each at least the
+/// Solves for the values of the law's control points on the range: all at least kMinPositiveMm, or each at least the
 /// one before.
 VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool held) {
     const LawShape& shape = problem.shape;
@@ -131,7 +132,7 @@ VectorXd solve_controls(const Problem& problem, const VectorXd& weight, bool hel
     a << weight.asDiagonal() * powers(problem.depth, whole) * from_x, shape.smoothing * bends;
     VectorXd y = VectorXd::Zero(a.rows());
     y.head(rows) = weight.cwiseProduct(problem.value);
-    VectorXd x = VectorXd::Constant(n + 1, held && !shape.rising ? kLeastPositiveMm : 0.0);
+    VectorXd x = VectorXd::Constant(n + 1, held && !shape.rising ? kMinPositiveMm : 0.0);
     if (first) x[0] = 0.0;
     y -= a * x;
     const MatrixXd free = a.rightCols(n + 1 - first);
@@ -154,14 +155,14 @@ VectorXd residuals(const Problem& problem, const VectorXd& free) {
 /// Solves least squares by `solve(weights)`, or least absolute residuals by reweighting: residuals weighted by
 /// 1 / sqrt|residual| count by their size instead of its square. `left(x)`: the residuals.
 template <class Solve, class Left>
-VectorXd in_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
+VectorXd minimise_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
     checkpoint(1 + int(rows));
     VectorXd free = solve(VectorXd(VectorXd::Ones(rows)));
     if (norm == Norm::squares) return free;
     double cost = left(free).template lpNorm<1>();
-    for (int i = 0; i < kMostReweightings; ++i) {
+    for (int i = 0; i < kMaxReweightings; ++i) {
         checkpoint(1 + int(rows));
-        const VectorXd weight = left(free).cwiseAbs().cwiseMax(kLeastResidualMm).cwiseSqrt().cwiseInverse();
+        const VectorXd weight = left(free).cwiseAbs().cwiseMax(kMinResidualMm).cwiseSqrt().cwiseInverse();
         const VectorXd next = solve(VectorXd(weight / weight.maxCoeff()));
         const double now = left(next).template lpNorm<1>();
         const bool still = std::abs(now - cost) <= 1e-12 * cost;
@@ -172,7 +173,7 @@ VectorXd in_norm(Norm norm, Index rows, Solve&& solve, Left&& left) {
     return free;
 }
 
-double size(const VectorXd& residual, Norm norm) {
+double residual_norm(const VectorXd& residual, Norm norm) {
     return norm == Norm::squares ? residual.squaredNorm() : residual.lpNorm<1>();
 }
 
@@ -180,85 +181,86 @@ double size(const VectorXd& residual, Norm norm) {
 enum class Side : char { above, below, on };
 
 /// Lists all sign patterns of a polynomial minus its floor at ascending depths, for a given number of roots. `on` is
-/// only possible where `may_stop` is true. Lists at most `most` + 1 patterns.
-class Ways {
+/// only possible where `may_touch_floor` is true. Lists at most `most` + 1 patterns.
+class SignPatterns {
  public:
-    Ways(const std::vector<bool>& may_stop, int roots, std::size_t most) : may_stop_(may_stop), most_(most) {
+    SignPatterns(const std::vector<bool>& may_touch_floor, int roots, std::size_t most)
+        : may_touch_floor_(may_touch_floor), most_(most) {
         for (Side first : {Side::above, Side::below}) extend({}, first, roots);
     }
     std::vector<std::vector<Side>> found;
 
  private:
     /// `side`: the polynomial's side between the previous depth and this one.
-    void extend(std::vector<Side> way, Side side, int roots) {
+    void extend(std::vector<Side> pattern, Side side, int roots) {
         if (found.size() > most_) return;
-        if (roots < 1 || way.size() == may_stop_.size()) {
-            way.resize(may_stop_.size(), side);
-            found.push_back(std::move(way));
+        if (roots < 1 || pattern.size() == may_touch_floor_.size()) {
+            pattern.resize(may_touch_floor_.size(), side);
+            found.push_back(std::move(pattern));
             return;
         }
         checkpoint();
         const Side other = side == Side::above ? Side::below : Side::above;
-        const bool stops = may_stop_[way.size()];
-        way.push_back(side);
-        extend(way, side, roots);
+        const bool stops = may_touch_floor_[pattern.size()];
+        pattern.push_back(side);
+        extend(pattern, side, roots);
         if (stops) {
-            way.back() = Side::on;
-            extend(way, other, roots - 1);
-            if (roots > 1) extend(way, side, roots - 2);  // touches the floor
+            pattern.back() = Side::on;
+            extend(pattern, other, roots - 1);
+            if (roots > 1) extend(pattern, side, roots - 2);  // touches the floor
         }
-        if (way.size() == 1) return;  // this pattern begins on the other side
-        way.back() = other;
-        extend(way, other, roots - 1);
+        if (pattern.size() == 1) return;  // this pattern begins on the other side
+        pattern.back() = other;
+        extend(pattern, other, roots - 1);
     }
-    std::vector<bool> may_stop_;
+    std::vector<bool> may_touch_floor_;
     std::size_t most_;
 };
 
 /// Fits the law with a floor. A value has no effect where the polynomial is below the floor, so that there are several
 /// local minima and a solver ends in the one where it began. Therefore all sign patterns relative to the floor are
 /// tried. A value below the floor pulls the law down to the floor and no further, so that the law may stop there.
-VectorXd solve_floored(const Problem& problem) {
+VectorXd solve_with_floor(const Problem& problem) {
     const LawShape& shape = problem.shape;
     const MatrixXd a = powers(problem.depth, shape);
     std::vector<double> depths(problem.depth.data(), problem.depth.data() + problem.depth.size());
     std::sort(depths.begin(), depths.end());
     depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
-    std::vector<bool> may_stop(depths.size(), false);
+    std::vector<bool> may_touch_floor(depths.size(), false);
     std::vector<std::size_t> place;
     for (Index i = 0; i < problem.depth.size(); ++i) {
         place.push_back(std::size_t(std::lower_bound(depths.begin(), depths.end(), problem.depth[i]) - depths.begin()));
-        if (problem.value[i] < shape.floor) may_stop[place.back()] = true;
+        if (problem.value[i] < shape.floor) may_touch_floor[place.back()] = true;
     }
-    const std::size_t most = shape.norm == Norm::squares ? kMostWays : kMostWaysAbsolute;
-    std::vector<std::vector<Side>> ways;
+    const std::size_t most = shape.norm == Norm::squares ? kMaxPatterns : kMaxPatternsAbsolute;
+    std::vector<std::vector<Side>> patterns;
     for (int roots = shape.degree; roots >= 0; --roots) {
         if (roots > 0 && depths.size() > most) continue;  // a root may be between any two depths
-        ways = Ways(may_stop, roots, most).found;
-        if (ways.size() <= most) break;
+        patterns = SignPatterns(may_touch_floor, roots, most).found;
+        if (patterns.size() <= most) break;
     }
-    VectorXd best, kept(a.rows()), wanted = problem.value;
+    VectorXd best, row_weight(a.rows()), target_value = problem.value;
     double least = std::numeric_limits<double>::infinity();
-    for (const std::vector<Side>& way : ways) {
-        double floored = 0.0;  // cost of the values on and below the floor, for any polynomial
+    for (const std::vector<Side>& pattern : patterns) {
+        double floor_cost = 0.0;  // cost of the values on and below the floor, for any polynomial
         for (Index i = 0; i < a.rows(); ++i) {
-            const Side side = way[place[std::size_t(i)]];
-            kept[i] = side == Side::on ? kHeld : side == Side::below ? 0.0 : 1.0;
-            wanted[i] = side == Side::on ? shape.floor : problem.value[i];
-            const double off = problem.worth[i] * std::abs(problem.value[i] - shape.floor);
-            if (side != Side::above) floored += shape.norm == Norm::squares ? off * off : off;
+            const Side side = pattern[place[std::size_t(i)]];
+            row_weight[i] = side == Side::on ? kFloorWeight : side == Side::below ? 0.0 : 1.0;
+            target_value[i] = side == Side::on ? shape.floor : problem.value[i];
+            const double off = problem.value_weight[i] * std::abs(problem.value[i] - shape.floor);
+            if (side != Side::above) floor_cost += shape.norm == Norm::squares ? off * off : off;
         }
         // A law with this pattern costs at least this much. For most patterns it is already more than the best cost.
-        if (floored > least) continue;
-        const auto solve_kept = [&](const VectorXd& weight) -> VectorXd {
-            const VectorXd both = weight.cwiseProduct(kept).cwiseProduct(problem.worth);
-            return (both.asDiagonal() * a).colPivHouseholderQr().solve(both.cwiseProduct(wanted));
+        if (floor_cost > least) continue;
+        const auto solve_pattern = [&](const VectorXd& weight) -> VectorXd {
+            const VectorXd both = weight.cwiseProduct(row_weight).cwiseProduct(problem.value_weight);
+            return (both.asDiagonal() * a).colPivHouseholderQr().solve(both.cwiseProduct(target_value));
         };
         const auto left = [&](const VectorXd& free) -> VectorXd {
-            return (kept.array() == 1.0).select(problem.worth.cwiseProduct(wanted - a * free), 0.0);
+            return (row_weight.array() == 1.0).select(problem.value_weight.cwiseProduct(target_value - a * free), 0.0);
         };
-        const VectorXd free = in_norm(shape.norm, a.rows(), solve_kept, left);
-        const double cost = size(problem.worth.cwiseProduct(residuals(problem, free)), shape.norm);
+        const VectorXd free = minimise_norm(shape.norm, a.rows(), solve_pattern, left);
+        const double cost = residual_norm(problem.value_weight.cwiseProduct(residuals(problem, free)), shape.norm);
         if (cost < least) {
             least = cost;
             best = free;
@@ -286,13 +288,14 @@ double variance(const VectorXd& residual, Index terms, int freedom, Norm norm) {
     return 0.5 * M_PI * s * s;
 }
 
-void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::vector<double>& value,
-                                  const LawShape& shape, const std::vector<double>& scatter) {
+void require_fittable_values(const std::vector<double>& depth, const std::vector<double>& value, const LawShape& shape,
+                             const std::vector<double>& scatter) {
     if (!scatter.empty() && scatter.size() != value.size())
         throw Error("sizes-differ", "there are " + std::to_string(value.size()) + " values and " +
                                         std::to_string(scatter.size()) + " scatters; each value needs its scatter");
     for (std::size_t i = 0; i < scatter.size(); ++i)
-        require_within(scatter[i], {1.0 / kGreatest, kGreatest}, "the scatter of value " + std::to_string(i + 1));
+        require_within(scatter[i], {1.0 / kMaxMagnitude, kMaxMagnitude},
+                       "the scatter of value " + std::to_string(i + 1));
     if (depth.size() != value.size())
         throw Error("sizes-differ", "there are " + std::to_string(depth.size()) + " depths and " +
                                         std::to_string(value.size()) + " values; each value needs its depth");
@@ -301,20 +304,20 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
             throw Error("not-finite", "value " + std::to_string(i + 1) + " or its depth is not a finite number");
     for (std::size_t i = 0; i < depth.size(); ++i)
         for (const auto& [what, number] : {std::pair{"value ", value[i]}, std::pair{"the depth of value ", depth[i]}})
-            require_within(number, {-kGreatest, kGreatest}, what + std::to_string(i + 1));
+            require_within(number, {-kMaxMagnitude, kMaxMagnitude}, what + std::to_string(i + 1));
     if (shape.degree < 0 || shape.degree > kMaxLawDegree)
         throw Error("law-terms", "a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
     if (shape.degree == 0 && shape.through_zero)
         throw Error("law-terms", "a law of degree 0 through zero has nothing to fit");
     for (const double end : shape.range_mm)
-        require_within(end, {-kGreatest, kGreatest}, "an end of the depths", "range_mm");
+        require_within(end, {-kMaxMagnitude, kMaxMagnitude}, "an end of the depths", "range_mm");
     if (!(shape.range_mm[0] < shape.range_mm[1]))
         throw Error("not-ascending", "the range of depths must rise", "range_mm");
-    require_within(shape.range_mm[1] - shape.range_mm[0], {1.0 / kGreatest, 2.0 * kGreatest},
+    require_within(shape.range_mm[1] - shape.range_mm[0], {1.0 / kMaxMagnitude, 2.0 * kMaxMagnitude},
                    "the length of the range of depths", "range_mm");
-    require_within(shape.smoothing, {0.0, kGreatest}, "the smoothing", "smoothing");
+    require_within(shape.smoothing, {0.0, kMaxMagnitude}, "the smoothing", "smoothing");
     if (shape.floor != -std::numeric_limits<double>::infinity())
-        require_within(shape.floor, {-kGreatest, kGreatest}, "the floor", "floor");
+        require_within(shape.floor, {-kMaxMagnitude, kMaxMagnitude}, "the floor", "floor");
     if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
         throw Error("options-contradict", "a law with a floor cannot be held to a shape as well");
     if (depth.empty() && shape.smoothing > 0.0) throw Error("measurement-missing", "there is no value to fit a law to");
@@ -334,25 +337,26 @@ void refuse_what_cannot_be_fitted(const std::vector<double>& depth, const std::v
 
 LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& value_mm, const LawShape& shape,
                const std::vector<double>& scatter) {
-    refuse_what_cannot_be_fitted(depth_mm, value_mm, shape, scatter);
+    require_fittable_values(depth_mm, value_mm, shape, scatter);
     const Index count = Index(depth_mm.size());
-    VectorXd worth = VectorXd::Ones(count);
-    for (std::size_t i = 0; i < scatter.size(); ++i) worth[Index(i)] = 1.0 / scatter[i];
-    if (count > 0) worth /= std::sqrt(worth.squaredNorm() / double(count));
+    VectorXd value_weight = VectorXd::Ones(count);
+    for (std::size_t i = 0; i < scatter.size(); ++i) value_weight[Index(i)] = 1.0 / scatter[i];
+    if (count > 0) value_weight /= std::sqrt(value_weight.squaredNorm() / double(count));
     const Problem problem{Eigen::Map<const VectorXd>(depth_mm.data(), count),
-                          Eigen::Map<const VectorXd>(value_mm.data(), count), shape, worth};
+                          Eigen::Map<const VectorXd>(value_mm.data(), count), shape, value_weight};
     LawFit out;
     const auto solved = [&](bool held) {
-        return in_norm(
-            shape.norm, count, [&](const VectorXd& weight) { return solve(problem, weight.cwiseProduct(worth), held); },
-            [&](const VectorXd& free) -> VectorXd { return worth.cwiseProduct(residuals(problem, free)); });
+        return minimise_norm(
+            shape.norm, count,
+            [&](const VectorXd& weight) { return solve(problem, weight.cwiseProduct(value_weight), held); },
+            [&](const VectorXd& free) -> VectorXd { return value_weight.cwiseProduct(residuals(problem, free)); });
     };
-    VectorXd free = std::isfinite(shape.floor) ? solve_floored(problem) : solved(false);
-    if (!keeps(coefficients_of(free, shape.through_zero), shape)) {
+    VectorXd free = std::isfinite(shape.floor) ? solve_with_floor(problem) : solved(false);
+    if (!satisfies(all_coefficients(free, shape.through_zero), shape)) {
         out.held = true;
         free = solved(true);
     }
-    out.law.coefficients = coefficients_of(free, shape.through_zero);
+    out.law.coefficients = all_coefficients(free, shape.through_zero);
     out.law.floor = shape.floor;
     const auto [least, greatest] = std::minmax_element(depth_mm.begin(), depth_mm.end());
     if (*least < *greatest) out.law.calibrated_mm = {*least, *greatest};
@@ -370,12 +374,13 @@ LawFit fit_law(const std::vector<double>& depth_mm, const std::vector<double>& v
     const VectorXd polynomial = slope * free;
     for (Index i = 0; i < count; ++i)
         if (polynomial[i] < shape.floor) slope.row(i).setZero();
-    slope = worth.asDiagonal() * slope;
+    slope = value_weight.asDiagonal() * slope;
     Eigen::ColPivHouseholderQR<MatrixXd> qr(slope);
     if (qr.rank() < slope.cols()) return out;  // all but a few values are on the floor
     const MatrixXd inverse = (slope.transpose() * slope).ldlt().solve(MatrixXd::Identity(slope.cols(), slope.cols()));
-    const MatrixXd covariance = variance(worth.cwiseProduct(residual), problem.terms(), freedom, shape.norm) * inverse;
-    const double t = deviations_of_95(out.law.degrees_of_freedom);
+    const MatrixXd covariance =
+        variance(value_weight.cwiseProduct(residual), problem.terms(), freedom, shape.norm) * inverse;
+    const double t = interval_factor_95(out.law.degrees_of_freedom);
     const Index first = shape.through_zero ? 1 : 0, size = covariance.rows() + first;
     out.covariance.assign(std::size_t(size), std::vector<double>(std::size_t(size), 0.0));
     out.law.half_interval_95.assign(std::size_t(size), 0.0);

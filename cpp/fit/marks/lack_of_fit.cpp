@@ -4,49 +4,49 @@
 #include <array>
 #include <cmath>
 
-#include "base/meanwhile.hpp"
+#include "base/run_cancellable.hpp"
 #include "brushsvg/student_t.hpp"
 #include "noise_covariance.hpp"
 
 namespace brushsvg::fit {
 namespace {
 
-constexpr int kLaws = 5;                                // lag, tip gap, half width, both ratios of the footprint
-constexpr std::array<int, kLaws> kMore{3, 2, 3, 3, 3};  // additional coefficients of each law
-constexpr int kHalf = 2;           // the half width, which may also rise with another power of depth
-constexpr int kMoreOfPower = 4;    // additional coefficients of the half width in this case
-constexpr int kSizes = kLaws + 1;  // departure sizes: one for each law, and one for the power of the half width
-constexpr double kFreedom = 3.0;   // degrees of freedom of the size of a departure
+constexpr int kLawCount = 5;  // lag, tip gap, half width, both ratios of the footprint
+constexpr std::array<int, kLawCount> kAdditionalTerms{3, 2, 3, 3, 3};  // additional coefficients of each law
+constexpr int kHalfWidthLaw = 2;           // the half width, which may also rise with another power of depth
+constexpr int kAdditionalPowerTerms = 4;   // additional coefficients of the half width in this case
+constexpr int kSizeCount = kLawCount + 1;  // departure sizes: one for each law, and one for the power of the half width
+constexpr double kSizeDegreesOfFreedom = 3.0;  // degrees of freedom of the size of a departure
 // Log of the likelihood ratio of departing below which laws keep their few coefficients. For a brush that departs where
 // the marks determine little, by how deep its tip is pressed, the evidence against departing is no more than chance.
-constexpr double kHeld = -1.25;
+constexpr double kMinLogRatioToDepart = -1.25;
 // Log of the likelihood ratio from which laws clearly depart, so that the half width may also rise with another power.
 // With weaker evidence (brushes of the family reach 0.2), this would only make the intervals wider.
-constexpr double kClearly = 0.5;
+constexpr double kMinLogRatioForPower = 0.5;
 // Log of the prior odds that a brush departs. They are in favour of departing, because laws with few coefficients are
 // our choice and not a property of brushes.
-constexpr double kBeforehand = 2.0;
-constexpr double kLeast = 0.001;  // departure of a law that does not depart, as a share of the law
-constexpr double kUsual = 0.05;   // initial departure, as a share of the law
-constexpr double kOpen = 3.0;     // largest departure where nothing is known, as a share of the law
-constexpr double kSmooth = 0.7;   // the k-th further polynomial is smaller by (coefficients / k) to this power
+constexpr double kPriorLogOdds = 2.0;
+constexpr double kNoDepartureShare = 0.001;  // departure of a law that does not depart, as a share of the law
+constexpr double kInitialShare = 0.05;       // initial departure, as a share of the law
+constexpr double kMaxShare = 3.0;            // largest departure where nothing is known, as a share of the law
+constexpr double kSmoothnessPower = 0.7;  // the k-th further polynomial is smaller by (coefficients / k) to this power
 constexpr int kSweeps = 6;
 /// Typical departures of laws whose coefficients do not suffice, as shares of the laws. Half of the curves of
 /// tests/laws/painter.py depart by less (their six, four and three shapes: lag 0.016, 0.020, 0.012, tip gap 0.12, 0.10,
 /// 0.13, half width 0.08, 0.07, 0.07, widest section 0.13, 0.12, 0.13). The standard deviation of the log is 0.7 to 1.3
 /// for these curves. The last value is the difference of the power of the half width from 1: 0.06 for these curves, and
 /// 0.1 to 0.35 for roots down to the touch.
-constexpr std::array<double, kSizes> kTypical{0.02, 0.1, 0.1, 0.1, 0.05, 0.15};
-constexpr double kScatter = 1.0;
+constexpr std::array<double, kSizeCount> kTypicalShares{0.02, 0.1, 0.1, 0.1, 0.05, 0.15};
+constexpr double kLogShareSd = 1.0;
 
 /// Lists the departures that are tried, as shares of the law, with 0 first.
-std::vector<double> shares() {
+std::vector<double> share_grid() {
     std::vector<double> out{0.0};
     for (double share = 0.003; share < 1.0; share *= 1.5) out.push_back(share);
     return out;
 }
 
-using Sizes = std::array<double, kSizes>;
+using Sizes = std::array<double, kSizeCount>;
 
 /// The departures of all laws. rows: departures by the shared unknowns; deviations: columns of independent deviations
 /// for departure sizes of 1; size_of: for each column, the index of the size that scales it.
@@ -63,141 +63,145 @@ struct Departures {
 };
 
 /// Returns the k-th Legendre coefficient of -log(t) over [0, 1]: to first order, t^(1 - share) is t (1 - share log(t)).
-double share_of_log(int k) { return (k % 2 ? -1.0 : 1.0) * (2.0 * k + 1.0) / (double(k) * (k + 1.0)); }
+double log_legendre_coefficient(int k) { return (k % 2 ? -1.0 : 1.0) * (2.0 * k + 1.0) / (double(k) * (k + 1.0)); }
 
-Departures departures_of(const MarkModel& model, const Layout& from, const MarkLaws& laws, double deepest) {
+Departures make_departures(const MarkModel& model, const Layout& from, const MarkLaws& laws, double deepest) {
     const Layout& to = model.layout();
     const auto at = [&](const std::vector<double>& c) {
         double y = 0.0;
         for (std::size_t i = c.size(); i-- > 0;) y = y * deepest + c[i];
         return y;
     };
-    Departures out{model.departures(from), {}, {}};
-    const std::array<std::pair<int, int>, kLaws> terms{{{from.lag, to.lag},
-                                                        {from.gap, to.gap},
-                                                        {from.half, to.half},
-                                                        {from.widest_terms, to.widest_terms},
-                                                        {from.front_terms, to.front_terms}}};
+    Departures out{model.departure_rows(from), {}, {}};
+    const std::array<std::pair<int, int>, kLawCount> terms{{{from.lag, to.lag},
+                                                            {from.gap, to.gap},
+                                                            {from.half, to.half},
+                                                            {from.widest_terms, to.widest_terms},
+                                                            {from.front_terms, to.front_terms}}};
     const double half = std::max(0.1, at(laws.half_width));
-    const std::array<double, kLaws> whole{std::max(0.5, at(laws.lag)), std::max(half, std::abs(at(laws.tip_gap))), half,
-                                          std::max(1.0, laws.widest_per_half), std::max(1.0, laws.front_per_half)};
+    const std::array<double, kLawCount> whole{std::max(0.5, at(laws.lag)), std::max(half, std::abs(at(laws.tip_gap))),
+                                              half, std::max(1.0, laws.widest_per_half),
+                                              std::max(1.0, laws.front_per_half)};
     const Index all_rows = out.rows.rows();
-    const bool rises = to.half - from.half >= kMoreOfPower;
+    const bool rises = to.half - from.half >= kAdditionalPowerTerms;
     out.deviations = MatrixXd::Zero(all_rows, all_rows + rises);
     Index row = 0;
-    for (int law = 0; law < kLaws; ++law) {
+    for (int law = 0; law < kLawCount; ++law) {
         const auto [known, all] = terms[std::size_t(law)];
         for (int k = known; k < all; ++k, ++row) {
             out.size_of.push_back(law);
             const double falls =
-                std::pow(double(known) / k, kSmooth);  // higher polynomials are smaller, as in smooth laws
+                std::pow(double(known) / k, kSmoothnessPower);  // higher polynomials are smaller, as in smooth laws
             out.deviations(row, row) = falls * whole[std::size_t(law)];
-            if (law == kHalf && rises) out.deviations(row, all_rows) = whole[kHalf] * share_of_log(k);
+            if (law == kHalfWidthLaw && rises)
+                out.deviations(row, all_rows) = whole[kHalfWidthLaw] * log_legendre_coefficient(k);
         }
     }
-    if (rises) out.size_of.push_back(kLaws);
+    if (rises) out.size_of.push_back(kLawCount);
     return out;
 }
 
-struct Shares {
+struct SizeEstimate {
     Sizes sizes;
-    double likelier;  ///< log of the likelihood ratio of the marks to laws that do not depart
+    double log_likelihood_ratio;  ///< log of the likelihood ratio of the marks to laws that do not depart
 };
 
 /// Log of the prior probability of a size.
 using LogPrior = double (*)(int which, double share);
 
 /// Prior in which a size is 0 in half of the cases, else of any order of magnitude.
-double of_any_size(int, double share) {
-    static const double log_count = std::log(double(shares().size() - 1));
+double log_prior_of_any_size(int, double share) {
+    static const double log_count = std::log(double(share_grid().size() - 1));
     return share > 0.0 ? -log_count : 0.0;
 }
 
-/// Prior from the departures of curves of other forms, see kTypical.
-double of_usual_size(int which, double share) {
+/// Prior from the departures of curves of other forms, see kTypicalShares.
+double log_prior_of_typical_size(int which, double share) {
     if (!(share > 0.0)) return -INFINITY;
-    return -0.5 * std::pow(std::log(share / kTypical[std::size_t(which)]) / kScatter, 2);
+    return -0.5 * std::pow(std::log(share / kTypicalShares[std::size_t(which)]) / kLogShareSd, 2);
 }
 
 /// Returns the rms of one size over all values that it may have, weighted by the likelihood of the marks, while the
 /// other sizes are `share`.
 template <class Evidence>
-double mean_share(Sizes share, int which, LogPrior known, Evidence&& evidence) {
-    static const std::vector<double> tried = shares();
-    std::vector<double> likely;
-    for (const double one : tried) {
+double rms_share(Sizes share, int which, LogPrior known, Evidence&& evidence) {
+    static const std::vector<double> grid = share_grid();
+    std::vector<double> log_weights;
+    for (const double one : grid) {
         share[std::size_t(which)] = one;
-        likely.push_back(evidence(share) + known(which, one));
+        log_weights.push_back(evidence(share) + known(which, one));
     }
-    const double most = *std::max_element(likely.begin(), likely.end());
+    const double most = *std::max_element(log_weights.begin(), log_weights.end());
     double all = 0.0, square = 0.0;
-    for (std::size_t k = 0; k < tried.size(); ++k) {
-        const double weight = std::exp(likely[k] - most);
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+        const double weight = std::exp(log_weights[k] - most);
         all += weight;
-        square += weight * tried[k] * tried[k];
+        square += weight * grid[k] * grid[k];
     }
     return std::sqrt(square / all);
 }
 
 /// Estimates the sizes of all departures. The problem must not have expected departures yet.
-Shares shares_of(const MarkProblem& at, const Departures& departures, LogPrior known_of) {
-    MarksLoss loss = marks_loss(at);
+SizeEstimate estimate_sizes(const MarkProblem& at, const Departures& departures, LogPrior log_prior) {
+    LossDerivatives loss = loss_derivatives(at);
     const Index g = at.shared.size(), all = loss.gradient.size();
     const MatrixXd& rows = departures.rows;
-    const VectorXd open = (kOpen * departures.deviations.diagonal()).cwiseAbs2().cwiseInverse();
-    at.add_known(loss.slope);
-    loss.slope.topLeftCorner(g, g) += rows.transpose() * open.asDiagonal() * rows;
+    const VectorXd open = (kMaxShare * departures.deviations.diagonal()).cwiseAbs2().cwiseInverse();
+    at.add_prior_information(loss.hessian);
+    loss.hessian.topLeftCorner(g, g) += rows.transpose() * open.asDiagonal() * rows;
     const VectorXd now = rows * at.shared;
-    VectorXd gradient = loss.gradient + at.known_gradient();
+    VectorXd gradient = loss.gradient + at.prior_gradient();
     gradient.head(g) += rows.transpose() * open.cwiseProduct(now);
-    const VectorXd unit = loss.slope.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-    const MatrixXd scaled = unit.asDiagonal() * loss.slope * unit.asDiagonal();
+    const VectorXd unit = loss.hessian.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    const MatrixXd scaled = unit.asDiagonal() * loss.hessian * unit.asDiagonal();
     MatrixXd right(all, rows.rows() + 1);
     right.leftCols(rows.rows()).setZero();
     right.topLeftCorner(g, rows.rows()) = rows.transpose();
     right.rightCols(1) = gradient;
     right = unit.asDiagonal() * right;
-    const MatrixXd solved = asking_meanwhile([scaled, right]() -> MatrixXd { return scaled.ldlt().solve(right); });
+    const MatrixXd solved = run_cancellable([scaled, right]() -> MatrixXd { return scaled.ldlt().solve(right); });
     const MatrixXd back = unit.asDiagonal() * solved;
     const MatrixXd spread = rows * back.topLeftCorner(g, rows.rows());
     const VectorXd found = now - rows * back.topRightCorner(g, 1);
     const MatrixXd known = spread.ldlt().solve(MatrixXd::Identity(rows.rows(), rows.rows()));
-    const MatrixXd tells = known - MatrixXd(open.asDiagonal());
+    const MatrixXd information = known - MatrixXd(open.asDiagonal());
     const VectorXd pull = known * found;
 
     const auto evidence = [&](const Sizes& sizes) {
         const MatrixXd by = departures.scaled(sizes);
-        const MatrixXd both = MatrixXd::Identity(by.cols(), by.cols()) + by.transpose() * tells * by;
+        const MatrixXd both = MatrixXd::Identity(by.cols(), by.cols()) + by.transpose() * information * by;
         const Eigen::LDLT<MatrixXd> factor(both);
         const VectorXd drawn = by.transpose() * pull;
         return 0.5 * drawn.dot(factor.solve(drawn)) - 0.5 * factor.vectorD().cwiseMax(1e-12).array().log().sum();
     };
     Sizes none{}, out{};
-    const int count = departures.deviations.cols() > rows.rows() ? kSizes : kLaws;
-    std::fill_n(out.begin(), count, kUsual);
+    const int count = departures.deviations.cols() > rows.rows() ? kSizeCount : kLawCount;
+    std::fill_n(out.begin(), count, kInitialShare);
     const double held = evidence(none);
     for (int sweep = 0; sweep < kSweeps; ++sweep)
         for (int which = 0; which < count; ++which)
-            out[std::size_t(which)] = mean_share(out, which, known_of, evidence);
+            out[std::size_t(which)] = rms_share(out, which, log_prior, evidence);
     return {out, evidence(out) - held};
 }
 
 /// Returns the options with more coefficients for each law that may depart.
-MarkOptions wider(const MarkOptions& options, const Sizes& sizes) {
+MarkOptions with_more_terms(const MarkOptions& options, const Sizes& sizes) {
     MarkOptions out = options;
-    const std::array<int*, kLaws> terms{&out.lag_terms, &out.tip_gap_terms, &out.half_width_terms, &out.widest_terms,
-                                        &out.front_terms};
-    for (std::size_t law = 0; law < kLaws; ++law)
-        if (sizes[law] > 0.0) *terms[law] += law == kHalf && sizes[kLaws] > 0.0 ? kMoreOfPower : kMore[law];
-    out.lag_terms = std::min(out.lag_terms, kMostTerms);
+    const std::array<int*, kLawCount> terms{&out.lag_terms, &out.tip_gap_terms, &out.half_width_terms,
+                                            &out.widest_terms, &out.front_terms};
+    for (std::size_t law = 0; law < kLawCount; ++law)
+        if (sizes[law] > 0.0)
+            *terms[law] +=
+                law == kHalfWidthLaw && sizes[kLawCount] > 0.0 ? kAdditionalPowerTerms : kAdditionalTerms[law];
+    out.lag_terms = std::min(out.lag_terms, kMaxTerms);
     return out;
 }
 
 /// Sets the sizes of the expected departures.
-void expect(MarkProblem& at, const Departures& departures, const Sizes& sizes) {
+void set_departure_prior(MarkProblem& at, const Departures& departures, const Sizes& sizes) {
     const MatrixXd by = departures.scaled(sizes);
     const Eigen::LLT<MatrixXd> spread(by * by.transpose());
-    at.expect(spread.matrixL().solve(departures.rows));
+    at.set_departure_prior(spread.matrixL().solve(departures.rows));
 }
 
 }  // namespace
@@ -207,54 +211,56 @@ MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& m
     const Index sheet = fit.shared.size() - fit.model.layout().height();
     out.shared = out.model.unknowns(fit.model.laws(fit.shared));
     out.shared.tail(sheet) = fit.shared.tail(sheet);
-    out.own = fit.own;
-    out.says = fit.says;
+    out.displacements_mm = fit.displacements_mm;
+    out.point_weights = fit.point_weights;
     out.weighing = fit.weighing;
     out.iterations = fit.iterations;
-    out.model.go_on_counting(fit.model);
+    out.model.continue_counting_from(fit.model);
     return out;
 }
 
-double unsurer(double likelier) {
-    const double wider = std::pow(deviations_of_95(kFreedom) / deviations_of_95(std::nullopt), 2);
-    return 1.0 + (wider - 1.0) / (1.0 + std::exp(-likelier));
+double variance_factor(double log_likelihood_ratio) {
+    const double wider = std::pow(interval_factor_95(kSizeDegreesOfFreedom) / interval_factor_95(std::nullopt), 2);
+    return 1.0 + (wider - 1.0) / (1.0 + std::exp(-log_likelihood_ratio));
 }
 
-double chance_of_departing(double likelier) { return 1.0 / (1.0 + std::exp(-likelier - kBeforehand)); }
+double departure_probability(double log_likelihood_ratio) {
+    return 1.0 / (1.0 + std::exp(-log_likelihood_ratio - kPriorLogOdds));
+}
 
-double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    const Layout from = MarkModel::layout_of(options);
+double allow_departures(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    const Layout from = MarkModel::make_layout(options);
     const MarkLaws laws = fit.model.laws(fit.shared);
     const auto departing = [&](double power) {
         Sizes sizes;
         sizes.fill(1.0);
-        sizes[kLaws] = power;
-        const MarkProblem open = with_terms(fit, marks, wider(options, sizes));
-        return shares_of(open, departures_of(open.model, from, laws, options.deepest_mm), of_any_size);
+        sizes[kLawCount] = power;
+        const MarkProblem open = with_terms(fit, marks, with_more_terms(options, sizes));
+        return estimate_sizes(open, make_departures(open.model, from, laws, options.deepest_mm), log_prior_of_any_size);
     };
-    Shares found = departing(0.0);
-    if (found.likelier > kClearly) found = departing(1.0);
-    if (found.likelier < kHeld) found.sizes.fill(0.0);
-    fit = with_terms(fit, marks, wider(options, found.sizes));
-    expect(fit, departures_of(fit.model, from, laws, options.deepest_mm), found.sizes);
-    return found.likelier;
+    SizeEstimate found = departing(0.0);
+    if (found.log_likelihood_ratio > kMinLogRatioForPower) found = departing(1.0);
+    if (found.log_likelihood_ratio < kMinLogRatioToDepart) found.sizes.fill(0.0);
+    fit = with_terms(fit, marks, with_more_terms(options, found.sizes));
+    set_departure_prior(fit, make_departures(fit.model, from, laws, options.deepest_mm), found.sizes);
+    return found.log_likelihood_ratio;
 }
 
-MarkProblem of_usual_departures(const MarkProblem& fit, const MarkOptions& options) {
-    const Layout from = MarkModel::layout_of(options);
-    const Departures departures = departures_of(fit.model, from, fit.model.laws(fit.shared), options.deepest_mm);
+MarkProblem with_typical_departures(const MarkProblem& fit, const MarkOptions& options) {
+    const Layout from = MarkModel::make_layout(options);
+    const Departures departures = make_departures(fit.model, from, fit.model.laws(fit.shared), options.deepest_mm);
     MarkProblem out = fit;
-    out.expect(MatrixXd(0, fit.shared.size()));
-    expect(out, departures, shares_of(out, departures, of_usual_size).sizes);
+    out.set_departure_prior(MatrixXd(0, fit.shared.size()));
+    set_departure_prior(out, departures, estimate_sizes(out, departures, log_prior_of_typical_size).sizes);
     return out;
 }
 
-MarkProblem of_least_departures(const MarkProblem& fit, const MarkOptions& options) {
-    const Layout from = MarkModel::layout_of(options);
+MarkProblem without_departures(const MarkProblem& fit, const MarkOptions& options) {
+    const Layout from = MarkModel::make_layout(options);
     Sizes least;
-    least.fill(kLeast);
+    least.fill(kNoDepartureShare);
     MarkProblem out = fit;
-    expect(out, departures_of(fit.model, from, fit.model.laws(fit.shared), options.deepest_mm), least);
+    set_departure_prior(out, make_departures(fit.model, from, fit.model.laws(fit.shared), options.deepest_mm), least);
     return out;
 }
 

@@ -12,23 +12,23 @@ namespace brushsvg::fit {
 /// from the marks by marginal likelihood, in addition to the solution. Where laws clearly depart, the half width may
 /// also rise with another power of the depth. If laws may depart, the problem must be solved again. Returns the log of
 /// the likelihood ratio of the marks for departing laws.
-double depart(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
+double allow_departures(MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);
 
 /// Returns the same solution with laws that are expected to depart as much as curves of other forms do, unless the
 /// marks contradict it, instead of by any order of magnitude. The laws must depart.
-MarkProblem of_usual_departures(const MarkProblem& fit, const MarkOptions& options);
+MarkProblem with_typical_departures(const MarkProblem& fit, const MarkOptions& options);
 
 /// Returns the factor by which variances grow for this log likelihood ratio of departing.
 ///
 /// The factor follows from Student's t, because the size of departures is estimated from few numbers. It is smaller the
 /// more certain it is that laws do not depart, and 1 for laws that were never tested.
-double unsurer(double likelier);
+double variance_factor(double log_likelihood_ratio);
 
 /// Returns the same solution with laws that are expected to keep to the few coefficients of the options.
-MarkProblem of_least_departures(const MarkProblem& fit, const MarkOptions& options);
+MarkProblem without_departures(const MarkProblem& fit, const MarkOptions& options);
 
 /// Returns the probability that a brush departs, from the log likelihood ratio of its marks.
-double chance_of_departing(double likelier);
+double departure_probability(double log_likelihood_ratio);
 
 /// Returns the same solution with as many coefficients per law as in the options, or the nearest laws with fewer.
 MarkProblem with_terms(const MarkProblem& fit, const std::vector<PaintedMark>& marks, const MarkOptions& options);

@@ -35,7 +35,7 @@ struct MarkLaws {
     double widest_per_half = 1.8, front_per_half = 1.0;
     bool round_tail = false;
     /// Ratios that change with depth, as polynomials (ascending powers of depth); empty for constant ratios. The ratios
-    /// above are their means over [0, deepest]. They are at least kLeastRatio at any depth.
+    /// above are their means over [0, deepest]. They are at least kMinRatio at any depth.
     std::vector<double> widest_by_depth, front_by_depth;
 };
 
@@ -83,7 +83,7 @@ struct MarkOptions {
     /// If given, nothing is fitted, and the result is the covariance to expect at the start for edges with this noise.
     std::optional<double> noise_mm;
     double noise_length_mm = 1.0;  ///< correlation length of the noise along an edge; only with noise_mm
-    int most_iterations = 60;
+    int max_iterations = 60;
 };
 
 /// One mark compared with its prediction at the solution.
@@ -111,7 +111,7 @@ struct MarkFit {
     double noise_mm = 0.0;             ///< robust standard deviation of the distances
     double samples = 0.0;              ///< number of compared points
     double effective_samples = 0.0;    ///< number of independent points that would determine as much
-    double left_aside = 0.0;           ///< share of the points that are left out as outliers
+    double outlier_share = 0.0;        ///< share of the points that are left out as outliers
     double slim = 0.0;                 ///< share of the points left out at ends narrower than the noise
     std::vector<std::string> remarks;  ///< unknowns that these marks cannot separate, and additional strokes to paint
     int iterations = 0;

@@ -14,19 +14,19 @@ namespace {
 
 // Steps between footprints along the path and in depth. The edge of a union of discs 0.5 mm wide then has scallops of
 // 0.01 mm, of wider discs smaller ones.
-constexpr double kStepMm = 0.2, kPressMm = 0.15;
-constexpr double kAboveMm = 5.0;       // added to the greatest depth: the brush starts above any error of the height
-constexpr double kLeastRingMm2 = 0.2;  // smaller rings are specks
-constexpr double kLeastReachMm = 5.0;  // of a field: over a shorter distance, a smooth field is constant
+constexpr double kMaxStepMm = 0.2, kMaxPressStepMm = 0.15;
+constexpr double kStartHeightMm = 5.0;    // added to the greatest depth: the brush starts above any error of the height
+constexpr double kMinRingAreaMm2 = 0.2;   // smaller rings are specks
+constexpr double kMinFieldReachMm = 5.0;  // of a field: over a shorter distance, a smooth field is constant
 // Limits of the evaluations of instants in a fit, in total and per place and point. Marks of a brush need two to ten
 // thousand. Marks that no brush paints, for which huge footprints overlap, needed millions, and minutes.
-constexpr double kMostLooks = 2e7, kMostLooksEach = 3e4;
+constexpr double kMaxEvaluations = 2e7, kMaxEvaluationsPerItem = 3e4;
 // Limit for one mark, about as many as a sheet of fifty strokes needs. 9 m of jumps to and fro, painted as a brush
 // would, needed ten times as many, and a minute.
-constexpr double kMostLooksOfOne = 2e8;
+constexpr double kMaxEvaluationsPerMark = 2e8;
 
 /// Adds moves from above the paper down to the first pose and from the last pose up again, as a robot moves.
-Poses from_above(const Poses& poses, double above_mm) {
+Poses add_approach_and_retreat(const Poses& poses, double above_mm) {
     Poses out(poses.rows() + 2, 3);
     out.middleRows(1, poses.rows()) = poses;
     out.row(0) = poses.row(0);
@@ -36,8 +36,8 @@ Poses from_above(const Poses& poses, double above_mm) {
 }
 
 /// Replaces arcs by chords, because a machine with errors does not make circles of circles.
-void to_chords(Poses& poses, std::vector<Arc>& arcs) {
-    constexpr double kChordRad = 0.02;
+void replace_arcs_by_chords(Poses& poses, std::vector<Arc>& arcs) {
+    constexpr double kMaxChordTurnRad = 0.02;
     std::vector<double> xyz;
     const auto put = [&](const Eigen::RowVector3d& p) { xyz.insert(xyz.end(), {p.x(), p.y(), p.z()}); };
     auto arc = arcs.begin();
@@ -48,7 +48,7 @@ void to_chords(Poses& poses, std::vector<Arc>& arcs) {
         const Eigen::Vector2d a = poses.row(i).head<2>().transpose(), b = poses.row(i + 1).head<2>().transpose();
         const Eigen::Vector2d centre(arc->centre_mm[0], arc->centre_mm[1]);
         const double turn = turn_between(*arc, a, b);
-        const int parts = int(std::ceil(std::abs(turn) / kChordRad));
+        const int parts = int(std::ceil(std::abs(turn) / kMaxChordTurnRad));
         for (int k = 1; k < parts; ++k) {
             const double share = double(k) / parts;
             const Eigen::Vector2d on = centre + Eigen::Rotation2Dd(turn * share) * (a - centre);
@@ -61,31 +61,31 @@ void to_chords(Poses& poses, std::vector<Arc>& arcs) {
 
 /// Returns the direction from which x and y came to the first pose, from the end of the mark before; 0 for the first
 /// mark, for which it is unknown.
-Eigen::Vector2d came_from(const Poses& poses, const PaintedMark* before) {
-    constexpr double kRestsMm = 1e-6;
+Eigen::Vector2d approach_direction(const Poses& poses, const PaintedMark* before) {
+    constexpr double kMinAxisMoveMm = 1e-6;
     Eigen::Vector2d out(0.0, 0.0);
     for (int axis = 0; axis < 2 && before; ++axis) {
         const double by = poses(0, axis) - before->poses_mm(before->poses_mm.rows() - 1, axis);
-        if (std::abs(by) > kRestsMm) out[axis] = std::copysign(1.0, by);
+        if (std::abs(by) > kMinAxisMoveMm) out[axis] = std::copysign(1.0, by);
     }
     return out;
 }
 
 /// Adds poses where an axis reverses: there it does not move for its backlash, and then moves as commanded.
-Poses close_at_turns(const Poses& poses, Eigen::Vector2d came) {
-    constexpr std::array<double, 7> kBehindMm{0.05, 0.1, 0.2, 0.3, 0.45, 0.7, 1.0};
+Poses add_poses_at_reversals(const Poses& poses, Eigen::Vector2d approach) {
+    constexpr std::array<double, 7> kReversalStepsMm{0.05, 0.1, 0.2, 0.3, 0.45, 0.7, 1.0};
     std::vector<double> xyz(poses.data(), poses.data() + 3);
     for (Index i = 0; i + 1 < poses.rows(); ++i) {
         const Eigen::RowVector3d by = poses.row(i + 1) - poses.row(i);
         std::vector<double> shares;
         for (int axis = 0; axis < 2; ++axis) {
             const double step = std::abs(by[axis]), way = std::copysign(1.0, by[axis]);
-            if (!(step > kBehindMm.front()) || way == came[axis]) continue;
-            for (const double mm : kBehindMm)
+            if (!(step > kReversalStepsMm.front()) || way == approach[axis]) continue;
+            for (const double mm : kReversalStepsMm)
                 if (mm < step) shares.push_back(mm / step);
         }
         for (int axis = 0; axis < 2; ++axis)
-            if (std::abs(by[axis]) > kBehindMm.front()) came[axis] = std::copysign(1.0, by[axis]);
+            if (std::abs(by[axis]) > kReversalStepsMm.front()) approach[axis] = std::copysign(1.0, by[axis]);
         shares.push_back(1.0);
         std::sort(shares.begin(), shares.end());
         for (const double share : shares) {
@@ -98,16 +98,16 @@ Poses close_at_turns(const Poses& poses, Eigen::Vector2d came) {
 
 /// Returns a law with `terms` coefficients: padded with 0, or the nearest law on [0, deepest] if c has more. first: its
 /// least power.
-VectorXd of_terms(const std::vector<double>& c, Index terms, Index first, double deepest) {
-    constexpr int kDepths = 41;
+VectorXd with_term_count(const std::vector<double>& c, Index terms, Index first, double deepest) {
+    constexpr int kDepthSamples = 41;
     const Index size = Index(c.size());
     VectorXd out = VectorXd::Zero(terms);
     for (Index i = 0; i < std::min(terms, size); ++i) out[i] = c[std::size_t(i)];
     if (size <= terms) return out;
-    MatrixXd powers(kDepths, terms - first);
-    VectorXd value = VectorXd::Zero(kDepths);
-    for (int k = 0; k < kDepths; ++k) {
-        const double d = deepest * (k + 1) / kDepths;
+    MatrixXd powers(kDepthSamples, terms - first);
+    VectorXd value = VectorXd::Zero(kDepthSamples);
+    for (int k = 0; k < kDepthSamples; ++k) {
+        const double d = deepest * (k + 1) / kDepthSamples;
         for (Index i = first; i < terms; ++i) powers(k, i - first) = std::pow(d, double(i));
         for (Index i = size; i-- > 0;) value[k] = value[k] * d + c[std::size_t(i)];
     }
@@ -115,16 +115,16 @@ VectorXd of_terms(const std::vector<double>& c, Index terms, Index first, double
     return out;
 }
 
-bool has_machine(const MarkOptions& options) {
+bool has_machine_errors(const MarkOptions& options) {
     return options.lean_mm_per_mm > 0.0 || options.axes > 0.0 || options.tilt_mm_per_mm > 0.0 ||
            options.backlash_mm > 0.0 || options.field_mm > 0.0;
 }
 
-std::vector<double> close_places(const Poses& poses, double coarse) {
+std::vector<double> sample_places(const Poses& poses, double coarse) {
     std::vector<double> out{0.0};
     for (Index i = 0; i + 1 < poses.rows(); ++i) {
         const Eigen::RowVector3d by = poses.row(i + 1) - poses.row(i);
-        const double most = std::max(by.head<2>().norm() / kStepMm, std::abs(by[2]) / kPressMm);
+        const double most = std::max(by.head<2>().norm() / kMaxStepMm, std::abs(by[2]) / kMaxPressStepMm);
         const int parts = std::max(1, int(std::ceil(most / coarse)));
         for (int k = 1; k <= parts; ++k) out.push_back(double(i) + double(k) / parts);
     }
@@ -132,13 +132,13 @@ std::vector<double> close_places(const Poses& poses, double coarse) {
 }
 
 /// Returns the box of all places to which the TCP was commanded.
-FieldBox box_of(const std::vector<PaintedMark>& marks) {
+FieldBox commanded_box(const std::vector<PaintedMark>& marks) {
     Eigen::Vector2d low(INFINITY, INFINITY), high = -low;
     for (const PaintedMark& mark : marks) {
         low = low.cwiseMin(mark.poses_mm.leftCols<2>().colwise().minCoeff().transpose());
         high = high.cwiseMax(mark.poses_mm.leftCols<2>().colwise().maxCoeff().transpose());
     }
-    return {0.5 * (low + high), (0.5 * (high - low)).cwiseMax(kLeastReachMm)};
+    return {0.5 * (low + high), (0.5 * (high - low)).cwiseMax(kMinFieldReachMm)};
 }
 
 /// Adds points at equal distances along a closed outline, about `spacing` apart.
@@ -169,18 +169,18 @@ void add_normals(const Ring& points, Index begin, Index end, Ring& normals) {
 
 }  // namespace
 
-Layout MarkModel::layout_of(const MarkOptions& options) {
+Layout MarkModel::make_layout(const MarkOptions& options) {
     return {options.lag_terms,    options.tip_gap_terms, options.half_width_terms,
-            options.widest_terms, options.front_terms,   has_machine(options) ? kMachine : 0};
+            options.widest_terms, options.front_terms,   has_machine_errors(options) ? kMachineErrors : 0};
 }
 
 MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse)
-    : layout_(layout_of(options)),
+    : layout_(make_layout(options)),
       deepest_(options.deepest_mm),
       coarse_(coarse),
       spacing_(options.spacing_mm),
       round_tail_(options.round_tail),
-      is_bent_(options.field_mm > 0.0) {
+      has_field_(options.field_mm > 0.0) {
     lag_powers_ = powers_from_controls(layout_.lag - 1, 0.0, deepest_);
     const MatrixXd whole = powers_from_controls(layout_.half, 0.0, deepest_);
     const MatrixXd sums = MatrixXd::Ones(layout_.half, layout_.half).triangularView<Eigen::Lower>();
@@ -188,21 +188,24 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
     centre_.setZero();
     Index poses = 0;
     for (const PaintedMark& mark : marks) {
-        Painted painted{mark.stroke, from_above(mark.poses_mm, kAboveMm + deepest_), mark.arcs, {0.0, 0.0}, {}, {}, {},
-                        {0}};
+        Painted painted{mark.stroke, add_approach_and_retreat(mark.poses_mm, kStartHeightMm + deepest_),
+                        mark.arcs,   {0.0, 0.0},
+                        {},          {},
+                        {},          {0}};
         for (Arc& arc : painted.arcs) {  // arcs count from the first pose, which is the second one here
             ++arc.first;
             ++arc.last;
         }
         if (layout_.machine_numbers > 0) {
-            to_chords(painted.poses_mm, painted.arcs);
-            painted.came = came_from(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
-            if (options.backlash_mm > 0.0) painted.poses_mm = close_at_turns(painted.poses_mm, painted.came);
+            replace_arcs_by_chords(painted.poses_mm, painted.arcs);
+            painted.approach = approach_direction(painted.poses_mm, &mark == &marks.front() ? nullptr : &mark - 1);
+            if (options.backlash_mm > 0.0)
+                painted.poses_mm = add_poses_at_reversals(painted.poses_mm, painted.approach);
         }
-        painted.at = close_places(painted.poses_mm, coarse_);
+        painted.at = sample_places(painted.poses_mm, coarse_);
         std::vector<double> xy;
         for (const Ring& ring : mark.outline_mm) {
-            if (std::abs(signed_area(ring)) < kLeastRingMm2) continue;
+            if (std::abs(signed_area(ring)) < kMinRingAreaMm2) continue;
             add_points(ring, options.spacing_mm, xy);
             painted.rings.push_back(Index(xy.size() / 2));
         }
@@ -215,54 +218,54 @@ MarkModel::MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& o
         poses += mark.poses_mm.rows();
     }
     centre_ /= double(std::max<Index>(1, poses));
-    box_ = box_of(marks);
-    looks_.assign(painted_.size(), 0);
+    box_ = commanded_box(marks);
+    evaluations_.assign(painted_.size(), 0);
 }
 
-void MarkModel::refuse_endless() const {
-    double looks = 0.0, most = kMostLooks, worst = 0.0;
+void MarkModel::require_bounded_work() const {
+    double looks = 0.0, most = kMaxEvaluations, worst = 0.0;
     std::size_t which = 0;
     for (std::size_t i = 0; i < painted_.size(); ++i) {
         const double size = double(painted_[i].at.size()) + double(painted_[i].point_mm.rows());
-        looks += double(looks_[i]);
-        most += kMostLooksEach * size;
-        if (double(looks_[i]) <= worst * size) continue;
-        worst = double(looks_[i]) / size;
+        looks += double(evaluations_[i]);
+        most += kMaxEvaluationsPerItem * size;
+        if (double(evaluations_[i]) <= worst * size) continue;
+        worst = double(evaluations_[i]) / size;
         which = i;
     }
-    if (looks > most) throw no_brush_paints(painted_[which].stroke);
+    if (looks > most) throw no_brush_error(painted_[which].stroke);
     for (std::size_t i = 0; i < painted_.size(); ++i)
-        if (double(looks_[i]) > kMostLooksOfOne)
+        if (double(evaluations_[i]) > kMaxEvaluationsPerMark)
             throw Error("fit-failed",
                         "the stroke is so long and crosses itself so often that its mark cannot be fitted: leave it "
                         "out",
                         painted_[i].stroke);
 }
 
-VectorXd MarkModel::unbounded(const MarkLaws& laws) const {
+VectorXd MarkModel::unlimited_unknowns(const MarkLaws& laws) const {
     VectorXd x = VectorXd::Zero(layout_.size());
-    x.head(layout_.lag) = lag_powers_.colPivHouseholderQr().solve(of_terms(laws.lag, layout_.lag, 0, deepest_));
-    const VectorXd gap = of_terms(laws.tip_gap, layout_.gap + 1, 1, deepest_);
+    x.head(layout_.lag) = lag_powers_.colPivHouseholderQr().solve(with_term_count(laws.lag, layout_.lag, 0, deepest_));
+    const VectorXd gap = with_term_count(laws.tip_gap, layout_.gap + 1, 1, deepest_);
     for (int k = 0; k < layout_.gap; ++k) x[layout_.gap_at() + k] = gap[k + 1] * std::pow(deepest_, k + 1);
     x.segment(layout_.half_at(), layout_.half) =
         half_powers_.bottomRows(layout_.half)
             .colPivHouseholderQr()
-            .solve(of_terms(laws.half_width, layout_.half + 1, 1, deepest_).tail(layout_.half));
+            .solve(with_term_count(laws.half_width, layout_.half + 1, 1, deepest_).tail(layout_.half));
     for (const auto& [by_depth, mean, first, terms] :
          {std::tuple{&laws.widest_by_depth, laws.widest_per_half, layout_.widest(), layout_.widest_terms},
           std::tuple{&laws.front_by_depth, laws.front_per_half, layout_.front(), layout_.front_terms}}) {
         if (!by_depth->empty())
             x.segment(first, terms) = powers_from_legendre(terms - 1, deepest_)
                                           .colPivHouseholderQr()
-                                          .solve(of_terms(*by_depth, terms, 0, deepest_));
+                                          .solve(with_term_count(*by_depth, terms, 0, deepest_));
         x[first] = mean;
     }
     return x;
 }
 
-VectorXd MarkModel::least() const {
+VectorXd MarkModel::lower_bounds() const {
     VectorXd out = VectorXd::Constant(layout_.size(), -1e6);
-    out.head(layout_.lag).setConstant(kLeastLagMm);
+    out.head(layout_.lag).setConstant(kMinLagMm);
     out.segment(layout_.half_at(), layout_.half).setZero();
     out[layout_.widest()] = out[layout_.front()] = 0.1;
     return out;
@@ -280,7 +283,7 @@ MatrixXd MarkModel::to_coefficients() const {
     return out;
 }
 
-MatrixXd MarkModel::departures(const Layout& from) const {
+MatrixXd MarkModel::departure_rows(const Layout& from) const {
     const MatrixXd to = to_coefficients();
     std::vector<Eigen::RowVectorXd> rows;
     const auto put = [&](int first, int terms, int known, double size) {
@@ -323,41 +326,42 @@ MarkLaws MarkModel::laws(const VectorXd& shared) const {
     return out;
 }
 
-std::array<double, kMachine> MarkModel::machine_numbers(const VectorXd& shared) const {
-    std::array<double, kMachine> out{};
+std::array<double, kMachineErrors> MarkModel::machine_numbers(const VectorXd& shared) const {
+    std::array<double, kMachineErrors> out{};
     for (int i = 0; i < layout_.machine_numbers; ++i) out[std::size_t(i)] = shared[layout_.machine() + i];
     return out;
 }
 
 Machine MarkModel::machine(const VectorXd& shared) const {
-    const std::array<double, kMachine> by = machine_numbers(shared);
+    const std::array<double, kMachineErrors> by = machine_numbers(shared);
     const auto two = [&](int first, double more) {
         return std::array<double, 2>{by[std::size_t(first)] + more, by[std::size_t(first + 1)] + more};
     };
     const auto three = [&](int first) {
         return std::array<double, 3>{by[std::size_t(first)], by[std::size_t(first + 1)], by[std::size_t(first + 2)]};
     };
-    return {two(MachineAt::lean, 0.0),
-            two(MachineAt::scale, 1.0),
-            by[MachineAt::skew],
-            two(MachineAt::tilt, 0.0),
-            two(MachineAt::backlash, 0.0),
-            {three(MachineAt::field), three(MachineAt::field + 3)},
+    return {two(MachineIndex::lean, 0.0),
+            two(MachineIndex::scale, 1.0),
+            by[MachineIndex::skew],
+            two(MachineIndex::tilt, 0.0),
+            two(MachineIndex::backlash, 0.0),
+            {three(MachineIndex::field), three(MachineIndex::field + 3)},
             {box_.middle.x(), box_.middle.y()},
             {box_.reach.x(), box_.reach.y()}};
 }
 
-MachineHere MarkModel::machine_here(const Painted& painted, const VectorXd& shared) const {
-    return {machine_numbers(shared), centre_, painted.came, box_, is_bent_};
+MachineState MarkModel::machine_state(const Painted& painted, const VectorXd& shared) const {
+    return {machine_numbers(shared), centre_, painted.approach, box_, has_field_};
 }
 
-Poses MarkModel::run(Index mark, const VectorXd& shared) const {
+Poses MarkModel::realised_path(Index mark, const VectorXd& shared) const {
     const Painted& painted = painted_[std::size_t(mark)];
     Poses out = painted.poses_mm;
     if (layout_.machine_numbers > 0) {
-        const MachineHere machine = machine_here(painted, shared);
-        const RunWay<double> way{
-            painted.poses_mm, painted.arcs, machine, 0.0, machine.by, behind_by(painted.poses_mm, machine, machine.by)};
+        const MachineState machine = machine_state(painted, shared);
+        const RealisedPath<double> way{painted.poses_mm, painted.arcs,
+                                       machine,          0.0,
+                                       machine.by,       backlash_offsets(painted.poses_mm, machine, machine.by)};
         for (Index i = 0; i < out.rows(); ++i) out.row(i) << way.tcp(i).transpose(), -way.depth(i);
     }
     return out.middleRows(1, out.rows() - 2);

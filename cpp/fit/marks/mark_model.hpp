@@ -25,7 +25,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 struct Layout {
     int lag, gap, half;
     int widest_terms, front_terms;
-    int machine_numbers;  ///< kMachine or 0
+    int machine_numbers;  ///< kMachineErrors or 0
     int gap_at() const { return lag; }
     int half_at() const { return lag + gap; }
     int widest() const { return half_at() + half; }
@@ -42,7 +42,7 @@ class MarkModel {
     /// coarse: factor on the distance between instants at which the brush is evaluated.
     MarkModel(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
-    static Layout layout_of(const MarkOptions& options);
+    static Layout make_layout(const MarkOptions& options);
     const Layout& layout() const { return layout_; }
     Index marks() const { return Index(painted_.size()); }
     double spacing_mm() const { return spacing_; }  ///< between points of an outline
@@ -55,36 +55,36 @@ class MarkModel {
     std::array<double, 2> centre_mm() const { return {centre_.x(), centre_.y()}; }
 
     /// Converts laws to the shared unknowns, with and without the limit to their least values, and back.
-    VectorXd unbounded(const MarkLaws& laws) const;
-    VectorXd unknowns(const MarkLaws& laws) const { return unbounded(laws).cwiseMax(least()); }
+    VectorXd unlimited_unknowns(const MarkLaws& laws) const;
+    VectorXd unknowns(const MarkLaws& laws) const { return unlimited_unknowns(laws).cwiseMax(lower_bounds()); }
     MarkLaws laws(const VectorXd& shared) const;
     /// Derivatives of the quantities in MarkFit::covariance by the shared unknowns.
     MatrixXd to_coefficients() const;
     /// Departures [mm] of each law from a law with the coefficients of `from`, as rows over the shared unknowns. They
     /// are factors of further polynomials that are each 1 at the deepest.
-    MatrixXd departures(const Layout& from) const;
+    MatrixXd departure_rows(const Layout& from) const;
     /// Least value of each shared unknown, so that the lag stays above 0 and the half width rises.
-    VectorXd least() const;
+    VectorXd lower_bounds() const;
     /// The machine for these unknowns.
     Machine machine(const VectorXd& shared) const;
     /// The poses of a mark as the machine ran them, from the commanded ones.
-    Poses run(Index mark, const VectorXd& shared) const;
+    Poses realised_path(Index mark, const VectorXd& shared) const;
 
     /// Switches the derivatives by the machine's numbers off or on.
     void hold_machine(bool hold) { is_machine_held_ = hold; }
     /// Damps the derivatives of the heading of a loose brush on a short lever by the machine's numbers from now on.
-    void doubt_headings() { headings_doubted_ = true; }
+    void damp_loose_headings() { loose_headings_damped_ = true; }
 
     /// Calls work(mark) for every mark, on all processors. Throws Error where the marks have needed so many evaluations
     /// that no brush paints them, with the mark that needed most.
     template <class Work>
     void for_each(Work&& work) const {
-        on_all_processors(0, painted_.size(), [&](std::size_t mark) { work(Index(mark)); });
-        refuse_endless();
+        parallel_for(0, painted_.size(), [&](std::size_t mark) { work(Index(mark)); });
+        require_bounded_work();
     }
 
     /// Continues the count of evaluations of another model of the same marks.
-    void go_on_counting(const MarkModel& other) { looks_ = other.looks_; }
+    void continue_counting_from(const MarkModel& other) { evaluations_ = other.evaluations_; }
 
     /// Computes the distance [mm] of every point of a mark from the predicted edge, and on request the derivatives by
     /// the shared unknowns and by the mark's displacement.
@@ -98,33 +98,33 @@ class MarkModel {
     /// Width of the prediction [mm] across from the edge at every point of a mark; 0 beyond a tip.
     VectorXd widths(Index mark, const double* shared, const double* displacement) const;
     /// Returns the points of a mark in the frame of the plan.
-    Ring placed(Index mark, const double* shared, const double* displacement) const;
+    Ring points_in_plan_frame(Index mark, const double* shared, const double* displacement) const;
 
  private:
     struct Painted {
         std::string stroke;
         Poses poses_mm;  ///< begins and ends above the paper
         std::vector<Arc> arcs;
-        Eigen::Vector2d came{0.0, 0.0};  ///< as in MachineHere
+        Eigen::Vector2d approach{0.0, 0.0};  ///< as in MachineState
         std::vector<double> at;
         Ring point_mm, outward;    ///< points of the paint's outline, and unit normals
         std::vector<Index> rings;  ///< first point of each ring, and the end
     };
-    void refuse_endless() const;
-    MachineHere machine_here(const Painted& painted, const VectorXd& shared) const;
-    std::array<double, kMachine> machine_numbers(const VectorXd& shared) const;
+    void require_bounded_work() const;
+    MachineState machine_state(const Painted& painted, const VectorXd& shared) const;
+    std::array<double, kMachineErrors> machine_numbers(const VectorXd& shared) const;
     /// Computes the derivatives of a distance by the unknowns of the laws, the height and the machine.
-    void by_laws(const Instant& now, const InstantBy& by, const NearestEdge& edge, const Eigen::Vector2d& normal,
-                 Eigen::Ref<Eigen::RowVectorXd> out) const;
+    void law_derivatives(const Instant& now, const InstantDerivatives& by, const NearestEdge& edge,
+                         const Eigen::Vector2d& normal, Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     /// Computes rate times the derivatives of a ratio by its unknowns.
-    void ratio_by(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const;
+    void ratio_derivatives(double depth, double ratio, double rate, Eigen::Ref<Eigen::RowVectorXd> out) const;
 
     std::vector<Painted> painted_;
-    mutable std::vector<std::uint64_t> looks_;  ///< number of evaluations of instants for each mark
+    mutable std::vector<std::uint64_t> evaluations_;  ///< number of evaluations of instants for each mark
     Layout layout_;
     double deepest_, coarse_, spacing_;
-    bool round_tail_, is_bent_, headings_doubted_ = false, is_machine_held_ = false;
+    bool round_tail_, has_field_, loose_headings_damped_ = false, is_machine_held_ = false;
     MatrixXd lag_powers_, half_powers_;  ///< matrices from the laws' unknowns to their coefficients
     Eigen::Vector2d centre_;
     FieldBox box_;

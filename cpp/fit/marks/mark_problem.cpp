@@ -14,17 +14,18 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kFarShare = 0.2;  // of a mark's points: with more outliers it may be matched with the wrong edge
-constexpr int kMoves = 3;
+constexpr double kMaxOutlierShare =
+    0.2;  // of a mark's points: with more outliers it may be matched with the wrong edge
+constexpr int kMaxMoves = 3;
 // Smallest width of the prediction at a point, in standard deviations of the noise. With 2, the ends of strokes that
 // are lifted while moving still bias the height; with 5, the height is known a tenth less well than with 3.
-constexpr double kSlim = 3.0;
+constexpr double kMinWidthSigmas = 3.0;
 
 /// The residuals of one mark for the solver, from the last evaluation. Their squares add up to the loss.
 class MarkCost : public ceres::CostFunction {
  public:
-    MarkCost(const MarkProblem& at, Index mark, const std::vector<bool>& held, bool displaced)
-        : at_(at), mark_(mark), held_(held), displaced_(displaced) {
+    MarkCost(const MarkProblem& at, Index mark, const std::vector<bool>& is_held, bool displaced)
+        : at_(at), mark_(mark), is_held_(is_held), displaced_(displaced) {
         set_num_residuals(int(at.model.points(mark)));
         *mutable_parameter_block_sizes() = {at.model.layout().size(), 2};
     }
@@ -32,42 +33,42 @@ class MarkCost : public ceres::CostFunction {
     void evaluate() {
         const Index n = num_residuals(), size = at_.model.layout().size();
         const Weighing& weighing = at_.weighing;
-        const VectorXd& says = at_.says[std::size_t(mark_)];
+        const VectorXd& point_weights = at_.point_weights[std::size_t(mark_)];
         VectorXd distance;
         residuals_.resize(n);
         by_shared_.setZero(n, size);
-        by_own_.setZero(n, 2);
-        is_painted_ = at_.model.distances(mark_, at_.shared.data(), at_.own[std::size_t(mark_)].data(), distance,
-                                          &by_shared_, &by_own_);
-        if (!is_painted_) return;
-        const double share = 1.0 / std::sqrt(weighing.repeats);
+        by_displacement_.setZero(n, 2);
+        has_prediction_ = at_.model.distances(mark_, at_.shared.data(), at_.displacements_mm[std::size_t(mark_)].data(),
+                                              distance, &by_shared_, &by_displacement_);
+        if (!has_prediction_) return;
+        const double share = 1.0 / std::sqrt(weighing.points_per_independent);
         for (Index k = 0; k < n; ++k) {
             const double z = distance[k] / weighing.noise_mm;
             const Cost c = cost(weighing.loss, z);
-            const double root = std::sqrt(c.rho), weight = share * says[k];
+            const double root = std::sqrt(c.rho), weight = share * point_weights[k];
             const double rate = (root > 1e-9 ? std::abs(c.psi) / root : 1.0) / weighing.noise_mm * weight;
             residuals_[k] = std::copysign(root, z) * weight;
             by_shared_.row(k) *= rate;
-            by_own_.row(k) *= displaced_ ? rate : 0.0;
+            by_displacement_.row(k) *= displaced_ ? rate : 0.0;
         }
         for (Index i = 0; i < size; ++i)
-            if (held_[std::size_t(i)]) by_shared_.col(i).setZero();
+            if (is_held_[std::size_t(i)]) by_shared_.col(i).setZero();
     }
     bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
-        if (!is_painted_) return false;
+        if (!has_prediction_) return false;
         std::copy_n(residuals_.data(), residuals_.size(), residuals);
         if (jacobians && jacobians[0]) std::copy_n(by_shared_.data(), by_shared_.size(), jacobians[0]);
-        if (jacobians && jacobians[1]) std::copy_n(by_own_.data(), by_own_.size(), jacobians[1]);
+        if (jacobians && jacobians[1]) std::copy_n(by_displacement_.data(), by_displacement_.size(), jacobians[1]);
         return true;
     }
 
  private:
     const MarkProblem& at_;
     Index mark_;
-    const std::vector<bool>& held_;
-    bool displaced_, is_painted_ = false;
+    const std::vector<bool>& is_held_;
+    bool displaced_, has_prediction_ = false;
     VectorXd residuals_;
-    RowMajor by_shared_, by_own_;
+    RowMajor by_shared_, by_displacement_;
 };
 
 /// Evaluates all marks at the tried point once, on all processors, before Ceres requests them one by one.
@@ -76,27 +77,27 @@ class MarkCosts : public ceres::EvaluationCallback {
     explicit MarkCosts(const MarkProblem& at) : at_(at) {}
     void PrepareForEvaluation(bool, bool) override {
         std::vector<double> shared(at_.shared.begin(), at_.shared.end());
-        if (shared == shared_at_ && at_.own == own_at_) return;
-        shared_at_ = std::move(shared);
-        own_at_ = at_.own;
+        if (shared == evaluated_shared_ && at_.displacements_mm == evaluated_displacements_mm_) return;
+        evaluated_shared_ = std::move(shared);
+        evaluated_displacements_mm_ = at_.displacements_mm;
         at_.model.for_each([&](Index mark) { all[std::size_t(mark)]->evaluate(); });
     }
     std::vector<std::unique_ptr<MarkCost>> all;
 
  private:
     const MarkProblem& at_;
-    std::vector<double> shared_at_;
-    std::vector<Eigen::Vector2d> own_at_;
+    std::vector<double> evaluated_shared_;
+    std::vector<Eigen::Vector2d> evaluated_displacements_mm_;
 };
 
-std::unique_ptr<ceres::CostFunction> prior(const VectorXd& value, const VectorXd& sigma) {
+std::unique_ptr<ceres::CostFunction> normal_prior(const VectorXd& value, const VectorXd& sigma) {
     ceres::Matrix weight = ceres::Matrix::Zero(value.size(), value.size());
     for (Index i = 0; i < value.size(); ++i) weight(i, i) = sigma[i] == 0.0 ? 1.0 : 1.0 / sigma[i];
     return std::make_unique<ceres::NormalPrior>(weight, value);
 }
 
 /// Returns the rows of LawPrior over the shared unknowns.
-MatrixXd law_rows(const LawPrior& known, const MarkModel& model) {
+MatrixXd law_prior_rows(const LawPrior& known, const MarkModel& model) {
     const Index laws = model.layout().front();
     MatrixXd rows(Index(known.rows.size()), laws);
     for (Index i = 0; i < rows.rows(); ++i)
@@ -107,10 +108,10 @@ MatrixXd law_rows(const LawPrior& known, const MarkModel& model) {
 }
 
 double machine_sigma(const MarkOptions& options, int number) {
-    if (number < MachineAt::scale) return options.lean_mm_per_mm;
-    if (number < MachineAt::tilt) return options.axes;
-    if (number < MachineAt::backlash) return options.tilt_mm_per_mm;
-    return number < MachineAt::field ? options.backlash_mm : options.field_mm;
+    if (number < MachineIndex::scale) return options.lean_mm_per_mm;
+    if (number < MachineIndex::tilt) return options.axes;
+    if (number < MachineIndex::backlash) return options.tilt_mm_per_mm;
+    return number < MachineIndex::field ? options.backlash_mm : options.field_mm;
 }
 
 }  // namespace
@@ -127,40 +128,40 @@ MarkProblem::MarkProblem(const std::vector<PaintedMark>& marks, const MarkOption
     for (int i = 0; i < at.machine_numbers; ++i)
         priors_[std::size_t(at.machine() + i)] = {0.0, machine_sigma(options, i)};
     if (options.laws && !options.laws->rows.empty()) {
-        law_rows_ = law_rows(*options.laws, model);
-        law_mean_ = model.unbounded(options.laws->laws);
+        law_prior_rows_ = law_prior_rows(*options.laws, model);
+        law_prior_mean_ = model.unlimited_unknowns(options.laws->laws);
     }
     hold_shape(false, false);
     shared = VectorXd::Zero(at.size());
-    own.assign(std::size_t(model.marks()), Eigen::Vector2d::Zero());
-    for (Index i = 0; i < model.marks(); ++i) says.push_back(VectorXd::Ones(model.points(i)));
+    displacements_mm.assign(std::size_t(model.marks()), Eigen::Vector2d::Zero());
+    for (Index i = 0; i < model.marks(); ++i) point_weights.push_back(VectorXd::Ones(model.points(i)));
 }
 
-void MarkProblem::begin(const MarkLaws& laws) {
+void MarkProblem::start_at(const MarkLaws& laws) {
     const Layout& at = model.layout();
     shared = model.unknowns(laws);
     for (int i : {at.widest(), at.front(), at.height()}) shared[i] = priors_[std::size_t(i)].value;
-    std::fill(own.begin(), own.end(), Eigen::Vector2d::Zero());
+    std::fill(displacements_mm.begin(), displacements_mm.end(), Eigen::Vector2d::Zero());
 }
 
 void MarkProblem::hold_shape(bool hold, bool hold_machine) {
-    held_.resize(priors_.size());
-    for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = priors_[i].sigma == 0.0;
+    is_held_.resize(priors_.size());
+    for (std::size_t i = 0; i < is_held_.size(); ++i) is_held_[i] = priors_[i].sigma == 0.0;
     const Layout& at = model.layout();
-    if (hold) std::fill(held_.begin() + at.widest(), held_.begin() + at.height(), true);
-    if (hold_machine) std::fill(held_.begin() + at.machine(), held_.end(), true);
+    if (hold) std::fill(is_held_.begin() + at.widest(), is_held_.begin() + at.height(), true);
+    if (hold_machine) std::fill(is_held_.begin() + at.machine(), is_held_.end(), true);
     model.hold_machine(hold_machine);
 }
 
-void MarkProblem::expect(const MatrixXd& rows) {
-    law_rows_ = rows;
+void MarkProblem::set_departure_prior(const MatrixXd& rows) {
+    law_prior_rows_ = rows;
     departs_ = rows.rows() > 0;
-    law_mean_ = VectorXd::Zero(shared.size());
+    law_prior_mean_ = VectorXd::Zero(shared.size());
 }
 
 VectorXd MarkProblem::losses() const {
     VectorXd out(model.marks());
-    model.for_each([&](Index i) { out[i] = loss_of(i, own[std::size_t(i)]); });
+    model.for_each([&](Index i) { out[i] = loss_of(i, displacements_mm[std::size_t(i)]); });
     return out;
 }
 
@@ -183,39 +184,40 @@ double MarkProblem::loss_of(Index mark, const Eigen::Vector2d& displacement) con
     VectorXd distance;
     if (!model.distances(mark, shared.data(), displacement.data(), distance, nullptr, nullptr)) return INFINITY;
     const VectorXd rho = (distance / weighing.noise_mm).unaryExpr([&](double z) { return cost(weighing.loss, z).rho; });
-    return 0.5 * says[std::size_t(mark)].dot(rho) / weighing.repeats;
+    return 0.5 * point_weights[std::size_t(mark)].dot(rho) / weighing.points_per_independent;
 }
 
-void MarkProblem::leave_slim_aside() {
-    std::vector<VectorXd> width(own.size());
-    model.for_each(
-        [&](Index i) { width[std::size_t(i)] = model.widths(i, shared.data(), own[std::size_t(i)].data()); });
+void MarkProblem::ignore_narrow_points() {
+    std::vector<VectorXd> width(displacements_mm.size());
+    model.for_each([&](Index i) {
+        width[std::size_t(i)] = model.widths(i, shared.data(), displacements_mm[std::size_t(i)].data());
+    });
     std::vector<double> all;
     for (const VectorXd& one : width) all.insert(all.end(), one.begin(), one.end());
     if (all.empty()) return;
     const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
     std::nth_element(all.begin(), middle, all.end());
     // For a pen, whose lines are narrow everywhere, the limit keeps the lines and leaves out only their ends.
-    const double least = std::min(kSlim * weighing.noise_mm, 0.5 * *middle);
+    const double least = std::min(kMinWidthSigmas * weighing.noise_mm, 0.5 * *middle);
     for (Index i = 0; i < model.marks(); ++i)
-        says[std::size_t(i)] = (width[std::size_t(i)].array() >= least).cast<double>();
+        point_weights[std::size_t(i)] = (width[std::size_t(i)].array() >= least).cast<double>();
 }
 
-void MarkProblem::find_displaced() {
+void MarkProblem::correct_displaced_marks() {
     if (!(displacement_mm_ > 0.0)) return;
     const auto loss_at = [&](Index mark, const Eigen::Vector2d& displacement) {
         return loss_of(mark, displacement) + 0.5 * displacement.squaredNorm() / (displacement_mm_ * displacement_mm_);
     };
     model.for_each([&](Index i) {
-        Eigen::Vector2d& at = own[std::size_t(i)];
+        Eigen::Vector2d& at = displacements_mm[std::size_t(i)];
         VectorXd distance;
-        RowMajor by(model.points(i), shared.size()), by_own(model.points(i), 2);
+        RowMajor by(model.points(i), shared.size()), by_displacement(model.points(i), 2);
         double now = loss_at(i, at);
-        for (int round = 0; round < kMoves; ++round) {
-            if (!model.distances(i, shared.data(), at.data(), distance, &by, &by_own)) break;
-            const auto far = (distance.array().abs() > kTukey * weighing.noise_mm).cast<double>();
-            if (far.sum() < kFarShare * double(distance.size())) break;
-            const RowMajor rows = far.matrix().asDiagonal() * by_own;
+        for (int round = 0; round < kMaxMoves; ++round) {
+            if (!model.distances(i, shared.data(), at.data(), distance, &by, &by_displacement)) break;
+            const auto far = (distance.array().abs() > kTukeySigmas * weighing.noise_mm).cast<double>();
+            if (far.sum() < kMaxOutlierShare * double(distance.size())) break;
+            const RowMajor rows = far.matrix().asDiagonal() * by_displacement;
             const Eigen::Matrix2d square = rows.transpose() * rows + 1e-9 * Eigen::Matrix2d::Identity();
             const Eigen::Vector2d moved = at - square.ldlt().solve(rows.transpose() * distance);
             const double then = loss_at(i, moved);
@@ -226,7 +228,7 @@ void MarkProblem::find_displaced() {
     });
 }
 
-bool MarkProblem::solve(int most_iterations, double tolerance) {
+bool MarkProblem::solve(int max_iterations, double tolerance) {
     MarkCosts costs(*this);
     std::vector<std::unique_ptr<ceres::CostFunction>> priors;
     ceres::Problem::Options options;
@@ -237,10 +239,10 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     auto order = std::make_shared<ceres::ParameterBlockOrdering>();
     const bool displaced = displacement_mm_ > 0.0;
     for (Index i = 0; i < model.marks(); ++i) {
-        double* mine = own[std::size_t(i)].data();
-        costs.all.push_back(std::make_unique<MarkCost>(*this, i, held_, displaced));
+        double* mine = displacements_mm[std::size_t(i)].data();
+        costs.all.push_back(std::make_unique<MarkCost>(*this, i, is_held_, displaced));
         problem.AddResidualBlock(costs.all.back().get(), nullptr, shared.data(), mine);
-        priors.push_back(prior(VectorXd::Zero(2), VectorXd::Constant(2, displacement_mm_)));
+        priors.push_back(normal_prior(VectorXd::Zero(2), VectorXd::Constant(2, displacement_mm_)));
         problem.AddResidualBlock(priors.back().get(), nullptr, mine);
         order->AddElementToGroup(mine, 0);
     }
@@ -249,20 +251,20 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
         value[i] = priors_[std::size_t(i)].value;
         sigma[i] = priors_[std::size_t(i)].sigma;
     }
-    priors.push_back(prior(value, sigma));
+    priors.push_back(normal_prior(value, sigma));
     problem.AddResidualBlock(priors.back().get(), nullptr, shared.data());
-    if (law_rows_.rows() > 0) {
-        priors.push_back(std::make_unique<ceres::NormalPrior>(law_rows_, law_mean_));
+    if (law_prior_rows_.rows() > 0) {
+        priors.push_back(std::make_unique<ceres::NormalPrior>(law_prior_rows_, law_prior_mean_));
         problem.AddResidualBlock(priors.back().get(), nullptr, shared.data());
     }
     order->AddElementToGroup(shared.data(), 1);
-    const VectorXd least = model.least();
+    const VectorXd least = model.lower_bounds();
     for (Index i = 0; i < shared.size(); ++i)
         if (least[i] > -1e5) problem.SetParameterLowerBound(shared.data(), int(i), least[i]);
     solver.linear_solver_type = ceres::DENSE_SCHUR;
     solver.linear_solver_ordering = order;
     solver.logging_type = ceres::SILENT;
-    solver.max_num_iterations = most_iterations;
+    solver.max_num_iterations = max_iterations;
     solver.max_num_consecutive_invalid_steps = 20;
     solver.max_num_line_search_step_size_iterations = 0;
     solver.use_nonmonotonic_steps = true;
@@ -273,16 +275,16 @@ bool MarkProblem::solve(int most_iterations, double tolerance) {
     return summary.IsSolutionUsable() && summary.termination_type == ceres::CONVERGENCE;
 }
 
-void MarkProblem::add_known(MatrixXd& to) const {
+void MarkProblem::add_prior_information(MatrixXd& to) const {
     VectorXd sigma = VectorXd::Constant(shared.size() + 2 * model.marks(), displacement_mm_);
     for (Index i = 0; i < shared.size(); ++i) sigma[i] = priors_[std::size_t(i)].sigma;
     to.diagonal() += sigma.unaryExpr([](double s) { return s == 0.0 ? 1e12 : 1.0 / (s * s); });
-    if (law_rows_.rows() == 0) return;
+    if (law_prior_rows_.rows() == 0) return;
     const Index g = shared.size();
-    to.topLeftCorner(g, g) += law_rows_.transpose() * law_rows_;
+    to.topLeftCorner(g, g) += law_prior_rows_.transpose() * law_prior_rows_;
 }
 
-VectorXd MarkProblem::known_gradient() const {
+VectorXd MarkProblem::prior_gradient() const {
     const Index g = shared.size();
     VectorXd out = VectorXd::Zero(g + 2 * model.marks());
     for (Index i = 0; i < g; ++i) {
@@ -291,8 +293,9 @@ VectorXd MarkProblem::known_gradient() const {
     }
     if (displacement_mm_ > 0.0)
         for (Index i = 0; i < model.marks(); ++i)
-            out.segment<2>(g + 2 * i) = own[std::size_t(i)] / (displacement_mm_ * displacement_mm_);
-    if (law_rows_.rows() > 0) out.head(g) += law_rows_.transpose() * (law_rows_ * (shared - law_mean_));
+            out.segment<2>(g + 2 * i) = displacements_mm[std::size_t(i)] / (displacement_mm_ * displacement_mm_);
+    if (law_prior_rows_.rows() > 0)
+        out.head(g) += law_prior_rows_.transpose() * (law_prior_rows_ * (shared - law_prior_mean_));
     return out;
 }
 

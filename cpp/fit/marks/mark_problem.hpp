@@ -14,15 +14,15 @@ class MarkProblem {
     MarkProblem(const std::vector<PaintedMark>& marks, const MarkOptions& options, double coarse = 1.0);
 
     /// Starts at these laws, with the prior means of the footprint's shape and the height, and no displacements.
-    void begin(const MarkLaws& laws);
+    void start_at(const MarkLaws& laws);
     /// Holds the footprint's shape constant, and on request the machine as well.
     void hold_shape(bool hold, bool hold_machine);
     /// Corrects marks that were matched with the wrong edge, such as the near edge of a displaced stroke. A mark with
     /// a distant part is moved to where this part is near, if that costs less.
-    void find_displaced();
+    void correct_displaced_marks();
     /// Leaves out points at which the prediction is hardly wider than the noise of its edges. Noise cannot make the
     /// paint at a pointed end narrower than 0, so that it makes the end longer, and the paper seems nearer.
-    void leave_slim_aside();
+    void ignore_narrow_points();
     /// Returns half the loss of each mark, infinite where there is no prediction.
     VectorXd losses() const;
     /// Returns half the loss of all marks.
@@ -31,20 +31,20 @@ class MarkProblem {
     void require_prediction() const;
     /// Minimises the loss until a step lowers it by less than `tolerance`, as a share of the loss. Returns whether it
     /// converged.
-    bool solve(int most_iterations, double tolerance);
+    bool solve(int max_iterations, double tolerance);
     /// Sets the prior of the departures of laws: each row maps the shared unknowns to a standard normal number.
-    void expect(const MatrixXd& rows);
+    void set_departure_prior(const MatrixXd& rows);
     bool is_departing() const { return departs_; }
     /// Adds the information of the priors, over all shared unknowns and then both displacements of every mark.
-    void add_known(MatrixXd& to) const;
+    void add_prior_information(MatrixXd& to) const;
     /// Returns the gradient of the priors over the same unknowns.
-    VectorXd known_gradient() const;
+    VectorXd prior_gradient() const;
 
     MarkModel model;
     Weighing weighing;
     VectorXd shared;
-    std::vector<Eigen::Vector2d> own;
-    std::vector<VectorXd> says;  ///< for every mark: 1 for each point that counts, 0 for the others
+    std::vector<Eigen::Vector2d> displacements_mm;
+    std::vector<VectorXd> point_weights;  ///< for every mark: 1 for each point that counts, 0 for the others
     int iterations = 0;
 
  private:
@@ -53,9 +53,9 @@ class MarkProblem {
 
     double displacement_mm_;
     std::vector<Prior> priors_;
-    MatrixXd law_rows_;  ///< rows of LawPrior over the shared unknowns; empty where nothing is known
-    VectorXd law_mean_;
-    std::vector<bool> held_;
+    MatrixXd law_prior_rows_;  ///< rows of LawPrior over the shared unknowns; empty where nothing is known
+    VectorXd law_prior_mean_;
+    std::vector<bool> is_held_;
     bool departs_ = false;
 };
 

@@ -10,13 +10,13 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr std::size_t kFollowed = 4;
+constexpr std::size_t kMaxStarts = 4;
 // Factors on the distances between points and between instants during the search for a start.
-constexpr double kSparse = 3.0, kCoarse = 2.5;
-constexpr double kTolerance = 1e-3;  // coarse, because the noise is not known yet
+constexpr double kPointSpacingFactor = 3.0, kInstantSpacingFactor = 2.5;
+constexpr double kStartTolerance = 1e-3;  // coarse, because the noise is not known yet
 
 /// Estimates the half width per depth: the painted areas are fitted to 2 times length of the path times depth.
-double width_rate(const std::vector<PaintedMark>& marks) {
+double estimate_width_per_depth(const std::vector<PaintedMark>& marks) {
     double over = 0.0, under = 0.0;
     for (const PaintedMark& mark : marks) {
         double swept = 0.0, painted = 0.0;
@@ -30,8 +30,8 @@ double width_rate(const std::vector<PaintedMark>& marks) {
     return under > 0.0 ? 0.5 * over / under : 0.0;
 }
 
-std::vector<MarkLaws> starts(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    const double rate = std::clamp(width_rate(marks), 0.02, 50.0), deepest = options.deepest_mm;
+std::vector<MarkLaws> candidate_starts(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+    const double rate = std::clamp(estimate_width_per_depth(marks), 0.02, 50.0), deepest = options.deepest_mm;
     std::vector<MarkLaws> out;
     for (double lag : {0.3, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0, 14.0, 20.0, 30.0})
         for (double share : {1.0, 0.3}) {  // share of the lag at depth 0
@@ -54,8 +54,8 @@ std::vector<MarkLaws> nearest_starts(MarkProblem& at, const std::vector<PaintedM
     std::vector<std::pair<double, MarkLaws>> from;
     Eigen::VectorXi unpredicted =
         Eigen::VectorXi::Zero(at.model.marks());  // number of starts that do not predict each mark
-    for (const MarkLaws& laws : starts(marks, options)) {
-        at.begin(laws);
+    for (const MarkLaws& laws : candidate_starts(marks, options)) {
+        at.start_at(laws);
         const VectorXd losses = at.losses();
         unpredicted += (!losses.array().isFinite()).cast<int>().matrix();
         if (losses.allFinite()) from.emplace_back(std::accumulate(losses.begin(), losses.end(), 0.0), laws);
@@ -63,38 +63,38 @@ std::vector<MarkLaws> nearest_starts(MarkProblem& at, const std::vector<PaintedM
     if (from.empty()) {
         Index worst = 0;
         unpredicted.maxCoeff(&worst);
-        throw no_brush_paints(at.model.stroke(worst));
+        throw no_brush_error(at.model.stroke(worst));
     }
     std::stable_sort(from.begin(), from.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<MarkLaws> out;
-    for (std::size_t i = 0; i < std::min(kFollowed, from.size()); ++i) out.push_back(from[i].second);
+    for (std::size_t i = 0; i < std::min(kMaxStarts, from.size()); ++i) out.push_back(from[i].second);
     return out;
 }
 
 /// Moves to the best of these starts, each after a few steps, with the machine held constant or free.
-void try_lags(MarkProblem& at, const std::vector<MarkLaws>& starts, bool is_held) {
+void try_lags(MarkProblem& at, const std::vector<MarkLaws>& candidate_starts, bool is_held) {
     at.hold_shape(true, is_held);
     double best = INFINITY;
     VectorXd shared;
     std::vector<Eigen::Vector2d> own;
-    for (const MarkLaws& laws : starts) {
-        at.begin(laws);
-        at.solve(8, kTolerance);
+    for (const MarkLaws& laws : candidate_starts) {
+        at.start_at(laws);
+        at.solve(8, kStartTolerance);
         const double now = at.loss();
         if (!(now < best)) continue;
         best = now;
         shared = at.shared;
-        own = at.own;
+        own = at.displacements_mm;
     }
     at.shared = shared;
-    at.own = own;
+    at.displacements_mm = own;
     at.hold_shape(false, false);
 }
 
 /// Tries lags with the machine held constant and with the machine free, and keeps the better result. With the machine
 /// held, a lag may win that imitates a lean; with the machine free, a lean that imitates a lag. No small step leads
 /// back from either.
-void try_both(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
+void try_machine_held_and_free(MarkProblem& at, const std::vector<PaintedMark>& marks, const MarkOptions& options) {
     const std::vector<MarkLaws> lags = nearest_starts(at, marks, options);
     double best = INFINITY;
     VectorXd shared;
@@ -102,38 +102,38 @@ void try_both(MarkProblem& at, const std::vector<PaintedMark>& marks, const Mark
     for (const bool is_held : {false, true}) {
         if (is_held && at.model.layout().machine_numbers == 0) break;
         try_lags(at, lags, is_held);
-        at.solve(options.most_iterations, kTolerance);
+        at.solve(options.max_iterations, kStartTolerance);
         const double now = at.loss();
         if (is_held && !(now < best)) continue;
         best = now;
         shared = at.shared;
-        own = at.own;
+        own = at.displacements_mm;
     }
     at.shared = shared;
-    at.own = own;
+    at.displacements_mm = own;
 }
 
 }  // namespace
 
-void start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
-           const MarkOptions& options) {
+void find_start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
+                const MarkOptions& options) {
     MarkOptions sparse = options;
-    sparse.spacing_mm *= kSparse;
-    MarkProblem tried(marks, sparse, kCoarse);
+    sparse.spacing_mm *= kPointSpacingFactor;
+    MarkProblem coarse_problem(marks, sparse, kInstantSpacingFactor);
     if (from) {
-        tried.begin(*from);
-        tried.require_prediction();
-        tried.solve(options.most_iterations, kTolerance);
+        coarse_problem.start_at(*from);
+        coarse_problem.require_prediction();
+        coarse_problem.solve(options.max_iterations, kStartTolerance);
     } else {
-        try_both(tried, marks, options);
+        try_machine_held_and_free(coarse_problem, marks, options);
     }
-    tried.weighing = weighed(tried);
-    tried.find_displaced();
-    at.shared = tried.shared;
-    at.own = tried.own;
-    at.iterations += tried.iterations;
-    at.weighing.noise_mm = tried.weighing.noise_mm;
-    at.weighing = weighed(at);
+    coarse_problem.weighing = estimate_weighing(coarse_problem);
+    coarse_problem.correct_displaced_marks();
+    at.shared = coarse_problem.shared;
+    at.displacements_mm = coarse_problem.displacements_mm;
+    at.iterations += coarse_problem.iterations;
+    at.weighing.noise_mm = coarse_problem.weighing.noise_mm;
+    at.weighing = estimate_weighing(at);
 }
 
 }  // namespace brushsvg::fit

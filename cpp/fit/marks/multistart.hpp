@@ -13,7 +13,7 @@ namespace brushsvg::fit {
 /// footprint's shape is held constant meanwhile: while the lag is wrong, marks fit best to footprints without a front,
 /// and no small step leads back from there. The noise of the distances is known afterwards. Throws Error where no start
 /// predicts the marks.
-void start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
-           const MarkOptions& options);
+void find_start(MarkProblem& at, const std::optional<MarkLaws>& from, const std::vector<PaintedMark>& marks,
+                const MarkOptions& options);
 
 }  // namespace brushsvg::fit

@@ -9,17 +9,17 @@ namespace brushsvg::fit {
 /// The errors along an outline have an autocovariance. The fit has followed a part of them, S h(k), which is added
 /// again. S is the sum of the autocovariance, and h(k) the mean of the k-th diagonal of the hat matrix, which maps
 /// noise to the change of the fit.
-Weighing weighed(const MarkProblem& at);
+Weighing estimate_weighing(const MarkProblem& at);
 
 /// The loss of the marks near the solution, over the shared unknowns and then both displacements of every mark.
-struct MarksLoss {
+struct LossDerivatives {
     VectorXd gradient;
-    MatrixXd slope;  ///< second derivatives
+    MatrixXd hessian;  ///< second derivatives
 };
-MarksLoss marks_loss(const MarkProblem& at);
+LossDerivatives loss_derivatives(const MarkProblem& at);
 
 /// Returns the distance of the shared unknowns from the minimum of loss and priors if the loss were quadratic.
-VectorXd off_least(const MarkProblem& at);
+VectorXd distance_from_minimum(const MarkProblem& at);
 
 /// Returns the covariance of the shared unknowns, with priors: A^-1 (M + P) A^-1.
 ///

@@ -12,21 +12,22 @@ namespace {
 
 // Where the TCP passes a loose brush, the footprint turns around within tenths of a mm of the path. With instants
 // further apart, the edge of the swept area would be off, by 0.3 mm on a reversal.
-constexpr double kApartMm = 0.25;
-constexpr int kMostParts = 200, kRounds = 4, kTangentRounds = 6;
+constexpr double kMaxFootprintStepMm = 0.25;
+constexpr int kMaxParts = 200, kMaxRounds = 4, kMaxTangentRounds = 6;
 // Limits of the instants of one pass. Real brushes need less than one per place, and 1,500 for the largest footprint
 // that turns around. Laws with footprints of half a metre, which a solver tries for marks that no brush paints, needed
 // a million.
-constexpr std::size_t kMostInstants = 5000, kMostPerPlace = 10;
-constexpr std::uint64_t kLooksPerStep = 20;  // cost of following a pass to the next instant, in evaluations of instants
-constexpr double kLeastCosine = 0.05;        // between a footprint's own normal and that of a tangent
+constexpr std::size_t kMaxInstants = 5000, kMaxInstantsPerPlace = 10;
+constexpr std::uint64_t kEvaluationsPerStep =
+    20;                                     // cost of following a pass to the next instant, in evaluations of instants
+constexpr double kMinTangentCosine = 0.05;  // between a footprint's own normal and that of a tangent
 
 // Derivatives by the lag's unknowns and the height, and by the machine. Their numbers are even, because processors
 // compute two at a time.
-constexpr int even(int n) { return n + n % 2; }
-using Jet = ceres::Jet<double, even(kMostTerms + 1)>;
-using MachineJet = ceres::Jet<double, even(kMostTerms + 1 + MachineAt::field)>;
-using FieldJet = ceres::Jet<double, even(kWays)>;
+constexpr int round_up_to_even(int n) { return n + n % 2; }
+using Jet = ceres::Jet<double, round_up_to_even(kMaxTerms + 1)>;
+using MachineJet = ceres::Jet<double, round_up_to_even(kMaxTerms + 1 + MachineIndex::field)>;
+using FieldJet = ceres::Jet<double, round_up_to_even(kPathUnknowns)>;
 
 double at_depth(const std::vector<double>& c, double d) {
     double y = 0.0;
@@ -40,26 +41,26 @@ double slope_at_depth(const std::vector<double>& c, double d) {
 }
 void ratio_at_depth(const std::vector<double>& c, double constant, double d, double& ratio, double& slope) {
     ratio = c.empty() ? constant : at_depth(c, d);
-    slope = c.empty() || ratio <= kLeastRatio ? 0.0 : slope_at_depth(c, d);
-    ratio = std::max(kLeastRatio, ratio);
+    slope = c.empty() || ratio <= kMinRatio ? 0.0 : slope_at_depth(c, d);
+    ratio = std::max(kMinRatio, ratio);
 }
 
 template <int N>
-ByLag by_of(const Vec2<ceres::Jet<double, N>>& from) {
-    constexpr int n = std::min(N, kWays);
-    ByLag out = ByLag::Zero();
+PathDerivatives path_derivatives(const Vec2<ceres::Jet<double, N>>& from) {
+    constexpr int n = std::min(N, kPathUnknowns);
+    PathDerivatives out = PathDerivatives::Zero();
     for (int i = 0; i < 2; ++i) out.row(i).head<n>() = from[i].v.template head<n>().transpose();
     return out;
 }
 template <int N>
-void put_by(const ceres::Jet<double, N>& depth, Eigen::Matrix<double, 1, 1 + kMachine>& by) {
-    constexpr int n = std::min(N, kWays) - kMostTerms;
+void store_depth_derivatives(const ceres::Jet<double, N>& depth, Eigen::Matrix<double, 1, 1 + kMachineErrors>& by) {
+    constexpr int n = std::min(N, kPathUnknowns) - kMaxTerms;
     by.setZero();
-    by.template head<n>() = depth.v.template segment<n>(kMostTerms).transpose();
+    by.template head<n>() = depth.v.template segment<n>(kMaxTerms).transpose();
 }
 
 template <class T>
-std::vector<T> law_by(const std::vector<double>& lag, const Eigen::MatrixXd& by) {
+std::vector<T> differentiable_law(const std::vector<double>& lag, const Eigen::MatrixXd& by) {
     std::vector<T> out;
     for (std::size_t i = 0; i < lag.size(); ++i) {
         out.emplace_back(lag[i]);
@@ -68,26 +69,27 @@ std::vector<T> law_by(const std::vector<double>& lag, const Eigen::MatrixXd& by)
     return out;
 }
 
-RunWay<double> run(const PassRun& pass) {
-    const MachineHere& machine = *pass.machine;
-    return {pass.poses, pass.arcs, machine, pass.height_mm, machine.by, behind_by(pass.poses, machine, machine.by)};
+RealisedPath<double> realised_path(const PassSetup& pass) {
+    const MachineState& machine = *pass.machine;
+    return {pass.poses,     pass.arcs,  machine,
+            pass.height_mm, machine.by, backlash_offsets(pass.poses, machine, machine.by)};
 }
 /// Returns the path with derivatives by the first `numbers` errors of the machine.
 template <class T>
-RunWay<T> run_by(const PassRun& pass, int numbers) {
-    const MachineHere& machine = *pass.machine;
-    RunWay<T> out{pass.poses, pass.arcs, machine, T(pass.height_mm, kMostTerms), {}, {}};
-    for (int i = 0; i < kMachine; ++i) {
+RealisedPath<T> differentiable_path(const PassSetup& pass, int numbers) {
+    const MachineState& machine = *pass.machine;
+    RealisedPath<T> out{pass.poses, pass.arcs, machine, T(pass.height_mm, kMaxTerms), {}, {}};
+    for (int i = 0; i < kMachineErrors; ++i) {
         const double value = machine.by[std::size_t(i)];
-        out.by[std::size_t(i)] = i < numbers ? T(value, kMostTerms + 1 + i) : T(value);
+        out.by[std::size_t(i)] = i < numbers ? T(value, kMaxTerms + 1 + i) : T(value);
     }
-    out.behind = behind_by(pass.poses, machine, out.by);
+    out.behind = backlash_offsets(pass.poses, machine, out.by);
     return out;
 }
 
 /// Finds the first index from i on, in ascending numbers, of a number that is at least `least`. It searches in doubling
 /// strides, because most distances are short.
-std::size_t first_from(const std::vector<double>& rising, std::size_t i, double least) {
+std::size_t first_at_least(const std::vector<double>& rising, std::size_t i, double least) {
     std::size_t end = i;
     for (std::size_t stride = 1; end < rising.size() && rising[end] < least; stride *= 2) {
         i = end + 1;
@@ -99,7 +101,7 @@ std::size_t first_from(const std::vector<double>& rising, std::size_t i, double 
         begin);
 }
 /// Counts how many of the first i numbers are at most `most`.
-std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double most) {
+std::size_t count_at_most(const std::vector<double>& rising, std::size_t i, double most) {
     std::size_t begin = i;
     for (std::size_t stride = 1; begin > 0 && rising[begin - 1] > most; stride *= 2) {
         i = begin - 1;
@@ -111,66 +113,67 @@ std::size_t count_up_to(const std::vector<double>& rising, std::size_t i, double
 
 }  // namespace
 
-bool Footprints::follow(const PassRun& pass, const std::vector<double>& at, double coarse) {
-    apart_ = coarse * kApartMm;
-    if (!pass.machine) return follow_on(CommandedWay<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
-    return follow_on(run(pass), pass, at);
+bool Footprints::follow(const PassSetup& pass, const std::vector<double>& at, double coarse) {
+    max_step_mm_ = coarse * kMaxFootprintStepMm;
+    if (!pass.machine) return follow_path(CommandedPath<double>{pass.poses, pass.arcs, pass.height_mm}, pass, at);
+    return follow_path(realised_path(pass), pass, at);
 }
 
 template <class Way>
-bool Footprints::follow_on(const Way& way, const PassRun& pass, const std::vector<double>& at) {
+bool Footprints::follow_path(const Way& way, const PassSetup& pass, const std::vector<double>& at) {
     const std::vector<double>& lag = pass.laws.lag;
     reach_ = pass.deepest_mm + std::max(0.0, way.deeper_mm);
     for (Eigen::Index i = 0; i < way.count(); ++i) reach_ = std::max(reach_, way.depth(i));
     if (way.depth(0) > 0.0 || !(lag[0] > 0.0) || !real_roots(lag, 0.0, reach_).empty()) return false;
     std::vector<double> close = at;
-    looks_ = 0;
-    for (int round = 0; round < kRounds; ++round) {
+    evaluations_ = 0;
+    for (int round = 0; round < kMaxRounds; ++round) {
         walk(way, close, pass.laws);
-        looks_ += kLooksPerStep * close.size();
-        enclose();
-        const std::vector<double> closer = this->closer(close);
+        evaluations_ += kEvaluationsPerStep * close.size();
+        bound_footprints();
+        const std::vector<double> closer = refine_places(close);
         if (closer.size() == close.size()) break;
-        if (closer.size() > kMostInstants + kMostPerPlace * at.size()) return false;
+        if (closer.size() > kMaxInstants + kMaxInstantsPerPlace * at.size()) return false;
         close = closer;
     }
     return !rows_.empty();
 }
 
-void Footprints::derive(const PassRun& pass, const Eigen::MatrixXd& lag_by, bool by_machine,
+void Footprints::derive(const PassSetup& pass, const Eigen::MatrixXd& lag_by, bool by_machine,
                         std::vector<std::size_t> rows) {
     for (std::size_t i = 0, count = rows.size(); i < count; ++i)
-        if (rows_[rows[i]].heading_of != rows[i]) rows.push_back(rows_[rows[i]].heading_of);
+        if (rows_[rows[i]].heading_source != rows[i]) rows.push_back(rows_[rows[i]].heading_source);
     std::sort(rows.begin(), rows.end());
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    if (by_.size() < rows_.size()) by_.resize(rows_.size());
-    looks_ += kLooksPerStep * rows.size();
+    if (derivatives_.size() < rows_.size()) derivatives_.resize(rows_.size());
+    evaluations_ += kEvaluationsPerStep * rows.size();
     if (!pass.machine)
-        derive_on<Jet>(CommandedWay<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMostTerms)}, pass.laws, lag_by,
-                       rows);
+        derive_path<Jet>(CommandedPath<Jet>{pass.poses, pass.arcs, Jet(pass.height_mm, kMaxTerms)}, pass.laws, lag_by,
+                         rows);
     else if (!by_machine)
-        derive_on<Jet>(run_by<Jet>(pass, 0), pass.laws, lag_by, rows);
-    else if (pass.machine->is_bent)
-        derive_on<FieldJet>(run_by<FieldJet>(pass, kMachine), pass.laws, lag_by, rows);
+        derive_path<Jet>(differentiable_path<Jet>(pass, 0), pass.laws, lag_by, rows);
+    else if (pass.machine->has_field)
+        derive_path<FieldJet>(differentiable_path<FieldJet>(pass, kMachineErrors), pass.laws, lag_by, rows);
     else
-        derive_on<MachineJet>(run_by<MachineJet>(pass, MachineAt::field), pass.laws, lag_by, rows);
+        derive_path<MachineJet>(differentiable_path<MachineJet>(pass, MachineIndex::field), pass.laws, lag_by, rows);
 }
 
 template <class T, class Way>
-void Footprints::derive_on(const Way& way, const MarkLaws& laws, const Eigen::MatrixXd& lag_by,
-                           const std::vector<std::size_t>& rows) {
+void Footprints::derive_path(const Way& way, const MarkLaws& laws, const Eigen::MatrixXd& lag_by,
+                             const std::vector<std::size_t>& rows) {
     std::vector<double> at;
     for (const std::size_t row : rows) at.push_back(rows_[row].place);
-    trace<T>(law_of(law_by<T>(laws.lag, lag_by), 0.0, reach_), way, at, [&](std::size_t k, const Trace<T>& row) {
-        InstantBy& by = by_[rows[k]];
-        by.contact = by_of(row.state.contact);
-        by.heading = by_of(row.state.heading);
-        put_by(row.depth, by.depth);
-    });
-    for (const std::size_t row : rows) by_[row].heading = by_[rows_[row].heading_of].heading;
+    trace<T>(law_of(differentiable_law<T>(laws.lag, lag_by), 0.0, reach_), way, at,
+             [&](std::size_t k, const Trace<T>& row) {
+                 InstantDerivatives& by = derivatives_[rows[k]];
+                 by.contact = path_derivatives(row.state.contact);
+                 by.heading = path_derivatives(row.state.heading);
+                 store_depth_derivatives(row.depth, by.depth);
+             });
+    for (const std::size_t row : rows) derivatives_[row].heading = derivatives_[rows_[row].heading_source].heading;
 }
 
-std::vector<double> Footprints::closer(const std::vector<double>& at) const {
+std::vector<double> Footprints::refine_places(const std::vector<double>& at) const {
     std::vector<double> out;
     std::size_t row = 0;
     for (std::size_t k = 0; k < at.size(); ++k) {
@@ -179,7 +182,7 @@ std::vector<double> Footprints::closer(const std::vector<double>& at) const {
         if (row + 1 >= rows_.size() || k + 1 >= at.size() || rows_[row].place != at[k] ||
             rows_[row + 1].place != at[k + 1])
             continue;
-        const int parts = std::min(kMostParts, int(std::ceil((gone_[row + 1] - gone_[row]) / apart_)));
+        const int parts = std::min(kMaxParts, int(std::ceil((travelled_[row + 1] - travelled_[row]) / max_step_mm_)));
         for (int i = 1; i < parts; ++i) out.push_back(at[k] + (at[k + 1] - at[k]) * i / parts);
     }
     return out;
@@ -196,13 +199,13 @@ void Footprints::walk(const Way& way, const std::vector<double>& at, const MarkL
         now.contact = row.state.contact;
         now.heading = row.state.heading;
         now.heading_known = row.state.heading_known || row.state.taut;
-        now.heading_of = rows_.size() - 1;
+        now.heading_source = rows_.size() - 1;
         now.loose_lever_mm = row.state.taut ? INFINITY : (row.tcp - now.contact).norm();
         now.place = at[k];
         now.depth = d;
         now.gap = at_depth(laws.tip_gap, d);
         now.gap_slope = slope_at_depth(laws.tip_gap, d);
-        const double half = at_depth(laws.half_width, d) + kLeastHalfMm;
+        const double half = at_depth(laws.half_width, d) + kMinHalfWidthMm;
         now.half_slope = slope_at_depth(laws.half_width, d);
         ratio_at_depth(laws.widest_by_depth, laws.widest_per_half, d, now.widest_ratio, now.widest_slope);
         ratio_at_depth(laws.front_by_depth, laws.front_per_half, d, now.front_ratio, now.front_slope);
@@ -215,16 +218,16 @@ void Footprints::walk(const Way& way, const std::vector<double>& at, const MarkL
         for (; open < i; ++open)
             if (!rows_[open].heading_known) {
                 rows_[open].heading = rows_[i].heading;
-                rows_[open].heading_of = i;
+                rows_[open].heading_source = i;
             }
         open = i + 1;
     }
 }
 
-void Footprints::enclose() {
+void Footprints::bound_footprints() {
     middle_.resize(rows_.size());
     radius_.resize(rows_.size());
-    gone_.resize(rows_.size());
+    travelled_.resize(rows_.size());
     Eigen::Matrix<double, 2, 6> before;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Instant& now = rows_[i];
@@ -235,7 +238,7 @@ void Footprints::enclose() {
         const Eigen::Vector2d side = now.drop.half * Eigen::Vector2d(-now.heading.y(), now.heading.x());
         Eigen::Matrix<double, 2, 6> corners;
         corners << tip + side, tip - side, widest + side, widest - side, front + side, front - side;
-        gone_[i] = i ? gone_[i - 1] + std::sqrt((corners - before).colwise().squaredNorm().maxCoeff()) : 0.0;
+        travelled_[i] = i ? travelled_[i - 1] + std::sqrt((corners - before).colwise().squaredNorm().maxCoeff()) : 0.0;
         before = corners;
         const double to_middle = 0.5 * (now.drop.widest + now.drop.front);
         middle_[i] = tip + to_middle * now.heading;
@@ -243,9 +246,9 @@ void Footprints::enclose() {
     }
 }
 
-std::size_t Footprints::downhill(const Eigen::Vector2d& x, std::size_t row) const {
+std::size_t Footprints::descend_to_nearest(const Eigen::Vector2d& x, std::size_t row) const {
     const auto least = [&](std::size_t i) {
-        ++looks_;
+        ++evaluations_;
         const Eigen::Vector2d here = rows_[i].in_frame(x);
         return least_distance(rows_[i].drop, here.x(), here.y());
     };
@@ -264,11 +267,11 @@ std::size_t Footprints::downhill(const Eigen::Vector2d& x, std::size_t row) cons
 NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) const {
     // Between instants, a distance changes by no more than the footprint moves. Where it is much too long, many
     // instants are skipped.
-    const std::size_t begin = row = downhill(x, row);
+    const std::size_t begin = row = descend_to_nearest(x, row);
     const Eigen::Vector2d first = rows_[begin].in_frame(x);
     NearestEdge best = nearest_edge(rows_[begin].drop, first.x(), first.y());
-    const auto look = [&](std::size_t i) {
-        ++looks_;
+    const auto evaluate = [&](std::size_t i) {
+        ++evaluations_;
         const Eigen::Vector2d here = rows_[i].in_frame(x);
         const double least = least_distance(rows_[i].drop, here.x(), here.y());
         if (least < best.distance) {
@@ -281,25 +284,25 @@ NearestEdge Footprints::nearest(const Eigen::Vector2d& x, std::size_t& row) cons
         return least - best.distance;
     };
     for (std::size_t i = begin + 1; i < rows_.size() && best.distance >= 0.0;) {
-        const double clear = gone_[i] + look(i);
-        i = first_from(gone_, i + 1, clear);
+        const double clear = travelled_[i] + evaluate(i);
+        i = first_at_least(travelled_, i + 1, clear);
     }
     for (std::size_t i = begin; i > 0 && best.distance >= 0.0;) {
-        const double clear = gone_[i - 1] - look(i - 1);
-        i = count_up_to(gone_, i - 1, clear);
+        const double clear = travelled_[i - 1] - evaluate(i - 1);
+        i = count_at_most(travelled_, i - 1, clear);
     }
     return best;
 }
 
-SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const {
+SweptEdge Footprints::swept_edge(const Eigen::Vector2d& x, std::size_t row, const NearestEdge& own) const {
     const Instant& here = rows_[row];
     const Eigen::Vector2d normal = here.on_paper(own), from = here.place_of(own);
     SweptEdge best{normal.dot(x - from), normal, own};
     for (const std::size_t other : {row - 1, row + 1}) {
         if (other >= rows_.size()) continue;
         // Instants are further apart only where the brush was in the air in between.
-        const double moved = std::abs(gone_[other] - gone_[row]);
-        if (!(moved > 1e-9) || moved > 4.0 * apart_) continue;
+        const double moved = std::abs(travelled_[other] - travelled_[row]);
+        if (!(moved > 1e-9) || moved > 4.0 * max_step_mm_) continue;
         const Instant& there = rows_[other];
         NearestEdge touched = own, beyond = there.farthest(normal);
         Eigen::Vector2d n = normal, a = from, b = there.place_of(beyond);
@@ -308,7 +311,7 @@ SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const Nea
         SweptEdge pair{n.dot(x - b), n, own};
         // The common tangent is found by iteration: a line through the farthest places, and the farthest places
         // perpendicular to this line.
-        for (int round = 0; round < kTangentRounds; ++round) {
+        for (int round = 0; round < kMaxTangentRounds; ++round) {
             const Eigen::Vector2d along = b - a;
             Eigen::Vector2d across = Eigen::Vector2d(-along.y(), along.x()).normalized();
             if (across.dot(n) < 0.0) across = -across;
@@ -321,7 +324,7 @@ SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const Nea
             b = there.place_of(beyond);
         }
         const double distance = n.dot(x) - std::max(n.dot(a), n.dot(b));
-        if (distance > pair.distance && n.dot(normal) > kLeastCosine) {
+        if (distance > pair.distance && n.dot(normal) > kMinTangentCosine) {
             const double t = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
             pair = {distance, n, between(here.drop, touched, beyond, t)};
         }
@@ -330,7 +333,7 @@ SweptEdge Footprints::swept(const Eigen::Vector2d& x, std::size_t row, const Nea
     return best;
 }
 
-Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) const {
+Eigen::Vector2d Footprints::motion_direction(std::size_t row, const NearestEdge& edge) const {
     if (row == 0 || row + 1 >= rows_.size()) return Eigen::Vector2d::Zero();
     const Eigen::Vector2d here = rows_[row].place_of(edge), come = here - rows_[row - 1].place_of(edge),
                           go = rows_[row + 1].place_of(edge) - here, both = come + go;
@@ -339,9 +342,9 @@ Eigen::Vector2d Footprints::passing(std::size_t row, const NearestEdge& edge) co
     return both.normalized();
 }
 
-double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
+double Footprints::distance_to_outside(const Eigen::Vector2d& x, const Eigen::Vector2d& out, std::size_t& last) const {
     // Footprints with a smaller gap count as adjacent. The limit is larger than the distance between instants.
-    const double gap = 2.0 * apart_;
+    const double gap = 2.0 * max_step_mm_;
     struct Part {
         Span span;
         std::size_t row;
@@ -350,11 +353,11 @@ double Footprints::way_out(const Eigen::Vector2d& x, const Eigen::Vector2d& out,
     parts.clear();
     for (std::size_t i = 0, next; i < rows_.size(); i = next) {
         next = i + 1;
-        ++looks_;
+        ++evaluations_;
         const Eigen::Vector2d to = middle_[i] - x;
         const double beside = std::abs(out.x() * to.y() - out.y() * to.x()), off = std::max(beside, -out.dot(to));
         if (off >= radius_[i]) {
-            next = first_from(gone_, next, gone_[i] + off - radius_[i]);
+            next = first_at_least(travelled_, next, travelled_[i] + off - radius_[i]);
             continue;
         }
         const Eigen::Vector2d at = rows_[i].in_frame(x), u = rows_[i].heading;

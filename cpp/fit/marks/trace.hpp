@@ -32,9 +32,9 @@ LagLaw<T> law_of(const std::vector<T>& coefficients, double lo, double hi) {
     piece.degree = int(coefficients.size()) - 1;
     std::copy(coefficients.begin(), coefficients.end(), piece.coefficients.begin());
     piece.roots = from.roots;
-    piece.clear2 = from.clear2;
-    piece.steepest = from.steepest;
-    piece.most_twisted = from.most_twisted;
+    piece.root_distance2 = from.root_distance2;
+    piece.max_slope = from.max_slope;
+    piece.max_third_derivative = from.max_third_derivative;
     return {{piece}, plain.rigid};
 }
 
@@ -62,7 +62,7 @@ class TraceAt {
                         for (; !is_done() && here(i) < value_of(end); ++k_) {
                             const T t = (T(here(i)) - begin) / (end - begin);
                             if (value_of(t) > value_of(until)) break;
-                            out_(k_, Trace<T>{true, mv.depth(t), mv.tcp(t), within_phase(piece, mv, start, from, t)});
+                            out_(k_, Trace<T>{true, mv.depth(t), mv.tcp(t), state_in_phase(piece, mv, start, from, t)});
                         }
                     });
         } else {
@@ -84,7 +84,7 @@ class TraceAt {
 
 /// Calls out(k, Trace) for every k of `at`: ascending indices of poses, fractional between poses.
 ///
-/// way: a CommandedWay, or a type with the same members. At the first pose, the brush is set down if it is not in the
+/// way: a CommandedPath, or a type with the same members. At the first pose, the brush is set down if it is not in the
 /// air.
 ///
 /// Derivatives pass through events. Where bristles tighten and where they touch, the derivative of the moment is used.

@@ -23,6 +23,7 @@
 #include "brushsvg/region.hpp"
 #include "brushsvg/ring.hpp"
 #include "brushsvg/settings.hpp"
+#include "brushsvg/simplify_pass.hpp"
 #include "brushsvg/simulate.hpp"
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/stroke_id.hpp"
@@ -30,5 +31,4 @@
 #include "brushsvg/stroke_search.hpp"
 #include "brushsvg/student_t.hpp"
 #include "brushsvg/target_mark.hpp"
-#include "brushsvg/thin_out.hpp"
 #include "brushsvg/tracking_error.hpp"

@@ -30,11 +30,11 @@ class CancelWhen {
     CancelWhen(const CancelWhen&) = delete;
     CancelWhen& operator=(const CancelWhen&) = delete;
 
-    struct Asked;
+    struct CancelRequest;
 
  private:
-    std::unique_ptr<Asked> asked_;
-    Asked* before_;
+    std::unique_ptr<CancelRequest> request_;
+    CancelRequest* outer_;
 };
 
 /// Check whether the work is cancelled, and throw if it is. Long loops call this function.
@@ -43,14 +43,14 @@ class CancelWhen {
 void checkpoint(int work = 1);
 
 /// Passes this thread's CancelWhen on to threads that work for it.
-class SameCancel {
+class CancelHandover {
  public:
-    SameCancel();
+    CancelHandover();
     /// Use the CancelWhen on the other thread. That thread must end before the first thread goes on.
     void take_over() const;
 
  private:
-    CancelWhen::Asked* asked_;
+    CancelWhen::CancelRequest* request_;
 };
 
 }  // namespace brushsvg

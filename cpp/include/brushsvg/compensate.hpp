@@ -34,14 +34,14 @@ enum class Terminal {
                 ///< visible
 };
 /// The words for terminals in settings, files and the command line.
-inline constexpr std::array<std::pair<std::string_view, Terminal>, 4> kTerminals{{{"pointed", Terminal::pointed},
-                                                                                  {"round", Terminal::round},
-                                                                                  {"butt", Terminal::butt},
-                                                                                  {"auto", Terminal::automatic}}};
+inline constexpr std::array<std::pair<std::string_view, Terminal>, 4> kTerminalNames{{{"pointed", Terminal::pointed},
+                                                                                      {"round", Terminal::round},
+                                                                                      {"butt", Terminal::butt},
+                                                                                      {"auto", Terminal::automatic}}};
 /// Return the terminal that a word names. Throws Error for an unknown word.
 ///
 /// `where`: the element that the error names.
-Terminal terminal_named(const std::string& name, const std::string& where);
+Terminal parse_terminal(const std::string& name, const std::string& where);
 
 /// Options of compensate().
 struct CompensateOptions {
@@ -49,7 +49,7 @@ struct CompensateOptions {
     double tolerance_mm = 0.05;    ///< largest distance of the widest point from the middle line, also between poses
     std::optional<double> lag_mm;  ///< constant only; default: the lag at the stroke's median depth
     double speed_mm_s = 20.0;      ///< painting speed; the brush's own limit caps it
-    bool few_poses = true;         ///< closed only: use no more poses than the tolerance needs, see thin_out.hpp
+    bool few_poses = true;         ///< closed only: use no more poses than the tolerance needs, see simplify_pass.hpp
     /// Closed only: the terminals of strokes that do not set their own. Without a cut, or without room, a butt terminal
     /// is round. Without room, a round start is pointed and a pointed end is round.
     Terminal start = Terminal::pointed, end = Terminal::round;

@@ -11,7 +11,7 @@ namespace [[gnu::visibility("default")]] brushsvg {
 ///
 /// Each outline is replaced by a polygon within 0.1 mm of it (Douglas and Peucker), so that pixels and facets of curves
 /// do not count. Rings smaller than 0.01 mm^2, which are pinholes, are left out.
-double excess_turning(const Rings& mark, const Rings& wanted);
+double excess_turning(const Rings& mark, const Rings& target);
 
 /// Count the corners of a mark that stick out of the target: its thorns.
 ///
@@ -19,6 +19,6 @@ double excess_turning(const Rings& mark, const Rings& wanted);
 /// Each outline is replaced by a polygon within 0.05 mm of it.
 ///
 /// Outer rings are counter-clockwise; the clockwise rings after an outer ring are its holes.
-int thorns(const Rings& mark, const Rings& wanted);
+int thorns(const Rings& mark, const Rings& target);
 
 }  // namespace brushsvg

@@ -38,9 +38,9 @@ struct LawPiece {
     int degree = 0;
     std::array<T, kMaxLawDegree + 1> coefficients{};  ///< in ascending powers of d
     std::vector<std::complex<double>> roots;          ///< all complex roots of the polynomial
-    double clear2 = 0.0;                              ///< squared distance of the nearest root from [lo, hi] [mm^2]
-    double steepest = 0.0;                            ///< upper bound of |dr/dd| on [lo, hi]
-    double most_twisted = 0.0;                        ///< upper bound of |d3r/dd3| on [lo, hi]
+    double root_distance2 = 0.0;                      ///< squared distance of the nearest root from [lo, hi] [mm^2]
+    double max_slope = 0.0;                           ///< upper bound of |dr/dd| on [lo, hi]
+    double max_third_derivative = 0.0;                ///< upper bound of |d3r/dd3| on [lo, hi]
 
     T at(const T& depth) const {
         std::size_t i = std::size_t(degree);
@@ -164,8 +164,8 @@ struct Move {
 ///
 /// `start`: the state at t = `begin`, where the phase begins.
 template <class T>
-LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
-                         const T& t);
+LagState<T> state_in_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
+                           const T& t);
 
 /// Advance the state over one move, phase by phase.
 ///

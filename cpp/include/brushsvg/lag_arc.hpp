@@ -9,7 +9,7 @@
 namespace [[gnu::visibility("default")]] brushsvg {
 
 template <class T>
-Vec2<T> turned_by(const Vec2<T>& v, const T& angle) {
+Vec2<T> rotated(const Vec2<T>& v, const T& angle) {
     using std::cos;
     using std::sin;
     const T c = cos(angle), s = sin(angle);
@@ -30,11 +30,11 @@ struct ArcMove {
         side = value_of(turn) > 0.0 ? 1.0 : -1.0;
         length = radius * (side * turn);
     }
-    Vec2<T> direction(const T& t) const { return turned_by(along, T(turn * t)); }
+    Vec2<T> direction(const T& t) const { return rotated(along, T(turn * t)); }
     Vec2<T> tcp(const T& t) const {  // computed from the chord, so that a large radius loses no digits
         using std::sin;
         const T half = 0.5 * turn * t;
-        return from + turned_by(along, half) * (2.0 * radius * sin(half) * side);
+        return from + rotated(along, half) * (2.0 * radius * sin(half) * side);
     }
     T depth(const T&) const { return depth_from; }
 };
@@ -49,7 +49,7 @@ ArcMove<T> arc_between(const Vec2<T>& from, const Vec2<T>& to, const T& turn, co
     using std::sqrt;
     const Vec2<T> by = to - from;
     const T chord = sqrt(by.squaredNorm()), half = 0.5 * turn, sine = sin(half);
-    return ArcMove<T>(from, turned_by(Vec2<T>(by / chord), T(-half)),
+    return ArcMove<T>(from, rotated(Vec2<T>(by / chord), T(-half)),
                       T(chord / (value_of(turn) > 0.0 ? 2.0 * sine : -2.0 * sine)), turn, depth);
 }
 
@@ -113,7 +113,7 @@ void drag(const LawPiece<T>& law, const ArcMove<T>& arc, const T& begin, const T
 
 /// Limit of cos(psi) below which the brush is being pushed. Values between the limit and 0 are rounding errors of
 /// psi = 90 degrees, the angle of a turn in place about the contact.
-constexpr double kPushedCosine = -1e-13;
+constexpr double kMaxPushedCosine = -1e-13;
 
 /// Return the t at which a taut brush goes loose; above 1 if it stays taut.
 ///
@@ -185,8 +185,8 @@ T drag_arc(const T& psi0, const T& curvature_per_mm, const T& lag_mm, const T& l
 ///
 /// `start`: the state at t = `begin`, where the phase begins.
 template <class T>
-LagState<T> within_phase(const LawPiece<T>& law, const ArcMove<T>& arc, const LagState<T>& start, const T& begin,
-                         const T& t) {
+LagState<T> state_in_phase(const LawPiece<T>& law, const ArcMove<T>& arc, const LagState<T>& start, const T& begin,
+                           const T& t) {
     LagState<T> state = start;
     if (start.taut)
         detail::drag(law, arc, begin, t, state);
@@ -205,7 +205,7 @@ void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state, Ph
     const auto run = [&](const T& begin, const T& end) {
         if (!(begin < end)) return;
         phase(piece, arc, state, begin, end);
-        state = within_phase(piece, arc, state, begin, end);
+        state = state_in_phase(piece, arc, state, begin, end);
     };
     if (law.rigid) {  // a pen: p = q, the heading is the direction of motion
         state.taut = state.heading_known = true;
@@ -216,7 +216,7 @@ void advance(const LagLaw<T>& law, const ArcMove<T>& arc, LagState<T>& state, Ph
     const T r = piece.at(arc.depth_from), end(1.0);
     T begin(0.0);
     for (int round = 0; round < 2; ++round) {
-        const bool pushed = state.taut && state.heading.dot(arc.direction(begin)) < T(detail::kPushedCosine);
+        const bool pushed = state.taut && state.heading.dot(arc.direction(begin)) < T(detail::kMaxPushedCosine);
         if (pushed) state.taut = false;
         if (!state.taut) {
             const T t = detail::tightening(r, arc, state, begin, pushed);

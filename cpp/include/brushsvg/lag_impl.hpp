@@ -75,7 +75,8 @@ Vec2<double> values_of(const Vec2<T>& v) {
 }
 template <class T>
 LawPiece<double> values_of(const LawPiece<T>& law) {
-    LawPiece<double> out{law.lo, law.hi, law.degree, {}, law.roots, law.clear2, law.steepest, law.most_twisted};
+    LawPiece<double> out{
+        law.lo, law.hi, law.degree, {}, law.roots, law.root_distance2, law.max_slope, law.max_third_derivative};
     for (std::size_t k = 0; k <= std::size_t(law.degree); ++k) out.coefficients[k] = value_of(law.coefficients[k]);
     return out;
 }
@@ -92,7 +93,7 @@ LagState<double> values_of(const LagState<T>& state) {
 
 /// Most intervals of a move that are searched for an event. A move whose numbers are finite needs thousands of times
 /// fewer.
-constexpr int kMostLooks = 100000;
+constexpr int kMaxIntervals = 100000;
 
 /// Return the smallest t in [begin, end] from which a function is negative.
 ///
@@ -106,7 +107,7 @@ double first_negative(double begin, double end, Lower&& lower, Value&& value) {
     std::array<Span, 128> stack;
     std::size_t top = 0;
     stack[top++] = {begin, end};
-    for (int looks = 0; top > 0 && looks < kMostLooks; ++looks) {
+    for (int intervals = 0; top > 0 && intervals < kMaxIntervals; ++intervals) {
         const auto [a, b] = stack[--top];
         if (lower(a, b) >= 0.0) continue;
         const double middle = 0.5 * (a + b);
@@ -155,12 +156,12 @@ void point_at(const Vec2<T>& tcp, LagState<T>& state) {
 /// pass this test and need no search for events.
 template <class T>
 bool stays_taut(const LawPiece<T>& law, const Move<T>& move, double cosine0) {
-    return value_of(move.length) * cosine0 >= std::abs(value_of(move.depth_by)) * law.steepest;
+    return value_of(move.length) * cosine0 >= std::abs(value_of(move.depth_by)) * law.max_slope;
 }
 
 inline double cosine_after(const LawPiece<double>& law, const Move<double>& move, const LagState<double>& start,
                            double begin, double t) {
-    return within_phase(law, move, start, begin, t).heading.dot(move.along);
+    return state_in_phase(law, move, start, begin, t).heading.dot(move.along);
 }
 
 /// Return the t in [begin, end] at which a taut brush goes loose; 2 if none.
@@ -169,11 +170,11 @@ inline double first_loosening(const LawPiece<double>& law, const Move<double>& m
     const double length = move.length, depth_by = move.depth_by;
     // A shallower dip of g moves the patch only by the square of that depth. A search for such dips would never end
     // where g only touches 0.
-    const double noise = 1e-10 * (length + std::abs(depth_by) * law.steepest);
+    const double noise = 1e-10 * (length + std::abs(depth_by) * law.max_slope);
     const auto lengthening = [&](double t) { return depth_by * law.slope(move.depth(t)); };
     const auto g = [&](double t) { return length * cosine_after(law, move, start, begin, t) - lengthening(t); };
     if (g(begin) < -noise) return begin;
-    const double bend = std::abs(depth_by * depth_by * depth_by) * law.most_twisted / 8.0;
+    const double bend = std::abs(depth_by * depth_by * depth_by) * law.max_third_derivative / 8.0;
     const double t = first_negative(
         begin, end,
         [&](double a, double b) {
@@ -231,7 +232,7 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
     if (law.degree == 0) return length / law.coefficients[0];
     const T half = 0.5 * (depth1 - depth0), middle = 0.5 * (depth0 + depth1);
     const double h = value_of(half), m = value_of(middle), h2 = h * h;
-    if (law.clear2 > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
+    if (law.root_distance2 > 73.0 * 73.0 * h2) return length * detail::mean_reciprocal<3>(law, middle, half);
     double nearest = std::numeric_limits<double>::infinity();
     for (const auto& root : law.roots) {
         const double dx = root.real() - m, dy = root.imag();
@@ -255,8 +256,8 @@ T lag_exponent(const LawPiece<T>& law, const T& depth0, const T& depth1, const T
 }
 
 template <class T>
-LagState<T> within_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
-                         const T& t) {
+LagState<T> state_in_phase(const LawPiece<T>& law, const Move<T>& move, const LagState<T>& start, const T& begin,
+                           const T& t) {
     LagState<T> state = start;
     if (start.taut) {
         detail::drag(law, move, begin, t, state);
@@ -295,7 +296,7 @@ double first_tightening(const LawPiece<T>& law, const Move<T>& move, const LagSt
 }
 
 template <class T>
-T polished(const std::vector<T>& f, double x) {
+T polish_root(const std::vector<T>& f, double x) {
     T value(0.0), slope(0.0);
     for (std::size_t i = f.size(); i-- > 0;) {
         slope = slope * x + value;
@@ -309,7 +310,7 @@ T polished(const std::vector<T>& f, double x) {
 }
 
 /// A lever shorter than this [mm] counts as no lever.
-constexpr double kNoLeverMm = 1e-9;
+constexpr double kMinLeverMm = 1e-9;
 
 template <class T, class PhaseSink>
 void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& state, T begin, const T& end,
@@ -325,7 +326,7 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
                 T until = end;
                 if (t < value_of(end)) until = T(t);
                 phase(law, move, state, begin, until);
-                state = within_phase(law, move, state, begin, until);
+                state = state_in_phase(law, move, state, begin, until);
                 loosened = Loosened::by_crossing;
                 begin = until;
             } else {
@@ -339,16 +340,16 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
         const double x = first_tightening(law, move, state, begin, end, loosened, f);
         loosened = Loosened::before;
         T until = end;
-        if (x <= 1.0) until = begin + (end - begin) * polished(f, x);
+        if (x <= 1.0) until = begin + (end - begin) * polish_root(f, x);
         if (value_of(until) > value_of(begin)) phase(law, move, state, begin, until);
-        state = within_phase(law, move, state, begin, until);
+        state = state_in_phase(law, move, state, begin, until);
         begin = until;
         if (x > 1.0) return;
         state.taut = true;
         const T lever = law.at(move.depth(until));
         // A brush without a lever is dragged as soon as it moves. The heading from its contact to the TCP would be a
         // rounding error.
-        if (value_of(lever) < kNoLeverMm && move.length > T(0.0)) {
+        if (value_of(lever) < kMinLeverMm && move.length > T(0.0)) {
             state.heading = move.along;
             state.heading_known = true;
         }
@@ -356,7 +357,7 @@ void advance_on_piece(const LawPiece<T>& law, const Move<T>& move, LagState<T>& 
     }
     if (value_of(begin) < value_of(end)) {
         phase(law, move, state, begin, end);
-        state = within_phase(law, move, state, begin, end);
+        state = state_in_phase(law, move, state, begin, end);
     }
 }
 

@@ -13,15 +13,15 @@ namespace [[gnu::visibility("default")]] brushsvg {
 struct MarkOverlap {
     Window window;
     double px_per_mm;
-    Coverage wanted, painted;
+    Coverage target, painted;
 };
 
 /// Areas of paint and target mark: of their intersection and of their union [mm^2].
 struct CommonArea {
-    double common_mm2;
-    double together_mm2;
+    double intersection_mm2;
+    double union_mm2;
     /// Return the area of the intersection over the area of the union; 1 if both are empty.
-    double overlap() const { return together_mm2 > 0.0 ? common_mm2 / together_mm2 : 1.0; }
+    double overlap() const { return union_mm2 > 0.0 ? intersection_mm2 / union_mm2 : 1.0; }
 };
 
 /// Draw the marks and the strokes that they should be, with a margin of paper.
@@ -30,7 +30,7 @@ struct CommonArea {
 ///
 /// The scale is 8 to 40 pixels per mm, with 6 pixels across the finest half width if 40 per mm allow that. The picture
 /// has at most 4 million pixels. So coarse marks are quick to compare, and hairlines still have an area.
-MarkOverlap mark_overlap(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush);
+MarkOverlap mark_overlap(const std::vector<PassMarks>& painted, const std::vector<Stroke>& target, const Brush& brush);
 
 /// Return the areas of intersection and union in a picture of both.
 CommonArea common_area(const MarkOverlap& seen);
@@ -39,21 +39,21 @@ CommonArea common_area(const MarkOverlap& seen);
 ///
 /// If 4 million pixels are too few for 8 per mm, the sheet is computed at 5 per mm, tile by tile on all processors. All
 /// tiles together have at most 60 million pixels.
-CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted, const Brush& brush);
+CommonArea common_area(const std::vector<PassMarks>& painted, const std::vector<Stroke>& target, const Brush& brush);
 
 /// Return the areas of intersection and union for each group of strokes.
 ///
-/// `groups`: indices of strokes and of the passes that paint them, as touching() returns them.
-std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, const std::vector<Stroke>& wanted,
+/// `groups`: indices of strokes and of the passes that paint them, as group_touching() returns them.
+std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, const std::vector<Stroke>& target,
                                      const std::vector<std::vector<std::size_t>>& groups, const Brush& brush);
 
 /// Return the target marks of strokes as shares of pixels.
-Coverage wanted_coverage(const std::vector<Stroke>& wanted, const Window& window, double px_per_mm);
+Coverage target_coverage(const std::vector<Stroke>& target, const Window& window, double px_per_mm);
 
 /// Return groups of strokes whose target marks touch: the parts of letters.
 ///
 /// Strokes touch directly or through others. Each group contains indices in ascending order. Strokes that touch no
 /// other stroke are not listed.
-std::vector<std::vector<std::size_t>> touching(const std::vector<Stroke>& wanted);
+std::vector<std::vector<std::size_t>> group_touching(const std::vector<Stroke>& target);
 
 }  // namespace brushsvg

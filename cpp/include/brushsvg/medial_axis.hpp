@@ -34,15 +34,15 @@ struct MedialAxis {
 /// It is the Voronoi diagram of the outline's edges, inside the shape, and exact for straight edges. `rings`: a shape
 /// as fill() in region.hpp returns it.
 ///
-/// A branch with a free end is dropped if it adds too little area to the disc where it leaves. `least_share`: the least
+/// A branch with a free end is dropped if it adds too little area to the disc where it leaves. `min_share`: the least
 /// area that it must add, in squares of that disc's radius. The rest is then checked again.
-MedialAxis medial_axis(const Rings& rings, double least_share);
+MedialAxis medial_axis(const Rings& rings, double min_share);
 
 /// Return the medial axis, and keep limbs that are thin relative to the shape.
 ///
-/// A branch is also kept if it meets two conditions. The part beyond some place on it adds at least `least_share` to
-/// the disc at that place. And the part adds at least `least_limb` to the disc where the branch leaves. Both areas are
-/// in squares of the disc's radius.
-MedialAxis medial_axis(const Rings& rings, double least_share, double least_limb);
+/// A branch is also kept if it meets two conditions. The part beyond some place on it adds at least `min_share` to
+/// the disc at that place. And the part adds at least `min_limb_share` to the disc where the branch leaves. Both areas
+/// are in squares of the disc's radius.
+MedialAxis medial_axis(const Rings& rings, double min_share, double min_limb_share);
 
 }  // namespace brushsvg

@@ -34,10 +34,10 @@ void check(const ObjectiveWeights& weights);
 
 /// Level of detail: how small an area of a shape may be to get a stroke of its own.
 enum class Detail { draft, normal, fine };
-inline constexpr std::array<std::pair<std::string_view, Detail>, 3> kDetails{
+inline constexpr std::array<std::pair<std::string_view, Detail>, 3> kDetailNames{
     {{"draft", Detail::draft}, {"normal", Detail::normal}, {"fine", Detail::fine}}};
 /// Return the level of detail that a word names. Throws Error for an unknown word.
-Detail detail_named(const std::string& name);
+Detail parse_detail(const std::string& name);
 
 ObjectiveWeights weights_for(Detail detail);
 

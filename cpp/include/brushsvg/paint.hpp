@@ -26,7 +26,7 @@ struct Paint {
     /// Return the path [mm] after which the width has fallen to a share.
     ///
     /// The share is of a freshly dipped brush's width. Infinite if the width never falls that far.
-    double way_to_share_mm(double share) const;
+    double path_to_share_mm(double share) const;
     /// Return how many numbers the law has, in the covariance's order.
     std::size_t count() const { return lasts_mm ? 2 : 1; }
 };

@@ -7,7 +7,7 @@
 
 namespace [[gnu::visibility("default")]] brushsvg {
 
-/// Options of interrupted(). Lengths are along the path of the TCP on the paper.
+/// Options of split_into_loads(). Lengths are along the path of the TCP on the paper.
 struct PaintLoadOptions {
     double first_mm = 0.0;      ///< length that the paint on the brush lasts at the start
     double every_mm = 0.0;      ///< length that the paint lasts after each refill
@@ -25,6 +25,6 @@ struct PaintLoadOptions {
 /// The parts are called stroke, stroke+2, stroke+3, ... and numbered as loads. If the paint lasts, the only part is the
 /// original pass. Throws Error as simulate() does, for a tilted pass, for negative lengths, and if a load does not
 /// last for more than twice the backtrack.
-std::vector<Pass> interrupted(const Pass& pass, const Brush& brush, const PaintLoadOptions& options);
+std::vector<Pass> split_into_loads(const Pass& pass, const Brush& brush, const PaintLoadOptions& options);
 
 }  // namespace brushsvg

@@ -16,7 +16,7 @@ using Poses = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 /// Largest absolute coordinate [mm]. No table is larger, so a coordinate beyond this limit is an error. Its square can
 /// still be summed.
-inline constexpr double kLargestMm = 1e6;
+inline constexpr double kMaxCoordinateMm = 1e6;
 
 /// A stretch of a pass on a circle: the poses `first` to `last`, at constant depth.
 struct Arc {
@@ -27,22 +27,22 @@ struct Arc {
 
 /// Smallest and largest radius of an arc [mm]. A smaller arc vanishes in the brush's finest mark and in the rounding of
 /// its poses. For a larger one, the coordinates of centre and poses have too few digits.
-inline constexpr std::array<double, 2> kArcRadiusMm{0.1, kLargestMm};
+inline constexpr std::array<double, 2> kArcRadiusRangeMm{0.1, kMaxCoordinateMm};
 
 /// Largest distance of an arc's poses from one circle [mm]. Poses and a centre rounded to three decimals add up to
 /// 0.0028 mm. The arc between two poses runs through both, so nothing jumps. A much larger limit would hide a wrong
 /// centre.
-inline constexpr double kOnCircleMm = 3e-3;
+inline constexpr double kMaxCircleErrorMm = 3e-3;
 
 /// Largest tilt of a brush from upright [deg]. Its laws have never been measured for a strongly tilted brush. At 30
 /// degrees its cross-section is already 15 % longer.
-inline constexpr double kMostTiltDeg = 30.0;
+inline constexpr double kMaxTiltDeg = 30.0;
 
 /// Largest deviation of a tool axis' length from 1. Coordinates rounded to three decimals add up to 0.0009.
-inline constexpr double kUnitLength = 1e-3;
+inline constexpr double kMaxUnitLengthError = 1e-3;
 
-/// Tolerance of kMostTiltDeg [deg]. Rounded coordinates may tilt an axis of 30 degrees that much further.
-inline constexpr double kRoundedTiltDeg = 0.05;
+/// Tolerance of kMaxTiltDeg [deg]. Rounded coordinates may tilt an axis of 30 degrees that much further.
+inline constexpr double kTiltRoundingDeg = 0.05;
 
 /// The motion for one stroke: straight moves, with the depth linear along each.
 struct Pass {

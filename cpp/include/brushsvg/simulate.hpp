@@ -50,6 +50,6 @@ struct TurnOver {
     std::size_t first, last;
 };
 /// Find the rows in which the brush is lifted to turn over.
-std::vector<TurnOver> turns_over(const PassMarks& marks);
+std::vector<TurnOver> find_turn_overs(const PassMarks& marks);
 
 }  // namespace brushsvg

@@ -27,7 +27,7 @@ struct Stroke {
     Cubics middle_mm;
     bool closed = false;  ///< whether the middle line ends where it begins
     std::vector<WidthKnot> half_width;
-    Rings wanted_mm;  ///< target outline as drawn; empty: the path with its width and round caps
+    Rings target_mm;  ///< target outline as drawn; empty: the path with its width and round caps
     std::string layer;
     std::string colour;
     Settings settings;

@@ -27,7 +27,7 @@ struct StrokeScore {
 };
 
 /// Score how well a pass paints a stroke.
-StrokeScore stroke_score(const PassMarks& painted, const Stroke& wanted, const Brush& brush);
+StrokeScore stroke_score(const PassMarks& painted, const Stroke& target, const Brush& brush);
 
 /// Find the place where paint and drawing differ most, in a square of a size [mm].
 WorstPlace worst_place(const MarkOverlap& seen, double size_mm);

@@ -56,8 +56,8 @@ struct UncoveredArea {
 
 /// Find the areas of each shape that its passes leave without paint.
 ///
-/// `least_share`: the least area, as a share of the shape's area, from 0 to 1. The largest areas are first.
+/// `min_share`: the least area, as a share of the shape's area, from 0 to 1. The largest areas are first.
 std::vector<std::vector<UncoveredArea>> uncovered_areas(const std::vector<PaintedShape>& shapes, const Brush& brush,
-                                                        double least_share);
+                                                        double min_share);
 
 }  // namespace brushsvg

@@ -7,20 +7,20 @@ namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Return the outline of the target mark, as rings.
 ///
-/// It is `wanted_mm` if given. Otherwise it is the path with its width: the union of discs of the half width along the
+/// It is `target_mm` if given. Otherwise it is the path with its width: the union of discs of the half width along the
 /// middle line, with round caps and joins. No point of the outline is further than `tolerance_mm` from the true
 /// outline.
-Rings wanted_outline(const Stroke& stroke, double tolerance_mm = 0.005);
+Rings target_outline(const Stroke& stroke, double tolerance_mm = 0.005);
 
 /// Return convex counter-clockwise rings that cover the path with its width.
 ///
-/// Their union has round caps and does not depend on `wanted_mm`. They suffice for a picture, at a fraction of the
+/// Their union has round caps and does not depend on `target_mm`. They suffice for a picture, at a fraction of the
 /// outline's cost.
-Rings wanted_pieces(const Stroke& stroke, double tolerance_mm = 0.005);
+Rings target_pieces(const Stroke& stroke, double tolerance_mm = 0.005);
 
-/// Return the rings of wanted_pieces() that may show in a part of the paper.
+/// Return the rings of target_pieces() that may show in a part of the paper.
 ///
 /// They are in the same order.
-Rings wanted_pieces_near(const Stroke& stroke, const Window& window, double tolerance_mm = 0.005);
+Rings target_pieces_near(const Stroke& stroke, const Window& window, double tolerance_mm = 0.005);
 
 }  // namespace brushsvg

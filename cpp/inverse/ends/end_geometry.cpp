@@ -26,9 +26,9 @@ std::array<Eigen::Matrix<double, 1, 8>, 2> split(const Cubics& middle_mm, Index 
 }
 
 /// Return the path between two places on it, the first before the second.
-Cubics part_of(const Cubics& middle_mm, const Place& from, const Place& to) {
+Cubics sub_path(const Cubics& middle_mm, const Place& from, const Place& to) {
     // the start of a cubic is the end of the one before it
-    if (to.t == 0.0 && from.cubic < to.cubic) return part_of(middle_mm, from, {to.cubic - 1, 1.0});
+    if (to.t == 0.0 && from.cubic < to.cubic) return sub_path(middle_mm, from, {to.cubic - 1, 1.0});
     Cubics out = middle_mm.middleRows(from.cubic, to.cubic - from.cubic + 1);
     const Index last = out.rows() - 1;
     out.row(last) = split(out, last, to.t)[0];
@@ -57,7 +57,7 @@ void StrokePath::append(const Cubics& more_mm) {
     const Index before = middle_mm_.rows();
     middle_mm_.conservativeResize(before + more_mm.rows(), Eigen::NoChange);
     middle_mm_.bottomRows(more_mm.rows()) = more_mm;
-    here_mm_ = more_mm.row(more_mm.rows() - 1).tail<2>().transpose();
+    end_mm_ = more_mm.row(more_mm.rows() - 1).tail<2>().transpose();
 }
 
 void StrokePath::add_width(double at_mm, double half_mm) {
@@ -67,7 +67,7 @@ void StrokePath::add_width(double at_mm, double half_mm) {
 void StrokePath::follow(const Stroke& stroke, const Line& line, double from_mm, double to_mm) {
     const double before_mm = half_mm_.empty() ? 0.0 : length_mm(), whole_mm = line.length();
     const auto [first, last] = std::minmax(from_mm, to_mm);
-    const Cubics part = part_of(stroke.middle_mm, line.at(first).place, line.at(last).place);
+    const Cubics part = sub_path(stroke.middle_mm, line.at(first).place, line.at(last).place);
     append(to_mm < from_mm ? reversed(part) : part);
     std::vector<double> at{from_mm, to_mm};
     for (const WidthKnot& knot : stroke.half_width)
@@ -79,12 +79,12 @@ void StrokePath::follow(const Stroke& stroke, const Line& line, double from_mm, 
 
 void StrokePath::line_to(const Vector2d& to_mm, double half_mm) {
     Cubics straight(1, 8);
-    for (int i = 0; i < 4; ++i) straight.row(0).segment<2>(2 * i) = here_mm_ + i / 3.0 * (to_mm - here_mm_);
-    add_width(length_mm() + (to_mm - here_mm_).norm(), half_mm);
+    for (int i = 0; i < 4; ++i) straight.row(0).segment<2>(2 * i) = end_mm_ + i / 3.0 * (to_mm - end_mm_);
+    add_width(length_mm() + (to_mm - end_mm_).norm(), half_mm);
     append(straight);
 }
 
-Stroke StrokePath::like(const Stroke& stroke) const {
+Stroke StrokePath::with_properties_of(const Stroke& stroke) const {
     Stroke out = stroke;
     out.middle_mm = middle_mm_;
     out.half_width.clear();
@@ -92,19 +92,19 @@ Stroke StrokePath::like(const Stroke& stroke) const {
     return out;
 }
 
-Stroke as_wide_as_painted(const Stroke& stroke, const Brush& brush) {
+Stroke clamp_widths(const Stroke& stroke, const Brush& brush) {
     Stroke out = stroke;
     const auto [least, greatest] = brush.half_width_range_mm();
     for (WidthKnot& knot : out.half_width) knot.half_width_mm = std::clamp(knot.half_width_mm, least, greatest);
     return out;
 }
 
-double outline_ahead_mm(const Rings& rings, const PathEnd& end, double aside_mm) {
+double distance_to_outline_mm(const Rings& rings, const PathEnd& end, double left_mm) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Ring& ring : rings)
         for (Index i = 0, n = ring.rows(); i < n; ++i) {
             const Vector2d a = ring.row(i).transpose() - end.at_mm, b = ring.row((i + 1) % n).transpose() - end.at_mm;
-            const double ya = a.dot(end.left) - aside_mm, yb = b.dot(end.left) - aside_mm;
+            const double ya = a.dot(end.left) - left_mm, yb = b.dot(end.left) - left_mm;
             if ((ya > 0.0) == (yb > 0.0)) continue;
             const double x = a.dot(end.along) + (b - a).dot(end.along) * ya / (ya - yb);
             if (x > 0.0) nearest = std::min(nearest, x);
@@ -112,14 +112,15 @@ double outline_ahead_mm(const Rings& rings, const PathEnd& end, double aside_mm)
     return nearest;
 }
 
-std::optional<Cut> find_cut(const Stroke& stroke, const PathEnd& end, double aside_mm, Caps caps) {
-    if (stroke.wanted_mm.empty()) return caps == Caps::straight ? std::optional(Cut{end.half_mm, 0.0}) : std::nullopt;
-    const auto ahead_mm = [&](double share) { return outline_ahead_mm(stroke.wanted_mm, end, share * aside_mm); };
+std::optional<Cut> find_cut(const Stroke& stroke, const PathEnd& end, double left_mm, Caps caps) {
+    if (stroke.target_mm.empty()) return caps == Caps::straight ? std::optional(Cut{end.half_mm, 0.0}) : std::nullopt;
+    const auto ahead_mm = [&](double share) { return distance_to_outline_mm(stroke.target_mm, end, share * left_mm); };
     const double right = ahead_mm(-1.0), left = ahead_mm(1.0);
-    const Cut cut{0.5 * (right + left), 0.5 * (right - left) / aside_mm};
+    const Cut cut{0.5 * (right + left), 0.5 * (right - left) / left_mm};
     for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-        const double ahead = ahead_mm(share), strays = ahead - (cut.ahead_mm - cut.slope * share * aside_mm);
-        if (!(ahead <= kTuning.cut_farthest * end.half_mm && std::abs(strays) <= kTuning.cut_straight * end.half_mm))
+        const double ahead = ahead_mm(share), deviation = ahead - (cut.ahead_mm - cut.slope * share * left_mm);
+        if (!(ahead <= kEndTuning.max_cut_distance * end.half_mm &&
+              std::abs(deviation) <= kEndTuning.max_cut_deviation * end.half_mm))
             return {};
     }
     return cut;
@@ -150,7 +151,7 @@ std::array<double, 2> painted_stretch(const Stroke& stroke, const Brush& brush, 
     return {s0, length - std::max(0.0, reach_beyond_end_mm(brush, depth_of(stroke, brush, 1.0), h1))};
 }
 
-Stroke up_to_drawn_end(const Stroke& stroke, const Brush& brush) {
+Stroke extend_to_drawn_end(const Stroke& stroke, const Brush& brush) {
     if (stroke.closed || brush.is_rigid()) return stroke;
     const Line line(stroke, brush);
     const double length_mm = line.length();
@@ -159,11 +160,11 @@ Stroke up_to_drawn_end(const Stroke& stroke, const Brush& brush) {
     const double beyond_mm = -reach_beyond_end_mm(brush, depth_of(stroke, brush, 1.0), end.half_mm);
     const auto [s0, s1] = painted_stretch(stroke, brush, length_mm);
     const bool is_dab = !(s1 - s0 > 1e-6);
-    if (is_dab || !(beyond_mm > kTuning.short_of_end * end.half_mm)) return stroke;
+    if (is_dab || !(beyond_mm > kEndTuning.max_end_gap * end.half_mm)) return stroke;
     StrokePath path;
     path.follow(stroke, line, 0.0, length_mm);
     path.line_to(end.place(beyond_mm, 0.0), end.half_mm);
-    return path.like(stroke);
+    return path.with_properties_of(stroke);
 }
 
 }  // namespace brushsvg

@@ -30,7 +30,7 @@ struct BrushMove {
 using BrushMoves = std::vector<BrushMove>;
 
 /// A stroke with a new end, and the depth at which the brush is turned round there, if it is.
-struct EndedStroke {
+struct StrokeWithEnd {
     Stroke stroke;
     std::optional<double> turn_depth_mm;
 };
@@ -43,7 +43,7 @@ struct StartStyle {
 };
 struct EndStyle {
     Terminal name;  ///< automatic: round, and not taken where a round end is requested
-    std::optional<EndedStroke> (*ended)(const Stroke& stroke, const Brush& brush, Caps caps);
+    std::optional<StrokeWithEnd> (*ended)(const Stroke& stroke, const Brush& brush, Caps caps);
 };
 extern const std::array<StartStyle, 5> kStartStyles;  ///< the plainest style first
 extern const std::array<StartStyle, 3> kDotStyles;    ///< for a stroke that is a dot: it has no end of its own
@@ -59,7 +59,7 @@ std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& br
 
 /// Narrow a stroke to a point at the drawn end. It is a pointed start mirrored, with the shape of the footprint's rear.
 /// None if the stroke is shorter than that, or as fine as its point.
-std::optional<EndedStroke> pointed_end(const Stroke& stroke, const Brush& brush, Caps caps);
+std::optional<StrokeWithEnd> pointed_end(const Stroke& stroke, const Brush& brush, Caps caps);
 
 /// A stroke with a butt end at one side. Near its end it narrows and runs on into the corner that is further ahead, its
 /// outer edge on the stroke's edge. Then it follows the cut into the other corner, and goes a little way back. A butt
@@ -73,16 +73,16 @@ struct ButtEnd {
 std::optional<ButtEnd> make_butt_end(const Stroke& stroke, const Brush& brush, Caps caps, Side side);
 
 /// Return how far from P the paint reaches when the brush is pressed to a depth and turned there [mm].
-double reach_of_turn_mm(const Brush& brush, double depth);
+double turn_radius_mm(const Brush& brush, double depth);
 
 /// Angle of a turn on the spot [rad]. An arc that ends where it began would be ambiguous.
-inline constexpr double kTurnRad = 356.0 * EIGEN_PI / 180.0;
+inline constexpr double kFullTurnRad = 356.0 * EIGEN_PI / 180.0;
 
 /// First and last row of a mark between which the brush is turned round on the spot. There P follows the line, and the
 /// widest section goes round P.
-struct Turned {
+struct FullTurn {
     std::size_t first, last;
 };
-std::vector<Turned> turned_round(const PassMarks& marks);
+std::vector<FullTurn> find_full_turns(const PassMarks& marks);
 
 }  // namespace brushsvg

@@ -36,5 +36,5 @@ for stroke in strokes:
 for axes, title in ((above, "(a) the handle"), (below, "(b) the paint, and what was drawn")):
     axes.set(aspect="equal", title=title, ylabel="mm", xlim=(0, 175), ylim=(0, 78))
 below.set_xlabel("mm")
-target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
+target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.target_outline(stroke, 0.02)])
 rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, target))]

@@ -33,10 +33,10 @@ for stroke, way, mark in zip(strokes, done.plan.passes, marks.passes, strict=Tru
     left.text(*way.poses_mm[0, :2] - [0, 3], stroke.id[1:], ha="center", va="top")
     for ring in mark.outline_mm:
         right.fill(*ring.T, color="#3f8fd9", alpha=0.6)
-    for ring in brushsvg.wanted_outline(stroke, 0.02):
+    for ring in brushsvg.target_outline(stroke, 0.02):
         right.plot(*np.vstack([ring, ring[:1]]).T, color="#e07a2f", lw=0.9)
 for axes, title in ((left, "(a)"), (right, "(b)")):
     axes.set(aspect="equal", title=title, xlabel="mm", ylim=(-3, 85))
 left.set_ylabel("mm")
-target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
+target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.target_outline(stroke, 0.02)])
 rows = [("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, target))]

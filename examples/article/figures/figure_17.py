@@ -37,7 +37,7 @@ for axes, shade, title in zip(figure.subplots(2, 1), ("0.75", "k"), ("(a)", "(b)
 for way, mark in zip(plan.passes, marks.passes, strict=True):
     figure.axes[0].plot(*way.poses_mm[:, :2].T, color="#d1495b", lw=0.9)
     figure.axes[0].plot(*mark.contact_mm.T, color="#2f8f4e", lw=1.2)
-target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.wanted_outline(stroke, 0.02)])
+target = brushsvg.unite([ring for stroke in strokes for ring in brushsvg.target_outline(stroke, 0.02)])
 poses = [len(one.poses_mm) for one in plan.passes]
 rows = [
     ("overlap of paint and drawing", None, brushsvg.overlap(marks.outline_mm, target)),

@@ -24,7 +24,7 @@ __all__: list[str] = [
     "LawPrior",
     "LawShape",
     "Lines",
-    "MOST_ENTRIES",
+    "MAX_ENTRIES",
     "Machine",
     "MarkFit",
     "MarkLaws",
@@ -46,7 +46,6 @@ __all__: list[str] = [
     "TrackingError",
     "WorstPlace",
     "area",
-    "as_normal",
     "bristle_coefficients",
     "bristle_deflection",
     "check",
@@ -56,7 +55,6 @@ __all__: list[str] = [
     "compensate",
     "convex_hull",
     "coverage",
-    "deviations_of_95",
     "excess_turning",
     "fill",
     "first_crossings",
@@ -67,11 +65,13 @@ __all__: list[str] = [
     "follow_lags",
     "footprint_at",
     "from_angles",
-    "interrupted",
+    "group_touching",
     "intersect",
+    "interval_factor_95",
     "lag",
     "medial_axis",
     "narrow",
+    "normal_equivalent",
     "overlap",
     "painted_bounds",
     "read_brush",
@@ -81,17 +81,17 @@ __all__: list[str] = [
     "remarks",
     "score_strokes",
     "search_strokes",
+    "simplify_pass",
     "simulate",
-    "thin_out",
+    "split_into_loads",
+    "target_coverage",
+    "target_outline",
     "thorns",
-    "touching",
     "trace_outlines",
     "tracking_error_of",
     "tracking_errors_of",
     "uncovered_areas",
     "unite",
-    "wanted_coverage",
-    "wanted_outline",
     "widest_points",
     "write_brush",
     "write_marks",
@@ -214,7 +214,7 @@ class Paint:
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
-    def way_to_share_mm(self, share: float) -> float:
+    def path_to_share_mm(self, share: float) -> float:
         """
         Return the path [mm] after which the width has fallen to a share.
 
@@ -549,10 +549,10 @@ class Stroke:
     origin: a StrokeId.
     middle_mm: cubics (n, 8) [mm].
     half_width: half widths along the middle line [(fraction of arc length, mm)].
-    wanted_mm: rings of the target mark as drawn, or empty.
+    target_mm: rings of the target mark as drawn, or empty.
     start_covered, end_covered: whether this end meets other strokes of the shape, whose paint covers the end.
 
-    Set middle_mm, half_width, wanted_mm and settings as a whole.
+    Set middle_mm, half_width, target_mm and settings as a whole.
     """
 
     __hash__: typing.ClassVar[None]  # type: ignore[assignment]
@@ -621,9 +621,9 @@ class Stroke:
     @property
     def origin(self) -> StrokeId: ...
     @property
-    def wanted_mm(self) -> tuple[numpy.typing.NDArray[numpy.float64], ...]: ...
-    @wanted_mm.setter
-    def wanted_mm(
+    def target_mm(self) -> tuple[numpy.typing.NDArray[numpy.float64], ...]: ...
+    @target_mm.setter
+    def target_mm(
         self, arg1: collections.abc.Sequence[numpy.typing.ArrayLike]
     ) -> None: ...
 
@@ -872,24 +872,24 @@ class CommonArea:
     """
     The areas that paint and target mark have in common and together.
 
-    common_mm2: area of the intersection [mm^2].
-    together_mm2: area of the union [mm^2].
-    overlap: common_mm2 / together_mm2; 1 if both are 0.
+    intersection_mm2: area of the intersection [mm^2].
+    union_mm2: area of the union [mm^2].
+    overlap: intersection_mm2 / union_mm2; 1 if both are 0.
     """
     def __copy__(self) -> CommonArea: ...
     def __deepcopy__(self, memo: dict) -> CommonArea: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __getstate__(self) -> tuple: ...
     def __hash__(self) -> int: ...
-    def __init__(self, common_mm2: float, together_mm2: float) -> None: ...
+    def __init__(self, intersection_mm2: float, union_mm2: float) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: tuple) -> None: ...
     @property
-    def common_mm2(self) -> float: ...
+    def intersection_mm2(self) -> float: ...
     @property
     def overlap(self) -> float: ...
     @property
-    def together_mm2(self) -> float: ...
+    def union_mm2(self) -> float: ...
 
 class WorstPlace:
     """
@@ -1349,9 +1349,9 @@ class MarkOptions:
     @lean_mm_per_mm.setter
     def lean_mm_per_mm(self, arg0: float) -> None: ...
     @property
-    def most_iterations(self) -> int: ...
-    @most_iterations.setter
-    def most_iterations(self, arg0: int) -> None: ...
+    def max_iterations(self) -> int: ...
+    @max_iterations.setter
+    def max_iterations(self, arg0: int) -> None: ...
     @property
     def noise_length_mm(self) -> float: ...
     @noise_length_mm.setter
@@ -1439,13 +1439,13 @@ class MarkFit:
     @property
     def laws(self) -> MarkLaws: ...
     @property
-    def left_aside(self) -> float: ...
-    @property
     def machine(self) -> Machine: ...
     @property
     def marks(self) -> tuple[MarkResidual, ...]: ...
     @property
     def noise_mm(self) -> float: ...
+    @property
+    def outlier_share(self) -> float: ...
     @property
     def remarks(self) -> tuple[str, ...]: ...
     @property
@@ -1462,13 +1462,6 @@ def area(rings: collections.abc.Sequence[numpy.typing.ArrayLike]) -> float:
     Return the area of rings [mm^2].
 
     Clockwise rings are holes, and their area is subtracted. The area is negative if the holes outweigh the rest.
-    """
-
-def as_normal(t: numpy.typing.ArrayLike, degrees_of_freedom: float) -> typing.Any:
-    """
-    Return the size of a normal value that is as unlikely as Student's t.
-
-    t: a value, or an array of values.
     """
 
 def bristle_coefficients(sliding_end: str) -> numpy.typing.NDArray[numpy.float64]:
@@ -1506,7 +1499,7 @@ def clearance(
 
 def common_area(
     painted: collections.abc.Sequence[PassMarks],
-    wanted: collections.abc.Sequence[Stroke],
+    target: collections.abc.Sequence[Stroke],
     brush: Brush,
 ) -> CommonArea:
     """
@@ -1517,14 +1510,14 @@ def common_area(
 
 def common_areas(
     painted: collections.abc.Sequence[PassMarks],
-    wanted: collections.abc.Sequence[Stroke],
+    target: collections.abc.Sequence[Stroke],
     groups: collections.abc.Sequence[collections.abc.Sequence[int]],
     brush: Brush,
 ) -> list[CommonArea]:
     """
     Return a CommonArea for each group of strokes and their passes.
 
-    groups: lists of indices, as touching() returns them.
+    groups: lists of indices, as group_touching() returns them.
     """
 
 def compensate(
@@ -1600,16 +1593,9 @@ def coverage(
     window_mm: (x, y, width, height) [mm] of the part of the paper.
     """
 
-def deviations_of_95(degrees_of_freedom: float | None = None) -> float:
-    """
-    Return half of a 95 % interval, in standard deviations.
-
-    The interval is of Student's t, or of the normal distribution if degrees_of_freedom is None.
-    """
-
 def excess_turning(
     mark: collections.abc.Sequence[numpy.typing.ArrayLike],
-    wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
+    target: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> float:
     """
     Return how much more a mark's outlines turn than the target's, in full turns.
@@ -1738,23 +1724,11 @@ def from_angles(
     s_mm: distances of the drag after which alpha and beta were measured.
     """
 
-def interrupted(
-    a_pass: Pass,
-    brush: Brush,
-    first_mm: float,
-    every_mm: float,
-    backtrack_mm: float = 5.0,
-) -> list[Pass]:
+def group_touching(target: collections.abc.Sequence[Stroke]) -> list[list[int]]:
     """
-    Split a pass into parts, between which the brush is lifted to fetch paint.
+    Group the strokes whose target marks touch: one list per letter.
 
-    The parts are called stroke, stroke+2, ...
-
-    first_mm: path of the TCP for which the paint on the brush still lasts.
-    every_mm: path of the TCP for which the paint lasts after each refill.
-    backtrack_mm: how far back in the mark of the previous part each part begins, so that no gap shows.
-
-    Raises Error if the paint does not last for more than twice the backtrack.
+    Each list contains the indices of the strokes. A stroke that touches no other stroke is not listed.
     """
 
 def intersect(
@@ -1765,10 +1739,17 @@ def intersect(
     Return the intersection of two shapes, each given as for unite.
     """
 
+def interval_factor_95(degrees_of_freedom: float | None = None) -> float:
+    """
+    Return half of a 95 % interval, in standard deviations.
+
+    The interval is of Student's t, or of the normal distribution if degrees_of_freedom is None.
+    """
+
 def medial_axis(
     rings: collections.abc.Sequence[numpy.typing.ArrayLike],
-    least_share: float,
-    least_limb: float | None = None,
+    min_share: float,
+    min_limb_share: float | None = None,
 ) -> tuple[numpy.typing.NDArray[numpy.float64], list[AxisBranch]]:
     """
     Return the medial axis of a shape: its nodes and the branches between them.
@@ -1778,9 +1759,9 @@ def medial_axis(
     branches: a list of AxisBranch, each with start and end (indices of nodes), line (k, 3) and part (rings).
 
     rings: a shape as `fill` returns it.
-    least_share: the least area that a branch must add to the disc from which it starts, in squares of the disc's radius.
-    least_limb: a branch also stays if the part beyond some place on the branch adds least_share to the disc at this place.
-        The part must also add least_limb to the disc from which the branch starts. None: equal to least_share.
+    min_share: the least area that a branch must add to the disc from which it starts, in squares of the disc's radius.
+    min_limb_share: a branch also stays if the part beyond some place on the branch adds min_share to the disc at this
+        place. The part must also add min_limb_share to the disc from which the branch starts. None: equal to min_share.
     """
 
 def narrow(
@@ -1795,6 +1776,15 @@ def narrow(
 
     dips_mm: for each pass, the distances [mm] along the TCP's path at which paint was just fetched, ascending. [0]: just
         before the pass. []: the pass continues with the paint of the previous pass.
+    """
+
+def normal_equivalent(
+    t: numpy.typing.ArrayLike, degrees_of_freedom: float
+) -> typing.Any:
+    """
+    Return the size of a normal value that is as unlikely as Student's t.
+
+    t: a value, or an array of values.
     """
 
 def overlap(
@@ -1842,7 +1832,7 @@ def remarks(brush: Brush) -> list[Notice]:
 
 def score_strokes(
     painted: collections.abc.Sequence[PassMarks],
-    wanted: collections.abc.Sequence[Stroke],
+    target: collections.abc.Sequence[Stroke],
     brush: Brush,
 ) -> list[StrokeScore]:
     """
@@ -1890,6 +1880,13 @@ def search_strokes(
     are_free: True if strokes may also be moved, cut or left out. False: strokes are only added.
     """
 
+def simplify_pass(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:
+    """
+    Simplify a pass: return a pass with fewer poses.
+
+    The middle and the edges of the mark stay within the tolerance [mm] of where they were.
+    """
+
 def simulate(
     plan: Plan,
     brush: Brush,
@@ -1917,29 +1914,57 @@ def simulate(
     than the brush may be pressed.
     """
 
-def thin_out(pass_: Pass, brush: Brush, tolerance_mm: float = 0.05) -> Pass:
+def split_into_loads(
+    a_pass: Pass,
+    brush: Brush,
+    first_mm: float,
+    every_mm: float,
+    backtrack_mm: float = 5.0,
+) -> list[Pass]:
     """
-    Simplify a pass: return a pass with fewer poses.
+    Split a pass into parts, between which the brush is lifted to fetch paint.
 
-    The middle and the edges of the mark stay within the tolerance [mm] of where they were.
+    The parts are called stroke, stroke+2, ...
+
+    first_mm: path of the TCP for which the paint on the brush still lasts.
+    every_mm: path of the TCP for which the paint lasts after each refill.
+    backtrack_mm: how far back in the mark of the previous part each part begins, so that no gap shows.
+
+    Raises Error if the paint does not last for more than twice the backtrack.
+    """
+
+def target_coverage(
+    target: collections.abc.Sequence[Stroke],
+    window_mm: collections.abc.Sequence[float],
+    px_per_mm: float,
+) -> numpy.typing.NDArray[numpy.float32]:
+    """
+    Return the fraction of each pixel that the strokes should cover, as float32.
+
+    Row 0 is at the top.
+
+    window_mm: (x, y, width, height) [mm] of the part of the paper.
+    """
+
+def target_outline(
+    stroke: Stroke, tolerance_mm: float = 0.005
+) -> list[numpy.typing.NDArray[numpy.float64]]:
+    """
+    Return the rings of the target mark.
+
+    The target mark is target_mm of the stroke, if given. Otherwise the target mark is the path with its width, round caps
+    and round joins.
     """
 
 def thorns(
     mark: collections.abc.Sequence[numpy.typing.ArrayLike],
-    wanted: collections.abc.Sequence[numpy.typing.ArrayLike],
+    target: collections.abc.Sequence[numpy.typing.ArrayLike],
 ) -> int:
     """
     Count the corners of a mark that stick out of the target.
 
     Counted are corners of more than 20 degrees that stick out by more than 0.3 mm. Each outline is replaced by a polygon
     within 0.05 mm. The target is given as for unite.
-    """
-
-def touching(wanted: collections.abc.Sequence[Stroke]) -> list[list[int]]:
-    """
-    Group the strokes whose target marks touch: one list per letter.
-
-    Each list contains the indices of the strokes. A stroke that touches no other stroke is not listed.
     """
 
 def trace_outlines(
@@ -1981,7 +2006,7 @@ def uncovered_areas(
         ]
     ],
     brush: Brush,
-    least_share: float,
+    min_share: float,
 ) -> list[list[tuple[list[numpy.typing.NDArray[numpy.float64]], list[float], float]]]:
     """
     Find the areas of each shape that its passes leave without paint.
@@ -1989,7 +2014,7 @@ def uncovered_areas(
     Returns for each shape a list of (rings [mm], a place (x, y) in the area [mm], area [mm2]), the largest area first.
 
     shapes: as for search_strokes.
-    least_share: the least area, as a share of the shape's area.
+    min_share: the least area, as a share of the shape's area.
     """
 
 def unite(
@@ -2001,29 +2026,6 @@ def unite(
     Each counter-clockwise ring is filled. The clockwise rings after it are its holes.
 
     Raises Error if the clockwise rings outweigh the others.
-    """
-
-def wanted_coverage(
-    wanted: collections.abc.Sequence[Stroke],
-    window_mm: collections.abc.Sequence[float],
-    px_per_mm: float,
-) -> numpy.typing.NDArray[numpy.float32]:
-    """
-    Return the fraction of each pixel that the strokes should cover, as float32.
-
-    Row 0 is at the top.
-
-    window_mm: (x, y, width, height) [mm] of the part of the paper.
-    """
-
-def wanted_outline(
-    stroke: Stroke, tolerance_mm: float = 0.005
-) -> list[numpy.typing.NDArray[numpy.float64]]:
-    """
-    Return the rings of the target mark.
-
-    The target mark is wanted_mm of the stroke, if given. Otherwise the target mark is the path with its width, round caps
-    and round joins.
     """
 
 def widest_points(
@@ -2048,5 +2050,5 @@ def write_plan(plan: Plan) -> str:
     Return the text of a plan.json.
     """
 
-MOST_ENTRIES: int = 10000000
+MAX_ENTRIES: int = 10000000
 __version__: str = "0.1.0"

@@ -198,7 +198,7 @@ def _measure_hysteresis(plan, places, axis: int) -> Approach:
         return Approach(name, None, None, up, down)
     freedom = len(up) + len(down) - 2
     within = (np.square(up - up.mean()).sum() + np.square(down - down.mean()).sum()) / freedom
-    half = _core.deviations_of_95(freedom) * math.sqrt(within * (1 / len(up) + 1 / len(down)))
+    half = _core.interval_factor_95(freedom) * math.sqrt(within * (1 / len(up) + 1 / len(down)))
     return Approach(name, float(up.mean() - down.mean()), float(half), up, down)
 
 

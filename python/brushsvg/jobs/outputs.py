@@ -126,7 +126,7 @@ def overlap_picture(
 
     px_per_mm = min(20.0, (long_side_px or PNG_LONG_SIDE_PX) / max(work.plan.sheet_mm))
     window = (0.0, 0.0, *work.plan.sheet_mm)
-    target = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    target = _core.target_coverage(work.strokes, window, px_per_mm)
     painted = _core.coverage(marks, work.brush, window, px_per_mm)
     height_mm = work.plan.sheet_mm[1]
     at_px = {
@@ -146,7 +146,7 @@ def make_animation(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cel
     # The machine errors are left out, to show the tool where it goes and not where it is commanded.
     ideal_cell = replace(cell, machine=None)
     moves = timeline(whole_program(loads, work.brush, ideal_cell), marks)
-    target = [_core.wanted_outline(stroke, TARGET_TOLERANCE_MM) for stroke in work.strokes or ()]
+    target = [_core.target_outline(stroke, TARGET_TOLERANCE_MM) for stroke in work.strokes or ()]
     return animation(moves, loads, work.brush, marks, target, cell.stations, work.title, speed)
 
 

@@ -84,7 +84,7 @@ def split_into_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanIn
         loads = []
         for a_pass in plan.passes:
             is_whole = painted_mm(a_pass) <= every_mm or a_pass.settings.reload is False or a_pass.load > 0
-            loads += [a_pass] if is_whole else _core.interrupted(a_pass, brush, every_mm, every_mm, back_mm)
+            loads += [a_pass] if is_whole else _core.split_into_loads(a_pass, brush, every_mm, every_mm, back_mm)
     if not _can_write_circles(cell):
         loads = map(with_chords, loads)
     elif cell.machine and any(cell.machine.backlash_mm):
@@ -116,7 +116,7 @@ def load_length_mm(brush: _core.Brush, cell: Cell) -> float:
     if brush.paint and brush.paint.lasts_mm:
         limits_mm.append(brush.paint.lasts_mm)
     if brush.paint and reload.narrower_percent:
-        limits_mm.append(brush.paint.way_to_share_mm(1 - reload.narrower_percent / 100))
+        limits_mm.append(brush.paint.path_to_share_mm(1 - reload.narrower_percent / 100))
     if min(limits_mm) <= 2 * reload.backtrack_mm:
         sentence = (
             f"paint of brush {brush.name} lasts for {min(limits_mm):.1f} mm on cell {cell.name}, which must be more "

@@ -32,7 +32,7 @@ def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float 
     """
     powers = np.vander(depths, len(covariance), increasing=True)
     squared = np.einsum("ij,jk,ik->i", powers, covariance, powers)
-    return _core.deviations_of_95(freedom) * np.sqrt(np.maximum(squared, 0.0))
+    return _core.interval_factor_95(freedom) * np.sqrt(np.maximum(squared, 0.0))
 
 
 def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
@@ -79,7 +79,7 @@ def paint_interval_per_m(paint) -> float:
 
     paint: has a covariance.
     """
-    return _core.deviations_of_95(paint.degrees_of_freedom) * float(np.sqrt(paint.covariance[0][0]))
+    return _core.interval_factor_95(paint.degrees_of_freedom) * float(np.sqrt(paint.covariance[0][0]))
 
 
 def unseen_mm(brush, depth_mm: float) -> float:

@@ -101,7 +101,7 @@ def _draw_paint(axes, paint) -> None:
     It ends where it was measured, where hairs run dry, or where a tenth of the width is gone.
     """
     ends = [paint.calibrated_mm[1] if paint.calibrated_mm else 0.0, 1.2 * (paint.lasts_mm or 0.0)]
-    to_mm = max(ends) or min(paint.way_to_share_mm(0.9), 1000.0)
+    to_mm = max(ends) or min(paint.path_to_share_mm(0.9), 1000.0)
     ways = np.linspace(0.0, to_mm, 201)
     share = np.array([100 * paint.width_share(way) for way in ways])
     if paint.covariance:

@@ -127,9 +127,9 @@ def _widen_stroke(stroke: _core.Stroke, shares: np.ndarray, most_mm: float) -> _
     knots += [(at, float(np.interp(at, *own_knots.T))) for at in new_places]
     knots.sort(key=lambda knot: knot[0])
     widened = [(at, max(half, min(half / float(np.interp(at, *shares.T)), most_mm))) for at, half in knots]
-    outlines = [_widen_ring(np.asarray(ring), stroke, shares) for ring in stroke.wanted_mm]
+    outlines = [_widen_ring(np.asarray(ring), stroke, shares) for ring in stroke.target_mm]
     growth = [widened[k][1] - half for k, (_, half) in zip((0, -1), (knots[0], knots[-1]), strict=True)]
-    line = stroke.replaced(half_width=widened, wanted_mm=outlines)
+    line = stroke.replaced(half_width=widened, target_mm=outlines)
     return line if stroke.closed else _shorten_stroke(line, *growth)
 
 

@@ -81,7 +81,7 @@ def refine_where_better(painted: list, targets: list, brush, closed, compensated
     if redirected := [[k] for k, aim in enumerate(aims) if aim is not painted[k]]:
         # Refinement judged these strokes by other targets.
         keep_closed(worse_of(redirected), WORSE)
-    keep_closed(worse_of(_core.touching(targets)), WORSE)
+    keep_closed(worse_of(_core.group_touching(targets)), WORSE)
     return Refined(passes, tracking_errors, moved, kept)
 
 
@@ -91,13 +91,13 @@ def towards_reach(painted, target, brush):
     These are its discs alone, if the outline in which it was found is far too wide. All of the shape next to the
     paint would pull the stroke's line to it.
     """
-    if not painted.wanted_mm or not brush.width_follows_depth():
+    if not painted.target_mm or not brush.width_follows_depth():
         return painted
     greatest = brush.half_width_range_mm()[1]
     half = np.interp(np.linspace(0, 1, 101), *np.array(target.half_width).T)
     if np.maximum(half - greatest, 0).mean() <= MAX_EXCESS_WIDTH * greatest:
         return painted
-    return painted.replaced(wanted_mm=[])
+    return painted.replaced(target_mm=[])
 
 
 def _find_forbidden(passes: list, closed, moved: list[bool], forbidden) -> list[int]:

@@ -67,7 +67,7 @@ def best_letter_size(strokes, brush, made) -> SizeAdvice:
 
     Letters are strokes that touch. Otherwise this works as best_size does.
     """
-    groups = _core.touching(strokes)
+    groups = _core.group_touching(strokes)
     alone = set(range(len(strokes))).difference(*groups)
     letters = sorted([*groups, *([k] for k in alone)])
     tried_letters = [[strokes[k] for k in letter] for letter in _pick_evenly(letters, MAX_TRIED_LETTERS)]
@@ -133,12 +133,12 @@ def _overlap_at(factor: float, units, brush, made) -> float:
     finally:
         # Ctrl-C waits only for the strokes that are being painted.
         pool.shutdown(cancel_futures=True)
-    total_mm2 = sum(each.together_mm2 for each in areas)
-    return sum(each.common_mm2 for each in areas) / total_mm2 if total_mm2 > 0 else 1.0
+    total_mm2 = sum(each.union_mm2 for each in areas)
+    return sum(each.intersection_mm2 for each in areas) / total_mm2 if total_mm2 > 0 else 1.0
 
 
 def scaled(stroke, factor: float):
     """Return a stroke scaled by a factor, including its widths."""
     half_width = [(at, half * factor) for at, half in stroke.half_width]
-    rings = [ring * factor for ring in stroke.wanted_mm]
-    return stroke.replaced(middle_mm=stroke.middle_mm * factor, half_width=half_width, wanted_mm=rings)
+    rings = [ring * factor for ring in stroke.target_mm]
+    return stroke.replaced(middle_mm=stroke.middle_mm * factor, half_width=half_width, target_mm=rings)

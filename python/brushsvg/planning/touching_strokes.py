@@ -39,7 +39,7 @@ def find_worse_strokes(refined: list, closed: list, targets: list, brush, groups
 
 def _find_restless(members: list[int], refined: list, closed: list, members_targets: list, brush) -> list[int]:
     """Return a letter's strokes without whose refined marks it is better, one by one."""
-    shape = _core.unite([ring for each in members_targets for ring in _core.wanted_outline(each, 0.01)])
+    shape = _core.unite([ring for each in members_targets for ring in _core.target_outline(each, 0.01)])
 
     def restless(marks: list) -> tuple[float, int]:
         whole = _core.Marks()

@@ -79,7 +79,7 @@ def _effect_and_path(stroke, name: str, height_mm: float) -> tuple[str, str]:
     """Return the path effect of a stroke, "" if it needs none, and its path element."""
     half_widths = np.array([half for _, half in stroke.half_width])
     line = _line_path(stroke, height_mm)
-    outline_attribute = ' data-outline="yes"' * bool(stroke.wanted_mm)
+    outline_attribute = ' data-outline="yes"' * bool(stroke.target_mm)
     path_start = f'<path id="{name}" data-stroke={_quoted(stroke.id)}{outline_attribute}{_setting_attributes(stroke)}'
     if np.ptp(half_widths) <= WIDTH_TOLERANCE * half_widths.max():
         style = (
@@ -147,7 +147,7 @@ def _line_path(stroke, height_mm: float) -> str:
 
 def _outline_path(stroke, height_mm: float) -> str:
     parts = []
-    for ring in _core.wanted_outline(stroke.replaced(wanted_mm=[]), _OUTLINE_TOLERANCE_MM):
+    for ring in _core.target_outline(stroke.replaced(target_mm=[]), _OUTLINE_TOLERANCE_MM):
         points = np.round(np.column_stack([ring[:, 0], height_mm - ring[:, 1]]), 3) + 0.0
         parts.append(("M" + "L".join(["%.6g,%.6g"] * len(points)) + "Z") % tuple(points.ravel().tolist()))
     return "".join(parts)

@@ -87,7 +87,7 @@ def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _C
     count = f"{len(strokes)} strokes" if len(strokes) != 1 else "1 stroke"
     warned = f"{len(notices)} warnings" if len(notices) != 1 else "1 warning"
     # The strokes of filled shapes depend on the brush, which is not known here.
-    more = "; preview --show paint shows those that a brush adds" if any(stroke.wanted_mm for stroke in strokes) else ""
+    more = "; preview --show paint shows those that a brush adds" if any(stroke.target_mm for stroke in strokes) else ""
     words = f"sheet {w:.6g} x {h:.6g} mm, {count}, {warned}{more}"
     canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, words, MUTED_TEXT)
     sheet = place(np.array([[0, 0], [w, 0], [w, h], [0, h]]))
@@ -99,7 +99,7 @@ def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _C
     runs = group_runs(strokes)
     inks = _choose_inks(runs)
     for stroke, ink in zip(strokes, inks, strict=True):
-        rings = _core.wanted_outline(stroke, TOLERANCE_MM)
+        rings = _core.target_outline(stroke, TOLERANCE_MM)
         canvas.area([place(ring) for ring in rings], ink, 0.3)
     lines = [place(_core.flatten(stroke, TOLERANCE_MM)) for stroke in strokes]
     for line, ink in zip(lines, inks, strict=True):

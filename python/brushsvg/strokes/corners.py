@@ -110,7 +110,7 @@ def lifted_at_corners(strokes: list[_core.Stroke], brush: _core.Brush) -> list[_
 
 
 def _cut_at_corners(stroke, brush) -> list:
-    if stroke.wanted_mm or len(stroke.middle_mm) < 2 or not stroke.half_width:
+    if stroke.target_mm or len(stroke.middle_mm) < 2 or not stroke.half_width:
         return [stroke]
     line = drawn_line(np.asarray(stroke.middle_mm).reshape(-1, 4, 2), stroke.half_width)
     if not len(line.cubics):
@@ -146,7 +146,7 @@ def _is_better_lifted(line: Line, before: int, corner: int, after: int, brush) -
 
     whole = line_stroke(line.between(before, after))
     parts = [line_stroke(line.between(before, corner)), line_stroke(line.between(corner, after))]
-    target = _core.wanted_outline(whole, 0.01)
+    target = _core.target_outline(whole, 0.01)
     try:
         single_mm2, lifted_mm2 = (misplaced_mm2(trial_marks(trial, brush), target, brush) for trial in ([whole], parts))
     except Error:

@@ -29,14 +29,14 @@ _MIN_FILL_SHARE = 0.01
 class _Line:
     """A stroke to be.
 
-    cubics: (n, 4, 2); half_width: [(fraction, mm)]; wanted_mm: rings of the outline that the line came from, if
+    cubics: (n, 4, 2); half_width: [(fraction, mm)]; target_mm: rings of the outline that the line came from, if
     any; covered: whether its start and its end are covered by others.
     """
 
     cubics: object
     half_width: list[tuple[float, float]]
     closed: bool
-    wanted_mm: list
+    target_mm: list
     covered: tuple[bool, bool] = (False, False)
 
 
@@ -108,14 +108,14 @@ def _order_letters_from_right(
 
     def run_of(named_element) -> tuple:
         element, lines, _ = named_element
-        is_letter = "script" not in element.settings and all(line.wanted_mm for line in lines)
+        is_letter = "script" not in element.settings and all(line.target_mm for line in lines)
         return is_letter, element.layer, element.colour, element.settings.get("order", 0)
 
     ordered = []
     for (is_letter, *_), group in groupby(named_elements, run_of):
         run = list(group)
         if is_letter:
-            rings = [np.vstack([ring for line in lines for ring in line.wanted_mm]) for _, lines, _ in run]
+            rings = [np.vstack([ring for line in lines for ring in line.target_mm]) for _, lines, _ in run]
             boxes = np.array([[*each.min(axis=0), *each.max(axis=0)] for each in rings])
             run = [run[k] for areas in group_areas(boxes, "arabic") for k in areas]
         ordered += run
@@ -162,7 +162,7 @@ def _find_shape_lines(element: Element, grown: bool, script: str) -> list[_Line]
     if rings is None:
         return None
     return [
-        _Line(each.middle_mm, each.half_width, each.closed, each.wanted_mm, each.covered)
+        _Line(each.middle_mm, each.half_width, each.closed, each.target_mm, each.covered)
         for each in outline_strokes(rings, script)
     ]
 
@@ -177,7 +177,7 @@ def _grow_by_stroke(element: Element) -> list | None:
 
     drawn = [_make_line(element, subpath) for subpath in element.subpaths]
     marks = [
-        _core.wanted_outline(_core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02)
+        _core.target_outline(_core.Stroke(middle_mm=line.cubics.reshape(-1, 8), half_width=line.half_width), 0.02)
         for line in drawn
     ]
     stroke_rings = _core.unite([ring for mark in marks for ring in mark])
@@ -212,7 +212,7 @@ def _make_strokes(element: Element, name: str, lines: list[_Line]):
                 colour=element.colour,
                 settings=settings,
             )
-            stroke.wanted_mm = line.wanted_mm
+            stroke.target_mm = line.target_mm
             stroke.start_covered, stroke.end_covered = line.covered
             yield stroke
 

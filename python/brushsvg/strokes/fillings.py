@@ -52,7 +52,7 @@ def find_wide_shapes(strokes: list, wider: list[int], least: float, greatest: fl
             continue
         wide = [k for k in members if k in beyond]
         narrow = [strokes[k] for k in members if k not in beyond]
-        part = _core.unite([ring for k in wide for ring in strokes[k].wanted_mm])
+        part = _core.unite([ring for k in wide for ring in strokes[k].target_mm])
         wide_shapes.append(WideShape(wide, narrow, rings_of(shape), find_contour_passes(shape, least, greatest), part))
     return wide_shapes
 
@@ -61,13 +61,13 @@ def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
     """Return shapes with wide strokes, and the numbers of all of their strokes."""
     elements: dict[tuple, list[int]] = {}
     for k, stroke in enumerate(strokes):
-        if stroke.wanted_mm:
+        if stroke.target_mm:
             elements.setdefault(_shape_key(stroke), []).append(k)
     pairs = []
     wide = set(wider)
     for element in dict.fromkeys(_shape_key(strokes[k]) for k in wider):
         numbers = elements[element]
-        shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].wanted_mm])))
+        shapes = shapely.get_parts(region(_core.unite([r for k in numbers for r in strokes[k].target_mm])))
         shapes = np.array([_without_slits(shape) for shape in shapes])
         members: list[list[int]] = [[] for _ in shapes]
         for k, home in zip(numbers, _find_shape_of_strokes(shapes, [strokes[k] for k in numbers]), strict=True):
@@ -95,7 +95,7 @@ def _find_shape_of_strokes(shapes, strokes: list) -> list[int]:
         return [0] * len(strokes)
     tree, homes = shapely.STRtree(shapes), []
     for stroke in strokes:
-        part = region(_core.unite(stroke.wanted_mm))
+        part = region(_core.unite(stroke.target_mm))
         near = tree.query(part)
         homes.append(int(near[np.argmax(shapely.area(shapely.intersection(shapes[near], part)))]))
     return homes

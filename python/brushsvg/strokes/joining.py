@@ -96,7 +96,7 @@ class _Chain:
             cubics[-1, 3] = cubics[0, 0]
             cubics, half_width = begin_amid_side(cubics, half_width)
         return self.first.replaced(
-            middle_mm=cubics.reshape(-1, 8), closed=self.is_ring, half_width=half_width, wanted_mm=[]
+            middle_mm=cubics.reshape(-1, 8), closed=self.is_ring, half_width=half_width, target_mm=[]
         )
 
 
@@ -122,7 +122,7 @@ def _find_continuation(chain: _Chain, at_end: bool, near: dict, lines: dict, use
 
 def _is_open_line(stroke) -> bool:
     ends = stroke.middle_mm[0, :2], stroke.middle_mm[-1, 6:]
-    return not (stroke.closed or stroke.wanted_mm) and np.hypot(*(ends[0] - ends[1])) > MAX_GAP_MM
+    return not (stroke.closed or stroke.target_mm) and np.hypot(*(ends[0] - ends[1])) > MAX_GAP_MM
 
 
 def _can_join(one, other) -> bool:

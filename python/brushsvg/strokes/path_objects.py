@@ -165,15 +165,15 @@ def _need_short_list(path, id: str, levels: int = 3) -> int:
     if levels == 0:
         raise _not_cubics_error(id)
     count = path.size if isinstance(path, np.ndarray) else len(path)
-    if not isinstance(path, np.ndarray) and count <= _core.MOST_ENTRIES:
+    if not isinstance(path, np.ndarray) and count <= _core.MAX_ENTRIES:
         count = 0
         for each in path:
             count += _need_short_list(each, id, levels - 1)
-            if count > _core.MOST_ENTRIES:
+            if count > _core.MAX_ENTRIES:
                 break
-    if count > _core.MOST_ENTRIES:
-        sentence = f"a list of {count} entries is longer than any that is read, {_core.MOST_ENTRIES}"
-        raise Error(sentence, where=id, value=count, range=(0, _core.MOST_ENTRIES), code="list-too-long")
+    if count > _core.MAX_ENTRIES:
+        sentence = f"a list of {count} entries is longer than any that is read, {_core.MAX_ENTRIES}"
+        raise Error(sentence, where=id, value=count, range=(0, _core.MAX_ENTRIES), code="list-too-long")
     return count
 
 

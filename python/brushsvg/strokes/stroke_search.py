@@ -119,7 +119,7 @@ def _add_strokes(drawn: list, rows: list[tuple], shape: _Shape, added: list[_Add
     Returns the strokes as found, and the rows (stroke, target, number of its pass).
     """
     copies = [(_repeat_stroke(each.stroke, repeat), each) for each in added for repeat in shape.repeats]
-    copy_targets = [stroke.replaced(wanted_mm=each.own_mm) for stroke, each in copies]
+    copy_targets = [stroke.replaced(target_mm=each.own_mm) for stroke, each in copies]
     if not shape.is_filled:
         areas_mm = [ring for each in added for ring in each.area_mm]
         rows = [(stroke, _remove_areas(of, shape.element, areas_mm), k) for stroke, of, k in rows]
@@ -146,7 +146,7 @@ class _Shape:
     @property
     def is_filled(self) -> bool:
         """Whether the shape is filled in passes."""
-        return not all(stroke.wanted_mm for stroke in self.strokes)
+        return not all(stroke.target_mm for stroke in self.strokes)
 
 
 def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Shape]:
@@ -156,7 +156,7 @@ def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Sh
     """
     strokes_of, paint, repeats = defaultdict(list), defaultdict(list), defaultdict(set)
     for stroke in drawn:
-        if stroke.origin.repeat == 1 and stroke.wanted_mm:
+        if stroke.origin.repeat == 1 and stroke.target_mm:
             strokes_of[stroke.origin.element].append(stroke)
     for stroke, a_pass in zip(painted, passes, strict=True):
         element = stroke.origin.element
@@ -171,13 +171,13 @@ def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Sh
             # Rounding leaves slits between the parts of a shape. Their mouths would be corners of its outline.
             [
                 without_slivers(ring, SLIVER_MM)
-                for ring in _core.unite([ring for stroke in strokes for ring in stroke.wanted_mm])
+                for ring in _core.unite([ring for stroke in strokes for ring in stroke.target_mm])
             ],
             *map(list, zip(*paint[element], strict=True)),
             sorted(repeats[element]),
         )
         for element, strokes in strokes_of.items()
-        if paint[element] and (brush.width_follows_depth() or not all(stroke.wanted_mm for stroke, _ in paint[element]))
+        if paint[element] and (brush.width_follows_depth() or not all(stroke.target_mm for stroke, _ in paint[element]))
     ]
 
 
@@ -217,16 +217,16 @@ def _share_target(parts: list, target) -> list[tuple]:
     """
     if len(parts) < 2:
         return [(part, target) for part in parts]
-    if not target.wanted_mm:
+    if not target.target_mm:
         return [(part, part) for part in parts]
     rest, pairs = target, []
     for part in parts[:0:-1]:
         own_mm = _core.intersect(
-            _core.wanted_outline(part.replaced(wanted_mm=[]), _OUTLINE_TOLERANCE_MM), target.wanted_mm
+            _core.target_outline(part.replaced(target_mm=[]), _OUTLINE_TOLERANCE_MM), target.target_mm
         )
         rest = _remove_areas(rest, target.origin.element, own_mm)
-        pairs.append((part, part.replaced(wanted_mm=own_mm)))
-    return [(parts[0], parts[0].replaced(wanted_mm=rest.wanted_mm)), *pairs[::-1]]
+        pairs.append((part, part.replaced(target_mm=own_mm)))
+    return [(parts[0], parts[0].replaced(target_mm=rest.target_mm)), *pairs[::-1]]
 
 
 def _lane_counter(strokes: list):
@@ -260,7 +260,7 @@ def _name_added(shape: _Shape, added: list, following, are_corners_filled: bool)
             middle_mm=path_stroke.middle_mm,
             closed=False,
             half_width=path_stroke.half_width,
-            wanted_mm=[],
+            target_mm=[],
             start_covered=shape.is_filled,
             end_covered=shape.is_filled,
             settings=like.settings.replaced(start=path_stroke.settings.start, end=path_stroke.settings.end),
@@ -275,7 +275,7 @@ def _name_added(shape: _Shape, added: list, following, are_corners_filled: bool)
         if not shape.is_filled:
             own_mm = _core.unite([*_core.intersect(mark_mm, rings), *_core.intersect(area_mm, rings)])
         part = like.origin.part
-        stroke = stroke.replaced(id=_core.StrokeId(element, part, 1, following(part)), wanted_mm=own_mm)
+        stroke = stroke.replaced(id=_core.StrokeId(element, part, 1, following(part)), target_mm=own_mm)
         yield _AddedStroke(stroke, own_mm, area_mm, is_rim)
 
 
@@ -300,11 +300,11 @@ def _insert_behind(added: list, rows: list, stroke_of) -> list:
 
 def _remove_areas(stroke, element: str, areas_mm: list[np.ndarray]):
     """Return a stroke of the element without the target areas that others paint."""
-    if stroke.origin.element != element or not _core.intersect(stroke.wanted_mm, areas_mm):
+    if stroke.origin.element != element or not _core.intersect(stroke.target_mm, areas_mm):
         return stroke
     import shapely
 
     from .swept_areas import region, rings_of
 
-    rest = shapely.difference(region(stroke.wanted_mm), region(areas_mm))
-    return stroke.replaced(wanted_mm=rings_of(rest)) if rest.area > 0 else stroke
+    rest = shapely.difference(region(stroke.target_mm), region(areas_mm))
+    return stroke.replaced(target_mm=rings_of(rest)) if rest.area > 0 else stroke

@@ -18,7 +18,7 @@ def trial_overlap(strokes: list, rings: list[np.ndarray], brush) -> float:
     It is measured in pixels: outlines take ten times as long.
     """
     shape = _core.Stroke(middle_mm=np.tile(rings[0][0], 4)[None], half_width=[(0.0, 1.0)])
-    shape.wanted_mm = rings
+    shape.target_mm = rings
     return _core.common_area(trial_marks(strokes, brush, few_poses=False).passes, [shape], brush).overlap
 
 

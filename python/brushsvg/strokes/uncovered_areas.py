@@ -36,21 +36,21 @@ class UncoveredArea:
 def uncovered_areas(drawn: list, painted: list, passes: list, brush) -> list[UncoveredArea]:
     """Find areas of drawn shapes that the marks of passes do not cover.
 
-    drawn: strokes as they were found; strokes with wanted_mm are of shapes; painted: as the brush paints them, one
+    drawn: strokes as they were found; strokes with target_mm are of shapes; painted: as the brush paints them, one
     for each pass. The largest area of each element comes first.
     """
     if not brush.width_follows_depth():
         return []  # a brush of one width is not expected to cover a shape
     strokes_of, paint = defaultdict(list), defaultdict(list)
     for stroke in drawn:
-        if stroke.origin.repeat == 1 and stroke.wanted_mm:
+        if stroke.origin.repeat == 1 and stroke.target_mm:
             strokes_of[stroke.origin.element].append(stroke)
     for stroke, a_pass in zip(painted, passes, strict=True):
         if stroke.origin.element in strokes_of:
             paint[stroke.origin.element].append((stroke, a_pass))
     shapes = [
         (
-            _core.unite([ring for stroke in strokes for ring in stroke.wanted_mm]),
+            _core.unite([ring for stroke in strokes for ring in stroke.target_mm]),
             [stroke for stroke, _ in paint[element]],
             [a_pass for _, a_pass in paint[element]],
         )
@@ -81,8 +81,8 @@ def _find_element_areas(element: str, left: list, whole_mm2: float, found: list,
 
 def swept_discs(strokes: list) -> list[np.ndarray]:
     """Return rings of the area that discs of their widths cover along strokes."""
-    bare = [stroke.replaced(wanted_mm=[]) for stroke in strokes]
-    return _core.unite([ring for stroke in bare for ring in _core.wanted_outline(stroke, _DISC_TOLERANCE_MM)])
+    bare = [stroke.replaced(target_mm=[]) for stroke in strokes]
+    return _core.unite([ring for stroke in bare for ring in _core.target_outline(stroke, _DISC_TOLERANCE_MM)])
 
 
 def is_mostly_within(rings: list[np.ndarray], within: list[np.ndarray]) -> bool:

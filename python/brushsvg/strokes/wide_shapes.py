@@ -46,12 +46,12 @@ def within_reach(
     strokes, notices = _without_slivers(strokes, least, brush) if wide != "refuse" else (strokes, [])
     least = max(least, MIN_HALF_WIDTH_MM)
     beyond = {
-        k: _find_out_of_reach(stroke, least, greatest) if stroke.wanted_mm or brush.width_follows_depth() else None
+        k: _find_out_of_reach(stroke, least, greatest) if stroke.target_mm or brush.width_follows_depth() else None
         for k, stroke in enumerate(strokes)
     }
     if wide == "refuse":
         for stroke, (_, worst) in ((strokes[k], found) for k, found in beyond.items() if found):
-            whose = "outline" if stroke.wanted_mm else "line"
+            whose = "outline" if stroke.target_mm else "line"
             sentence = f"width {2 * worst:.3g} mm of its {whose} is outside the range {reach}"
             bounds = (2 * least, 2 * greatest)
             raise Error(sentence, stroke.id, 2 * worst, bounds, code="width-out-of-reach")
@@ -65,7 +65,7 @@ def within_reach(
         passes, its_targets, how = filled.get(k) or ([stroke], [stroke], "")
         if beyond[k] and k not in filled:
             passes, how = [_clamp_widths(stroke, least, greatest)], "painted at the nearest width"
-            if is_searched and wide != "clamp" and stroke.wanted_mm and beyond[k][1] > greatest:
+            if is_searched and wide != "clamp" and stroke.target_mm and beyond[k][1] > greatest:
                 how += ", and its sides by strokes of their own"
         if beyond[k] and (k in filled or _is_visible_change(beyond[k][1], least, greatest)):
             what, worst = beyond[k]
@@ -94,7 +94,7 @@ def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Not
     A shape is tiny if it is less than half of the smallest mark of the brush.
     """
     dab_mm2 = np.pi * least**2
-    areas = [_core.area(stroke.wanted_mm) if stroke.wanted_mm and dab_mm2 else np.inf for stroke in strokes]
+    areas = [_core.area(stroke.target_mm) if stroke.target_mm and dab_mm2 else np.inf for stroke in strokes]
     notices = [
         Notice(
             stroke.id,
@@ -139,10 +139,10 @@ def _find_out_of_reach(stroke, least: float, greatest: float) -> tuple[str, floa
     halves = np.array([half for _, half in stroke.half_width])
     is_narrow, is_wide = halves < least - 1e-9, halves > greatest + 1e-9
     off = is_narrow | is_wide
-    if not off.any() or (not stroke.wanted_mm and not _is_within_reach(halves.max(), greatest)):
+    if not off.any() or (not stroke.target_mm and not _is_within_reach(halves.max(), greatest)):
         return None
     worst = halves.max() if is_wide.any() else halves.min()
-    what = "its shape is" if stroke.wanted_mm else "its line is"
+    what = "its shape is" if stroke.target_mm else "its line is"
     if len(halves) > 1:
         what += " up to" if is_wide.any() else " down to"
     return what, worst
@@ -156,7 +156,7 @@ def _find_wide_strokes(strokes: list, beyond: dict, greatest: float) -> list[int
     wider = {
         k: out_of_reach[1]
         for k, out_of_reach in beyond.items()
-        if out_of_reach and out_of_reach[1] > greatest and strokes[k].wanted_mm
+        if out_of_reach and out_of_reach[1] > greatest and strokes[k].target_mm
     }
     elements = {strokes[k].origin.element for k, half in wider.items() if half > greatest * _MIN_PASSES_RATIO}
     return [k for k in wider if strokes[k].origin.element in elements]
@@ -179,7 +179,7 @@ def _fill_in_passes(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
             how, filling = ("painted in passes side by side", [])  # the first stroke of the shape has all passes
             if passes:
                 its_targets = [
-                    passes[0].replaced(wanted_mm=shape.first_share(passes[:1], passes)),
+                    passes[0].replaced(target_mm=shape.first_share(passes[:1], passes)),
                     *passes[1:],
                 ]
             else:
@@ -224,7 +224,7 @@ def _make_pass(stroke, line, lane: int = 1):
         middle_mm=line.middle_mm,
         closed=line.closed,
         half_width=line.half_width,
-        wanted_mm=[],
+        target_mm=[],
         start_covered=True,  # by other passes
         end_covered=True,
     )

@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (arc.first != 1 || arc.last != 1 + steps || arc.centre_mm != centre || !fuzz::is_sound(brush)) return;
         for (int i = 1; i <= 1 + steps; ++i) {
             const double off = std::abs((pass.poses_mm.row(i).head<2>().transpose() - centre).norm() - radius);
-            fuzz::require(off <= kOnCircleMm, "an arc that is simulated has its poses on its circle", off);
+            fuzz::require(off <= kMaxCircleErrorMm, "an arc that is simulated has its poses on its circle", off);
         }
         constexpr int kPieces = 256;  // of each step: a chord leaves the arc by radius (step / kPieces)^2 / 8
         chords.poses_mm.resize(2 + steps * kPieces + 1, 3);

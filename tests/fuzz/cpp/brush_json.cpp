@@ -2,7 +2,7 @@
 #include "brush_json.hpp"
 
 #include "fuzzed_input.hpp"
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 using namespace brushsvg;
 

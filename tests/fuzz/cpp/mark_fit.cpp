@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return fuzz::refusing([&] {
         fit::MarkOptions options;
         options.spacing_mm = in.coarse(2.0, 5.0);
-        options.most_iterations = in.integer(0, 4);
+        options.max_iterations = in.integer(0, 4);
         options.lag_terms = in.integer(1, 3);
         options.half_width_terms = in.integer(1, 3);
         options.departing = in.chance(4);

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                           made.overlap_closed <= 1.0 + 1e-9,
                       "an overlap is a share", made.overlap);
         fuzz::require(std::isfinite(made.plan.tracking_error.largest_mm), "the tracking error is finite");
-        if (!made.bettered) return;
+        if (!made.is_improved) return;
         const TrackingError seen = tracking_error_of(made.plan.pass, stroke, brush, options.tolerance_mm);
         fuzz::require(std::abs(seen.largest_mm - made.plan.tracking_error.largest_mm) <= 1e-9,
                       "the reported tracking error is that of the simulation");

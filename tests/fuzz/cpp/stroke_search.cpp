@@ -22,7 +22,7 @@ void require_paintable(const Stroke& stroke, const std::array<double, 2>& half_m
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::Input in(data, size);
     return fuzz::refusing([&] {
-        const Detail detail = kDetails[std::size_t(in.integer(0, 2))].second;
+        const Detail detail = kDetailNames[std::size_t(in.integer(0, 2))].second;
         const bool are_free = !in.chance(4), twice = in.chance(8);
         const Brush brush = fuzz::brush_from(in);
         in.choose_grid();
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         options.end = Terminal::automatic;
         for (int i = 0, strokes = in.integer(0, 2); i < strokes; ++i) {
             Stroke stroke = fuzz::stroke_from(in, brush, 2);
-            if (in.chance(2)) stroke.wanted_mm = shape.target_mm;
+            if (in.chance(2)) stroke.target_mm = shape.target_mm;
             shape.passes.push_back(compensate(stroke, brush, options).pass);
             shape.strokes.push_back(std::move(stroke));
         }

@@ -72,7 +72,7 @@ def calibrate_dabs(
         brush.covariance = covariance.tolist()
         for law in LAWS:
             variance = np.diag(covariance)[places(brush)[law]]
-            half = _core.deviations_of_95(fits[law].law.degrees_of_freedom) * np.sqrt(variance)
+            half = _core.interval_factor_95(fits[law].law.degrees_of_freedom) * np.sqrt(variance)
             setattr(brush, law, _make_profile(fits[law].law, shapes, half.tolist()))
     _core.check(brush)
     return DabCalibration(brush, before, outlines, values, edge_mm, outlines.remarks)

@@ -463,7 +463,7 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     if covariance is not None:
         brush_covariance = to_brush_covariance(laws, covariance)
         brush.covariance = brush_covariance.tolist()
-        half_intervals = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(brush_covariance), 0.0))
+        half_intervals = _core.interval_factor_95() * np.sqrt(np.maximum(np.diag(brush_covariance), 0.0))
         for law, place in places(brush).items():
             coefficients = getattr(brush, law).coefficients
             floor = _widest_floor(laws, deepest) if law == "tip_to_widest" else {}

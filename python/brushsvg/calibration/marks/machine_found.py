@@ -101,7 +101,7 @@ def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Num
         ),
     )
     first = len(covariance) - len(rows)
-    halves = _core.deviations_of_95() * np.sqrt(np.maximum(np.diag(covariance)[first:], 0.0))
+    halves = _core.interval_factor_95() * np.sqrt(np.maximum(np.diag(covariance)[first:], 0.0))
     return [
         Number(part, name, value, float(half), unit)
         for (part, name, value, unit), half in zip(rows, halves, strict=False)
@@ -115,7 +115,8 @@ def describe_numbers(found: list[Number]) -> list[str]:
     field = [number for number in found if number.part == "field"]
     if (
         field
-        and min(number.half for number in field) > MAX_INTERVAL_PER_PRIOR * _core.deviations_of_95() * PARTS["field"][1]
+        and min(number.half for number in field)
+        > MAX_INTERVAL_PER_PRIOR * _core.interval_factor_95() * PARTS["field"][1]
     ):
         lines.append("field: the marks do not show it; strokes all over the sheet would")
     elif field and not has_field(found):

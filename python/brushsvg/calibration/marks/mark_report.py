@@ -63,7 +63,9 @@ def report(calibration, of_photo: bool = False) -> Report:
         "was expected"
         if unexpected
         else "",
-        f"{100 * fit.left_aside:.0f} % of the edges had to be masked" if fit.left_aside > MAX_MASKED_SHARE else "",
+        f"{100 * fit.outlier_share:.0f} % of the edges had to be masked"
+        if fit.outlier_share > MAX_MASKED_SHARE
+        else "",
         f"only {calibration.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
     machine_numbers = machine_found.numbers(fit, calibration.covariance, calibration.expected)
@@ -111,7 +113,7 @@ def judge_overlap(moved: float) -> tuple[list[str], list[str]]:
 def _describe_displacements(calibration) -> str:
     sizes = [math.hypot(*residual.displacement_mm) for residual in calibration.fit.marks]
     farthest = int(np.argmax(sizes))
-    half = _core.deviations_of_95() * float(
+    half = _core.interval_factor_95() * float(
         np.sqrt(calibration.covariance[height_at(calibration.fit), height_at(calibration.fit)])
     )
     return (
@@ -136,7 +138,7 @@ def _describe_paint(calibration) -> list[str]:
         f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre of way since the dip{known} (95 %, up to "
         f"{paint.calibrated_mm[1]:.0f} mm)"
     ]
-    if bends > _core.deviations_of_95(paint.degrees_of_freedom):
+    if bends > _core.interval_factor_95(paint.degrees_of_freedom):
         lines.append(
             f"they do not narrow by one rate, by {bends:.1f} standard deviations: it is one over the whole way, "
             "and the freshly dipped width is off by more than its interval"
@@ -316,9 +318,9 @@ def _warn_of_poor_fit(fit, moved: float) -> list[str]:
     moved: the overlap without displacements.
     """
     out = []
-    if fit.left_aside > MAX_MASKED_SHARE:
+    if fit.outlier_share > MAX_MASKED_SHARE:
         out.append(
-            f"{100 * fit.left_aside:.0f} % of the edge points are masked outliers, outside the range [0, "
+            f"{100 * fit.outlier_share:.0f} % of the edge points are masked outliers, outside the range [0, "
             f"{100 * MAX_MASKED_SHARE:.0f}] %: the tail and the confidence intervals may be wrong; clean the "
             "outlines of blots, borders and slits"
         )
@@ -346,7 +348,7 @@ def _describe_sheet_and_machine(calibration) -> list[str]:
     Both are fitted together with the laws.
     """
     fit = calibration.fit
-    half_intervals = _core.deviations_of_95() * np.sqrt(np.diag(calibration.covariance))
+    half_intervals = _core.interval_factor_95() * np.sqrt(np.diag(calibration.covariance))
     first = height_at(fit)
     shift, turn = half_intervals[first + 1 : first + 3], half_intervals[first + 3]
     lines = [
@@ -373,9 +375,9 @@ def _describe_residuals(calibration) -> list[str]:
             f"all edges may be {calibration.edge_mm:.2f} mm off together (standard deviation), as a picture has them: "
             "the intervals hold that"
         )
-    if fit.left_aside > 0.01:
+    if fit.outlier_share > 0.01:
         bound = f"residual above {MAX_RESIDUAL_SIGMAS:g} standard deviations"
-        lines.append(f"masked: {100 * fit.left_aside:.0f} % of the points, outliers ({bound})")
+        lines.append(f"masked: {100 * fit.outlier_share:.0f} % of the points, outliers ({bound})")
     if fit.slim > 0.01:
         lines.append(f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals")
     outliers = [

@@ -66,7 +66,7 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         fit_with_other = calibrate_marks(restore_fresh_marks(painted, calibration, other_rate), name, *args, **kwargs)
         rate_errors = [(other_rate, _estimate_rate_error(fit_with_other)[0]), rate_errors[-1]]
     sigma /= _share_in_residuals(rate_errors[0], rate_errors[-1])
-    deviations = _core.deviations_of_95(freedom)
+    deviations = _core.interval_factor_95(freedom)
     if rate < -MAX_WIDENING_PER_M and rate + deviations * sigma < 0:
         sentence = (
             f"marks get wider by {-rate:.2g} +- {deviations * sigma:.2g} per metre along the job: was paint fetched in "
@@ -206,7 +206,7 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     own = flanks.own()
     correlation = np.exp(-options.spacing_mm / 1.0)  # neighbouring points are correlated, over 1 mm
     sigma = noise_mm * np.sqrt((1 + correlation) / (1 - correlation) / float(own @ own))
-    half = _core.deviations_of_95(flanks.freedom) * sigma
+    half = _core.interval_factor_95(flanks.freedom) * sigma
     last_mm = max(complete.before_mm[mark.stroke] + _path_lengths(mark)[-1] for mark in complete.marks)
     return ExpectedPaint(float(half), flanks.explained_by_depth(), float(last_mm))
 

@@ -38,12 +38,12 @@ class SheetScale:
 
     def is_off(self, share: tuple[float, float]) -> bool:
         size, error = abs(share[0]), max(share[1], 1e-12)
-        return size > MAX_SCALE_ERROR and _core.as_normal(size / error, self.freedom) > MIN_SIGNIFICANT_SIGMAS
+        return size > MAX_SCALE_ERROR and _core.normal_equivalent(size / error, self.freedom) > MIN_SIGNIFICANT_SIGMAS
 
     def describe(self, share: tuple[float, float]) -> str:
         """Return a phrase with a share and its 95 % interval."""
         size = "larger" if share[0] >= 0 else "smaller"
-        half = _core.deviations_of_95(self.freedom) * share[1]
+        half = _core.interval_factor_95(self.freedom) * share[1]
         return f"{100 * abs(share[0]):.2f} +- {100 * half:.2f} % {size}"
 
 

@@ -111,7 +111,7 @@ class JointFit:
         laws = {}
         for name, law in self.laws.items():
             variance = np.diag(covariance)[self.places[name]]
-            half = _core.deviations_of_95(law.degrees_of_freedom) * np.sqrt(np.maximum(variance, 0.0))
+            half = _core.interval_factor_95(law.degrees_of_freedom) * np.sqrt(np.maximum(variance, 0.0))
             laws[name] = _core.Profile(
                 law.coefficients,
                 floor=law.floor,
@@ -184,7 +184,7 @@ def fit_together(
         freedom = float(np.clip(min(freedoms_of_variance), 1.0, 1e6))
         zeros = [0.0] * unknowns.first[name]
         depths = [r.depth_mm for r in readings if any(name in signs for signs in r.sums)]
-        half = _core.deviations_of_95(freedom) * np.sqrt(variance) * scale[at]
+        half = _core.interval_factor_95(freedom) * np.sqrt(variance) * scale[at]
         laws[name] = _core.Profile(
             [*zeros, *(x * scale)[at]],
             floor=law.floor,

@@ -133,7 +133,7 @@ def find_outliers(depths_mm: list[float], residual_mm, free: int, powers_from: i
     free_share = 1.0 - np.sum(np.linalg.qr(columns)[0] ** 2, axis=1)
     free_share = np.maximum(free_share, 1e-9)
     other_variance = np.maximum((scaled_residuals @ scaled_residuals - scaled_residuals**2 / free_share) / spare, 1e-18)
-    size = _core.as_normal(scaled_residuals / np.sqrt(free_share * other_variance), spare)
+    size = _core.normal_equivalent(scaled_residuals / np.sqrt(free_share * other_variance), spare)
     return {
         int(k): Outlier(float(size[k]), float(unit[k] * scaled_residuals[k] / free_share[k]))
         for k in np.flatnonzero(size > MIN_OUTLIER_SIGMAS)
@@ -158,7 +158,7 @@ def find_outliers_of_kinds(
         if degrees < 3.0:
             continue
         external_residual = abs(t) * math.sqrt((degrees - 1.0) / max(degrees - t**2, 1e-6))
-        size = float(_core.as_normal(external_residual, degrees - 1.0))
+        size = float(_core.normal_equivalent(external_residual, degrees - 1.0))
         if size > MIN_OUTLIER_SIGMAS:
             outliers[k] = Outlier(size, float(residual_mm[k] / free_share[k]))
     return outliers
@@ -201,7 +201,7 @@ def compare_with_other_points(
         squared = value**2 / noise + max(0.0, polynomial) ** 2 / variance
         if polynomial + variance / (variance + noise) * (value - polynomial) >= 0.0:
             squared = min(squared, (value - polynomial) ** 2 / (noise + variance))
-        size = float(_core.as_normal(math.sqrt(squared), others.degrees_of_freedom))
+        size = float(_core.normal_equivalent(math.sqrt(squared), others.degrees_of_freedom))
         comparisons[k] = (size, value - others.law(depth))
     return comparisons
 

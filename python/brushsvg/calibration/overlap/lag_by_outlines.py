@@ -94,7 +94,7 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
     brush = _with_lag(own, lag, name)
     lag_covariance = _lag_covariance(calibration, to_law @ covariance[:terms, :terms] @ to_law.T)
     brush_covariance = _join_covariance(own, brush, lag_covariance)
-    half = _core.deviations_of_95() * np.sqrt(np.diag(brush_covariance)[: len(lag)])
+    half = _core.interval_factor_95() * np.sqrt(np.diag(brush_covariance)[: len(lag)])
     brush.lag = _core.Profile(
         lag.tolist(),
         calibrated_mm=(0.0, calibration.painted.deepest_mm),

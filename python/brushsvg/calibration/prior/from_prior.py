@@ -255,7 +255,7 @@ def bands_mm(covariance: np.ndarray, laws, depths: np.ndarray) -> dict[str, np.n
         out[law] = half_interval_mm(block, depths, None)
     half = polyval(depths, laws.half_width)
     ratio = at["tip_to_widest"].start
-    out["tip_to_widest"] = _core.deviations_of_95() * np.sqrt(covariance[ratio, ratio]) * half
+    out["tip_to_widest"] = _core.interval_factor_95() * np.sqrt(covariance[ratio, ratio]) * half
     return out
 
 
@@ -425,4 +425,4 @@ def found_height(updated: Updated) -> tuple[float, float]:
     Half the 95 % interval is returned as well.
     """
     at = height_at(updated.fit)
-    return updated.fit.height_mm, float(_core.deviations_of_95() * np.sqrt(updated.covariance[at, at]))
+    return updated.fit.height_mm, float(_core.interval_factor_95() * np.sqrt(updated.covariance[at, at]))

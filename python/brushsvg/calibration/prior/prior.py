@@ -135,7 +135,7 @@ def known_laws(brush: _core.Brush) -> KnownLaws:
             how[law] = "the covariance in its file"
             block = _form_covariance(brush, law, depths, laws.widest_per_half)
         elif law == "tip_to_widest":
-            half = _core.deviations_of_95() * RATIO_SIGMA
+            half = _core.interval_factor_95() * RATIO_SIGMA
             how[law] = f"nothing it says: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip (95 %)"
             block = RATIO_SIGMA**2
         else:
@@ -208,7 +208,7 @@ def _covariance_without_file(law, name: str, depths: np.ndarray, to_numbers: np.
     has_interval = half > 0
     powers = np.vander(depths, len(half), increasing=True)[:, has_interval]
     unit_covariance = np.linalg.pinv(powers.T @ powers)
-    sd = half[has_interval] / _core.deviations_of_95() / np.sqrt(np.diag(unit_covariance))
+    sd = half[has_interval] / _core.interval_factor_95() / np.sqrt(np.diag(unit_covariance))
     selected = to_numbers[:, has_interval]
     form = covariance_as_measured(name, depths, FORM_SIGMA * _size_of_law(law, depths))
     return selected @ (

@@ -114,7 +114,7 @@ def attribute_errors(
         return None
     fault_values, own, covariance, outline, slopes, residual, edges = fit
     count = len(model.numbers)
-    halves = _core.deviations_of_95() * np.sqrt(np.diag(covariance)[:count])
+    halves = _core.interval_factor_95() * np.sqrt(np.diag(covariance)[:count])
     found = tuple(
         Found(number, float(value), float(half))
         for number, value, half in zip(model.numbers, fault_values, halves, strict=True)

@@ -105,7 +105,7 @@ class FaultModel:
         band = law_band(self.brush, law, np.array([usual]))
         if band is None:
             return LAW_SIZE_SIGMA
-        share = float(band[0][0]) / _core.deviations_of_95() / max(getattr(self.brush, law)(usual), 1e-6)
+        share = float(band[0][0]) / _core.interval_factor_95() / max(getattr(self.brush, law)(usual), 1e-6)
         return min(max(share, MIN_LAW_SIGMA), LAW_SIZE_SIGMA)
 
     def rings(self, fault_values: np.ndarray) -> dict[str, list[np.ndarray]]:

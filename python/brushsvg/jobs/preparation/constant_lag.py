@@ -20,7 +20,7 @@ def best_constant(work: Work, step_mm: float = 0.25) -> Work:
     window = (0.0, 0.0, *work.plan.sheet_mm)
     # This resolution gives overlaps to 2e-4, in a twentieth of the time that outlines need.
     px_per_mm = min(4.0, 4000.0 / max(work.plan.sheet_mm))
-    target = _core.wanted_coverage(work.strokes, window, px_per_mm)
+    target = _core.target_coverage(work.strokes, window, px_per_mm)
     best_work, best_overlap = work, -1.0
     greatest_mm = max(work.brush.lag(depth) for depth in np.linspace(*work.brush.depth_range_mm, 101))
     for lag_mm in np.arange(0.0, greatest_mm + step_mm, step_mm).tolist():

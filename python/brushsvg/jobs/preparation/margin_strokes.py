@@ -184,7 +184,7 @@ def _make_predicted_strokes(plan, brush) -> list:
     for a_pass, mark in zip(plan.passes, marks.passes, strict=True):
         widths = np.maximum(2 * brush.half_width(np.asarray(mark.depth_mm)), MIN_STROKE_WIDTH_MM)
         stroke = _core.Stroke.from_points(np.asarray(mark.contact_mm), widths, a_pass.stroke)
-        stroke.wanted_mm, stroke.settings = mark.outline_mm, a_pass.settings
+        stroke.target_mm, stroke.settings = mark.outline_mm, a_pass.settings
         stroke.layer, stroke.colour = a_pass.layer, a_pass.colour
         strokes.append(stroke)
     return strokes

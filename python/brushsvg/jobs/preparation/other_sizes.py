@@ -20,8 +20,8 @@ def advise_on_size(work: Work) -> str:
     options = work.options
     if not work.drawn or options.layout.width_mm is not None:
         return ""
-    outline_elements = {stroke.origin.element for stroke in work.drawn if stroke.wanted_mm}
-    lane_elements = {each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.wanted_mm}
+    outline_elements = {stroke.origin.element for stroke in work.drawn if stroke.target_mm}
+    lane_elements = {each.origin.element for each in work.strokes if each.origin.lane > 1 and not each.target_mm}
     are_filled = options.wide == "passes" or not outline_elements.isdisjoint(lane_elements)
     if options.wide == "auto" and not are_filled:
         # Strokes are tried one at a time, but a shape is only filled as a whole.

@@ -56,7 +56,7 @@ def find_paint_outside(targets, passes, brush) -> list[Notice]:
 
     marks = _core.simulate(_core.Plan(sheet_mm=(1.0, 1.0), passes=[run for _, run in checked]), brush)
     _core.trace_outlines(marks, brush)
-    shapes = [region(_core.unite(_core.wanted_outline(stroke, _OUTLINE_TOLERANCE_MM))) for stroke in targets]
+    shapes = [region(_core.unite(_core.target_outline(stroke, _OUTLINE_TOLERANCE_MM))) for stroke in targets]
     tree = shapely.STRtree(shapes)
     notices = []
     for (stroke, _), trace in zip(checked, marks.passes, strict=True):

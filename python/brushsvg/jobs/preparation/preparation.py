@@ -100,7 +100,7 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
     strokes = _drop_left_out(strokes, planned)
     planned.plan = _set_requested_speed(_set_drawn_speeds(planned.plan, strokes.targets), options)
     tried_compensation = compensated if options.layout.width_mm is None else None
-    line_elements = {stroke.origin.element for stroke in found_strokes if not stroke.wanted_mm}
+    line_elements = {stroke.origin.element for stroke in found_strokes if not stroke.target_mm}
     unreached, missed, outside = _find_stray_paint(strokes, planned, brush, options)
     notices += (
         *planned.notices,
@@ -350,7 +350,7 @@ def _refuse_wide_lines(strokes: list, brush) -> None:
 
     Lines are checked before filled shapes, which need much more time.
     """
-    for stroke, half_mm in find_wide_lines([stroke for stroke in strokes if not stroke.wanted_mm], brush):
+    for stroke, half_mm in find_wide_lines([stroke for stroke in strokes if not stroke.target_mm], brush):
         brush.depth_for_half_width(half_mm, stroke.id)
 
 
@@ -439,7 +439,7 @@ def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> li
     The paint is judged where a stroke has no drawn middle line, as in a shape, and where refinement leaves the
     middle line on purpose. Other strokes are judged by their tracking errors.
     """
-    shapes = {stroke.origin.element for stroke in planned.targets if stroke.wanted_mm}
+    shapes = {stroke.origin.element for stroke in planned.targets if stroke.target_mm}
     by_paint = [
         is_moved or stroke.origin.element in shapes
         for stroke, is_moved in zip(planned.targets, planned.moved, strict=True)

@@ -47,7 +47,7 @@ LINE_CODES = ("stroke-start", "stroke-end", "off-middle-line")
 
 def remedy(code: str, stroke) -> str:
     """Return the remedy for a cause, "" where there is none."""
-    return SCALE_UP if code in LINE_CODES and stroke.wanted_mm else REMEDIES.get(code, "")
+    return SCALE_UP if code in LINE_CODES and stroke.target_mm else REMEDIES.get(code, "")
 
 
 @dataclass(frozen=True)

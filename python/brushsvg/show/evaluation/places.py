@@ -71,7 +71,7 @@ def find_places(
 
     lines = [_core.flatten(stroke, LINE_TOLERANCE_MM) for stroke in drawn]
     window, px_per_mm = _window_around(lines)
-    target = _core.wanted_coverage(drawn, window, px_per_mm)
+    target = _core.target_coverage(drawn, window, px_per_mm)
     painted = _core.coverage(marks, brush, window, px_per_mm)
     corner = (window[0], window[1] + window[3])
     areas = worst_areas(target, painted, corner, px_per_mm, [line[:, :2] for line in lines])

@@ -130,7 +130,7 @@ class Bare(Protocol):
 
 def target_rings(strokes: Iterable[_core.Stroke]) -> list[np.ndarray]:
     """Return the outline of everything that was drawn."""
-    return _core.unite([ring for s in strokes for ring in _core.wanted_outline(s, RING_TOLERANCE_MM)])
+    return _core.unite([ring for s in strokes for ring in _core.target_outline(s, RING_TOLERANCE_MM)])
 
 
 @dataclass(frozen=True)
@@ -216,7 +216,7 @@ def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
         line = _core.flatten(stroke, RING_TOLERANCE_MM)
         size_mm = max(_square_side_mm(line), area.area_mm2**0.5)
         found_cause = _find_cause(painted, stroke, line, area, size_mm, error)
-        is_off = not (stroke.wanted_mm or error.within_tolerance or "tracking error" in found_cause.words)
+        is_off = not (stroke.target_mm or error.within_tolerance or "tracking error" in found_cause.words)
         return found_cause, error.largest_mm if is_off else None
 
     return find_places(painted.marks, painted.brush, painted.target() or [], why)
@@ -269,10 +269,10 @@ def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
     The discs have the widths of the stroke. A round brush cannot paint there. The square is around place_mm, with side
     size_mm.
     """
-    if not stroke.wanted_mm:
+    if not stroke.target_mm:
         return 0.0
-    within = _core.intersect([_square_ring(place_mm, size_mm / 2)], stroke.wanted_mm)
-    discs = _core.wanted_outline(stroke.replaced(wanted_mm=[]), RING_TOLERANCE_MM)
+    within = _core.intersect([_square_ring(place_mm, size_mm / 2)], stroke.target_mm)
+    discs = _core.target_outline(stroke.replaced(target_mm=[]), RING_TOLERANCE_MM)
     return _core.area(within) - _core.area(_core.intersect(within, discs))
 
 
@@ -289,7 +289,7 @@ def groups(marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Strok
     """
     known_pairs = [pair for pair in zip(marks.passes, strokes or (), strict=bool(strokes)) if pair[1] is not None]
     traces, targets = [trace for trace, _ in known_pairs], [stroke for _, stroke in known_pairs]
-    touching = _core.touching(targets)
+    touching = _core.group_touching(targets)
     areas = _core.common_areas(traces, targets, touching, brush)
     return tuple(
         Group(tuple(targets[k].id for k in members), area.overlap)

@@ -157,7 +157,7 @@ def _all_effects(plan, brush, marks):
     covariance = scale[:, None] * covariance_of(brush) * scale
     deviations = np.concatenate(  # half a 95 % interval of each law in standard deviations
         [
-            np.full(part.stop - part.start, _core.deviations_of_95(getattr(brush, law).degrees_of_freedom))
+            np.full(part.stop - part.start, _core.interval_factor_95(getattr(brush, law).degrees_of_freedom))
             for law, part in at.items()
         ]
     )

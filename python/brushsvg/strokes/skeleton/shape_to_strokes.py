@@ -52,7 +52,7 @@ _UNIT_CIRCLE = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace
 class OutlineStroke:
     """A stroke found in an outline.
 
-    middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; wanted_mm: rings of its part of the shape.
+    middle_mm: cubics (n, 8); half_width: [(fraction of arc length, mm)]; target_mm: rings of its part of the shape.
     The parts of all strokes make up the shape, and none is empty. Where strokes cross, the place belongs to both.
     covered: whether other strokes cover its start and its end, because most of the surroundings are in the shape.
     """
@@ -60,7 +60,7 @@ class OutlineStroke:
     middle_mm: np.ndarray
     half_width: list[tuple[float, float]]
     closed: bool
-    wanted_mm: list[np.ndarray]
+    target_mm: list[np.ndarray]
     covered: tuple[bool, bool] = (False, False)
 
 
@@ -101,9 +101,9 @@ def _find_area_strokes(
     return list(zip([lines[k] for k in kept], with_shared_corners(strokes, area) if can_cut else strokes, strict=True))
 
 
-def _make_dab(disc: np.ndarray, wanted_mm: list[np.ndarray]) -> OutlineStroke:
+def _make_dab(disc: np.ndarray, target_mm: list[np.ndarray]) -> OutlineStroke:
     x, y, radius = disc.tolist()
-    return OutlineStroke(np.array([[x, y] * 4]), [(0.0, radius)], False, wanted_mm)
+    return OutlineStroke(np.array([[x, y] * 4]), [(0.0, radius)], False, target_mm)
 
 
 def _find_chain_part(chain, area_skeleton: Skeleton, area: list[np.ndarray] | None) -> list[np.ndarray]:
@@ -127,7 +127,7 @@ def _find_chain_part(chain, area_skeleton: Skeleton, area: list[np.ndarray] | No
     return _core.unite([*nearest, *across])
 
 
-def _make_stroke(chain, wanted_mm: list[np.ndarray], area: list[np.ndarray]) -> OutlineStroke:
+def _make_stroke(chain, target_mm: list[np.ndarray], area: list[np.ndarray]) -> OutlineStroke:
     middles, knots, at_mm = [], [], 0.0
     for piece in chain:
         line = piece.line
@@ -141,7 +141,7 @@ def _make_stroke(chain, wanted_mm: list[np.ndarray], area: list[np.ndarray]) -> 
     closed = len(chain) == 1 and chain[0].closed
     line = np.vstack([piece.line for piece in chain])
     covered = (False, False) if closed else (_is_covered(line[::-1], area), _is_covered(line, area))
-    return OutlineStroke(np.vstack(middles), half_width, closed, wanted_mm, covered)
+    return OutlineStroke(np.vstack(middles), half_width, closed, target_mm, covered)
 
 
 def _is_covered(line: np.ndarray, rings: list[np.ndarray]) -> bool:

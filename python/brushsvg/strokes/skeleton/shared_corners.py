@@ -26,13 +26,13 @@ def with_shared_corners(strokes: list, area: list[np.ndarray]) -> list:
     ends = [(k, box) for k, stroke in enumerate(strokes) for box in _find_end_boxes(stroke, area)]
     if not ends:
         return strokes
-    lines = [_core.wanted_outline(_as_plain_stroke(stroke), 0.01) for stroke in strokes]
+    lines = [_core.target_outline(_as_plain_stroke(stroke), 0.01) for stroke in strokes]
     changed = list(strokes)
     for k, (box, half) in ends:
         corners = _core.intersect([box], area)
         covered = _core.unite([ring for line in lines for ring in _core.intersect(corners, line)])
         if _core.area(corners) - _core.area(covered) > MIN_BARE_CORNERS * half**2:
-            changed[k] = replace(changed[k], wanted_mm=_core.unite([*changed[k].wanted_mm, *corners]))
+            changed[k] = replace(changed[k], target_mm=_core.unite([*changed[k].target_mm, *corners]))
     return changed
 
 

@@ -11,10 +11,10 @@
 // Computes the path that a machine runs for a commanded one. Internal to fit_marks.
 namespace brushsvg::fit {
 
-constexpr int kMachine = 15;  // number of a machine's errors, in the order of MachineAt
+constexpr int kMachineErrors = 15;  // number of a machine's errors, in the order of MachineIndex
 
 /// First index of each error of a machine: x and then y, and for the field three numbers of x and then three of y.
-struct MachineAt {
+struct MachineIndex {
     static constexpr int lean = 0, scale = 2, skew = 4, tilt = 5, backlash = 7, field = 9;
 };
 
@@ -30,27 +30,28 @@ struct FieldBox {
 
 /// The machine at the current state of a fit. by: its errors, with scale as its difference from 1. came: the direction
 /// from which x and y came to the first pose, -1, 0 or 1.
-struct MachineHere {
-    std::array<double, kMachine> by;
-    Eigen::Vector2d centre, came;
+struct MachineState {
+    std::array<double, kMachineErrors> by;
+    Eigen::Vector2d centre, approach;
     const FieldBox& box;
-    bool is_bent;  ///< a field is requested; its derivatives need a third of the time
+    bool has_field;  ///< a field is requested; its derivatives need a third of the time
 };
 
 /// Returns how far each axis is behind its command at each pose. An axis that reverses does not move for its whole
 /// backlash. With a negative backlash, it is ahead by as much.
 template <class T>
-std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, const std::array<T, kMachine>& by) {
-    constexpr double kRestsMm = 1e-6;
+std::vector<Vec2<T>> backlash_offsets(const Poses& poses, const MachineState& machine,
+                                      const std::array<T, kMachineErrors>& by) {
+    constexpr double kMinAxisMoveMm = 1e-6;
     std::vector<Vec2<T>> out(std::size_t(poses.rows()));
     for (int axis = 0; axis < 2; ++axis) {
-        const T half = 0.5 * by[std::size_t(MachineAt::backlash + axis)];
+        const T half = 0.5 * by[std::size_t(MachineIndex::backlash + axis)];
         const double way = half < T(0.0) ? -1.0 : 1.0;
         const T most = way * half;
-        T behind = machine.came[axis] * most;
+        T behind = machine.approach[axis] * most;
         for (Eigen::Index i = 0; i < poses.rows(); ++i) {
             const double step = i ? poses(i, axis) - poses(i - 1, axis) : 0.0;
-            if (std::abs(step) > kRestsMm) behind += step;
+            if (std::abs(step) > kMinAxisMoveMm) behind += step;
             if (behind > most)
                 behind = most;
             else if (behind < -most)
@@ -63,12 +64,12 @@ std::vector<Vec2<T>> behind_by(const Poses& poses, const MachineHere& machine, c
 
 /// The TCP's path as a machine with errors runs the command, for any scalar type.
 template <class T>
-struct RunWay {
+struct RealisedPath {
     const Poses& poses;
     const std::vector<Arc>& arcs;
-    const MachineHere& machine;
+    const MachineState& machine;
     T deeper_mm;
-    std::array<T, kMachine> by;
+    std::array<T, kMachineErrors> by;
     std::vector<Vec2<T>> behind;
 
     Eigen::Index count() const { return poses.rows(); }
@@ -77,19 +78,19 @@ struct RunWay {
     }
     T depth(Eigen::Index i) const {
         const Eigen::Vector2d at = from_centre(i);
-        return T(deeper_mm - poses(i, 2) + by[MachineAt::tilt] * at.x() + by[MachineAt::tilt + 1] * at.y());
+        return T(deeper_mm - poses(i, 2) + by[MachineIndex::tilt] * at.x() + by[MachineIndex::tilt + 1] * at.y());
     }
     Vec2<T> tcp(Eigen::Index i) const {
         const Eigen::Vector2d at = from_centre(i);
         const Vec2<T>& late = behind[std::size_t(i)];
         const T d = depth(i);
-        Vec2<T> out{T(poses(i, 0) + by[MachineAt::scale] * at.x() + by[MachineAt::skew] * at.y() +
-                      by[MachineAt::lean] * d - late[0]),
-                    T(poses(i, 1) + by[MachineAt::scale + 1] * at.y() + by[MachineAt::lean + 1] * d - late[1])};
-        if (!machine.is_bent) return out;
+        Vec2<T> out{T(poses(i, 0) + by[MachineIndex::scale] * at.x() + by[MachineIndex::skew] * at.y() +
+                      by[MachineIndex::lean] * d - late[0]),
+                    T(poses(i, 1) + by[MachineIndex::scale + 1] * at.y() + by[MachineIndex::lean + 1] * d - late[1])};
+        if (!machine.has_field) return out;
         const Eigen::Vector3d terms = machine.box.terms(poses.row(i).template head<2>().transpose());
         for (int axis = 0; axis < 2; ++axis)
-            for (int k = 0; k < 3; ++k) out[axis] += by[std::size_t(MachineAt::field + 3 * axis + k)] * terms[k];
+            for (int k = 0; k < 3; ++k) out[axis] += by[std::size_t(MachineIndex::field + 3 * axis + k)] * terms[k];
         return out;
     }
     T turn(const Arc&, Eigen::Index) const { return T(0.0); }  // there are no arcs, because circles do not stay circles

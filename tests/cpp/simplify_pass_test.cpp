@@ -1,4 +1,4 @@
-#include "brushsvg/thin_out.hpp"
+#include "brushsvg/simplify_pass.hpp"
 
 #include <doctest/doctest.h>
 
@@ -85,7 +85,7 @@ TEST_CASE("a pass simplified twice stays close to itself, and keeps arcs, landin
     CompensateOptions options;
     options.few_poses = false;
     const Pass pass = compensate(stroke, brush, options).pass;
-    const Pass thin = thin_out(pass, brush, 0.05);
+    const Pass thin = simplify_pass(pass, brush, 0.05);
     REQUIRE(!pass.arcs.empty());
     for (std::size_t k = 0; k < thin.arcs.size(); ++k) CHECK_NOTHROW(check_arc(thin, k, "s"));
     for (const Arc& turn : pass.arcs) {
@@ -97,7 +97,7 @@ TEST_CASE("a pass simplified twice stays close to itself, and keeps arcs, landin
     }
     CHECK(thin.poses_mm.topRows(2) == pass.poses_mm.topRows(2));
     CHECK(thin.poses_mm.bottomRows(5) == pass.poses_mm.bottomRows(5));
-    CHECK(thin_out(thin, brush, 0.05).poses_mm.rows() <= thin.poses_mm.rows());
+    CHECK(simplify_pass(thin, brush, 0.05).poses_mm.rows() <= thin.poses_mm.rows());
 }
 
 TEST_CASE("a pen keeps its corners and its reversals with few poses") {
@@ -140,14 +140,14 @@ TEST_CASE("a pass that cannot be simplified is accepted") {
     const Brush brush = shipped("round-6"), pen = shipped("rigid");
     Pass pass;
     pass.stroke = "s";
-    CHECK(thin_out(pass, brush, 0.05).poses_mm.rows() == 0);
+    CHECK(simplify_pass(pass, brush, 0.05).poses_mm.rows() == 0);
     pass.poses_mm.resize(3, 3);
     pass.poses_mm << 1, 1, 0, 1, 1, -3, 1, 1, 0;
-    CHECK(thin_out(pass, brush, 0.05).poses_mm == pass.poses_mm);
+    CHECK(simplify_pass(pass, brush, 0.05).poses_mm == pass.poses_mm);
     pass.poses_mm.resize(400, 3);
     for (int i = 0; i < 400; ++i)
         pass.poses_mm.row(i) << 40 * std::cos(i * 0.01), 40 * std::sin(i * 0.01), i % 399 ? -1.0 : 0.0;
-    const Pass drawn = thin_out(pass, pen, 0.05);
+    const Pass drawn = simplify_pass(pass, pen, 0.05);
     CHECK(drawn.poses_mm.rows() < 60);
     for (Eigen::Index i = 0; i < drawn.poses_mm.rows(); ++i)
         CHECK(std::abs(drawn.poses_mm.row(i).head<2>().norm() - 40.0) < 0.05);
@@ -159,7 +159,7 @@ TEST_CASE("edges without a direction of motion show nothing") {
     for (volatile unsigned char& byte : memory) byte = 0x3f;
     const Edges* edges = new (const_cast<unsigned char*>(memory)) Edges;
     for (const int side : {0, 1}) {
-        CHECK(!edges->shows[side]);
-        CHECK(edges->way[side].norm() == 0.0);
+        CHECK(!edges->is_visible[side]);
+        CHECK(edges->direction[side].norm() == 0.0);
     }
 }

@@ -1,4 +1,4 @@
-#include "marks/half_painted.hpp"
+#include "marks/coverage_contours.hpp"
 
 #include <algorithm>
 #include <array>
@@ -54,8 +54,8 @@ class Squares {
                                            share(row, column)};  // counter-clockwise from the lower left
         const std::array<Index, 4> sides{right_of(row + 1, column), below(row, column + 1), right_of(row, column),
                                          below(row, column)};  // each after its corner
-        const auto inside = [&](std::size_t k) { return corners[k % 4] > kHalfPainted; };
-        const bool middle = corners[0] + corners[1] + corners[2] + corners[3] > 4.0f * kHalfPainted;
+        const auto inside = [&](std::size_t k) { return corners[k % 4] > kHalfCoverage; };
+        const bool middle = corners[0] + corners[1] + corners[2] + corners[3] > 4.0f * kHalfCoverage;
         for (std::size_t k = 0; k < 4; ++k) {
             if (!inside(k) || inside(k + 1)) continue;
             // go round the blank corners where the middle is painted, else round the painted corners
@@ -68,7 +68,7 @@ class Squares {
         const Index row = crossing / 2 / columns_, column = crossing / 2 % columns_;
         const bool across = crossing % 2 == 0;
         const float a = share(row, column), b = across ? share(row, column + 1) : share(row + 1, column);
-        const double t = double((kHalfPainted - a) / (b - a));
+        const double t = double((kHalfCoverage - a) / (b - a));
         return {double(column - 1) + (across ? t : 0.0), double(row - 1) + (across ? 0.0 : t)};
     }
 
@@ -79,7 +79,7 @@ class Squares {
 
 }  // namespace
 
-Rings half_painted(const Coverage& picture, const Window& window, double px_per_mm) {
+Rings trace_half_coverage(const Coverage& picture, const Window& window, double px_per_mm) {
     Rings rings = Squares(picture).rings();
     for (Ring& ring : rings) {
         ring.col(0) = window.x_mm + (ring.col(0).array() + 0.5) / px_per_mm;

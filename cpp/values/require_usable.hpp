@@ -6,7 +6,7 @@
 namespace brushsvg {
 
 /// Marks reach beyond the drawing by no more than a brush's lag. A greater coordinate is damaged data.
-inline constexpr double kFarthestPaintedMm = 1e7;
+inline constexpr double kMaxPaintedCoordinateMm = 1e7;
 
 /// Refuses a brush that cannot be used in computations. This check is quick; check(brush) tests whether a brush makes
 /// sense. Throws Error when the kind is unknown or the depth range does not rise, when a law is not finite, negative

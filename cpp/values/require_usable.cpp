@@ -1,4 +1,4 @@
-#include "values/refuse_unusable.hpp"
+#include "values/require_usable.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace brushsvg {
 namespace {
 
-constexpr double kDeepestMm = 1000.0, kLargestLawMm = 1000.0;  // same limits as in check(brush)
-constexpr int kLooks = 16;                                     // evaluations of a law over the depth range
+constexpr double kMaxDepthMm = 1000.0, kMaxLawValueMm = 1000.0;  // same limits as in check(brush)
+constexpr int kLawSamples = 16;                                  // evaluations of a law over the depth range
 
 template <class... Numbers>
 std::string format(const char* pattern, Numbers... numbers) {
@@ -28,15 +28,15 @@ void require_law(const Profile& law, double lo, double hi, bool is_length, const
                     where);
     for (double c : law.coefficients)
         if (!std::isfinite(c)) throw Error("not-finite", "a coefficient is not finite", where, c);
-    if (std::isnan(law.floor) || law.floor > kLargestLawMm || !std::isfinite(law.floor_slope))
+    if (std::isnan(law.floor) || law.floor > kMaxLawValueMm || !std::isfinite(law.floor_slope))
         throw Error("not-finite", "the floor of the law is not finite", where, law.floor);
-    for (int i = 0; i <= kLooks; ++i) {
-        const double d = lo + (hi - lo) * i / kLooks, value = law(d);
-        if (!(std::abs(value) <= kLargestLawMm) || (is_length && value < -1e-9))
+    for (int i = 0; i <= kLawSamples; ++i) {
+        const double d = lo + (hi - lo) * i / kLawSamples, value = law(d);
+        if (!(std::abs(value) <= kMaxLawValueMm) || (is_length && value < -1e-9))
             throw Error("out-of-range",
                         format("the law says %.4g mm at depth %.2f mm, outside the range [%.0f, %.0f] mm", value, d,
-                               is_length ? 0.0 : -kLargestLawMm, kLargestLawMm),
-                        where, value, std::array<double, 2>{is_length ? 0.0 : -kLargestLawMm, kLargestLawMm});
+                               is_length ? 0.0 : -kMaxLawValueMm, kMaxLawValueMm),
+                        where, value, std::array<double, 2>{is_length ? 0.0 : -kMaxLawValueMm, kMaxLawValueMm});
     }
 }
 
@@ -45,7 +45,7 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Ring& outline = shapes[i].outline_mm;
         const auto here = [&] { return where + ("[" + std::to_string(i) + "]"); };
-        if (!(shapes[i].depth_mm > depth && shapes[i].depth_mm <= kLargestLawMm))
+        if (!(shapes[i].depth_mm > depth && shapes[i].depth_mm <= kMaxLawValueMm))
             throw Error("not-ascending",
                         format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm",
                                shapes[i].depth_mm, depth),
@@ -57,11 +57,11 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
                                double(outline.rows())),
                         here());
         const double largest = outline.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-        if (!(largest <= kLargestLawMm))
+        if (!(largest <= kMaxLawValueMm))
             throw Error("out-of-range",
                         format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
-                               kLargestLawMm),
-                        here(), largest, std::array<double, 2>{0.0, kLargestLawMm});
+                               kMaxLawValueMm),
+                        here(), largest, std::array<double, 2>{0.0, kMaxLawValueMm});
     }
 }
 
@@ -70,15 +70,15 @@ void require_outlines(const std::vector<Footprint>& shapes, Eigen::Index vertice
 void require_usable(const Brush& brush) {
     require_known_kind(brush);
     const auto [lo, hi] = brush.depth_range_mm;
-    if (!(lo >= 0.0 && hi > lo && hi <= kDeepestMm))
+    if (!(lo >= 0.0 && hi > lo && hi <= kMaxDepthMm))
         throw Error("out-of-range",
-                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kDeepestMm),
+                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kMaxDepthMm),
                     "depth_range_mm");
     require_law(brush.lag, lo, hi, true, "lag");
     require_law(brush.tip_gap, lo, hi, false, "tip_gap");
     require_law(brush.tip_to_widest, lo, hi, false, "tip_to_widest");
     require_law(brush.half_width, lo, hi, true, "half_width");
-    if (!(std::abs(brush.paint_depth_mm) <= kDeepestMm))
+    if (!(std::abs(brush.paint_depth_mm) <= kMaxDepthMm))
         throw Error("out-of-range", "the painting depth is not within [0, 1000] mm", "paint_depth_mm",
                     brush.paint_depth_mm);
     if (brush.footprints.dragged.empty()) throw Error("footprint-invalid", "there is no outline", "footprints.dragged");
@@ -100,12 +100,12 @@ void require_usable(const PassMarks& marks) {
         if (!(share >= 0.0 && share <= 1.0))
             throw Error("out-of-range", "a share of the width is outside the range [0, 1]", marks.stroke, share,
                         std::array<double, 2>{0.0, 1.0});
-    const auto sound = [](double x) { return std::abs(x) <= kFarthestPaintedMm; };
-    if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthestPaintedMm)) ||
+    const auto is_in_range = [](double x) { return std::abs(x) <= kMaxPaintedCoordinateMm; };
+    if ((rows > 0 && !(marks.contact_mm.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMaxPaintedCoordinateMm)) ||
         (marks.lean_mm_per_mm.rows() > 0 && !marks.lean_mm_per_mm.allFinite()) ||
-        !std::all_of(marks.heading_rad.begin(), marks.heading_rad.end(), sound) ||
-        !std::all_of(marks.depth_mm.begin(), marks.depth_mm.end(), sound) ||
-        !std::all_of(marks.pull.begin(), marks.pull.end(), sound))
+        !std::all_of(marks.heading_rad.begin(), marks.heading_rad.end(), is_in_range) ||
+        !std::all_of(marks.depth_mm.begin(), marks.depth_mm.end(), is_in_range) ||
+        !std::all_of(marks.pull.begin(), marks.pull.end(), is_in_range))
         throw Error("geometry-out-of-range", "a number of the marks is not finite, or beyond 1e7", marks.stroke);
 }
 

@@ -14,6 +14,6 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// Nothing changes where the brush lands, is lifted, goes loose, or turns on an arc. No pose is deeper than the deepest
 /// one was. The result is simulated before it is returned; if nothing is gained, the original pass is returned. Throws
 /// Error as simulate() does.
-Pass thin_out(const Pass& pass, const Brush& brush, double tolerance_mm);
+Pass simplify_pass(const Pass& pass, const Brush& brush, double tolerance_mm);
 
 }  // namespace brushsvg

@@ -5,10 +5,10 @@
 namespace brushsvg {
 
 /// Share of a painted pixel above which it is inside these rings.
-inline constexpr float kHalfPainted = 0.5f;
+inline constexpr float kHalfCoverage = 0.5f;
 
 /// Return the rings [mm] along which half of a pixel is painted: outer ones counter-clockwise, holes clockwise. A
 /// picture counts as blank beyond its window.
-Rings half_painted(const Coverage& picture, const Window& window, double px_per_mm);
+Rings trace_half_coverage(const Coverage& picture, const Window& window, double px_per_mm);
 
 }  // namespace brushsvg

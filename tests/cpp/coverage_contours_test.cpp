@@ -1,4 +1,4 @@
-#include "marks/half_painted.hpp"
+#include "marks/coverage_contours.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,7 @@ namespace {
 constexpr Window kWindow{-5.0, 3.0, 20.0, 12.0};
 constexpr double kPxPerMm = 4.0;
 
-Rings back(const Rings& rings) { return half_painted(coverage(rings, kWindow, kPxPerMm), kWindow, kPxPerMm); }
+Rings back(const Rings& rings) { return trace_half_coverage(coverage(rings, kWindow, kPxPerMm), kWindow, kPxPerMm); }
 
 Ring box(double left, double bottom, double right, double top) {
     Ring ring(4, 2);
@@ -42,8 +42,8 @@ TEST_CASE("holes run clockwise, and rings that leave the window end at its edge"
 TEST_CASE("pixels that touch at a corner are separate, and an empty picture has no rings") {
     Coverage picture = Coverage::Zero(4, 4);
     picture(1, 1) = picture(2, 2) = 1.0f;
-    CHECK(half_painted(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 2);
+    CHECK(trace_half_coverage(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 2);
     picture(1, 2) = 0.4f;  // then the point between the four pixels counts as painted
-    CHECK(half_painted(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 1);
-    CHECK(half_painted(Coverage::Zero(3, 3), {0.0, 0.0, 3.0, 3.0}, 1.0).empty());
+    CHECK(trace_half_coverage(picture, {0.0, 0.0, 4.0, 4.0}, 1.0).size() == 1);
+    CHECK(trace_half_coverage(Coverage::Zero(3, 3), {0.0, 0.0, 3.0, 3.0}, 1.0).empty());
 }

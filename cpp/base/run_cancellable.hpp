@@ -17,7 +17,7 @@ namespace brushsvg {
 /// It is for library calls that need seconds without a checkpoint. After a cancellation nobody waits for the work. It
 /// continues to its next checkpoint and ends there, so that `work` must own everything that it reads.
 template <class Work>
-auto asking_meanwhile(Work work) {
+auto run_cancellable(Work work) {
     const auto is_over = std::make_shared<std::atomic<bool>>(false);
     using Task = std::packaged_task<decltype(work())()>;
     const auto task = std::make_shared<Task>([work = std::move(work), is_over]() mutable {
