@@ -21,8 +21,9 @@ inline std::size_t processor_count() {
     return count;
 }
 
-/// Calls work(i) for i in [begin, end) on all processors. Of several errors, the one with the lowest i is thrown. If
-/// the system starts fewer threads, as in a container with a limit of processes, these threads or this one do the work.
+/// Calls work(i) for i in [begin, end) on all processors. If several calls throw, the error with the lowest i is
+/// thrown. If the system starts fewer threads, as in a container with a limit of processes, these threads or this one
+/// do the work.
 template <class Work>
 void parallel_for(std::size_t begin, std::size_t end, Work&& work) {
     std::atomic<std::size_t> next{begin};
@@ -41,7 +42,7 @@ void parallel_for(std::size_t begin, std::size_t end, Work&& work) {
     const std::size_t threads = std::min(processor_count(), end - begin);
     std::size_t running = 0;
     std::vector<std::thread> others;
-    others.reserve(threads);  // so that below only the start of a thread can fail
+    others.reserve(threads);  // from here on, only the start of a thread can fail
     for (std::size_t k = 1; k < threads; ++k) try {
             const std::lock_guard lock(mutex);  // a thread that ends at once must already be counted
             others.emplace_back([&] {

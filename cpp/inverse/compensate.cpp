@@ -163,7 +163,7 @@ CompensatedPass pass_within_tolerance(const Pass& plain, bool few_poses, const S
     CompensatedPass result;
     result.pass = plain;
     double step_tolerance = 0.5 * tolerance_mm;
-    // the plan is simulated before it is returned, and its steps get finer as long as that helps
+    // The plan is simulated before it is returned. Its steps get finer as long as its error decreases.
     if (few_poses) step_tolerance = std::min(kStepToleranceShare * step_tolerance, kMaxStepToleranceMm);
     for (int attempt = 0; attempt < 8; ++attempt, step_tolerance *= 0.4) {
         bool turns = false;
@@ -191,7 +191,7 @@ CompensatedPass pass_within_tolerance(const Pass& plain, bool few_poses, const S
             trial.poses_mm.rows() >= Index(kMaxAddedSamples))
             break;
     }
-    // if the line cannot be followed within the tolerance, fewer poses must do as well as all poses, but for a hair
+    // If the line cannot be followed within the tolerance, fewer poses may add only kAddedErrorShare to the error.
     const bool turns = result.tracking_error.has_turn_in_place;
     const double error_mm = result.tracking_error.largest_mm;
     const double limit_mm = error_mm <= tolerance_mm ? tolerance_mm : error_mm + kAddedErrorShare * tolerance_mm;

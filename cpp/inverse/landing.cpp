@@ -14,9 +14,9 @@ using Eigen::Vector2d;
 /// How far inside q = P + r u a lift stays [mm]. With 0 the patch slips on straight moves (0.25 mm from depth 10). With
 /// much more the patch relaxes towards its pressed shape.
 constexpr double kLiftSlackMm = 0.05;
-/// How far straight moves may stray from that offset [mm]. With more the patch slips or relaxes.
+/// Largest deviation of straight moves from kLiftSlackMm [mm]. With a larger one the patch slips or relaxes.
 constexpr double kLiftBandMm = 0.8 * kLiftSlackMm;
-/// Number of depth steps, of 128 in all, over which a lift moves inside. Fewer would need an extra move.
+/// Number of depth steps (out of 128) in which a lift moves inside. Fewer steps would need an extra move.
 constexpr double kLiftEaseSteps = 8.0;
 /// Return whether the patch rests while the TCP runs up from P to P + r u and presses. It does as long as r(d)/d falls
 /// with depth; otherwise the brush must be pressed down first.
@@ -46,8 +46,8 @@ void lift(const Stance& last, const Brush& brush, PoseList& out, double until_mm
         out.add(last.contact_mm + std::max(0.0, reach_mm) * last.heading, depth);
     };
     const auto reach = [&](double depth) { return brush.lag(depth) - kLiftSlackMm; };
-    // straight moves that stay inside the curve, but not far: each is as long as one straight line can be; the first
-    // begins where the brush is taut, and comes inside on its way
+    // Straight moves stay slightly inside the curve. Each move is as long as a straight line can be. The first move
+    // begins where the brush is taut, and moves inside on its way.
     constexpr int n = 128;
     const auto depth_at = [&](int k) { return until_mm + (last.depth_mm - until_mm) * (n - k) / n; };
     int from = 0;

@@ -23,7 +23,7 @@ constexpr double kMinLandingDepthMm = 0.05;
 /// leave more paint unused, more only cost time.
 constexpr double kPlacesPerLoad = 200.0;
 
-constexpr double kMaxLoads = 1000.0;  // most loads of one stroke; with more the brush would only travel
+constexpr double kMaxLoads = 1000.0;  // of one stroke: with more, the brush would mainly travel
 
 /// Largest distance [mm] of the patch from the arc's centre while the brush turns in place.
 constexpr double kMaxTurnInPlaceMm = 0.01;

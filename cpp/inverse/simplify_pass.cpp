@@ -20,8 +20,8 @@ using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// About how many of the original poses a new move is checked at. More find the same error; with fewer a kink of the
-/// path can be missed.
+/// Approximate number of original poses at which a new move is checked. More poses find the same error. With fewer
+/// poses, a kink of the path can be missed.
 constexpr Index kCheckedPoses = 10;
 /// A depth [mm] below this is not pressed any more.
 constexpr double kMinPressedDepthMm = 1e-3;
@@ -30,15 +30,15 @@ constexpr double kMinMoveMm = 1e-6;
 /// Largest turn of the tool from one move to the next [rad], up and down included. With a sharper turn the tool would
 /// have to stop. Bends this tight slow it down anyway: 0.6 needs 8 % more poses and takes as long.
 constexpr double kMaxTurnRad = 1.0;
-/// How far off the path a move may end, in second differences over half its length: a third for an even curve. More
-/// values win less than 1 % of the poses; a third alone loses a tenth.
+/// Tried distances of a move's end from the path, in second differences over half the move's length. A third suits an
+/// even curve. More values save less than 1 % of the poses; a third alone costs a tenth more poses.
 constexpr double kEndOffsets[] = {1.0 / 3.0, 0.25, 0.45, 0.15, 0.0};
-/// Share of that offset that is applied to the depth, which the brush does not smooth. It is half the sagitta at a
+/// Share of this offset that is applied to the depth, which the brush does not smooth. It is half the sagitta at a
 /// third.
 constexpr double kDepthOffsetShare = 0.75;
-/// By how many tolerances the middle of the mark may run ahead of or behind its place after the same share of the move.
-/// This matters on straight lines, where poses are far apart. There a mark close to the path could be close to a
-/// different part: another side of a triangle, or a way there without the way back.
+/// Largest distance along the path, in tolerances, between the middle of the mark and its original place. This matters
+/// on straight lines, where poses are far apart. There a mark close to the path could be close to a different part:
+/// another side of a triangle, or a way there without the way back.
 constexpr double kMaxSlipTolerances = 10.0;
 /// Largest turn of the mark's edges where two moves meet [rad]: eight degrees, less a margin for rounding. At the end
 /// of each move the edges may differ from their original direction by kMaxEdgeDeviationRad. A smaller value leaves less
@@ -55,7 +55,7 @@ constexpr double kMinArcTurnRad = 0.05, kMaxArcTurnRad = 5.0, kMaxArcStepRad = 0
 constexpr double kMinRadiusMm = 2.0 * kArcRadiusRangeMm[0], kMaxRadiusMm = 1000.0;
 constexpr double kMaxDepthDifferenceMm = 1e-9;
 constexpr double kPi = 3.14159265358979323846;
-/// By how many tolerances the footprint's tip may be off. The tip is inside the mark; only the sides show.
+/// Largest error of the footprint's tip, in tolerances. The tip is inside the mark; only the sides show.
 constexpr double kMaxTipTolerances = 3.0;
 
 /// Poses that continue a pass, and the arcs through some of them.

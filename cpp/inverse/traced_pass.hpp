@@ -10,8 +10,8 @@
 
 namespace brushsvg {
 
-/// Directions in which the edges of a mark continue at one instant: the ways of both ends of the widest section, left
-/// and right of the heading, per mm of the TCP's way.
+/// Directions in which the edges of a mark continue at one instant. They are the motions of both ends of the widest
+/// section, left and right of the heading, per mm of the TCP's path.
 struct Edges {
     std::array<Eigen::Vector2d, 2> direction{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
     /// The edge moves ahead; an inner edge that turns back paints over its own mark.

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kMinPxPerMm = 8.0, kMaxPxPerMm = 40.0;
 constexpr double kPxPerHalfWidth = 6.0;   // on the thinnest half width, if there can be that many
-constexpr double kMaxPx = 4e6;            // of one picture: limits the memory
+constexpr double kMaxPx = 4e6;            // of one picture, to limit the memory
 constexpr double kMaxSheetPxPerMm = 5.0;  // of tiles: overlaps are still exact to 1e-3
-constexpr double kMaxSheetPx = 6e7;       // of all tiles together: limits the time
+constexpr double kMaxSheetPx = 6e7;       // of all tiles together, to limit the time
 constexpr double kTileSidePx = 1000.0;
 constexpr double kOutlineToleranceMm = 0.01;
-constexpr double kMarginMm = 0.3;  // margin round the box: paint on its edge is seen whole
+constexpr double kMarginMm = 0.3;  // margin around the box, so that paint on its edge is complete
 // Sum of two strokes' shares in one pixel above which they count as touching. The parts of a letter's outline meet at
 // their borders.
 constexpr float kMinTouchingSum = 0.8f;

@@ -251,13 +251,13 @@ class Tracer {
                high.y() + about < window_->y_mm || low.y() - about > window_->y_mm + window_->height_mm + tolerance_;
     }
 
-    /// Return whether the lever is taut at once. A landing can end with the lever drawn out up to a rounding error.
-    /// Then the brush is dragged from there, not from the next pose.
+    /// Return whether the lever is taut at the start of a phase. A landing can end with the lever drawn out up to a
+    /// rounding error. Then the brush is dragged from there, not from the next pose.
     bool tightens_at_once(const LagState<double>& start) const {
         return start.taut && start.heading_known && !law_.rigid && !out_.taut.back();
     }
-    /// Return whether a pen turns here. It heads along the next move at once. Without a second row, the turn would be
-    /// spread over that move.
+    /// Return whether a pen turns here. Its heading changes to the next move without a transition. Without a second
+    /// row, the turn would be spread over that move.
     bool turns_at_once(const LagState<double>& start, double depth) const {
         if (!law_.rigid || !moved_) return false;
         const auto [front, half] = extents_.at(depth);

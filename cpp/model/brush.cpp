@@ -26,8 +26,8 @@ constexpr std::array<double, 2> kSpeedRangeMmS{0.01, 10000.0};  // mm/s; a progr
 /// Least half width that has a depth, as a share of the greatest one: lines may taper to nothing, no depth is 0.
 constexpr double kMinWidthShare = 1e-6;
 constexpr double kMaxInvisibleErrorMm = 0.05;  // largest invisible error of a mark's edge: the default tolerance
-constexpr double kMaxRmseShare =
-    0.3;  // RMSE relative to the law; the article's worst, the tip gap from angles, has 0.6
+// Largest RMSE relative to the law. The worst law of the article, the tip gap from angles, has 0.6.
+constexpr double kMaxRmseShare = 0.3;
 constexpr double kMaxCorrelationError = 1e-4;  // error of a correlation when a covariance is rounded to five digits
 constexpr double kMaxLawOutlineDifferenceMm = 0.5;  // outlines determine the mark, laws the inverse: they must agree
 

@@ -17,10 +17,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector2d;
 
-constexpr double kUnitsPerMm = 1e4;        // units of the last decimal in a mm
+constexpr double kUnitsPerMm = 1e4;        // units of the last decimal
 constexpr double kMinMoveMm = 2.00125e-3;  // shortest move: rounding could turn a shorter one or remove it
-constexpr double kMinCircleChordMm =
-    1e-3;  // smallest distance between ends of a circle: rounding could make closer ends equal
+// Smallest distance between the ends of a circle. Rounding could make closer ends equal.
+constexpr double kMinCircleChordMm = 1e-3;
 // Turn of one arc: rounding could make a longer arc empty or a full circle.
 constexpr double kArcPartRad = 3.5, kMaxArcRad = 5.0;
 constexpr double kMaxOnTheSpotMm = 1e-6;  // sideways: a move with less goes straight up or down

@@ -18,11 +18,11 @@ using Eigen::Vector2d;
 using Points = std::vector<Vector2d>;
 using Cubic = std::array<Vector2d, 4>;
 
-constexpr int kMaxParameterMoves = 6;  // of the parameters: more moves improve the fit less than a split
-constexpr double kPointSpacingTolerances =
-    8.0;  // tolerances between points: greater steps cut bends short, smaller ones only cost time
+constexpr int kMaxParameterMoves = 6;  // more moves improve the fit less than a split
+// Distance between points, in tolerances. A larger distance cuts bends short, a smaller one only costs time.
+constexpr double kPointSpacingTolerances = 8.0;
 constexpr double kMinPieces = 8.0, kMaxPieces = 2000.0;
-// Tolerances between points that determine a direction. Nearer points would show the noise.
+// Distance of the points that determine a direction, in tolerances. Nearer points would show the noise.
 constexpr double kTangentReachTolerances = 12.0;
 
 Vector2d at(const Cubic& c, double t) {

@@ -28,9 +28,9 @@ constexpr int kMaxReweightings = 500;
 // patterns, in about 10 ms. With more depths, the law may cross its floor less often. With absolute residuals, each
 // pattern needs about thirty times as long.
 constexpr std::size_t kMaxPatterns = 4000, kMaxPatternsAbsolute = 500;
-constexpr double kFloorWeight =
-    1e6;  // weight that holds a law to its floor within about 1e-10 mm without loss of digits
-// Greater lengths of a brush, weights and depths are damaged data, and their powers overflow.
+// Weight that holds a law to its floor within about 1e-10 mm without loss of digits.
+constexpr double kFloorWeight = 1e6;
+// Greater lengths, weights and depths are damaged data, and their powers overflow.
 constexpr double kMaxMagnitude = 1e6;
 constexpr double kMinPositiveMm = 0.01;  // minimum of a positive law: a lever without length has no heading
 

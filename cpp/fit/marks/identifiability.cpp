@@ -42,7 +42,7 @@ std::vector<std::string> describe_open_unknowns(const MarkProblem& fit) {
     const double noise_mm =
         fit.weighing.noise_mm * std::sqrt(fit.weighing.points_per_independent);  // noise of one independent sample
     const Index n = at.shift();  // displacements cannot determine the place of the sheet, and need not
-    // Information of marks at their places, and of marks that may be anywhere.
+    // Information from marks whose places are known, and from marks that may be displaced.
     MatrixXd placed_information = MatrixXd::Zero(n, n), displaced_information = placed_information;
     for (Index i = 0; i < model.marks(); ++i) {
         RowMajor by(model.points(i), at.size()), own(model.points(i), 2);

@@ -17,11 +17,11 @@ constexpr int kHalfWidthLaw = 2;           // the half width, which may also ris
 constexpr int kAdditionalPowerTerms = 4;   // additional coefficients of the half width in this case
 constexpr int kSizeCount = kLawCount + 1;  // departure sizes: one for each law, and one for the power of the half width
 constexpr double kSizeDegreesOfFreedom = 3.0;  // degrees of freedom of the size of a departure
-// Log of the likelihood ratio of departing below which laws keep their few coefficients. For a brush that departs where
-// the marks determine little, by how deep its tip is pressed, the evidence against departing is no more than chance.
+// Laws keep their few coefficients if the log of the likelihood ratio of departing is below this value. Some brushes
+// depart only at depths where the marks determine little. There, weak evidence against departing may be chance.
 constexpr double kMinLogRatioToDepart = -1.25;
-// Log of the likelihood ratio from which laws clearly depart, so that the half width may also rise with another power.
-// With weaker evidence (brushes of the family reach 0.2), this would only make the intervals wider.
+// Laws clearly depart if the log of the likelihood ratio is above this value. Then the half width may also rise with
+// another power. With weaker evidence (brushes of the family reach 0.2), this would only make the intervals wider.
 constexpr double kMinLogRatioForPower = 0.5;
 // Log of the prior odds that a brush departs. They are in favour of departing, because laws with few coefficients are
 // our choice and not a property of brushes.
@@ -109,13 +109,13 @@ struct SizeEstimate {
 /// Log of the prior probability of a size.
 using LogPrior = double (*)(int which, double share);
 
-/// Prior in which a size is 0 in half of the cases, else of any order of magnitude.
+/// Returns the log prior of a size that is 0 in half of the cases, and otherwise of any order of magnitude.
 double log_prior_of_any_size(int, double share) {
     static const double log_count = std::log(double(share_grid().size() - 1));
     return share > 0.0 ? -log_count : 0.0;
 }
 
-/// Prior from the departures of curves of other forms, see kTypicalShares.
+/// Returns the log prior of a size from the departures of curves of other forms, see kTypicalShares.
 double log_prior_of_typical_size(int which, double share) {
     if (!(share > 0.0)) return -INFINITY;
     return -0.5 * std::pow(std::log(share / kTypicalShares[std::size_t(which)]) / kLogShareSd, 2);

@@ -10,10 +10,11 @@ namespace brushsvg::fit {
 namespace {
 
 // Levers shorter than this have damped derivatives. When a leaning machine presses a brush on the spot, the brush
-// points along a lever of micrometres, and turns around completely where the lean changes by as little. Derivatives
-// that are valid only over micrometres would make the lean seem known to micrometres.
+// points along a lever of micrometres. It turns around completely if the lean changes by micrometres. Derivatives that
+// are valid only over micrometres would make the lean seem known to micrometres.
 constexpr double kDampedLeverMm = 0.3;
-// Size of a brush's hairs. For a shorter way out no other is tried, and a further edge is not refined.
+// Size of a brush's hairs. If the way out is shorter, no other way is tried. If an edge is farther away, its distance
+// is not refined.
 constexpr double kHairSizeMm = 0.5;
 constexpr int kMaxPerpendicularRounds = 3;       // rounds in which a way out is made perpendicular to the edge
 constexpr double kPerpendicularCosine = 0.9999;  // cosine above which a way out is perpendicular
@@ -202,7 +203,7 @@ void MarkModel::law_derivatives(const Instant& now, const InstantDerivatives& by
         heading_by.rightCols<kMachineErrors>() *= lever2 / (lever2 + kDampedLeverMm * kDampedLeverMm);
     }
     left_by << -heading_by.row(1), heading_by.row(0);
-    // Where the edge moves outwards by normal . dy, the distance decreases by as much.
+    // If the edge moves outwards by normal . dy, the distance decreases by normal . dy.
     const Eigen::Matrix<double, 1, kPathUnknowns> moved =
         normal.transpose() * (by.contact + (edge.x - now.gap) * heading_by + edge.y * left_by);
     out.head(layout_.lag) = -moved.head(layout_.lag);

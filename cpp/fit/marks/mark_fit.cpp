@@ -18,8 +18,8 @@ namespace brushsvg::fit {
 namespace {
 
 constexpr double kMaxDepthMm = 1000.0;  // greater depths are damaged data, and their powers overflow
-// Limits of one fit, in which each place and point is evaluated about a hundred times, in about a microsecond. A sheet
-// of 49 strokes has 22,000 places and 8,500 points.
+// Limits of one fit. It evaluates each place and point about a hundred times, in about a microsecond each. A sheet of
+// 49 strokes has 22,000 places and 8,500 points.
 constexpr double kMaxPlaces = 2e5, kMaxPoints = 2e5;
 constexpr double kMaxPlaceSpacingMm = 0.15;  // largest distance between places of a prediction along the path
 constexpr double kMaxInverseSd = 1e12;       // limit of 1 over the standard deviation of a law's coefficient
@@ -219,8 +219,8 @@ MatrixXd covariance_at_touch(MarkProblem fit) {
 ///
 /// Departures of laws were expected to be of any order of magnitude, including the smallest. This prefers the height of
 /// the paper at which the laws are most like their few coefficients, although the marks hardly distinguish it from
-/// other heights. The solution is kept, but its error is that of usual departures: their covariance, and the distance
-/// from their most likely solution. With the probability that laws do not depart, the error is that of such laws.
+/// other heights. The solution is kept, but its error is computed for typical departures: from their covariance, and
+/// the distance from their most likely solution. The error without departures is added with its probability.
 MatrixXd mean_square_error(const MarkProblem& fit, const MarkOptions& options, double log_likelihood_ratio) {
     if (!fit.is_departing()) return covariance_at_touch(fit);
     const auto error_of = [](const MarkProblem& at) -> MatrixXd {
@@ -291,7 +291,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     if (!options.noise_mm) require_brushlike_marks(marks, out);
     out.outlier_share = outlier_weight / std::max(1.0, out.samples);
     out.slim = slim / std::max(1.0, out.samples);
-    // Squares are divided by the repeats, and the loss passes the share `slope` of them.
+    // Squares are divided by the points per independent point, and the loss passes the share `slope` of them.
     out.effective_samples = std::min(
         out.samples, (out.samples - outlier_weight - slim) * fit.weighing.slope / fit.weighing.points_per_independent);
     out.remarks = describe_open_unknowns(

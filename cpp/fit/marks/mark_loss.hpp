@@ -14,7 +14,8 @@ struct Cost {
     double rho, psi, slope;
 };
 
-enum class Loss { cauchy, tukey };  // cauchy: outliers pull less the further they are; tukey, at the end: not at all
+/// cauchy: an outlier pulls less the farther it is away. tukey, used at the end: an outlier does not pull at all.
+enum class Loss { cauchy, tukey };
 
 inline Cost cost(Loss loss, double z) {
     if (loss == Loss::tukey) {
@@ -29,7 +30,7 @@ inline Cost cost(Loss loss, double z) {
 /// The noise of distances and the cost of outliers. The errors of neighbours along an outline are correlated.
 struct Weighing {
     double noise_mm = 0.5;                    ///< before it is estimated: the thickness of a brush's hairs
-    double points_per_independent = 1.0;      ///< divisor of squares: this many neighbours count as one
+    double points_per_independent = 1.0;      ///< divisor of squares: number of neighbours that count as one
     std::vector<double> autocovariance{1.0};  ///< autocovariance of psi along an outline, at 0, 1, 2 ... points
     double slope = 1.0;                       ///< mean slope of psi
     Loss loss = Loss::cauchy;

@@ -18,11 +18,11 @@ constexpr double kMaxStepMm = 0.2, kMaxPressStepMm = 0.15;
 constexpr double kStartHeightMm = 5.0;    // added to the greatest depth: the brush starts above any error of the height
 constexpr double kMinRingAreaMm2 = 0.2;   // smaller rings are specks
 constexpr double kMinFieldReachMm = 5.0;  // of a field: over a shorter distance, a smooth field is constant
-// Limits of the evaluations of instants in a fit, in total and per place and point. Marks of a brush need two to ten
-// thousand. Marks that no brush paints, for which huge footprints overlap, needed millions, and minutes.
+// Limits of the number of evaluated instants in a fit, in total and per place and point. Marks of a brush need two to
+// ten thousand. Marks that no brush paints needed millions, and minutes, because huge footprints overlap.
 constexpr double kMaxEvaluations = 2e7, kMaxEvaluationsPerItem = 3e4;
-// Limit for one mark, about as many as a sheet of fifty strokes needs. 9 m of jumps to and fro, painted as a brush
-// would, needed ten times as many, and a minute.
+// Limit for one mark. A sheet of fifty strokes needs about this number. A stroke with 9 m of jumps back and forth
+// needed ten times this number, and a minute.
 constexpr double kMaxEvaluationsPerMark = 2e8;
 
 /// Adds moves from above the paper down to the first pose and from the last pose up again, as a robot moves.

@@ -83,7 +83,7 @@ class MarkModel {
         require_bounded_work();
     }
 
-    /// Continues the count of evaluations of another model of the same marks.
+    /// Takes over the count of evaluations from another model of the same marks.
     void continue_counting_from(const MarkModel& other) { evaluations_ = other.evaluations_; }
 
     /// Computes the distance [mm] of every point of a mark from the predicted edge, and on request the derivatives by

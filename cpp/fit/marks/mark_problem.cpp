@@ -14,8 +14,8 @@
 namespace brushsvg::fit {
 namespace {
 
-constexpr double kMaxOutlierShare =
-    0.2;  // of a mark's points: with more outliers it may be matched with the wrong edge
+// Share of a mark's points. A mark with more outliers may be matched with the wrong edge.
+constexpr double kMaxOutlierShare = 0.2;
 constexpr int kMaxMoves = 3;
 // Smallest width of the prediction at a point, in standard deviations of the noise. With 2, the ends of strokes that
 // are lifted while moving still bias the height; with 5, the height is known a tenth less well than with 3.

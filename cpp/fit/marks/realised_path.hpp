@@ -28,8 +28,8 @@ struct FieldBox {
     }
 };
 
-/// The machine at the current state of a fit. by: its errors, with scale as its difference from 1. came: the direction
-/// from which x and y came to the first pose, -1, 0 or 1.
+/// The machine at the current state of a fit. by: its errors, with scale as its difference from 1. approach: direction
+/// of the last motion in x and in y before the first pose, -1, 0 or 1.
 struct MachineState {
     std::array<double, kMachineErrors> by;
     Eigen::Vector2d centre, approach;
@@ -38,7 +38,7 @@ struct MachineState {
 };
 
 /// Returns how far each axis is behind its command at each pose. An axis that reverses does not move for its whole
-/// backlash. With a negative backlash, it is ahead by as much.
+/// backlash. With a negative backlash, it is ahead of its command by the same distance.
 template <class T>
 std::vector<Vec2<T>> backlash_offsets(const Poses& poses, const MachineState& machine,
                                       const std::array<T, kMachineErrors>& by) {

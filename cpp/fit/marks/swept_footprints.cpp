@@ -18,12 +18,13 @@ constexpr int kMaxParts = 200, kMaxRounds = 4, kMaxTangentRounds = 6;
 // that turns around. Laws with footprints of half a metre, which a solver tries for marks that no brush paints, needed
 // a million.
 constexpr std::size_t kMaxInstants = 5000, kMaxInstantsPerPlace = 10;
-constexpr std::uint64_t kEvaluationsPerStep =
-    20;                                     // cost of following a pass to the next instant, in evaluations of instants
-constexpr double kMinTangentCosine = 0.05;  // between a footprint's own normal and that of a tangent
+// Cost of following a pass to the next instant, in evaluations of instants.
+constexpr std::uint64_t kEvaluationsPerStep = 20;
+// Least cosine between the normal of a footprint and the normal of a tangent.
+constexpr double kMinTangentCosine = 0.05;
 
-// Derivatives by the lag's unknowns and the height, and by the machine. Their numbers are even, because processors
-// compute two at a time.
+// Numbers with derivatives by the lag's unknowns and the height, and by the machine's errors. The number of derivatives
+// is even, because processors compute two at a time.
 constexpr int round_up_to_even(int n) { return n + n % 2; }
 using Jet = ceres::Jet<double, round_up_to_even(kMaxTerms + 1)>;
 using MachineJet = ceres::Jet<double, round_up_to_even(kMaxTerms + 1 + MachineIndex::field)>;

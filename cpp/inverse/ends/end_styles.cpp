@@ -412,7 +412,7 @@ std::optional<BrushMoves> dot_with_corners(const Stroke& stroke, const Brush& br
 }
 
 std::vector<FullTurn> find_full_turns(const PassMarks& marks) {
-    // what counts as a full turn, and how far P may creep meanwhile
+    // least angle of a full turn, and largest distance that P may creep during the turn
     constexpr double min_turn_rad = 6.0, max_creep_mm = 0.1;
     std::vector<FullTurn> found;
     double turned = 0.0, most = 0.0;

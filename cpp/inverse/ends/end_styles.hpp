@@ -29,7 +29,7 @@ struct BrushMove {
 };
 using BrushMoves = std::vector<BrushMove>;
 
-/// A stroke with a new end, and the depth at which the brush is turned round there, if it is.
+/// A stroke with a new end. If the brush is turned round there, also the depth of the turn.
 struct StrokeWithEnd {
     Stroke stroke;
     std::optional<double> turn_depth_mm;
