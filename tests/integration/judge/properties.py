@@ -219,7 +219,8 @@ def _judged(number, dialect, cell, source, flags, folder, check) -> tuple[str, l
         toml, program = folder / "mine.toml", folder / f"program{CELLS[dialect][1]}"
         without = [word for word in flags if word not in said_of(flags, "--z-offset")]
         wrong += stepped(source, found.job.plan, brush, toml, without)
-        again = folder / f"again{program.suffix}"
+        again = folder / "again" / program.name  # in some languages, a program has the name of its file
+        again.parent.mkdir(exist_ok=True)
         again.unlink(missing_ok=True)
         wrong += [f"second time: {refusal}" for refusal in converted(source, again, "--cell", toml, *flags)]
         if again.exists() and again.read_bytes() != program.read_bytes():
