@@ -74,12 +74,12 @@ struct Crossing {
         if (mine != others) return (mine < others) == (order > 0);
         // the shift moves a crossing along by e y - e^2 x of the other edge, over the slant
         const Corner &other_edge = edge_vectors[1 - of], &other_edge_there = other.edge_vectors[1 - of];
-        const auto farther = [&](Unit here, Unit there) {
+        const auto compare_shifts = [&](Unit here, Unit there) {
             return order * sign(Unit((Exact(there) * slant > Exact(here) * other.slant) -
                                      (Exact(there) * slant < Exact(here) * other.slant)));
         };
-        const int first = farther(other_edge.y, other_edge_there.y);
-        return first != 0 ? first > 0 : farther(-other_edge.x, -other_edge_there.x) > 0;
+        const int first = compare_shifts(other_edge.y, other_edge_there.y);
+        return first != 0 ? first > 0 : compare_shifts(-other_edge.x, -other_edge_there.x) > 0;
     }
 };
 

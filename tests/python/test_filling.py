@@ -185,10 +185,14 @@ def test_a_ring_without_corners_starts_where_it_bends_least(brush, wide, high):
     assert paint.intersection(shape).area / paint.union(shape).area > 0.985
 
 
+# A known miss: the search paints the cusps of the star, and its mark sticks out by 0.32 mm at one concave corner.
+STAR_THAT_BULGES = pytest.param(SHAPES["star"], marks=pytest.mark.xfail(strict=True, reason="0.32 mm at a corner"))
+
+
 @pytest.mark.slow
 @sample(
     "d",
-    [SHAPES["star"], SHAPES["arrow"], SHAPES["bow-tie"], STAR_OF_SIX + "Z"],
+    [STAR_THAT_BULGES, SHAPES["arrow"], SHAPES["bow-tie"], STAR_OF_SIX + "Z"],
     ids=["star", "arrow", "bow-tie", "star of six"],
     keep=1,
 )
@@ -202,8 +206,8 @@ def test_marks_do_not_bulge_where_a_shape_becomes_as_narrow_as_the_brush(brush, 
     shape = region(_core.unite([ring for stroke in made for ring in stroke.target_mm]))
     paint = paint_of(passes_of(made, brush), brush)
     places = shapely.points(shapely.get_coordinates(paint))
-    assert shapely.distance(shape, places).max() < 0.35
-    assert paint.difference(shape.buffer(0.15)).area < 0.2
+    assert shapely.distance(shape, places).max() < 0.3
+    assert paint.difference(shape.buffer(0.15)).area < 0.15
     assert paint.intersection(shape).area / paint.union(shape).area > 0.98
 
 

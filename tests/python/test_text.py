@@ -420,17 +420,21 @@ def outline_font(features=FEATURES):
     shapes["o"] = pen.glyph()
     builder.setupGlyf(shapes)
     widths = {"space": 300, "f": 200, "i": 200, "f_i": 400}
-    builder.setupHorizontalMetrics({name: (widths.get(name, 600), 0) for name in names})
+    return finished(builder, widths, 600, features)
+
+
+def finished(builder, widths, usual_width, features) -> bytes:
+    """Return the font of a builder that has its glyphs. Glyphs that widths does not name have the usual width."""
+    order = builder.font.getGlyphOrder()
+    builder.setupHorizontalMetrics({name: (widths.get(name, usual_width), 0) for name in order})
     builder.setupHorizontalHeader(ascent=800, descent=-200)
     builder.setupNameTable({"familyName": "Test", "styleName": "Regular"})
     builder.setupOS2()
     builder.setupPost()
     if features:
         addOpenTypeFeaturesFromString(builder.font, features)
-    out = io.BytesIO()
     builder.font.recalcTimestamp = False
-    builder.font.save(out)
-    return out.getvalue()
+    return saved(builder.font)
 
 
 @pytest.fixture(scope="module")
@@ -514,14 +518,7 @@ def font_of_bars(characters: str, features="", accents="") -> bytes:
     bar, empty = pen.glyph(), TTGlyphPen(None).glyph()
     builder.setupGlyf({".notdef": empty, "space": empty} | dict.fromkeys(names.values(), bar))
     widths = {names[accent]: 0 for accent in accents}
-    builder.setupHorizontalMetrics({name: (widths.get(name, 200), 0) for name in builder.font.getGlyphOrder()})
-    builder.setupHorizontalHeader(ascent=800, descent=-200)
-    builder.setupNameTable({"familyName": "Test", "styleName": "Regular"})
-    builder.setupOS2()
-    builder.setupPost()
-    if features:
-        addOpenTypeFeaturesFromString(builder.font, features)
-    return saved(builder.font)
+    return finished(builder, widths, 200, features)
 
 
 def bars(text, font):

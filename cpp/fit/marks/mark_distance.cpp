@@ -13,7 +13,7 @@ namespace {
 // points along a lever of micrometres. It turns around completely if the lean changes by micrometres. Derivatives that
 // are valid only over micrometres would make the lean seem known to micrometres.
 constexpr double kDampedLeverMm = 0.3;
-// Size of a brush's hairs. If the way out is shorter, no other way is tried. If an edge is farther away, its distance
+// Size of a brush's hairs. If the way out is shorter, no other way is tried. If an edge is further away, its distance
 // is not refined.
 constexpr double kHairSizeMm = 0.5;
 constexpr int kMaxPerpendicularRounds = 3;       // rounds in which a way out is made perpendicular to the edge

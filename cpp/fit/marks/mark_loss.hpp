@@ -14,7 +14,7 @@ struct Cost {
     double rho, psi, slope;
 };
 
-/// cauchy: an outlier pulls less the farther it is away. tukey, used at the end: an outlier does not pull at all.
+/// cauchy: an outlier pulls less the further away it is. tukey, used at the end: an outlier does not pull at all.
 enum class Loss { cauchy, tukey };
 
 inline Cost cost(Loss loss, double z) {
