@@ -271,3 +271,18 @@ def test_joints_below_the_table_are_refused_unless_the_cell_sets_the_posture():
     there, low = joints.joint_frames_of(arm, below[0]), first.copy()
     low[2, 3] = -1000.0
     assert lowest_joint_mm(there, first) < 0 < lowest_joint_mm(there, low)
+
+
+def test_refinement_does_not_search_a_place_of_the_paper(monkeypatch, tmp_path):
+    """The search takes seconds, and only the refusal of the job gives its result."""
+    cell, _ = job("irb120", (-50, -650, 20), (), ALONG, (), {})
+    (tmp_path / "far.toml").write_text(write_cell(cell))
+    curves = "".join(f'<path d="M10 {y}C40 {y + 9} 60 {y - 9} 90 {y}"/>' for y in (15, 30, 45))
+    style = 'fill="none" stroke="#000" stroke-width="3"'
+    size = 'width="100mm" height="60mm" viewBox="0 0 100 60"'
+    (tmp_path / "curves.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}><g {style}>{curves}</g></svg>')
+    searches, nearest = [], place.nearest
+    monkeypatch.setattr(place, "nearest", lambda *given: searches.append(given) or nearest(*given))
+    convert = ["convert", str(tmp_path / "curves.svg"), "-o", str(tmp_path / "curves.mod")]
+    assert main([*convert, "--cell", str(tmp_path / "far.toml"), "--compensation", "refined"]) == 1
+    assert len(searches) == 1

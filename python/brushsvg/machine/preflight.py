@@ -50,18 +50,20 @@ def check_job(
     job: Job = WHOLE_JOB,
     walk: CheckedProgram | None = None,
     of_drawing: bool = True,
+    with_advice: bool = True,
 ) -> CheckedProgram:
     """Check a job and return it with every reason not to run it on the robot.
 
     marks: marks of the plan or of its loads. Of a resumed job, only the rest is checked.
     walk: the result of within_limits, if it is known already.
     of_drawing: see off_sheet.
+    with_advice: see out_of_arm.
     """
     walk = walk or within_limits(loads, brush, marks, cell, job, of_drawing)
     left_loads = loads.left(job.first_stroke) if job.first_stroke > 1 else loads
     if job.first_stroke > 1 and not left_loads.loads:
         return walk
-    limit_problems = walk.problems or out_of_arm(walk.made, left_loads.sheet_mm)
+    limit_problems = walk.problems or out_of_arm(walk.made, left_loads.sheet_mm, with_advice)
     # In this case, the program was checked for the paper's place in the cell.
     is_paper_unchanged = walk.made.cell is cell and not job.z_offset_mm
     written = walk.written if is_paper_unchanged else make_written_form(loads, cell, WHOLE_JOB)

@@ -214,14 +214,18 @@ def _home_sections(program: Program) -> tuple[Section, ...]:
     return (Section("home: where the motors begin and end", (travel,)),)
 
 
-def out_of_arm(program: Program, sheet_mm) -> list[Notice]:
+def out_of_arm(program: Program, sheet_mm, with_advice: bool = True) -> list[Notice]:
     """Report what the cell's arm cannot do of a program.
 
     The advice is the place that the paper would need. Reports nothing if the cell has no arm, or if the library for
     joints is not installed.
+
+    with_advice: False saves the search for this place, which can take seconds.
     """
     if program.cell.arm is None or not is_installed():
         return []
+    if not with_advice:
+        return find_unreachable(program)
     return find_unreachable(program, lambda there: not find_moves_out_of_limits(there, sheet_mm))
 
 

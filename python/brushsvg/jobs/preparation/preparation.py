@@ -374,7 +374,7 @@ def _make_limit_check(brush, options: Options):
 
     def sentences(plan) -> list:
         loads, marks = split_into_loads(plan, brush, cell), _core.simulate(plan, brush)
-        return check_job(loads, brush, marks, cell, options.tolerance_mm, job).problems
+        return check_job(loads, brush, marks, cell, options.tolerance_mm, job, with_advice=False).problems
 
     return sentences
 

@@ -48,19 +48,19 @@ class PaperPlace:
         return "moved by x {:+.0f}, y {:+.0f} mm in the robot's frame".format(*self.shift_mm)
 
 
-def find_unreachable(program: Program, allowed: Callable[[Program], bool]) -> list[Notice]:
+def find_unreachable(program: Program, allowed: Callable[[Program], bool] | None = None) -> list[Notice]:
     """Report what the arm of a program's cell cannot do.
 
     The advice is a place of the paper at which the arm can do it.
 
-    allowed: returns whether a program breaks no other limit.
+    allowed: returns whether a program breaks no other limit. Without it there is no advice.
 
     Raises Error if the library for joints is not installed.
     """
     joints = joints_of(program.cell.arm)
     problems = follow(program, joints).problems
-    if not problems:
-        return []
+    if not problems or allowed is None:
+        return list(problems)
     place = nearest(program, joints, allowed)
     advice = f"the sheet {place.text} would do" if place else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
