@@ -44,7 +44,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.margin_strokes import is_margin
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.model.library import save_brush
-from brushsvg.show.evaluation.report import target_rings
+from brushsvg.show.evaluation.figures import target_rings
 
 SHEETS, WIDEST_MM = 3, 4.0  # of the word
 WORD = re.sub(

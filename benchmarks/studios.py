@@ -49,7 +49,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.model.library import save_brush
-from brushsvg.show.evaluation.report import target_rings
+from brushsvg.show.evaluation.figures import target_rings
 
 STROKES_A_LOAD = 2
 SURE_GAIN = 0.005

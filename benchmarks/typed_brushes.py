@@ -26,7 +26,7 @@ import brushsvg
 from brushsvg._core import MarkLaws
 from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.calibration.numbers.from_widths import lag_of_turn, new_brush
-from brushsvg.show.evaluation.report import target_rings
+from brushsvg.show.evaluation.figures import target_rings
 
 READ_TO_MM = 0.5
 SHARES = (0.25, 0.6, 1.0)  # shares of the greatest depth

@@ -14,7 +14,7 @@ from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.paint_reload import split_into_loads
-from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation import figures, report
 
 
 def main(drawing: Path, directory: Path) -> None:
@@ -31,7 +31,7 @@ def main(drawing: Path, directory: Path) -> None:
     warn(str(drawing), work.notices)
 
     totals = {
-        how: report.measure(report.PaintedPlan(each.plan, marks[how], each.brush, each.strokes))[1]
+        how: figures.measure(figures.PaintedPlan(each.plan, marks[how], each.brush, each.strokes))[1]
         for how, each in works.items()
     }
     names = {

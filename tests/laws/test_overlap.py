@@ -75,13 +75,13 @@ def overlap(a, b):
 
 def check_figures(strokes, compensation, brush_name="round-6"):
     from brushsvg import _core, find_brush
-    from brushsvg.show.evaluation import report
+    from brushsvg.show.evaluation import figures
 
     brush = find_brush(brush_name)
     done = _core.compensate(strokes, brush, (300.0, 300.0), compensation)
     marks = _core.simulate(done.plan, brush)
-    rows, total = report.measure(report.PaintedPlan(done.plan, marks, brush, strokes))
-    groups = report.groups(marks, brush, strokes)
+    rows, total = figures.measure(figures.PaintedPlan(done.plan, marks, brush, strokes))
+    groups = figures.groups(marks, brush, strokes)
 
     plan = json.loads(_core.write_plan(done.plan))
     for each, a_pass in zip(plan["passes"], done.plan.passes, strict=True):

@@ -43,7 +43,7 @@ def share(a, b):
 @pytest.mark.parametrize("name", ["rigid", "brush new --lag 0"])
 @pytest.mark.parametrize("compensation", ["none", "constant", "closed", "refined"])
 def test_a_pen_paints_all_of_its_line(compensation, name, line):
-    from brushsvg.show.evaluation import report
+    from brushsvg.show.evaluation import figures
 
     brush, stroke = pen(name), stroke_along(LINES[line])
     plan = core.compensate([stroke], brush, SHEET_MM, compensation).plan
@@ -55,4 +55,4 @@ def test_a_pen_paints_all_of_its_line(compensation, name, line):
     rings = [shapely.Polygon(ring) for ring in marks.passes[0].outline_mm]
     predicted = functools.reduce(shapely.symmetric_difference, rings)  # areas of holes and of their rings
     assert share(predicted, painted) > 0.98
-    assert report.measure(report.PaintedPlan(plan, marks, brush, [stroke]))[1].overlap > 0.95
+    assert figures.measure(figures.PaintedPlan(plan, marks, brush, [stroke]))[1].overlap > 0.95

@@ -6,7 +6,7 @@ They are corners, short strokes, crossing strokes and curves.
 import numpy as np
 
 from brushsvg import Stroke, _core
-from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation import figures
 
 SHEET_MM = (120.0, 120.0)
 
@@ -47,7 +47,7 @@ def small_drawing(random, number: int) -> list:
 def overlaps(strokes, brush, method: str) -> np.ndarray:
     """Return the overlap that the report gives for each stroke painted alone."""
     plan = _core.compensate(strokes, brush, SHEET_MM, method).plan
-    rows, _ = report.measure(report.PaintedPlan(plan, _core.simulate(plan, brush), brush, strokes))
+    rows, _ = figures.measure(figures.PaintedPlan(plan, _core.simulate(plan, brush), brush, strokes))
     return np.array([row.overlap for row in rows])
 
 

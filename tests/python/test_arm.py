@@ -13,7 +13,7 @@ from arm_judge import compare
 from diagnostics import in_json, is_reported
 
 from brushsvg.errors import Error
-from brushsvg.machine.arm.joints import joint_frames_of, joints_of
+from brushsvg.machine.arm.inverse_kinematics import joint_frames_of, joints_of
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, write_cell
 
 pytestmark = pytest.mark.arm

@@ -16,8 +16,9 @@ from test_arm import DESCRIBED, about, placed
 from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.machine import preflight
-from brushsvg.machine.arm import joints, place
-from brushsvg.machine.arm.follow import flange_at, follow, joint_rates, lowest_joint_mm
+from brushsvg.machine.arm import place
+from brushsvg.machine.arm.inverse_kinematics import joint_frames_of, joints_of
+from brushsvg.machine.arm.joint_problems import flange_at, follow, joint_rates, lowest_joint_mm
 from brushsvg.machine.cells.cell import Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import transform_points
@@ -99,7 +100,7 @@ def test_a_job_out_of_reach_is_refused_and_the_suggested_paper_position_works(wh
 
 def test_joint_rates_match_finite_differences():
     cell, _ = job(*JOBS[0][:-1])
-    found, frame = joints.joints_of(cell.arm), robot_from_paper(cell)
+    found, frame = joints_of(cell.arm), robot_from_paper(cell)
     at = np.array([-100.0, -500.0, 30.0])
     here = found.solutions(flange_at(cell, frame, at))[0]
     expected = joint_rates(cell.arm, here, at)
@@ -121,7 +122,7 @@ def test_the_nearest_workable_position_may_need_a_rotation_of_the_paper():
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"
     made = unchecked_program(split_into_loads(plan, BRUSH, cell), BRUSH, cell)
-    found = place.nearest(made, joints.joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999)
+    found = place.nearest(made, joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999)
     assert found.turn_deg != 0
     there = place.cell_at(cell, found.frame)
     assert look(there, plan).problems == []
@@ -153,7 +154,7 @@ def test_a_missing_library_is_reported_with_the_package_to_install(tmp_path, cap
     drawing.write_text(_core.write_plan(plan))
     far.write_text(write_cell(cell))
     monkeypatch.setitem(sys.modules, "ssik", None)
-    joints.joints_of.cache_clear()
+    joints_of.cache_clear()
     status, _, reported = in_json(capsys, "convert", drawing, "-o", tmp_path / "a.script", "--cell", far)
     assert status == 0 and is_reported(reported, "arm-not-followed ssik UR5e")
     _, _, reported = in_json(capsys, "check", tmp_path / "a.script", "--cell", far)
@@ -169,13 +170,13 @@ def test_no_joint_is_behind_a_wall():
     wall = Paper(taught_mm=((150, -550, 200), (-140, -550, 200), (150, -550, 400)))
     cell = replace(shipped, workspace=workspace, paper=wall)
     made = over_sheet(BRUSH, cell, (200.0, 100.0))
-    assert not follow(made, joints.joints_of(cell.arm)).problems
+    assert not follow(made, joints_of(cell.arm)).problems
     reversed_tool = replace(cell, tool=replace(cell.tool, tcp_mm=(0.0, 0.0, -250.0)))
     made = over_sheet(BRUSH, reversed_tool, (200.0, 100.0))
-    (notice,) = follow(made, joints.joints_of(cell.arm)).problems
+    (notice,) = follow(made, joints_of(cell.arm)).problems
     assert agrees(notice, "joint-below-table 'behind the paper'")
     named = replace(reversed_tool, arm=replace(cell.arm, posture_deg=(-37.0, -93.0, -134.0, -133.0, -37.0, 180.0)))
-    assert not follow(over_sheet(BRUSH, named, (200.0, 100.0)), joints.joints_of(named.arm)).problems
+    assert not follow(over_sheet(BRUSH, named, (200.0, 100.0)), joints_of(named.arm)).problems
 
 
 @pytest.mark.parametrize(
@@ -193,7 +194,7 @@ def test_place_draws_a_wall_from_the_front(tmp_path, capsys, taught, axes):
     cell = replace(shipped, workspace=workspace, paper=Paper(taught_mm=taught))
     (tmp_path / "wall.toml").write_text(write_cell(cell))
     assert in_json(capsys, "cell", "place", tmp_path / "wall.toml", "-o", tmp_path / "wall.svg")[0] == 0
-    table = place.table_of(cell, robot_from_paper(cell), joints.joints_of(cell.arm))
+    table = place.table_of(cell, robot_from_paper(cell), joints_of(cell.arm))
     assert table.axes == axes and np.count_nonzero(table.what == place.REACHED) > 100
     seen = " and ".join("xyz"[axis] for axis in axes)
     assert (f"{seen}, mm" in (tmp_path / "wall.svg").read_text()) is (axes != (0, 1))
@@ -233,7 +234,7 @@ def test_the_posture_with_the_highest_elbow_is_suggested(name):
     """
     cell = find_cell(name)
     made = over_sheet(BRUSH, cell, (200.0, 100.0))
-    solved = joints.joints_of(cell.arm)
+    solved = joints_of(cell.arm)
     found = follow(made, solved)
     assert not found.problems
     height = elbow_mm(name, found.start_rad)[2]
@@ -241,7 +242,7 @@ def test_the_posture_with_the_highest_elbow_is_suggested(name):
     first = transform_points(made.robot_from_frame, next(made.sections()).moves[0].points_mm[:1])[0]
     for start in solved.solutions(flange_at(cell, made.robot_from_frame, first)):
         named = replace(cell.arm, posture_deg=tuple(np.degrees(start).tolist()))
-        other = follow(replace(made, cell=replace(cell, arm=named)), joints.joints_of(named))
+        other = follow(replace(made, cell=replace(cell, arm=named)), joints_of(named))
         if not other.problems:
             assert elbow_mm(name, other.start_rad)[2] < height + 0.01
 
@@ -251,7 +252,7 @@ def test_joints_below_the_table_are_refused_unless_the_cell_sets_the_posture():
     (x, y, z), first = cell.paper.origin_mm, robot_from_paper(cell)
     below = [
         angles
-        for angles in joints.joints_of(cell.arm).solutions(flange_at(cell, first, np.array([x, y, z + 40.0])))
+        for angles in joints_of(cell.arm).solutions(flange_at(cell, first, np.array([x, y, z + 40.0])))
         if elbow_mm("ur10e", angles)[2] < min(0.0, z)
     ]
     assert below
@@ -262,13 +263,13 @@ def test_joints_below_the_table_are_refused_unless_the_cell_sets_the_posture():
     only[0] = (shoulder - 40, shoulder + 40)
     arm = replace(cell.arm, limits_deg=tuple(only))
     made = over_sheet(BRUSH, replace(cell, arm=arm), (200.0, 100.0))
-    (notice,) = follow(made, joints.joints_of(arm)).problems
+    (notice,) = follow(made, joints_of(arm)).problems
     assert agrees(notice, "joint-below-table mm")
     named = replace(arm, posture_deg=tuple(np.degrees(below[0]).tolist()))
     made = over_sheet(BRUSH, replace(cell, arm=named), (200.0, 100.0))
-    assert not follow(made, joints.joints_of(named)).problems
+    assert not follow(made, joints_of(named)).problems
     # The paper is far below the robot's base: a frame that is only lower than the base is in the air.
-    there, low = joints.joint_frames_of(arm, below[0]), first.copy()
+    there, low = joint_frames_of(arm, below[0]), first.copy()
     low[2, 3] = -1000.0
     assert lowest_joint_mm(there, first) < 0 < lowest_joint_mm(there, low)
 
@@ -280,7 +281,9 @@ def test_refinement_does_not_search_a_place_of_the_paper(monkeypatch, tmp_path):
     curves = "".join(f'<path d="M10 {y}C40 {y + 9} 60 {y - 9} 90 {y}"/>' for y in (15, 30, 45))
     style = 'fill="none" stroke="#000" stroke-width="3"'
     size = 'width="100mm" height="60mm" viewBox="0 0 100 60"'
-    (tmp_path / "curves.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}><g {style}>{curves}</g></svg>')
+    (tmp_path / "curves.svg").write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size}><g {style}>{curves}</g></svg>'
+    )
     searches, nearest = [], place.nearest
     monkeypatch.setattr(place, "nearest", lambda *given: searches.append(given) or nearest(*given))
     convert = ["convert", str(tmp_path / "curves.svg"), "-o", str(tmp_path / "curves.mod")]

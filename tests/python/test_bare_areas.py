@@ -8,7 +8,7 @@ from brushsvg import _core, find_brush
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.preparation import prepare
-from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation import figures
 from brushsvg.strokes.swept_areas import region, rings_of
 
 SVG = (
@@ -163,7 +163,7 @@ def test_each_stroke_is_compared_with_its_own_part_of_the_shape(tmp_path):
     beginning.
     """
     work = prepared(tmp_path, FLAG)
-    rows, _ = report.measure(report.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
+    rows, _ = figures.measure(figures.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert all(row.overlap > 0.9 for row in rows)
     stem, limb = (region(stroke.target_mm) for stroke in work.strokes)
     shape = shape_of(FLAG)

@@ -18,7 +18,7 @@ from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.model.library import find_brush
 from brushsvg.planning import travel_order
 from brushsvg.reporting.report_text import format_overlap
-from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation import figures, report
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
@@ -33,7 +33,7 @@ def drawing(tmp_path):
 
 
 def total(work):
-    return report.measure(report.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[1]
+    return figures.measure(figures.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[1]
 
 
 def test_the_best_constant_lag_has_the_smallest_error(drawing):
@@ -61,10 +61,10 @@ def test_the_comparison_is_a_table(drawing):
     lines = report.comparison_text(list(totals.items())).splitlines()
     assert len(re.split("  +", lines[2])) == 4
     assert len({len(line) for line in lines[2:]}) == 1
-    for line, (how, figures) in zip(lines[4:], totals.items(), strict=True):
+    for line, (how, row) in zip(lines[4:], totals.items(), strict=True):
         name, overlap, *errors_mm = line.split()
-        assert (name, overlap) == (how, format_overlap(figures.overlap))
-        expected = (figures.centre_mean_mm, figures.centre_largest_mm)
+        assert (name, overlap) == (how, format_overlap(row.overlap))
+        expected = (row.centre_mean_mm, row.centre_largest_mm)
         assert [float(error_mm) for error_mm in errors_mm] == pytest.approx(expected, abs=5.1e-4)
 
 

@@ -9,11 +9,11 @@ from diagnostics import agrees, gives, refused
 from dxf_text import SHEET, apart, bulged, drawing, encoded, read, text_dxf
 
 from brushsvg.errors import Error
+from brushsvg.notice_summary import summarize_notices
 from brushsvg.read import ReadOptions
 from brushsvg.read.design import Design
 from brushsvg.read.dxf import entity_walk, read_dxf, splines
 from brushsvg.strokes.extraction import strokes
-from brushsvg.text_summary import summarize_notices
 
 OPTIONS = ReadOptions(sheet_mm=SHEET, units="mm")
 

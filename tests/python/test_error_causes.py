@@ -5,7 +5,7 @@ import pytest
 from svg_text import read
 
 from brushsvg import _core, compensate, find_brush, flatten, simulate
-from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation import figures
 from brushsvg.show.evaluation.error_causes import _path_cause, _sharpest_corner_deg, _StrokePlace
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.wide_shapes import within_reach
@@ -34,8 +34,8 @@ def found(target, how="closed", name="round-6", tolerance_mm=0.05):
     brush = find_brush(name)
     painted, target, _ = within_reach([target], brush, "clamp")
     plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
-    rows, _ = report.measure(
-        report.PaintedPlan(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
+    rows, _ = figures.measure(
+        figures.PaintedPlan(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
     )
     return rows[0].worst
 

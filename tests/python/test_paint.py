@@ -32,7 +32,7 @@ from brushsvg.machine.paint_reload import (
 from brushsvg.machine.preflight import check_job
 from brushsvg.machine.program import make_checked_program, make_visit
 from brushsvg.model.library import find_brush
-from brushsvg.show.evaluation.report import PaintedPlan, measure
+from brushsvg.show.evaluation.figures import PaintedPlan, measure
 from brushsvg.verify.readback import read_program
 from brushsvg.verify.simulate_program import simulate_program
 

@@ -12,22 +12,10 @@ from diagnostics import gives
 from brushsvg import Stroke, compensate, find_brush, simulate
 from brushsvg.errors import Notice
 from brushsvg.reporting.report_text import format_overlap
-from brushsvg.show.evaluation import report
-from brushsvg.show.evaluation.places import Place
-from brushsvg.show.evaluation.report import (
-    Figures,
-    Group,
-    PaintedPlan,
-    Report,
-    Worst,
-    as_text,
-    groups,
-    measure,
-    to_csv,
-    to_json,
-    to_text,
-    worst_places,
-)
+from brushsvg.show.evaluation import figures
+from brushsvg.show.evaluation.figures import Figures, Group, PaintedPlan, Worst, groups, measure
+from brushsvg.show.evaluation.places import Place, worst_places
+from brushsvg.show.evaluation.report import Report, as_text, to_csv, to_json, to_text
 from brushsvg.show.evaluation.uncertainty import Confidence, PlanConfidence
 
 
@@ -72,8 +60,8 @@ def test_the_total_is_weighted_by_length(two_strokes):
 def test_widths_out_of_reach_are_counted():
     brush = find_brush("round-6")
     stroke = straight("a", (0, 0), (9, 0), 0, [(0, 1.0), (0.5, 4.3), (1, 0.5)])
-    assert report._out_of_reach(stroke, brush) == 1
-    assert report._out_of_reach(stroke, find_brush("rigid")) == 0
+    assert figures._out_of_reach(stroke, brush) == 1
+    assert figures._out_of_reach(stroke, find_brush("rigid")) == 0
 
 
 UNKNOWN = Figures("p", None, None, None, None, None, None, 12.0, 7)

@@ -23,11 +23,11 @@ from brushsvg.reporting.report_text import (
     percent,
     verdict,
 )
-from brushsvg.show.evaluation import report
+from brushsvg.show.evaluation import figures, report
 from brushsvg.show.evaluation.uncertainty import Confidence, PlanConfidence
 from brushsvg.show.evaluation.verdict import UNCERTAIN_MM
 
-ROW = report.Figures("s", 0.97, 0.01, 0.04, 0.1, 0, 60.0, 81.5, 42)
+ROW = figures.Figures("s", 0.97, 0.01, 0.04, 0.1, 0, 60.0, 81.5, 42)
 MADE = report.Report("T", "mine", "closed", 0.05, (ROW,), ROW, 5)
 BUT, NOT = "usable, but ", "do not use, because "
 

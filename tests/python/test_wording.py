@@ -18,8 +18,9 @@ import pytest
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import command_parser
 from brushsvg.errors import Notice
+from brushsvg.show.evaluation.figures import Figures, Group, Worst
 from brushsvg.show.evaluation.places import Place
-from brushsvg.show.evaluation.report import Figures, Group, Report, Worst, comparison_text, to_text
+from brushsvg.show.evaluation.report import Report, comparison_text, to_text
 
 WORDING = Path(__file__).parents[1] / "golden" / "wording.txt"
 TITLE = "==== "

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from contextlib import contextmanager
 
 from ..errors import Error, Notice
-from ..text_summary import summarize_notices
+from ..notice_summary import summarize_notices
 
 
 class RefusedError(Exception):

@@ -39,7 +39,7 @@ from ..files import read_bytes
 from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
 from ..machine.cells.cell_file import own_name, parse_cell, write_cell
 from ..reporting.report_text import Report
-from ..show.evaluation.report import target_rings
+from ..show.evaluation.figures import target_rings
 from . import cancelling, prediction
 from .cancelling import Cancel
 from .checking import Warn

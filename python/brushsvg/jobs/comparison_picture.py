@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core
 from ..machine.realised.arc_chords import with_chords
 from ..model.describe import one_line
-from ..show.evaluation import report
+from ..show.evaluation import figures
 from ..show.panels_png import MIDDLE_LINE, Panel, panels_png
 from .work import Work
 
@@ -17,7 +17,7 @@ TITLES = {"none": "Tool follows the drawing", "closed": "With compensation"}
 
 
 def comparison_png(
-    works: Mapping[str, Work], marks: Mapping[str, _core.Marks], totals: Mapping[str, report.Figures]
+    works: Mapping[str, Work], marks: Mapping[str, _core.Marks], totals: Mapping[str, figures.Figures]
 ) -> bytes:
     """Draw a drawing, its paint without compensation and with it, as a PNG.
 
@@ -25,7 +25,7 @@ def comparison_png(
     """
     work = works["closed"]
     strokes = work.strokes or []
-    target = report.target_rings(strokes)
+    target = figures.target_rings(strokes)
     middle = [_core.flatten(stroke, 0.01)[:, :2] for stroke in strokes]
     width_mm, height_mm = np.ptp(np.vstack(target), axis=0)
     drawn = ("middle lines and their widths,", f"{width_mm:.0f} x {height_mm:.0f} mm")

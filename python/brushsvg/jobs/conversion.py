@@ -26,7 +26,7 @@ from ..errors import (
 )
 from ..files import write_files
 from ..machine import preflight, writer
-from ..machine.arm.joints import is_installed
+from ..machine.arm.inverse_kinematics import is_installed
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_check import OF_EXAMPLE
 from ..machine.motion import duration_s
@@ -37,13 +37,13 @@ from ..machine.paint_reload import (
     report_long_strokes,
     report_missing_paint,
     split_into_loads,
-    with_one_pen,
 )
+from ..machine.pen_changes import with_one_pen
 from ..machine.posts import POSTS
 from ..machine.program import WHOLE_JOB, CheckedProgram, Job, beyond_part
 from ..machine.realised.smooth_field import beyond_field
+from ..notice_summary import summarize_notices
 from ..show.evaluation import report as reports
-from ..text_summary import summarize_notices
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
 from .choices import (
@@ -334,7 +334,7 @@ class SimulatedWork:
     def remarks(self) -> list[Notice]:
         """Return the notices of a job that may be run."""
         first_stroke = self.walk.job.first_stroke
-        pen_notices = with_one_pen(self.loads, self.cell, first_stroke) if self.is_program else []
+        pen_notices = with_one_pen(self.loads.loads, self.cell, first_stroke) if self.is_program else []
         brush, cell = self.work.brush, self.cell
         order_notices = _check_stroke_order(self.work, self.order, first_stroke)
         field_notices = beyond_field(self.loads.loads, cell) if self.is_program else []

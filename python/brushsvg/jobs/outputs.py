@@ -15,7 +15,7 @@ from ..machine.realised.arc_chords import with_chords
 from ..machine.tool_axes import is_tilted
 from ..machine.writer import time_s, whole_program
 from ..show.animation import animation
-from ..show.evaluation import report
+from ..show.evaluation import figures, places, report
 from ..show.evaluation.uncertainty import Band, is_law_interval_known, uncertainty
 from ..show.marks_svg import marks_svg
 from ..show.overlap_svg import overlap_svg
@@ -118,7 +118,7 @@ def overlap_picture(
     if work.strokes is None:
         raise Error("a plan does not hold its target: give the drawing", code="plan-without-target")
     if suffix == ".svg":
-        target = report.target_rings(work.strokes)
+        target = figures.target_rings(work.strokes)
         at_mm = {place.number: place.place_mm for place in places}
         return overlap_svg(target, marks.outline_mm, work.plan.sheet_mm, work.title, at_mm).encode()
     from ..show.overlap_png import overlap_png
@@ -165,7 +165,7 @@ def make_report(
 
     warnings: None for the warnings of the work.
     forbidden: the warnings for which no program would be written.
-    drawn: see report.measure.
+    drawn: see figures.measure.
     seconds: the duration, if it is known better than from the plan.
     advice: advice on the size.
     as_run: the plan that the marks belong to, if a machine cuts corners of the work's plan.
@@ -176,7 +176,7 @@ def make_report(
     work, marks, as_run = remove_margin_strokes(work, marks, as_run)
     is_tilted_plan = any(map(is_tilted, work.plan.passes))
     is_drawing = work.strokes is not None
-    painted = report.PaintedPlan(
+    painted = figures.PaintedPlan(
         work.plan,
         marks,
         work.brush,
@@ -186,7 +186,7 @@ def make_report(
         work.options.compensation,
         work.unreached,
     )
-    rows, total = report.measure(painted)
+    rows, total = figures.measure(painted)
     confidence = None if is_tilted_plan else uncertainty(as_run or work.plan, work.brush, marks)
     return report.Report(
         title=work.title,
@@ -201,11 +201,11 @@ def make_report(
         forbidden=tuple(forbidden),
         confidence=confidence,
         is_tilted=is_tilted_plan,
-        groups=report.groups(marks, work.brush, work.strokes),
+        groups=figures.groups(marks, work.brush, work.strokes),
         advice=advice,
         assumed=list_assumed_laws(work.brush),
         without_interval=list_laws_without_interval(work.brush),
-        places=report.worst_places(painted) if is_drawing else (),
+        places=places.worst_places(painted) if is_drawing else (),
     )
 
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
 from ..geometry.polylines import length, lengths
-from .cells.cell import Cell, Station, reason_for_no_waiting, robot_from_paper, shorten_visit
+from .cells.cell import Cell, Station, robot_from_paper, shorten_visit
 from .frames import is_upright
+from .pen_changes import may_pause, pen_visits
 from .posts import POSTS, circles_by
 from .realised.arc_chords import points_with_chords, split_arcs_at_extremes, with_chords
 from .realised.distortion import in_lines_mm, is_similar, keeps_lines
@@ -224,7 +224,7 @@ def station_visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tup
     Raises Error for a colour that no station serves.
     """
     if not cell.reload:
-        return _pen_visits(loads, cell, first_stroke) if may_pause(cell) else ()
+        return pen_visits(loads.loads, cell, first_stroke) if may_pause(cell) else ()
     painted, left_loads = loads.loads[: first_stroke - 1], loads.loads[first_stroke - 1 :]
     visits_of_loads, last_pass, used_mm = [()] * len(painted), None, 0.0
     with suppress(Error):  # a colour that no station serves is not on the brush
@@ -322,73 +322,6 @@ def _part_start_mm(stroke, part, after_mm: float) -> float:
 # Largest distance between moves that a stroke and its part share. Their arcs are divided into chords at different
 # places, and each chord is up to 0.01 mm away from its circle.
 MAX_SHARED_OFFSET_MM = 0.02
-
-
-def may_pause(cell: Cell) -> bool:
-    """Return whether the program stops for another pen, or takes it by itself."""
-    return cell.pause_per_colour and (has_pens(cell) or not reason_for_no_waiting(cell))
-
-
-def has_pens(cell: Cell) -> bool:
-    """Return whether the machine takes pens of several colours by itself."""
-    return bool(cell.pen and cell.pen.colours)
-
-
-def pen(colour: str) -> Station:
-    """Return a station at which a person or the plotter changes the pen or brush.
-
-    It has no place: the tool waits at the safe height above any place.
-    """
-    return Station(f"pen {colour.lower().lstrip('#')}", (), by_hand=True)
-
-
-def _pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
-    if has_pens(cell):
-        return _plotter_pen_visits(loads, cell, first_stroke)
-    is_new_pen = [False] + [
-        bool(a.colour and b.colour) and a.colour.lower() != b.colour.lower() for a, b in pairwise(loads.loads)
-    ]
-    # The person mounts the first pen before the program starts.
-    is_new_pen[:first_stroke] = [False] * len(is_new_pen[:first_stroke])
-    if not any(is_new_pen):
-        return ()
-    return tuple(
-        (pen(a_pass.colour),) if is_new else () for a_pass, is_new in zip(loads.loads, is_new_pen, strict=True)
-    )
-
-
-def _plotter_pen_visits(loads: PlanInLoads, cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
-    """Return for each load the pen that a plotter takes before it.
-
-    The first pen is included. Strokes without a colour are drawn with pen 1. Raises Error for a colour that no pen has.
-    """
-    colours = [colour.lower() for colour in cell.pen.colours]
-    visits_of_loads, last_colour = [()] * (first_stroke - 1), ""
-    for a_pass in loads.loads[first_stroke - 1 :]:
-        colour = a_pass.colour.lower() or colours[0]
-        if colour not in colours:
-            sentence = f"no pen of cell {cell.name} has colour {colour}; there are {', '.join(colours)}"
-            raise Error(sentence, a_pass.stroke, code="colour-not-served")
-        visits_of_loads.append((pen(colour),) if colour != last_colour else ())
-        last_colour = colour
-    return tuple(visits_of_loads)
-
-
-def pens_changed(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> int:
-    """Return how often the pen changes between strokes, on a cell without paint."""
-    taken = () if cell.reload else _pen_visits(loads, cell, first_stroke)
-    return sum(map(bool, taken)) - (1 if taken and has_pens(cell) else 0)
-
-
-def with_one_pen(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> list[Notice]:
-    """Report strokes of several colours that are painted in one run.
-
-    Cells with pause_per_colour set to false are not reported.
-    """
-    if not cell.pause_per_colour or may_pause(cell) or not pens_changed(loads, cell, first_stroke):
-        return []
-    sentence = f"strokes of several colours are painted with one pen: {reason_for_no_waiting(cell)}"
-    return [Notice("", sentence, code="colours-as-one", advice="convert --per-colour writes a program for each")]
 
 
 def painted_mm(a_pass: _core.Pass) -> float:

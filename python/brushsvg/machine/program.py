@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from .arm.joints import is_installed
+from .arm.inverse_kinematics import is_installed
 from .arm.place import find_unreachable
 from .cells.cell import (
     MAX_PROGRAM_LINES,

@@ -15,10 +15,10 @@ import numpy as np
 from .. import _core
 from ..geometry import polylines
 from ..geometry.cubics import at
+from ..notice_summary import summarize_notices
 from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
 from ..reporting.label_space import LabelSpace
-from ..text_summary import summarize_notices
 from .stroke_labels import LABEL_CELL_PX, Run, group_runs, mark_cells, start_direction, width_text
 
 PAPER = "#f3f1ec"

@@ -17,7 +17,7 @@ from ..errors import Error, Notice
 from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
 from ..machine.frames import is_upright, transform_points
 from ..machine.move_extents import make_paths
-from ..machine.paint_reload import may_pause, pen
+from ..machine.pen_changes import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
 from ..machine.program import names_of_stations

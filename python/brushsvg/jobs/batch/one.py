@@ -14,7 +14,7 @@ from ...errors import Error, Notice, describe_unexpected
 from ...machine.program import Job
 from ...model.library import parse_brush
 from ...read import InMemory
-from ...show.evaluation import report
+from ...show.evaluation.figures import PaintedPlan, measure
 from .. import conversion, outputs
 from ..choices import Choices, check_choices, fill_from_drawing, make_options
 from ..preparation import preparation
@@ -57,7 +57,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Figures:
-    """The figures of one drawing. Lengths are in mm, see evaluation.report.Figures.
+    """The figures of one drawing. Lengths are in mm, see evaluation.figures.Figures.
 
     time_s: how long the machine takes.
     """
@@ -134,8 +134,8 @@ def _convert(task: Task) -> TaskResult:
         name: pieces if isinstance(pieces, bytes) else "".join(pieces).encode()
         for name, pieces in simulated.encoded().items()
     }
-    _, total = report.measure(
-        report.PaintedPlan(
+    _, total = measure(
+        PaintedPlan(
             simulated.work.plan,
             simulated.marks,
             work.brush,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 
-from ...show.evaluation import report
+from ...show.evaluation.figures import PaintedPlan, measure
 from ..options import Options
 from ..prediction import predict
 from .preparation import prepare
@@ -37,8 +37,8 @@ def rank_brushes(path: str | os.PathLike[str], options: Options, brushes, stage=
         work = prepare(path, replace(options, brush=brush), stage, partly=True)
         marks = predict(work, outlines=False, stage=stage)
         drawn = [*work.strokes, *work.left_out]
-        rows, total = report.measure(
-            report.PaintedPlan(work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation)
+        rows, total = measure(
+            PaintedPlan(work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation)
         )
         results.append(rate_brush(brush.name, rows, total.overlap if rows else 0.0, work.refused))
     return sort_best_first(results)

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..._core import footprint_at
+from ..._core import area, footprint_at, intersect, target_outline
 
+RING_TOLERANCE_MM = 0.01
+_MIN_SQUARE_MM = 0.5  # smallest side of the square in which paint and drawing differ most, see stroke_score
+_MIN_BARE_SHARE = 0.1  # of this square: a smaller area that no stroke reaches does not explain the difference
 MIN_CORNER_DEG = 25.0  # the polyline of a smooth line turns by less from piece to piece
 # Half width in mm per mm of length. A footprint is about three times as long as half of its width.
 MAX_WIDTH_SLOPE = 0.25
@@ -59,6 +62,64 @@ class Cause:
 
     words: str
     code: str
+
+
+def square_side_mm(line: np.ndarray) -> float:
+    return max(_MIN_SQUARE_MM, float(np.median(line[:, 3])))
+
+
+def find_cause(painted, stroke, line, place, size_mm, tracking_error) -> Cause:
+    """Find why paint differs at a place.
+
+    painted: a figures.PaintedPlan; size_mm: side of the square around the place that is examined.
+    """
+    pieces_here = [
+        piece
+        for piece in painted.unreached
+        if piece.element == stroke.origin.element and _is_near_rings(place.at_mm, piece.rings, size_mm / 2)
+    ]
+    is_bare = place.is_missing and any(not piece.is_rim for piece in pieces_here)
+    is_rim = place.is_missing and bool(pieces_here)
+    is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
+    where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
+    return cause(
+        stroke,
+        line,
+        painted.brush,
+        place,
+        size_mm,
+        where,
+        tracking_error,
+        painted.tolerance_mm,
+        painted.compensation,
+    )
+
+
+def _is_near_rings(place_mm, rings, reach_mm: float) -> bool:
+    """Return whether rings enclose enough of a square around a place.
+
+    The limit is _MIN_BARE_SHARE of the square.
+    """
+    return area(intersect([_square_ring(place_mm, reach_mm)], rings)) > _MIN_BARE_SHARE * (2 * reach_mm) ** 2
+
+
+def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
+    """Return the area of a shape near a place that discs do not cover.
+
+    The discs have the widths of the stroke. A round brush cannot paint there. The square is around place_mm, with side
+    size_mm.
+    """
+    if not stroke.target_mm:
+        return 0.0
+    within = intersect([_square_ring(place_mm, size_mm / 2)], stroke.target_mm)
+    discs = target_outline(stroke.replaced(target_mm=[]), RING_TOLERANCE_MM)
+    return area(within) - area(intersect(within, discs))
+
+
+def _square_ring(place_mm, reach_mm: float) -> np.ndarray:
+    x, y = place_mm
+    sides = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
 
 
 def cause(

@@ -9,7 +9,8 @@ import numpy as np
 
 from ... import _core
 from ...reporting.report_text import place_line
-from .error_causes import Cause, remedy
+from .error_causes import RING_TOLERANCE_MM, Cause, find_cause, remedy, square_side_mm
+from .figures import PaintedPlan
 
 PX_PER_MM, MAX_PIXELS = 10.0, 8e6  # limits of the resolution and number of compared pixels
 MARGIN_MM = 10.0  # around the drawing, where its paint can be
@@ -52,6 +53,28 @@ class Place:
             "remedy",
         )
         return {key: getattr(self, key) for key in keys} | {"place_mm": list(self.place_mm)}
+
+
+def worst_places(painted: PaintedPlan) -> tuple[Place, ...]:
+    """Return the places where paint differs most from the drawing.
+
+    The largest difference comes first. There are none if the target of the plan is unknown.
+    """
+    pairs = zip(painted.plan.passes, painted.strokes or (), strict=bool(painted.strokes))
+    whole = {stroke.id: (run, stroke) for run, stroke in pairs if stroke is not None}
+
+    def why(name: str, area) -> tuple[Cause, float | None]:
+        if name not in whole:
+            return Cause("", ""), None
+        run, stroke = whole[name]
+        (error,) = _core.tracking_errors_of([run], [stroke], painted.brush, painted.tolerance_mm)
+        line = _core.flatten(stroke, RING_TOLERANCE_MM)
+        size_mm = max(square_side_mm(line), area.area_mm2**0.5)
+        found_cause = find_cause(painted, stroke, line, area, size_mm, error)
+        is_off = not (stroke.target_mm or error.within_tolerance or "tracking error" in found_cause.words)
+        return found_cause, error.largest_mm if is_off else None
+
+    return find_places(painted.marks, painted.brush, painted.target() or [], why)
 
 
 def find_places(

@@ -13,7 +13,7 @@ from ....machine import preflight, writer
 from ....machine.paint_reload import split_into_loads
 from ....machine.program import Job
 from ....model.library import find_brush
-from ....text_summary import summarize_notices
+from ....notice_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.options import (

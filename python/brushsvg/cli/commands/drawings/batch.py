@@ -9,8 +9,8 @@ from dataclasses import replace
 
 from ....errors import Notice
 from ....jobs.choices import CHOICES
+from ....notice_summary import summarize_notices
 from ....reporting.report_text import format_overlap
-from ....text_summary import summarize_notices
 from ....units import clock
 from ...console import RefusedError, clear_stage, refuse_errors, say, stage, warn
 from ...steps.options import make_choices

@@ -7,9 +7,9 @@ import json
 from ....errors import Error
 from ....jobs import outputs, prediction
 from ....jobs.checking import Check, check_program
+from ....notice_summary import summarize_notices
 from ....reporting.report_text import AGAINST
 from ....show.evaluation import report
-from ....text_summary import summarize_notices
 from ....units import clock
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.options import make_choices

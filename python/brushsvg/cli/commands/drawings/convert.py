@@ -16,7 +16,7 @@ from ....jobs import conversion, outputs, prediction
 from ....jobs.choices import choose_margin_strokes
 from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.work import Work, list_colours, select_colour
-from ....machine.paint_reload import has_pens, may_pause, pens_changed
+from ....machine.pen_changes import has_pens, may_pause, pens_changed
 from ....machine.program import Job
 from ....machine.writer import called_programs, path_next_to
 from ....show.evaluation import report
@@ -138,7 +138,7 @@ def _describe_pen_changes(simulated: conversion.SimulatedWork, from_stroke: int)
     """Describe how often a person has to change the pen."""
     if not (simulated.is_program and may_pause(simulated.cell)):
         return ""
-    stops = pens_changed(simulated.loads, simulated.cell, from_stroke)
+    stops = pens_changed(simulated.loads.loads, simulated.cell, from_stroke)
     times = "once" if stops == 1 else f"{stops} times"
     sentence = f"takes another pen {times}" if has_pens(simulated.cell) else f"stops {times} for another pen"
     return sentence if stops else ""

@@ -23,13 +23,13 @@ def demo_picture(args) -> None:
     from ....jobs.comparison_picture import TITLES, comparison_png
     from ....jobs.options import Options
     from ....jobs.preparation import preparation
-    from ....show.evaluation import report
+    from ....show.evaluation import figures
 
     stage("painting")
     works = {how: preparation.prepare(DEMO_DRAWING, Options(compensation=how)) for how in TITLES}
     marks = {how: prediction.predict(work) for how, work in works.items()}
     totals = {
-        how: report.measure(report.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
+        how: figures.measure(figures.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
         for how, work in works.items()
     }
     picture = comparison_png(works, marks, totals)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from ....errors import Error, Notice
 from ....jobs.options import DEFAULT_BRUSH
-from ....machine.arm.joints import is_installed, joints_of
+from ....machine.arm.inverse_kinematics import is_installed, joints_of
 from ....machine.cells import cell_check as cell_checks
 from ....machine.cells.cell import robot_from_paper
 from ....machine.cells.cell_file import (
@@ -66,7 +66,7 @@ def cell_check(args) -> None:
 
 def cell_place(args) -> None:
     from ....machine.arm import place
-    from ....machine.arm.follow import follow
+    from ....machine.arm.joint_problems import follow
     from ....machine.program import find_moves_out_of_limits
     from ....machine.setup_programs import over_sheet
     from ....show.table_picture import table_picture

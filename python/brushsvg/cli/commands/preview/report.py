@@ -10,10 +10,10 @@ from ....jobs.choices import make_layout, make_read_options
 from ....jobs.options import DEFAULT_BRUSH
 from ....jobs.preparation import other_brushes, other_sizes
 from ....model.library import brush_names, find_brush
+from ....notice_summary import summarize_notices
 from ....read import read_drawing
 from ....read.layout import arrange
 from ....show.evaluation import report
-from ....text_summary import summarize_notices
 from ...console import RefusedError, print_text, refuse_errors, stage
 from ...steps.options import apply_drawing_settings, make_choices, make_options
 from ...steps.output_places import check_outputs, suffix_of, write_outputs

@@ -11,9 +11,10 @@ from operator import itemgetter
 
 from ....errors import Notice
 from ....units import FONT_PX, NUMBER
+from ..paths.shapes import path_data_of
 from .declarations import Declaration, declarations
 from .math import compute_length
-from .values import compute_value, find_problem, path_data_of, substitute_variables
+from .values import compute_value, find_problem, substitute_variables
 
 INHERITED = {
     "font-size": f"{FONT_PX:g}",  # px

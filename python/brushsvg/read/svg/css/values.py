@@ -117,14 +117,3 @@ def substitute_variables(value: str, inherited: dict[str, str]) -> tuple[str, st
         return "".join(parts).strip()
 
     return substitute(0, value), problem
-
-
-def path_data_of(value: str) -> str | None:
-    """Return the path data in a value of d: path("..."), "" for none, else None."""
-    if value.lower() == "none":
-        return ""
-    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
-    if others or token.type != "function" or token.lower_name != "path":
-        return None
-    arguments = [argument for argument in token.arguments if argument.type not in ("whitespace", "comment")]
-    return arguments[0].value if len(arguments) == 1 and arguments[0].type == "string" else None

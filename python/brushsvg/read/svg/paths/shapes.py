@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 
+import tinycss2
+
 from ....errors import Error
 from ....units import FONT_PX, length_px
 from .path_data import MOST_COMMANDS, Command, parse_path, parse_points, snippet
@@ -74,6 +76,17 @@ def _path(attributes: dict[str, str], _length: _Lengths) -> list[Command]:
     if error is not None:
         raise _damage_error("d", d, error, commands)
     return commands
+
+
+def path_data_of(value: str) -> str | None:
+    """Return the path data in a value of d: path("..."), "" for none, else None."""
+    if value.lower() == "none":
+        return ""
+    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
+    if others or token.type != "function" or token.lower_name != "path":
+        return None
+    arguments = [argument for argument in token.arguments if argument.type not in ("whitespace", "comment")]
+    return arguments[0].value if len(arguments) == 1 and arguments[0].type == "string" else None
 
 
 def _rect(_attributes: dict[str, str], length: _Lengths) -> list[Command]:

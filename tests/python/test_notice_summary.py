@@ -1,8 +1,8 @@
 from diagnostics import gives
 
 from brushsvg.errors import Notice
-from brushsvg.text_summary import MOST_ALIKE
-from brushsvg.text_summary import summarize_notices as summarized_notices
+from brushsvg.notice_summary import MOST_ALIKE
+from brushsvg.notice_summary import summarize_notices as summarized_notices
 
 
 def notice(where, sentence, code="", **more):

@@ -23,7 +23,7 @@ from ..frames import frame_of_pose, normal_tilt_deg, transform_points
 from ..motion import Program
 from ..posts.script import upright_tool_rotation
 from ..tool_axes import between_deg, normalize, rotation_axes, turned_to
-from .joints import JointSolver, flange_rates, flange_rates_at, joint_frames_of, refine_angles
+from .inverse_kinematics import JointSolver, flange_rates, flange_rates_at, joint_frames_of, refine_angles
 
 MAX_PLACE_SPACING_MM = 5.0
 # Largest turn of a joint between two places. A smaller limit costs time, a larger one could miss a peak of speed.
