@@ -13,7 +13,7 @@ from brushsvg.jobs import prediction
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.jobs.work import order_nearest_first
-from brushsvg.machine import motion, program, writer
+from brushsvg.machine import moves, program, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.model.library import find_brush
 from brushsvg.planning import travel_order
@@ -173,9 +173,9 @@ def test_a_program_from_a_saved_plan_equals_the_program_from_the_drawing(tmp_pat
 
 def test_each_stroke_and_its_time_are_computed_once(drawing, tmp_path, monkeypatch):
     requested, timed = [], []
-    as_written, duration_s = program.as_written, motion._duration_s
+    as_written, duration_s = program.as_written, moves._duration_s
     monkeypatch.setattr(program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args))
-    monkeypatch.setattr(motion, "_duration_s", lambda made: timed.append(made) or duration_s(made))
+    monkeypatch.setattr(moves, "_duration_s", lambda made: timed.append(made) or duration_s(made))
     assert main(["convert", str(drawing), "-o", str(tmp_path / "a.ngc"), "--quiet"]) == 0
     assert requested
     assert len(requested) == len(set(requested))

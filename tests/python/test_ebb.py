@@ -21,7 +21,7 @@ from test_urscript import BRUSH, STROKES, text_for
 from brushsvg import _core
 from brushsvg.machine.cells.cell import Motors, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.motion import duration_s
+from brushsvg.machine.moves import duration_s
 from brushsvg.machine.posts import POSTS, ebb
 from brushsvg.machine.posts.ebb import HOME
 from brushsvg.machine.writer import text_of

@@ -16,7 +16,7 @@ from sampling import sample
 
 from brushsvg.machine.cells.cell import robot_from_paper
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, write_cell
-from brushsvg.machine.motion import Wait
+from brushsvg.machine.moves import Wait
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.setup_programs import first_run
 from brushsvg.machine.writer import text_of

@@ -15,7 +15,7 @@ from programs import program
 
 from brushsvg import _core, find_brush, read_plan, save_brush, write_cell, write_program
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.motion import program_in_robot_frame
+from brushsvg.machine.moves import program_in_robot_frame
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.gcode import LINE_LIMIT

@@ -246,7 +246,7 @@ def test_a_planted_fault_is_named(path, text, named):
 
 def test_allowed_imports_are_not_named():
     assert not complaints(CPP / "marks" / "simulate.cpp", '#include <vector>\n#include "brushsvg/lag.hpp"')
-    assert not complaints(PACKAGE / "machine" / "posts" / "new.py", "import math\nfrom ..motion import Move\n")
+    assert not complaints(PACKAGE / "machine" / "posts" / "new.py", "import math\nfrom ..moves import Move\n")
 
 
 def test_an_import_that_cannot_be_followed_is_refused():

@@ -18,7 +18,7 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_check import remarks
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.motion import Wait
+from brushsvg.machine.moves import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
     load_length_mm,

@@ -8,7 +8,7 @@ from diagnostics import are_reported, refused
 from programs import forbidden, program, whole
 
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.motion import MEANINGS_AT_SAFE_HEIGHT, duration_s
+from brushsvg.machine.moves import MEANINGS_AT_SAFE_HEIGHT, duration_s
 from brushsvg.machine.program import Job, unchecked_program
 
 

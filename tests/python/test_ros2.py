@@ -21,7 +21,7 @@ from test_urscript import ARC, BRUSH, STROKES, text_for
 from brushsvg import _core, write_plan
 from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.motion import program_in_robot_frame
+from brushsvg.machine.moves import program_in_robot_frame
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.trajectory import POSE_ROW, SLICE_S, make_timed_sections, time_lines
 from brushsvg.machine.writer import text_of

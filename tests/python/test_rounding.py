@@ -14,7 +14,7 @@ from sampling import sample
 from brushsvg import _core
 from brushsvg.machine.cells.cell import Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
-from brushsvg.machine.motion import duration_s
+from brushsvg.machine.moves import duration_s
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import unchecked_program
 from brushsvg.machine.realised.rounding import as_written

@@ -25,7 +25,7 @@ from brushsvg import _core
 from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
-from brushsvg.machine.motion import program_in_robot_frame
+from brushsvg.machine.moves import program_in_robot_frame
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import check_job

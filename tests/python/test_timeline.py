@@ -14,7 +14,7 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import preparation
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.motion import Wait, distances, duration_s
+from brushsvg.machine.moves import Wait, distances, duration_s
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.writer import whole_program
 from brushsvg.model import library

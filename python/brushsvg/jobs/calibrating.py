@@ -42,8 +42,8 @@ from ..model.plot import brush_picture
 from ..reporting.report_text import Report
 from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
 from .choices import load_brush, load_cell
+from .correctable_errors import select_correctable_parts
 from .json_files import read_plan
-from .machine_parts import select_correctable_parts
 
 Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about the file
 

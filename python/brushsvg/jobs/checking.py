@@ -20,7 +20,7 @@ from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
-from ..machine.motion import duration_s
+from ..machine.moves import duration_s
 from ..machine.paint_reload import report_dry_brush, split_into_loads
 from ..machine.posts import GCODE, POSTS
 from ..machine.program import out_of_arm

@@ -29,7 +29,7 @@ from ..machine import preflight, writer
 from ..machine.arm.inverse_kinematics import is_installed
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_check import OF_EXAMPLE
-from ..machine.motion import duration_s
+from ..machine.moves import duration_s
 from ..machine.paint_reload import (
     PlanInLoads,
     fetched_mm,

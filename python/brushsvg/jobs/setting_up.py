@@ -16,7 +16,7 @@ from ..errors import Notice, name_file_in_errors, need_number, require_type
 from ..files import write_files
 from ..machine import header_lines, preflight, setup_programs, writer
 from ..machine.cells.cell import Cell
-from ..machine.motion import Program, duration_s
+from ..machine.moves import Program, duration_s
 from ..machine.paint_reload import split_into_loads
 from ..machine.posts import Post
 from ..machine.program import Job

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..units import clock
-from .motion import Program, duration_s, painting_mm
+from .moves import Program, duration_s, painting_mm
 from .paint_reload import PlanInLoads
 from .posts import POSTS
 from .program import WHOLE_JOB, Job

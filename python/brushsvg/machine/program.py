@@ -22,7 +22,7 @@ from .cells.cell import (
     value_mm,
 )
 from .frames import transform_points
-from .motion import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
+from .moves import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .paint_reload import PlanInLoads, station_visits
 from .posts import POSTS
 from .posts.text import make_unique_names

@@ -8,7 +8,7 @@ from math import sqrt
 import numpy as np
 
 from .cells.cell import robot_from_paper
-from .motion import Move, Program, Wait
+from .moves import Move, Program, Wait
 from .tool_axes import turned_on
 
 # Kinds of rows: a place of the plan, a place on the way to it, the end of a wait.

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..errors import Notice
 from .cells.cell import LEAST_SPEED_MM_S, Cell
-from .motion import Move, Section
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
+from .moves import Move, Section
 from .realised.backlash import half_mm
 from .realised.tilt import check_tilt_limits as tilted_too_far
 

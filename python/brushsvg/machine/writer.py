@@ -13,7 +13,7 @@ from ..files import write_files
 from .cells.cell import Cell
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
-from .motion import Program, duration_s, program_in_robot_frame
+from .moves import Program, duration_s, program_in_robot_frame
 from .paint_reload import PlanInLoads, split_into_loads, station_visits
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush

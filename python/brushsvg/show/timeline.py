@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Error
-from ..machine.motion import Move, Program, Section, Wait, distances, settling_s, times_s
+from ..machine.moves import Move, Program, Section, Wait, distances, settling_s, times_s
 
 HAND_PAUSE_S = 3.0  # shown for a wait for a person: enough to read the instruction
 # Shares of a move in the air at which its time is computed. With fewer, straight lines between them hide the ramps.

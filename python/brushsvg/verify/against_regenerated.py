@@ -13,7 +13,7 @@ from .. import _core
 from ..machine.cells.cell import Cell, unit_mm, value_mm
 from ..machine.frames import apart_deg
 from ..machine.header_lines import header_of
-from ..machine.motion import Program, duration_s, painting_mm
+from ..machine.moves import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
 from ..machine.posts.fanuc import cnt_mm

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..errors import Notice
-from ..machine.motion import Program
+from ..machine.moves import Program
 from ..machine.posts import POSTS
 from ..machine.posts.gcode_servo import height_at
 from ..machine.writer import text_of

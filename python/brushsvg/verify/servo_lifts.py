@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .. import _core
-from ..machine.motion import Program
+from ..machine.moves import Program
 from .readback import Act
 
 

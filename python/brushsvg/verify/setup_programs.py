@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import Notice
 from ..machine.cells.cell import Cell
 from ..machine.header_lines import border_header, first_header, height_header
-from ..machine.motion import Program, duration_s
+from ..machine.moves import Program, duration_s
 from ..machine.program import Job
 from ..machine.realised.distortion import true_mm
 from ..machine.setup_programs import ONE_STROKE_DEPTH_MM, border, first_run, paper_height

@@ -38,7 +38,7 @@ from ..marks.from_marks import (
 from ..marks.machine_found import ask_for
 from ..marks.mark_input import Painted, depths_painted
 from ..marks.stray_marks import Stray, find_strays
-from .prior import DEPTH_COUNT, KnownLaws, known_laws, numbers_of, root_of_inverse
+from .known_laws import DEPTH_COUNT, KnownLaws, known_laws, numbers_of, root_of_inverse
 
 # Largest ratio of the standard deviations of a law after and before, at its best depth. Above it, the marks add nothing
 # to the law.

@@ -12,7 +12,7 @@ from ...jobs.preparation import preparation
 from ...jobs.work import Work
 from ...machine import preflight
 from ...machine.cells.cell import Cell
-from ...machine.motion import duration_s
+from ...machine.moves import duration_s
 from ...machine.paint_reload import PlanInLoads, report_long_strokes, split_into_loads, station_visits
 from ...machine.program import CheckedProgram
 from ..console import refuse_errors, stage, warn

@@ -20,7 +20,7 @@ import numpy as np
 from ...errors import Notice
 from ..cells.cell import MIN_WALL_TILT_DEG, Arm, Cell, joint_number
 from ..frames import frame_of_pose, normal_tilt_deg, transform_points
-from ..motion import Program
+from ..moves import Program
 from ..posts.script import upright_tool_rotation
 from ..tool_axes import between_deg, normalize, rotation_axes, turned_to
 from .inverse_kinematics import JointSolver, flange_rates, flange_rates_at, joint_frames_of, refine_angles

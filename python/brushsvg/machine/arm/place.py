@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import Notice
 from ..cells.cell import Arm, Cell
 from ..frames import frame_of_pose, rotation, rotation_deg, transform_points
-from ..motion import Program
+from ..moves import Program
 from .inverse_kinematics import JointSolver, joint_frames_of, joints_of
 from .joint_problems import far_from_singular, flange_at, follow, lowest_joint_mm, outermost_places, within_limits
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from ..cells.cell import Cell
-    from ..motion import Program
+    from ..moves import Program
 
 
 class Post(NamedTuple):

@@ -19,7 +19,7 @@ from ..cells.cell import (
     servo_stands,
     steps_from_mm,
 )
-from ..motion import Move, Program, Wait
+from ..moves import Move, Program, Wait
 from ..trajectory import joint_speed_limits, time_lines
 from .gcode_servo import TOUCHING_MEANINGS, lift_steps, line_feeds_mm_min, servo_values_at
 from .text import feed_of_speed_mm_min, plain_text

@@ -14,17 +14,10 @@ import numpy as np
 
 from ..cells.cell import MAX_PROGRAM_POINTS, Cell
 from ..frames import rotation_deg
-from ..motion import Move, Program, Section, Wait, via_point
+from ..moves import Move, Program, Section, Wait, via_point
 from .dobot import round_down_speed_mm_s
-from .script import (
-    LanguageWords,
-    blends_mm,
-    name_on_controller,
-    name_parts,
-    tool_rotations_at,
-    upright_tool_rotation,
-    write_section,
-)
+from .program_parts import name_on_controller, name_parts
+from .script import LanguageWords, blends_mm, tool_rotations_at, upright_tool_rotation, write_section
 from .text import PROGRAM_END, STATEMENT_ENDS, format_number, format_rows, plain_text
 
 LINE_LIMIT = 100  # letters of a remark, which may need several lines

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..cells.cell import Cell
-from ..motion import Move, Program, Wait
+from ..moves import Move, Program, Wait
 from .gcode import DIALECTS, HELD_UP, MODE_WORDS, write_wait
 from .text import feed_of_speed_mm_min, format_number, format_rows
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..cells.cell import Cell, Servo, servo_parts, servo_stands
-from ..motion import Move, Program, Wait
+from ..moves import Move, Program, Wait
 from .gcode import DIALECTS, HELD_UP, MODE_WORDS, grbl_comment, write_wait
 from .text import MAX_ROWS_AT_ONCE, feed_of_speed_mm_min, format_number, format_rows
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...errors import Error
 from ..cells.cell import UNITS_MM, Cell
-from ..motion import Move, Program
+from ..moves import Move, Program
 from .text import QUOTES, STATEMENT_ENDS, format_rows, plain_text
 
 LINE_LIMIT = 80

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..cells.cell import Blending
 from ..frames import rotation, rotation_deg
-from ..motion import Move, Program, Wait
+from ..moves import Move, Program, Wait
 from .script import (
     LanguageWords,
     PointWords,

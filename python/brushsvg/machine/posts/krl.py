@@ -13,16 +13,14 @@ from tempfile import SpooledTemporaryFile
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_deg
-from ..motion import Move, Program, Wait
+from ..moves import Move, Program, Wait
+from .program_parts import name_on_controller, name_parts, split_into_parts
 from .script import (
     LanguageWords,
     PointWords,
     blends_mm,
     format_rounded_down,
     join_numbers,
-    name_on_controller,
-    name_parts,
-    split_into_parts,
     upright_tool_rotation,
     write_points,
 )

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, quaternion
-from ..motion import Move, Program, Wait
+from ..moves import Move, Program, Wait
 from .script import (
     QUOTE_REPLACEMENTS,
     LanguageWords,

@@ -21,7 +21,7 @@ import numpy as np
 from ...errors import Error
 from ..cells.cell import Cell
 from ..frames import frame_of_pose
-from ..motion import Move, Program, Wait, via_point
+from ..moves import Move, Program, Wait, via_point
 from .script import blends_mm, tool_rotations_at, upright_tool_rotation
 from .text import plain_text
 

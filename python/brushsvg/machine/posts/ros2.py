@@ -17,7 +17,7 @@ import numpy as np
 
 from ..cells.cell import Cell, robot_from_paper
 from ..frames import frame_of_pose, quaternion, rotation
-from ..motion import Program
+from ..moves import Program
 from ..tool_axes import is_parallel, turned_to
 from ..trajectory import make_timed_sections
 from .script import format_rounded_down, upright_deg

@@ -11,14 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..frames import frame_of_pose, rotation_vector
-from ..motion import Move, Program, Wait, via_point
-from .script import (
-    QUOTE_REPLACEMENTS,
-    LanguageWords,
-    split_into_parts,
-    tool_rotations_at,
-    upright_tool_rotation,
-)
+from ..moves import Move, Program, Wait, via_point
+from .program_parts import split_into_parts
+from .script import QUOTE_REPLACEMENTS, LanguageWords, tool_rotations_at, upright_tool_rotation
 from .text import format_number, format_rows, plain_text
 
 LINE_LIMIT = 100

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..cells.cell import Cell, round_points, unit_mm
-from ..motion import Move, Program, Section, Wait
+from ..moves import Move, Program, Section, Wait
 
 
 def half_mm(cell: Cell) -> np.ndarray:

@@ -23,7 +23,7 @@ from ..cells.cell import (
     unit_mm,
 )
 from ..frames import is_upright, transform_points
-from ..motion import via_point
+from ..moves import via_point
 from ..posts import POSTS, circles_by
 from ..tool_axes import axes_of
 from .arc_chords import OFF_MM, add_chords, with_chords
