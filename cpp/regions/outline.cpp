@@ -21,6 +21,9 @@ bool is_behind(const OutlinePlace& from, const OutlinePlace& to) {
 /// How far corners at one place are moved apart: more than kSamePlaceUnits, and far less than is visible. If another
 /// edge is near, they are moved by kMaxGapShare of the distance to it. Edges that cross have no diagram.
 constexpr double kSeparationUnits = 40.0, kMaxGapShare = 0.4;  // units
+/// A corner with less room stays, because rounding could move it across the nearest edge. That edge may move as well,
+/// so the least room is 2 (kMaxGapShare room + sqrt(1/2)).
+constexpr double kMinRoomUnits = 1.4142135623730951 / (1.0 - 2.0 * kMaxGapShare);
 
 double distance(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
     const Vector2d along = b - a;
@@ -106,6 +109,7 @@ void Outline::separate_touching_rings() {
     for (const std::size_t k : touching) {
         checkpoint(1 + int(edges() / 100));
         const double room = free_distance(k, free_distance(before(k), kSeparationUnits / kMaxGapShare));
+        if (room < kMinRoomUnits) continue;
         starts_[k] = separated_corner(place(before(k)), place(k), place(after(k)), kMaxGapShare * room);
     }
 }

@@ -222,3 +222,14 @@ TEST_CASE("distances and crossings of coordinates that are not finite are refuse
     }
     CHECK(agrees(refusal([&] { first_crossings({sound}, sound, damaged); }), "not-finite", ""));
 }
+
+TEST_CASE("three pieces of which Boost makes nothing are united") {
+    // Found by the fuzzer: the diagonal of the first two runs along the corners of the third. All of the area was lost.
+    Ring first(7, 2), second(4, 2), third(5, 2);
+    first << 40, 40, -29.47624, -16.1259, -40, 40, -40, -40, -39.98293, -39.98293, -24.99977, -40, -27.36826, -27.36826;
+    second << 40, 40, 39.68627, 39.68627, 39.68627, 39.66674, 40, 39.68627;
+    third << 39.68627, 39.68627, -22.00656, -17.56435, -11.96124, -29.87411, 3.24407, -29.10628, 27.075, -22.28489;
+    const double whole = 2788.7149;  // by GEOS
+    CHECK(std::abs(area(unite({first, second, third})) - whole) < 1e-3);
+    CHECK(std::abs(area(fill({first, second, third}, FillRule::nonzero)) - whole) < 1e-3);
+}

@@ -20,7 +20,8 @@ Rings rings_from(fuzz::Input& in) {
 
 double length_of(const Rings& rings) {
     double length = 0.0;
-    for (const Ring& ring : rings) length += length_around(ring);
+    for (const Ring& ring : rings)
+        if (ring.rows() > 2) length += length_around(ring);  // others have no area and are not read
     return length;
 }
 
