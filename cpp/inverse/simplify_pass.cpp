@@ -386,7 +386,7 @@ Pass simplify_pass(const Pass& pass, const Brush& brush, double tolerance_mm) {
     const PassMarks marks = simulate(pass, brush, exact_mm, false);
     if (pass.poses_mm.rows() < 4) return pass;
     const Ring middle = widest_points(marks, brush);
-    const LagLaw<double> law = make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]));
+    const LagLaw<double> law = make_law(pieces(brush.lag, 0.0, brush.depth_range_mm[1]));
     const TracedPass original(pass, brush, law, marks, middle);
     // errors of single moves add up over a bend and at the ends, so smaller shares are tried where the sum is too large
     for (const double share : {0.95, 0.7, 0.4, 0.2, 0.1}) {

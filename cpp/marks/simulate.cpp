@@ -98,7 +98,7 @@ class Tracer {
         : brush_(brush),
           window_(window),
           lean_(way.lean),
-          law_(make_law(pieces(brush.lag, brush.depth_range_mm[0], brush.depth_range_mm[1]))),
+          law_(make_law(pieces(brush.lag, 0.0, brush.depth_range_mm[1]))),
           extents_(brush),
           tolerance_(tolerance_mm),
           for_outlines_(for_outlines),
@@ -107,8 +107,7 @@ class Tracer {
           out_(out) {
         kinks_ = extents_.depth;
         for (const Profile* profile : {&brush.tip_gap, &brush.tip_to_widest})
-            for (const auto& piece : pieces(*profile, brush.depth_range_mm[0], brush.depth_range_mm[1]))
-                kinks_.push_back(piece.lo);
+            for (const auto& piece : pieces(*profile, 0.0, brush.depth_range_mm[1])) kinks_.push_back(piece.lo);
     }
 
     bool is_done() const { return false; }

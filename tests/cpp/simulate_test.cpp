@@ -185,6 +185,27 @@ TEST_CASE("an empty pass and a pass of one pose are simulated") {
     CHECK(one.contact_mm(0, 0) == 5.0);
 }
 
+TEST_CASE("a law leaves its floor also at depths smaller than the least one of the brush") {
+    // Found by the fuzzer: the brush was 0.05 mm behind where its law says 0.69 mm, at a depth of 0 with a least depth of 0.4 mm.
+    Brush brush = shipped("round-6");
+    brush.depth_range_mm[0] = 0.4;
+    brush.lag.coefficients = {0.689, 1.801, -0.111};
+    brush.lag.floor = 0.05;
+    brush.lag.floor_slope = 16.04;
+    Pass pass;
+    pass.stroke = "s";
+    pass.poses_mm.resize(2, 3);
+    pass.poses_mm << 0, 0, -7, 50, 0, 0;
+    const PassMarks marks = simulate(pass, brush, 0.01);
+    for (Eigen::Index i = 0; i < marks.contact_mm.rows(); ++i) {
+        const std::size_t k = std::size_t(i);
+        if (!marks.taut[k] || marks.depth_mm[k] < 0.0) continue;
+        const double behind_mm = (marks.tcp_mm.row(i) - marks.contact_mm.row(i)).norm();
+        CHECK(behind_mm == doctest::Approx(brush.lag(marks.depth_mm[k])).epsilon(1e-5));
+    }
+    CHECK(marks.taut.back());
+}
+
 TEST_CASE("between rows, the footprint is on the straight line within the tolerance") {
     const Brush brush = shipped("round-6");
     const Pass pass = pass_of({{0, 0, 0}, {8, 0, -5}, {30, 0, -5}, {20, 25, -3}, {-10, -5, -6}, {-10, -5, 0}});
