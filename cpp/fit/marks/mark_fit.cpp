@@ -256,6 +256,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     if (fit.model.layout().machine_numbers > 0) wider.tail(kMachineErrors - MachineIndex::field).setOnes();
     const MatrixXd whole = wider.asDiagonal() * to * mean_square_error(fit, options, solved.log_likelihood_ratio) *
                            to.transpose() * wider.asDiagonal();
+    require_variances(whole);
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());
