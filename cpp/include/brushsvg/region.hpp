@@ -7,9 +7,11 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// Return the union of shapes.
 ///
 /// `rings`: each counter-clockwise ring is a filled shape; the clockwise rings after it are its holes. Rings may touch
-/// and cross; the rings of the result do not cross. Coordinates are rounded to 1e-5 mm.
+/// and cross; the rings of the result do not cross. Coordinates are rounded to 1e-5 mm, or to 4e-5 mm where edges are so
+/// near to each other that rounding would lose area.
 ///
-/// Throws Error if the area of the clockwise rings outweighs the area of the others.
+/// Throws Error if the area of the clockwise rings outweighs the area of the others, or if the rings nearly coincide and
+/// cannot be united.
 Rings unite(const Rings& rings);
 
 /// Return the intersection of two shapes, each given as for unite().
@@ -20,7 +22,8 @@ enum class FillRule { nonzero, evenodd };
 
 /// Return the shape that closed outlines fill, as rings that do not cross.
 ///
-/// The outlines may cross themselves and each other, turn either way, and overlap. Coordinates are rounded to 1e-5 mm.
+/// The outlines may cross themselves and each other, turn either way, and overlap. Coordinates are rounded as by
+/// unite(). Throws Error if outlines nearly coincide and cannot be combined, or run too often round a point.
 Rings fill(const Rings& outlines, FillRule rule);
 
 /// Return the area [mm^2] of rings, less the area of the clockwise rings.
