@@ -7,11 +7,11 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// Return the union of shapes.
 ///
 /// `rings`: each counter-clockwise ring is a filled shape; the clockwise rings after it are its holes. Rings may touch
-/// and cross; the rings of the result do not cross. Coordinates are rounded to 1e-5 mm, or to 4e-5 mm where edges are so
-/// near to each other that rounding would lose area.
+/// and cross; the rings of the result do not cross. Coordinates are rounded to 1e-5 mm, or to 4e-5 mm where edges are
+/// so near to each other that rounding would lose area.
 ///
-/// Throws Error if the area of the clockwise rings outweighs the area of the others, or if the rings nearly coincide and
-/// cannot be united.
+/// Throws Error if the area of the clockwise rings outweighs the area of the others, or if the rings nearly coincide
+/// and cannot be united.
 Rings unite(const Rings& rings);
 
 /// Return the intersection of two shapes, each given as for unite().
