@@ -182,6 +182,13 @@ def test_angles_agree_with_the_rotation():
         assert rotation(rotation_deg(turned)) == pytest.approx(turned, abs=1e-12)
 
 
+@pytest.mark.parametrize("about_y_deg", [90, -90])
+def test_angles_agree_where_two_axes_are_parallel(about_y_deg):
+    for about_x_deg, about_z_deg in [(0, 0), (30, 0), (0, 40), (-110, 170), (180, 180)]:
+        turned = rotation((about_x_deg, about_y_deg, about_z_deg))
+        assert rotation(rotation_deg(turned)) == pytest.approx(turned, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [("movl(", "movel("), ("0.010", "1e-2"), ("set_tool", "#"), ("))", ")"), ("to = [", "to = ["[:-1])],

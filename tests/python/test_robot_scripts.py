@@ -50,6 +50,8 @@ CIRCLES = {"irb120", "kr6-r900", "cr5", "lrmate200id", "m0609"}  # their program
 SQUARE = Paper((-150.0, -450.0, 20.0))
 TURNED = Paper((-150.0, -450.0, 20.0), (0.0, 0.0, 25.0))
 LEANING = Paper((-150.0, -450.0, 20.0), (2.0, -3.0, 25.0))
+# The lower edge of the sheet goes straight up. Its angles about x and z turn about the same axis.
+WALL = Paper((500.0, 100.0, 300.0), (0.0, -90.0, 30.0))
 
 
 def on(name: str, paper: Paper):
@@ -109,10 +111,13 @@ def test_the_arm_passes_all_poses_of_the_plan(name, paper):
         assert leg.centre == pytest.approx((20.0, 30.0), abs=2e-3) and leg.turn == -1
 
 
+@pytest.mark.parametrize("paper", [LEANING, WALL], ids=["leaning", "wall"])
 @pytest.mark.parametrize("name", NAMES)
-def test_the_brush_is_held_along_the_paper_normal(name):
-    cell = on(name, LEANING)
-    cell = replace(cell, tool=replace(cell.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=30.0))
+def test_the_brush_is_held_along_the_paper_normal(name, paper):
+    cell = on(name, paper)
+    spin_deg = 30.0 if paper is LEANING else 180.0
+    tool = replace(cell.tool, rotation_deg=(0.0, 10.0, 0.0), spin_deg=spin_deg)
+    cell = replace(cell, tool=tool, workspace=replace(cell.workspace, box_mm=(), reach_mm=()))
     assert max(leg.tilt_rad for leg in sound(text_for(cell), cell).legs) < 1e-5
 
 

@@ -45,9 +45,12 @@ def rotation_deg(turned: np.ndarray) -> np.ndarray:
 
     The angles are about the fixed axes x, y and z.
     """
-    about_x = np.arctan2(turned[2, 1], turned[2, 2])
-    about_y = np.arctan2(-turned[2, 0], np.hypot(turned[2, 1], turned[2, 2]))
-    about_z = np.arctan2(turned[1, 0], turned[0, 0])
+    level = np.hypot(turned[2, 1], turned[2, 2])
+    about_y = np.arctan2(-turned[2, 0], level)
+    if level > 1e-9:
+        about_x, about_z = np.arctan2(turned[2, 1], turned[2, 2]), np.arctan2(turned[1, 0], turned[0, 0])
+    else:  # the first and the last angle turn about the same axis
+        about_x, about_z = np.arctan2(-turned[1, 2], turned[1, 1]), 0.0
     return np.degrees([about_x, about_y, about_z])
 
 

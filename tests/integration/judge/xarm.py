@@ -84,6 +84,8 @@ def _line() -> int:
 def _rpy_deg(turned: np.ndarray) -> list[float]:
     pitch = math.atan2(-turned[2, 0], math.hypot(turned[0, 0], turned[1, 0]))
     roll, yaw = math.atan2(turned[2, 1], turned[2, 2]), math.atan2(turned[1, 0], turned[0, 0])
+    if math.hypot(turned[0, 0], turned[1, 0]) < 1e-9:  # roll and yaw turn about one axis
+        roll, yaw = 0.0, math.atan2(-turned[0, 1], turned[1, 1])
     return [math.degrees(angle) for angle in (roll, pitch, yaw)]
 
 
