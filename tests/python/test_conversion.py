@@ -123,6 +123,13 @@ def test_any_form_of_a_drawing_gives_the_same_program(desk, kind):
     assert texts[0] == texts[1]
 
 
+def test_a_plan_keeps_its_speed_when_another_one_is_requested(desk):
+    plan = brushsvg.convert("two.svg").plan
+    text = brushsvg.write_plan(plan)
+    assert brushsvg.convert(plan, paint_speed=7).plan.passes[0].speed_mm_s == 7
+    assert brushsvg.write_plan(plan) == text
+
+
 def test_an_open_dxf_document_gives_the_same_program_as_its_file(desk):
     _ezdxf().saveas("line.dxf")
     assert brushsvg.convert(_ezdxf()).text == brushsvg.convert("line.dxf").text

@@ -467,5 +467,5 @@ def _prepare_plan(plan, options: Options) -> Work:
     brush = options.brush or find_brush(plan.brush)
     notices = mistyped_keys(brush) + report_other_brush(plan, brush)
     _check_speed(brush, options)
-    plan = _set_requested_speed(plan, options)
+    plan = _set_requested_speed(copy(plan), options)  # a Plan that was made in Python belongs to its caller
     return Work("", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices))
