@@ -3,6 +3,7 @@
 The strokes have several colours. The option --speed applies to all strokes.
 """
 
+import json
 import re
 from dataclasses import replace
 
@@ -50,6 +51,18 @@ def test_a_job_resumed_after_a_pen_change_does_not_stop_for_it(desk, capsys):
     assert resumed.count(", ") == behind.count(", ") + 1, "it stops once"
     assert "pen " not in (desk / "rest.ngc").read_text()
     assert call(capsys, "check", "rest.ngc", "pens.svg")[0] == 0
+
+
+def test_a_stroke_without_a_colour_is_painted_with_the_pen_that_is_there(desk, capsys):
+    assert call(capsys, "convert", "pens.svg", "-o", "pens.json")[0] == 0
+    plan = json.loads((desk / "pens.json").read_text())
+    for a_pass, colour in zip(plan["passes"], ["#000000", "", "#ff0000", ""], strict=True):
+        a_pass["colour"] = colour
+    (desk / "pens.json").write_text(json.dumps(plan))
+    assert call(capsys, "convert", "pens.json", "-o", "pens.ngc")[0] == 0
+    titles = re.findall(r"\((stroke \d|paint: pen [0-9a-f]+)", (desk / "pens.ngc").read_text())
+    assert titles == ["stroke 1", "stroke 2", "paint: pen ff0000", "stroke 3", "stroke 4"]
+    assert call(capsys, "check", "pens.ngc", "pens.json")[0] == 0
 
 
 def test_a_cell_without_pauses_reports_that_colours_are_drawn_as_one(desk, capsys):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 from .. import _core
 from ..errors import Error, Notice
@@ -32,9 +31,11 @@ def pen_visits(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int) -> t
     """Return for each load the change of the pen before it, () if none changes."""
     if has_pens(cell):
         return _plotter_pen_visits(passes, cell, first_stroke)
-    is_new_pen = [False] + [
-        bool(a.colour and b.colour) and a.colour.lower() != b.colour.lower() for a, b in pairwise(passes)
-    ]
+    is_new_pen, last_colour = [], ""
+    for a_pass in passes:  # a stroke without a colour is painted with the pen that is there
+        colour = a_pass.colour.lower()
+        is_new_pen.append(bool(colour and last_colour) and colour != last_colour)
+        last_colour = colour or last_colour
     # The person mounts the first pen before the program starts.
     is_new_pen[:first_stroke] = [False] * len(is_new_pen[:first_stroke])
     if not any(is_new_pen):
