@@ -3,6 +3,7 @@
 Their results equal the files of the commands byte for byte.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,16 @@ def test_a_setup_program_without_a_path_is_only_returned(desk):
     assert "border of" in made.text
     assert {path.name for path in desk.iterdir()} == {"word.svg", "studio.toml"}
     assert [notice.code for notice in brushsvg.setup_border("word.svg", cell="ur5e").notices] == ["paper-example"]
+
+
+def test_a_border_warns_of_limits_that_the_job_breaks_at_its_own_height(desk):
+    cell = brushsvg.find_cell("linuxcnc-3axis")
+    low = replace(cell, workspace=replace(cell.workspace, box_mm=((-99.0, -99.0, -5.0), (500.0, 500.0, 60.0))))
+    with refused("out-of-box 'z -6.6' '[-5, 60]'", "a"):
+        brushsvg.convert("word.svg", cell=low, z_offset=-3.0)
+    assert not any(notice.refused for notice in brushsvg.setup_border("word.svg", cell=low).notices)
+    made = brushsvg.setup_border("word.svg", cell=low, z_offset=-3.0)
+    assert {(each.code, each.where) for each in made.notices if each.refused} == {("out-of-box", "a"), ("out-of-box", "b")}
 
 
 def test_setup_programs_refuse_wrong_values(desk):

@@ -165,12 +165,11 @@ def make_border(
         work = preparation.prepare(chosen.input, make_options(chosen), stage)
         brush, cell, plan = work.brush, work.options.cell, work.plan
         loads, marks = split_into_loads(plan, brush, cell), prediction.predict(work, False, stage)
-        is_drawing, tolerance_mm = work.strokes is not None, work.options.tolerance_mm
-        walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, walk=work.walk(cell), of_drawing=is_drawing)
+        is_drawing, tolerance_mm, job = work.strokes is not None, work.options.tolerance_mm, Job(chosen.z_offset or 0.0)
+        walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, job, work.walk(cell, job), is_drawing)
         warn(file, [*work.notices, *(replace(problem, refused=True) for problem in walk.problems)])
         suffix, post = _find_post(path, cell)
         around_mm = setup_programs.around(preflight.job_bounds_mm(plan, marks, brush))
-        job = Job(chosen.z_offset or 0.0)
         program = setup_programs.border(around_mm, brush, cell, plan.sheet_mm, job.z_offset_mm)
         title = f"border of {work.title or 'untitled'}"
         notes = outputs.header_lines(work)
