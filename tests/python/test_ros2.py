@@ -5,6 +5,7 @@ The machine must be able to keep the times.
 
 import json
 import re
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,7 +19,7 @@ from programs import RUNNABLE, call, program
 from test_robot_scripts import GOLDEN, LEANING, SQUARE, TURNED, on
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
-from brushsvg import _core, write_plan
+from brushsvg import _core, batch, convert, write_plan
 from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.moves import program_in_robot_frame
@@ -27,6 +28,10 @@ from brushsvg.machine.trajectory import POSE_ROW, SLICE_S, make_timed_sections, 
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.readback import read_program
 
+DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">'
+    '<path d="M20 20H60" fill="none" stroke="#000" stroke-width="3"/></svg>'
+)
 WAVE = np.linspace(0, 1, 40)
 POSES = np.column_stack([20 + 40 * WAVE, 30 + 4 * np.sin(9 * WAVE), -2 * np.minimum(1, 8 * np.minimum(WAVE, 1 - WAVE))])
 
@@ -163,6 +168,10 @@ def test_check_accepts_a_job_as_table_and_as_json(tmp_path, capsys):
         assert call(capsys, "convert", str(tmp_path / "a.json"), "-o", out, "--cell", "fr3")[0] == 0
         status, printed, reported = call(capsys, "check", out, str(tmp_path / "a.json"))
         assert (RUNNABLE in printed) if suffix != ".cdr" else (status == 1 and gives(reported[-1], ".csv"))
+    message = (tmp_path / "a.cdr").read_bytes()
+    assert convert(plan, tmp_path / "py.cdr", cell="fr3").text == (tmp_path / "py.cdr").read_bytes() == message
+    made = batch([("line", DRAWING)], tmp_path / "many", cell="fr3", format=".cdr", executor=ThreadPoolExecutor(1))
+    assert [row.code for row in made.rows] == [""] and (tmp_path / "many/programs/line.cdr").read_bytes()[:1] == b"\0"
     text = (tmp_path / "a.traj").read_text()
     (tmp_path / "a.traj").write_text(text.replace('0.02,"pose"', '0.02,"way"', 1))
     assert call(capsys, "check", str(tmp_path / "a.traj"))[0] == 1

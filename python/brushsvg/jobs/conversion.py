@@ -83,7 +83,7 @@ class Conversion:
     plan: TCP poses [mm] of each stroke.
     notices: warnings, none of which forbids running the program.
     time_s: how long a machine takes; None if only a plan was requested and the machine cannot paint it.
-    texts: the text of each file by its extension (".ngc", ".json"). Further files of a program in several files are
+    texts: the text of each file by its extension (".ngc", ".json"); the bytes of a binary file (".cdr"). Further files of a program in several files are
         named by what they add to its name ("-part2.script") or by their own name.
     figures: a report with strokes and total on how close the paint comes to the drawing; None unless requested.
     files: the paths that were written.
@@ -93,13 +93,13 @@ class Conversion:
     plan: _core.Plan
     notices: tuple[Notice, ...]
     time_s: float | None
-    texts: Mapping[str, str] = field(repr=False)
+    texts: Mapping[str, str | bytes] = field(repr=False)
     figures: reports.Report | None = field(default=None, repr=False)
     files: tuple[str, ...] = ()
 
     @property
-    def text(self) -> str:
-        """The text of the first format."""
+    def text(self) -> str | bytes:
+        """The text of the first format, or the bytes of a binary one."""
         return next(iter(self.texts.values()))
 
 
@@ -247,10 +247,11 @@ def _make_conversion(
             _raise_first_problem(simulations[suffix].problems, work.notices)
         first_simulation = simulations[formats[0]]
         stage("writing the program")
-        texts: dict[str, str] = {}
+        texts: dict[str, str | bytes] = {}
         for suffix, each in simulations.items():
             for name, pieces in each.encoded().items():
-                text = pieces.decode() if isinstance(pieces, bytes) else "".join(pieces)
+                text = writer.join_pieces(pieces)
+                text = text.decode() if suffix == ".json" else text
                 texts[name + suffix] = text
                 if out is not None and suffix == suffix_of(out):
                     files[writer.path_next_to(out, name)] = text

@@ -104,6 +104,14 @@ def encode_checked(
     return text_of(post_for(suffix, program.cell), named, suffix)
 
 
+def join_pieces(pieces: bytes | Iterator[str] | Iterator[bytes]) -> str | bytes:
+    """Return a whole program: its text, or the bytes of a plan or of a binary format."""
+    if isinstance(pieces, bytes):
+        return pieces
+    joined = list(pieces)
+    return b"".join(joined) if isinstance(joined[0], bytes) else "".join(joined)
+
+
 def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | str | Iterator[str]]:
     """Split an encoded program into files.
 
@@ -113,11 +121,11 @@ def in_parts(suffix: str, pieces: bytes | Iterator[str]) -> dict[str, bytes | st
     post = parted_post(suffix)
     if post is None:
         return {"": pieces}
-    texts = post.programs("".join(pieces))
+    texts = post.programs(join_pieces(pieces))
     return {"": texts.pop("")} | texts
 
 
-def in_files(path: str | os.PathLike[str], pieces: bytes | Iterator[str]) -> dict:
+def in_files(path: str | os.PathLike[str], pieces: bytes | str | Iterator[str]) -> dict:
     """Return the files of an encoded program by their paths."""
     parts = in_parts(Path(path).suffix.lower(), pieces)
     return {path_next_to(path, name): text for name, text in parts.items()}

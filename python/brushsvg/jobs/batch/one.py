@@ -12,6 +12,7 @@ from importlib import metadata
 from ... import _core
 from ...errors import Error, Notice, describe_unexpected
 from ...machine.program import Job
+from ...machine.writer import join_pieces
 from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation.figures import PaintedPlan, measure
@@ -130,10 +131,8 @@ def _convert(task: Task) -> TaskResult:
         problem, *others = simulated.problems
         rest = f", and {len(others)} more of other kinds" if others else ""
         raise Error(f"{problem.sentence}{rest}", problem.where, code=problem.code, advice=problem.advice)
-    texts = {
-        name: pieces if isinstance(pieces, bytes) else "".join(pieces).encode()
-        for name, pieces in simulated.encoded().items()
-    }
+    joined = {name: join_pieces(pieces) for name, pieces in simulated.encoded().items()}
+    texts = {name: text.encode() if isinstance(text, str) else text for name, text in joined.items()}
     _, total = measure(
         PaintedPlan(
             simulated.work.plan,
