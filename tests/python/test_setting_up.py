@@ -11,6 +11,8 @@ from diagnostics import refused
 
 import brushsvg
 from brushsvg.cli import main
+from brushsvg.machine.cells.cell import Machine
+from brushsvg.machine.cells.cell_file import write_cell
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="80mm" viewBox="0 0 120 80">'
@@ -74,7 +76,29 @@ def test_a_border_warns_of_limits_that_the_job_breaks_at_its_own_height(desk):
         brushsvg.convert("word.svg", cell=low, z_offset=-3.0)
     assert not any(notice.refused for notice in brushsvg.setup_border("word.svg", cell=low).notices)
     made = brushsvg.setup_border("word.svg", cell=low, z_offset=-3.0)
-    assert {(each.code, each.where) for each in made.notices if each.refused} == {("out-of-box", "a"), ("out-of-box", "b")}
+    assert {(each.code, each.where) for each in made.notices if each.refused} == {
+        ("out-of-box", "a"),
+        ("out-of-box", "b"),
+    }
+
+
+def test_a_long_setup_program_is_written_in_several_files(desk):
+    """A dense map of the paper gives each stroke more lines than one program of URScript has room for."""
+    places = [(float(x), float(y)) for x in range(0, 126, 5) for y in range(20, 201, 5)]
+    bumpy = Machine(map_mm=tuple((x, y, 0.3 * ((x + y) // 5 % 2)) for x, y in places))
+    cell = replace(brushsvg.find_cell("ur5e"), name="bumpy", machine=bumpy)
+    Path("bumpy.toml").write_text(write_cell(cell), encoding="utf-8")
+    made = brushsvg.setup_height(cell, "py.script", sheet=(200, 200), step=0.021)
+    assert made.text == Path("py.script").read_text() + Path("py-part2.script").read_text()
+    assert brushsvg.check("py.script", cell=cell).problems == ()
+    words = ("setup", "height", "--cell", "bumpy.toml", "--sheet", "200x200", "--step", "0.021", "-o", "own.script")
+    assert main([*words, "--force"]) == 0
+    assert Path("own-part2.script").read_bytes() == Path("py-part2.script").read_bytes()
+
+
+def test_setup_programs_are_also_written_in_a_binary_format(desk):
+    own = written("setup", "height", "--cell", "fr3", "-o", "own.cdr")
+    assert own == brushsvg.setup_height("fr3", "py.cdr").text == Path("py.cdr").read_bytes()
 
 
 def test_setup_programs_refuse_wrong_values(desk):
@@ -90,6 +114,8 @@ def test_setup_programs_refuse_wrong_values(desk):
         brushsvg.setup_height(lowest=-15, step=1)
     with refused("wrong-type"):
         brushsvg.setup_first_run("grbl-3axis", 3)
+    for setup in (brushsvg.setup_height, brushsvg.setup_first_run):
+        assert setup("grbl-3axis", sheet=None).text == setup("grbl-3axis").text, "None is the default, as for convert"
 
 
 def test_nothing_that_is_read_is_replaced(desk):

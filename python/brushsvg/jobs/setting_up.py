@@ -52,13 +52,13 @@ HEIGHT_RANGE_MM, STEP_RANGE_MM = (-20.0, 20.0), (0.01, 5.0)
 class SetupProgram:
     """A program that is run before a job.
 
-    text: the program in the language of the machine.
+    text: the program in the language of the machine, with all its files; bytes for a binary format (".cdr").
     time_s: how long the machine takes.
     stroke_count: the number of strokes that it paints.
     notices: warnings, none of which forbids running the program.
     """
 
-    text: str = field(repr=False)
+    text: str | bytes = field(repr=False)
     time_s: float
     stroke_count: int = 0
     notices: tuple[Notice, ...] = ()
@@ -88,7 +88,7 @@ def setup_first_run(
     out: str | os.PathLike[str] | None = None,
     *,
     brush: str | os.PathLike[str] | _core.Brush | None = None,
-    sheet: tuple[float, float] = DEFAULT_SHEET_MM,
+    sheet: tuple[float, float] | None = None,
 ) -> SetupProgram:
     """Make a slow, careful program for a new machine, as `brushsvg setup first-run` does.
 
@@ -97,11 +97,11 @@ def setup_first_run(
 
     out: the path of the program, if it is to be written.
     brush: round-6 by default.
-    sheet: width and height [mm].
+    sheet: width and height [mm], 200 x 100 by default.
 
     Raises Error if the machine cannot wait for a person, or would leave the workspace or the sheet.
     """
-    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=sheet))
+    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=DEFAULT_SHEET_MM if sheet is None else sheet))
     return _write(chosen, out, lambda path, warn: make_first_run(chosen, path, warn))
 
 
@@ -110,7 +110,7 @@ def setup_height(
     out: str | os.PathLike[str] | None = None,
     *,
     brush: str | os.PathLike[str] | _core.Brush | None = None,
-    sheet: tuple[float, float] = DEFAULT_SHEET_MM,
+    sheet: tuple[float, float] | None = None,
     highest: float = DEFAULT_HEIGHTS_MM[0],
     lowest: float = DEFAULT_HEIGHTS_MM[1],
     step: float = DEFAULT_HEIGHTS_MM[2],
@@ -119,13 +119,13 @@ def setup_height(
 
     out: the path of the program, if it is to be written.
     brush: round-6 by default.
-    sheet: width and height [mm].
+    sheet: width and height [mm], 200 x 100 by default.
     highest, lowest: heights of the first and the last stroke over the paper [mm].
     step: difference of the heights of neighbouring strokes [mm].
 
     Raises Error if the strokes do not fit on the sheet, or go deeper than the brush or the machine allows.
     """
-    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=sheet))
+    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=DEFAULT_SHEET_MM if sheet is None else sheet))
     heights_mm = (
         need_number(highest, "highest [mm]", *HEIGHT_RANGE_MM),
         need_number(lowest, "lowest [mm]", *HEIGHT_RANGE_MM),
@@ -144,7 +144,7 @@ def _write(
     path, notices = None if out is None else os.fspath(out), []
     made = make(path, lambda _, some: notices.extend(some))
     if path is not None:
-        write_files({path: made.text})
+        write_files(writer.in_files(path, made.text))
     return replace(made, notices=tuple(notices))
 
 
@@ -227,7 +227,7 @@ def _find_post(path: str | None, cell: Cell) -> tuple[str, Post]:
         return suffix, writer.post_for(suffix, cell)
 
 
-def _text_of(post: Post, program: Program, header: tuple[str, ...], path: str | None, suffix: str, warn: Warn) -> str:
+def _text_of(post: Post, program: Program, header: tuple[str, ...], path: str | None, suffix: str, warn: Warn):
     name = Path(path).stem if path else program.name
     warn(path or "", writer.report_renamed(name, suffix, program.cell))
-    return "".join(writer.text_of(post, replace(program, header=header, name=name), suffix))
+    return writer.join_pieces(writer.text_of(post, replace(program, header=header, name=name), suffix))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ....jobs.choices import Choices
 from ....jobs.setting_up import make_first_run
+from ....machine.writer import in_files
 from ...console import refuse_errors, warn
 from ...steps.output_places import check_outputs, write_outputs
 
@@ -12,4 +13,4 @@ def first_run_file(args) -> None:
     check_outputs(args, args.output)
     with refuse_errors(""):  # errors name their file themselves
         made = make_first_run(Choices(cell=args.input, brush=args.brush, sheet=args.sheet), args.output, warn)
-    write_outputs(args, {args.output: made.text}, seconds=made.time_s)
+    write_outputs(args, in_files(args.output, made.text), seconds=made.time_s)

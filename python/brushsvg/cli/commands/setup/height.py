@@ -1,9 +1,10 @@
-"""brushsvg setup height: write dabs that show how high the paper is."""
+"""brushsvg setup height: write strokes that show how high the paper is."""
 
 from __future__ import annotations
 
 from ....jobs.choices import Choices
 from ....jobs.setting_up import make_height
+from ....machine.writer import in_files
 from ...console import refuse_errors, warn
 from ...steps.output_places import check_outputs, write_outputs
 
@@ -13,4 +14,4 @@ def height_file(args) -> None:
     heights_mm = (args.highest, args.lowest, args.step)
     with refuse_errors(""):  # errors name their file themselves
         made = make_height(Choices(cell=args.cell, brush=args.brush, sheet=args.sheet), heights_mm, args.output, warn)
-    write_outputs(args, {args.output: made.text}, made.stroke_count, made.time_s)
+    write_outputs(args, in_files(args.output, made.text), made.stroke_count, made.time_s)
