@@ -80,6 +80,15 @@ def test_without_room_above_the_safe_height_the_high_lap_is_left_out(name, tmp_p
     assert not any("high" in section.title.split() for section in others)
 
 
+@pytest.mark.parametrize("x_mm", [0.0, SHEET_MM[0]])
+def test_a_lamp_over_either_side_of_the_sheet_lowers_the_high_lap(x_mm):
+    cell = find_cell("linuxcnc-3axis")
+    lamp = (x_mm - 5.0, 40.0, cell.heights.safe_mm + 20.0), (x_mm + 5.0, 60.0, 200.0)
+    cell = replace(cell, workspace=replace(cell.workspace, keep_out_mm=(lamp,)))
+    made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
+    assert made.rise_mm == pytest.approx(cell.heights.safe_mm + 15.0)
+
+
 @pytest.mark.parametrize("name", WAITING)
 def test_the_first_run_rises_to_its_own_height_and_never_lowers_fast(name):
     """The first run rises to its own height, and never lowers the tool fast.

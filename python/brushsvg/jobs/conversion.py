@@ -83,8 +83,9 @@ class Conversion:
     plan: TCP poses [mm] of each stroke.
     notices: warnings, none of which forbids running the program.
     time_s: how long a machine takes; None if only a plan was requested and the machine cannot paint it.
-    texts: the text of each file by its extension (".ngc", ".json"); the bytes of a binary file (".cdr"). Further files of a program in several files are
-        named by what they add to its name ("-part2.script") or by their own name.
+    texts: the text of each file by its extension (".ngc", ".json"), or the bytes of a binary file (".cdr"). Further
+        files of a program in several files are named by what they add to its name ("-part2.script") or by their own
+        name.
     figures: a report with strokes and total on how close the paint comes to the drawing; None unless requested.
     files: the paths that were written.
     """

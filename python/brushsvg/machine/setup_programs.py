@@ -131,7 +131,7 @@ def _air_run_rise_mm(cell: Cell, sheet_mm) -> float:
 
 def _find_limits_of_air_run(rise_mm: float, cell: Cell, sheet_mm) -> list[Notice]:
     width, height = sheet_mm
-    corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
+    corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height), (0.0, 0.0))
     corner_poses = [
         commanded_mm(point_above(corner, cell.heights.safe_mm), cell.machine)[0] + np.array([0.0, 0.0, rise_mm])
         for corner in corners
