@@ -83,7 +83,8 @@ def toml_document(text: str, kind: str, version: int, format_is_missing: str = "
         raise Error(f"the {kind} file is not TOML of ours: {sentence}", code="not-toml")
     try:
         content = tomllib.loads(text)
-    except ValueError as problem:  # also raised for a whole number with thousands of digits
+        repr(content)  # a number with thousands of digits is refused here if it is hexadecimal, otherwise above
+    except ValueError as problem:
         raise Error(f"the {kind} file is not TOML: {str(problem)[:200]}", code="not-toml") from None
     except RecursionError:
         raise Error(f"the {kind} file is not TOML: its lists nest too deep", code="not-toml") from None

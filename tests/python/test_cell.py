@@ -519,3 +519,11 @@ def test_a_new_cell_does_not_get_the_name_of_a_shipped_cell(tmp_path, monkeypatc
     status, _, reported = in_json(capsys, "check", "a.script", "a.svg")
     assert status == 1 and is_reported(reported, "cell-unknown my-ur5e"), reported
     assert in_json(capsys, "check", "a.script", "a.svg", "--cell", "ur5e.toml")[0] == 0
+
+
+@pytest.mark.parametrize("line", ["decimals = {}", "version = {}", "arc_segment_mm = {}", "pause_per_colour = {}"])
+def test_a_number_of_thousands_of_digits_is_refused(line):
+    key = line.partition(" ")[0]
+    lines = [each for each in write_cell(find_cell()).split("\n") if not each.startswith(key)]
+    with refused("not-toml"):
+        parse_cell("\n".join([line.format(f"0x{'f' * 5000}"), *lines]))

@@ -105,8 +105,6 @@ def read_project(path: str | os.PathLike[str]) -> Project:
     except Error as refusal:
         refusal.file = path
         raise
-    except ValueError:  # raised for a long hexadecimal number, which Python reads but does not print
-        raise Error("a number has thousands of digits", file=path, code="not-toml") from None
     return Project(path, settings)
 
 
