@@ -217,3 +217,10 @@ def test_comparing_long_paths_looks_only_at_nearby_points(monkeypatch):
     monkeypatch.setattr(against_plan, "_part_within_limit", lambda *some_: counted.append(1) or within(*some_))
     assert find_departure(found, requested, 0.02) is None
     assert len(counted) < 8 * len(found)
+
+
+def test_paths_that_begin_exactly_the_limit_apart_are_compared():
+    """Rounding decides whether the first points are within the limit, in two ways that need not agree."""
+    found = np.array([(0.209, 15.048, -1.0), (-0.24625419303409143, 15.943435931880655, -1.0)])
+    requested = np.array([(0.197, 15.032, -1.0), (0.48171279843137954, 16.707936453621663, -1.0)])
+    assert find_departure(found, requested, 0.02) == 1
