@@ -210,6 +210,8 @@ def test_manual_stations_are_refused_and_frames_need_names():
     for each, expected in (
         (by_hand, "cell-station"),
         (replace(cell, tool=replace(cell.tool, base_frame="a b")), "name-invalid 'a b'"),
+        # A message gives the length of a name in bytes, and a table has 7-bit text only.
+        (replace(cell, tool=replace(cell.tool, flange_frame="flänge")), "name-invalid 'flänge'"),
         (
             replace(find_cell("cr5"), tool=replace(find_cell("cr5").tool, base_frame="base")),
             "key-unused frames",

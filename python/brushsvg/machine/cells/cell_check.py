@@ -170,12 +170,12 @@ def _check_own_keys(cell: Cell) -> None:
             code="out-of-range",
         )
     for key in ("base_frame", "flange_frame") if cell.language == "ros2" else ():
-        if not re.fullmatch(r"[A-Za-z]\w{0,99}(?:/\w{1,99})*", name := getattr(cell.tool, key)):
-            sentence = f"{name[:40]!r} is no name of a frame: letters, digits, _ and /"
+        if not re.fullmatch(r"[A-Za-z]\w{0,99}(?:/\w{1,99})*", name := getattr(cell.tool, key), re.ASCII):
+            sentence = f"{name[:40]!r} is no name of a frame: the letters a to z and A to Z, digits, _ and /"
             raise Error(sentence, where=f"tool.{key}", code="name-invalid")
 
 
-FANUC_CONFIGURATION_PATTERN = r"[NF] [UD] [TB], -?\d, -?\d, -?\d"
+FANUC_CONFIGURATION_PATTERN = r"[NF] [UD] [TB], -?[0-9], -?[0-9], -?[0-9]"
 
 
 def _check_speeds(cell: Cell) -> None:
