@@ -147,6 +147,14 @@ def test_write_program_refuses_and_writes_nothing(tmp_path, plan, name, expected
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_refusal_of_write_program_has_its_advice(tmp_path):
+    """The advice names no flags, which have no effect on a plan."""
+    plan = plan_of([(-1, 10, 0), (-1, 10, -2), (40, 10, -2), (40, 10, 0)])
+    with refused("mark-off-sheet left") as caught:
+        brushsvg.write_program(tmp_path / "a.ngc", plan, brushsvg.find_brush("round-6"))
+    assert caught.value.advice.startswith("make the plan anew")
+
+
 def test_write_program_reports_a_plan_of_another_brush(tmp_path):
     brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
     assert brushsvg.write_program(tmp_path / "a.ngc", plan, brush) == []

@@ -87,7 +87,7 @@ class CheckedProgram:
         Raises Error, naming stroke and range, for the first problem.
         """
         for notice in self.problems:
-            raise Error(notice.sentence, where=notice.where, code=notice.code)
+            raise Error(notice.sentence, where=notice.where, code=notice.code, advice=notice.advice)
         return self.made
 
 

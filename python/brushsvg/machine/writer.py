@@ -232,7 +232,7 @@ def write_program(
     suffix = Path(path).suffix.lower()
     cell = as_exact_as(cell, DEFAULT_TOLERANCE_MM)
     marks, loads = _core.simulate(plan, brush), split_into_loads(plan, brush, cell)
-    walk = check_job(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM)
+    walk = check_job(loads, brush, marks, cell, DEFAULT_TOLERANCE_MM, of_drawing=False)
     notices = report_other_brush(plan, brush)
     notes = [f"warnings: {len(notices)}"] if notices else []
     name = Path(path).stem
