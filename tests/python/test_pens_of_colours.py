@@ -65,6 +65,18 @@ def test_a_stroke_without_a_colour_is_painted_with_the_pen_that_is_there(desk, c
     assert call(capsys, "check", "pens.ngc", "pens.json")[0] == 0
 
 
+@pytest.mark.parametrize(
+    ("colour", "expected"), [("red", "colour-invalid red"), ("#12", "colour-invalid"), ("#FF0000", "")]
+)
+def test_colours_of_a_plan_are_written_as_in_a_drawing(desk, capsys, colour, expected):
+    assert call(capsys, "convert", "pens.svg", "-o", "pens.json")[0] == 0
+    text = (desk / "pens.json").read_text().replace("#ff0000", colour)
+    (desk / "pens.json").write_text(text)
+    status, _, reported = in_json(capsys, "convert", "pens.json", "-o", "red.ngc", "--colour", "red")
+    assert status == (1 if expected else 0)
+    assert is_reported(reported, expected) if expected else "stroke 2 of 2" in (desk / "red.ngc").read_text()
+
+
 def test_a_cell_without_pauses_reports_that_colours_are_drawn_as_one(desk, capsys):
     for program, name in (("pens.nc", "grbl-servo"), ("pens.csv", "fr3"), ("pens.ebb", "axidraw-ebb")):
         status, _, reported = in_json(capsys, "convert", "pens.svg", "-o", program, "--cell", name)

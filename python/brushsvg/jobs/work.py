@@ -96,7 +96,7 @@ def list_strokes_from(work: Work, loads: PlanInLoads, first_load: int) -> list |
 
 
 def list_colours(work: Work) -> list[str]:
-    """Return the colours of the strokes, the lightest first.
+    """Return the colours of the strokes as "#rrggbb" in lower case, the lightest first.
 
     Dark paint covers light paint, and rests of dark paint in the brush spoil light paint.
     """
@@ -105,7 +105,7 @@ def list_colours(work: Work) -> list[str]:
         red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
         return 0.299 * red + 0.587 * green + 0.114 * blue
 
-    distinct = dict.fromkeys(each.colour for each in work.plan.passes if each.colour)
+    distinct = dict.fromkeys(each.colour.lower() for each in work.plan.passes if each.colour)
     return sorted(distinct, key=lightness, reverse=True)
 
 
@@ -120,7 +120,7 @@ def select_colour(work: Work, colour: str) -> Work:
         sentence = f"nothing is painted in {colour}; colours of this drawing: {known_colours}"
         raise Error(sentence, "colour", code="nothing-to-paint")
     painted_colours = {"", colour} if colour == all_colours[0] else {colour}
-    return _select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour in painted_colours])
+    return _select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour.lower() in painted_colours])
 
 
 def _select_rows(work: Work, rows: list[int]) -> Work:

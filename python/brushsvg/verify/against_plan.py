@@ -265,8 +265,8 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
     if math.dist(found[0], reference[0]) > limit_mm:
         return 0
     cells = len(reference) - 1
-    # By move of reference: the earliest share of it, coming from the previous move of found. Both paths begin here, even
-    # if rounding puts their first points just beyond the limit below.
+    # By move of reference: the earliest share of it, coming from the previous move of found. Both paths begin here,
+    # even if rounding puts their first points just beyond the limit below.
     entered = {0: 0.0}
     for j in range(cells):
         free = _part_within_limit(found[0], reference[j], reference[j + 1], limit_mm)

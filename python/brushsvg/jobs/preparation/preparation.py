@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
@@ -56,7 +57,17 @@ def prepare(
     Raises Error if the source cannot be read or painted.
     """
     work = _prepare_source(source, options, stage, partly)
+    _refuse_invalid_colours(work.plan)
     return work if options.colour is None else select_colour(work, options.colour)
+
+
+def _refuse_invalid_colours(plan) -> None:
+    """Raise Error for the first pass whose colour is not "#rrggbb". Readers of drawings write no other colours."""
+    for a_pass in plan.passes:
+        if a_pass.colour and not re.fullmatch("#[0-9a-fA-F]{6}", a_pass.colour):
+            raise Error(
+                f"colour {a_pass.colour[:24]!r} is not written as #rrggbb", a_pass.stroke, code="colour-invalid"
+            )
 
 
 def _prepare_source(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
