@@ -130,6 +130,14 @@ def test_a_plan_keeps_its_speed_when_another_one_is_requested(desk):
     assert brushsvg.write_plan(plan) == text
 
 
+def test_a_plan_is_as_on_the_paper_of_the_cell_whatever_the_project_says(desk):
+    choices = {"cell": "grbl-servo", "formats": [".json"]}
+    plain = brushsvg.convert("two.svg", **choices)
+    assert brushsvg.convert("two.svg", z_offset=-8, from_project=("z_offset",), **choices).text == plain.text
+    mixed = brushsvg.convert("two.svg", z_offset=0.5, from_stroke=2, cell="grbl-servo", formats=[".nc", ".json"])
+    assert len(mixed.plan.passes) == 2 and "stroke 2 of 2" in mixed.text and "stroke 1 of 2" not in mixed.text
+
+
 def test_an_open_dxf_document_gives_the_same_program_as_its_file(desk):
     _ezdxf().saveas("line.dxf")
     assert brushsvg.convert(_ezdxf()).text == brushsvg.convert("line.dxf").text
@@ -176,6 +184,8 @@ def test_ends_of_a_drawing_need_no_compensation_and_chosen_ones_do(desk):
         ({"sheet": (50, 50)}, "tool-off-sheet right a"),
         ({"from_stroke": 7}, "stroke-unknown 7 2"),
         ({"from_stroke": 1.5}, "wrong-type 1.5"),
+        ({"from_stroke": 2, "out": "o.json"}, "options-contradict from_stroke"),
+        ({"z_offset": 1, "out": "o.json"}, "options-contradict z_offset"),
         ({"brush": "none"}, "brush-unknown none"),
         ({"cancel": 5}, "wrong-type 5"),
         ({"progress": 5}, "wrong-type 5"),

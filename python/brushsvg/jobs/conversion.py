@@ -51,6 +51,7 @@ from .choices import (
     Choices,
     check_choices,
     choose_margin_strokes,
+    drop_from_project,
     fill_from_drawing,
     make_options,
     path_of,
@@ -184,6 +185,8 @@ def convert(
     need_truth(figures, "figures")
     require_type(from_stroke, Integral, "a whole number, which from_stroke is")
     first_stroke = int(need_number(from_stroke, "from_stroke", 1, 1e8))
+    suffixes = [*([] if out is None else [suffix_of(out)]), *formats]
+    chosen = refuse_job_of_plan(chosen, suffixes, first_stroke)
     job = Job(chosen.z_offset or 0.0, first_stroke)
 
     def run_conversion(stage) -> tuple[Conversion, dict]:
@@ -193,6 +196,21 @@ def convert(
     if files:
         write_files(files)
     return replace(conversion, files=tuple(files))
+
+
+def refuse_job_of_plan(chosen: Choices, suffixes: Sequence[str], first_stroke: int = 1) -> Choices:
+    """Raise Error for choices that only a program can follow, if only a plan is written.
+
+    Returns the choices. A project file serves programs as well, so its z_offset is dropped for a plan.
+    """
+    if not suffixes or any(suffix != ".json" for suffix in suffixes):
+        return chosen
+    chosen = drop_from_project(chosen, ["z_offset"])
+    for name, is_given in (("from_stroke", first_stroke > 1), ("z_offset", chosen.z_offset)):
+        if is_given:
+            sentence = f"{name} is for programs; a .json is the plan of the whole job, on the paper"
+            raise Error(sentence, name, code="options-contradict")
+    return chosen
 
 
 def make_choices(drawing, choices: Mapping) -> Choices:

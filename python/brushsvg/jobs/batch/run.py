@@ -29,7 +29,7 @@ from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
 from ..cancelling import Cancel
 from ..choices import ChoiceKeywords, Choices, drop_from_project, load_cell
-from ..conversion import ORDERS, make_choices
+from ..conversion import ORDERS, make_choices, refuse_job_of_plan
 from . import executors, one, tables
 from .items import Item, file_name_key, make_items
 from .manifest import Manifest, Row, make_path_below
@@ -133,6 +133,7 @@ def batch(
     need_truth(parquet, "parquet")
     # Margin strokes belong to a page. A project may set them for conversions with a page.
     chosen = drop_from_project(make_choices(None, choices), ["margin_strokes"])
+    chosen = refuse_job_of_plan(chosen, [format] if format else [])
     settings = _make_batch_settings(chosen, format, order, bool(lenient))
     folder = Path(out)
     manifest = Manifest(folder)
