@@ -123,3 +123,9 @@ def test_a_chart_and_a_plan_may_be_given_as_their_files(tmp_path, monkeypatch):
 def test_what_is_neither_a_file_nor_its_contents_is_refused(name):
     with refused(f"wrong-type 3 {name}"):
         brushsvg.calibrate("photo.jpg", **{name: 3})
+
+
+@pytest.mark.parametrize("options", [{"brush": 5}, {"prior": 5, "plan": "plan.json"}, {"cell": 5, "machine": ("axes",)}])
+def test_a_brush_or_cell_that_is_neither_name_nor_value_is_refused(options):
+    with refused("wrong-type 5"):
+        brushsvg.calibrate("photo.jpg", **options)

@@ -277,6 +277,9 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
         ("chart", (Chart,), "a path or a Chart"),
         ("spread", (), "a path"),
         ("plan", (_core.Plan,), "a path or a Plan"),
+        ("brush", (_core.Brush,), "a name, a path or a Brush"),
+        ("prior", (_core.Brush,), "a name, a path or a Brush"),
+        ("cell", (Cell,), "a name, a path or a Cell"),
     ):
         if name in options:
             require_type(options[name], (str, os.PathLike, *loaded), f"{kinds}, which {name} is")
