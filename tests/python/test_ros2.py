@@ -177,6 +177,8 @@ def test_check_accepts_a_job_as_table_and_as_json(tmp_path, capsys):
     assert call(capsys, "check", str(tmp_path / "a.traj"))[0] == 1
     (tmp_path / "a.traj").write_text(text[:-4])
     assert "no JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
+    (tmp_path / "a.traj").write_text("[" * 100_000)
+    assert "no JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
 
 
 def test_programs_equal_the_golden_files():

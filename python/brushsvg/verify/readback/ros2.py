@@ -40,6 +40,8 @@ def as_table(text: str) -> str:
         json.loads(text)
     except ValueError as mistake:
         raise Error(f"it is no JSON: {mistake}", code="line-unread") from None
+    except RecursionError:
+        raise Error("it is no JSON that brushsvg writes: its lists nest too deep", code="line-unread") from None
     lines = text.splitlines()
     if lines[0].rstrip(" ") != _FIRST_JSON_LINE:
         raise unread_error(1, lines[0])
