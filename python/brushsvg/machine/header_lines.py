@@ -6,6 +6,7 @@ from ..units import clock
 from .moves import Program, duration_s, painting_mm
 from .paint_reload import PlanInLoads
 from .posts import POSTS
+from .posts.text import NAMED, plain_text
 from .program import WHOLE_JOB, Job
 
 TILT_LINE = "tilt: the brush is held as each move says"
@@ -18,7 +19,7 @@ def header_of(title: str, brush: str, loads: PlanInLoads, notes, program: Progra
     """
     return (
         f"title: {title}",
-        f"brush: {brush}, {len(loads.loads)} strokes",
+        _brush_line(brush, len(loads.loads)),
         _sheet_line(loads.sheet_mm),
         *notes,
         *([f"resumed: from stroke {job.first_stroke}"] if job.first_stroke > 1 else []),
@@ -38,7 +39,7 @@ def border_header(
     left, bottom, right, top = around_mm
     return (
         f"title: {title}",
-        f"brush: {brush}, {count} strokes",
+        _brush_line(brush, count),
         _sheet_line(sheet_mm),
         *notes,
         f"border: {left:.2f} to {right:.2f} mm, {bottom:.2f} to {top:.2f} mm",
@@ -53,7 +54,7 @@ def height_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[s
     """
     return (
         "title: height of the paper",
-        f"brush: {brush}, {sum(1 for _ in program.sections())} strokes",
+        _brush_line(brush, sum(1 for _ in program.sections())),
         _sheet_line(sheet_mm),
         "heights: {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
         *common_lines(program),
@@ -67,11 +68,19 @@ def first_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[st
     """
     return (
         "title: first run",
-        f"brush: {brush}, {sum(1 for section in program.sections() if section.title.startswith('stroke '))} strokes",
+        _brush_line(brush, sum(section.title.startswith("stroke ") for section in program.sections())),
         _sheet_line(sheet_mm),
         "first: heights {:.10g} to {:.10g} mm, {:.10g} mm apart".format(*heights_mm),
         *common_lines(program),
     )
+
+
+def _brush_line(brush: str, count: int) -> str:
+    """Return the line of a brush and a number of strokes.
+
+    Posts cut long lines at their end. The name is cut first, because check needs the number.
+    """
+    return f"brush: {plain_text(brush, NAMED)}, {count} strokes"
 
 
 def _sheet_line(sheet_mm) -> str:
@@ -81,7 +90,7 @@ def _sheet_line(sheet_mm) -> str:
 def common_lines(program: Program, job: Job = WHOLE_JOB) -> list[str]:
     """Return the header lines that every program has: machine, frame and time."""
     lines = [
-        f"cell: {program.cell.name}, {program.cell.language}",
+        f"cell: {plain_text(program.cell.name, NAMED)}, {program.cell.language}",
         _frame_line(program),
         f"time: about {clock(duration_s(program))}",
     ]
