@@ -125,7 +125,9 @@ def test_what_is_neither_a_file_nor_its_contents_is_refused(name):
         brushsvg.calibrate("photo.jpg", **{name: 3})
 
 
-@pytest.mark.parametrize("options", [{"brush": 5}, {"prior": 5, "plan": "plan.json"}, {"cell": 5, "machine": ("axes",)}])
+@pytest.mark.parametrize(
+    "options", [{"brush": 5}, {"prior": 5, "plan": "plan.json"}, {"cell": 5, "machine": ("axes",)}]
+)
 def test_a_brush_or_cell_that_is_neither_name_nor_value_is_refused(options):
     with refused("wrong-type 5"):
         brushsvg.calibrate("photo.jpg", **options)

@@ -51,6 +51,24 @@ def test_check_reports_the_same_codes_as_the_command(desk, capsys):
     assert brushsvg.check("two.ngc", "two.svg").figures.total.overlap == pytest.approx(reported, abs=1e-3)
 
 
+@pytest.mark.parametrize("cell", ["linuxcnc-3axis", "grbl-3axis"])
+def test_a_program_for_a_brush_and_a_cell_with_long_names_is_accepted(desk, cell):
+    brush = brushsvg.find_brush("round-6")
+    brush.name = "b" * 100
+    named = replace(brushsvg.find_cell(cell), name="c" * 190)
+    brushsvg.convert("two.svg", "long.ngc", brush=brush, cell=named)
+    assert brushsvg.check("long.ngc", "two.svg", brush=brush, cell=named).problems == ()
+
+
+def test_flags_for_the_drawing_have_no_effect_without_one(desk, capsys):
+    status, _, reported = in_json(capsys, "check", "two.ngc", "--width", "3", "--detail", "fine", "--sheet", "120x60")
+    assert status == 0
+    assert [each.sentence.split()[0] for _, each in reported] == ["--width", "--detail"]
+    project = {"width": 3.0, "from_project": ("width",)}
+    assert brushsvg.check("two.ngc", **project).notices == (), "a project also serves other commands"
+    assert is_reported(brushsvg.check("two.ngc", colour="red").notices, "flag-without-effect --colour")
+
+
 def test_notices_are_returned_and_not_printed(desk, capsys):
     white = LINE.format("w", 20, 90, 3).replace("black", "white")
     Path("white.svg").write_text(PAGE.format(white))

@@ -173,6 +173,8 @@ def check_program(
         read = read_program(text, suffix, cell)
     warn(path, report_renamed(Path(path).stem, suffix, cell, POSTS[cell.language].name_in(text)))
     warn(cell.name, list_arm_notices(cell))
+    if chosen.input is None:
+        warn(path, report_ineffective_flags(drop_from_project(chosen, chosen.from_project)))
     program = _OwnProgram(path, text, header, read, cell, brush)
     if header.border_mm or header.heights_mm or header.first_mm:
         return _check_setup_program(program, chosen, stage, warn)

@@ -376,11 +376,15 @@ def _find_ineffective_choices(chosen: Choices) -> set[str]:
 def report_ineffective_flags(chosen: Choices) -> list[Notice]:
     """Return notices on the flags that have no effect on this input.
 
-    The poses of a plan are fixed, and some flags only apply to G-code.
+    The poses of a plan are fixed, and some flags only apply to G-code. Without an input, as for a program that is
+    compared with no drawing, no flag that reads or plans a drawing has an effect.
     """
     suffix = suffix_of(chosen.input)
     flags, subject = GCODE_FLAGS, "a drawing that is not G-code"
-    if suffix == ".json":
+    if chosen.input is None:
+        flags = [flag for flag in (*LAYOUT_FLAGS, "colour", "speed", *PLANNING_FLAGS) if flag != "sheet"]
+        subject = "a program that is compared with no drawing"
+    elif suffix == ".json":
         flags, subject = (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
     elif suffix in GCODE:
         flags = ()
