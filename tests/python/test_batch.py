@@ -733,3 +733,12 @@ def test_a_contact_sheet_shows_every_drawing(tmp_path):
     x, y = 40 + CARD_W // 2, 110 + PICTURE_H // 2
     assert red[y, x] and not red[y, x + CARD_W + GAP] and red[y + PICTURE_H + WORDS_H + GAP, x]
     assert pages[1].shape[0] < pages[0].shape[0]
+
+
+def test_flags_that_have_no_effect_on_a_drawing_are_notices_of_its_row(desk):
+    """convert gives the same notices."""
+    items, options = [("line", drawing(0))], {"executor": threads(), "pen": "z"}
+    (row,) = brushsvg.batch(items, "out", **options).rows
+    converted = brushsvg.convert("in/0.svg", pen="z")
+    assert [notice.code for notice in row.notices] == [notice.code for notice in converted.notices]
+    assert "flag-without-effect" in {notice.code for notice in row.notices}

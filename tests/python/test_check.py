@@ -54,7 +54,7 @@ def test_check_reports_the_same_codes_as_the_command(desk, capsys):
 @pytest.mark.parametrize("cell", ["linuxcnc-3axis", "grbl-3axis"])
 def test_a_program_for_a_brush_and_a_cell_with_long_names_is_accepted(desk, cell):
     brush = brushsvg.find_brush("round-6")
-    brush.name = "b" * 100
+    brush.name = "b" * 110
     named = replace(brushsvg.find_cell(cell), name="c" * 190)
     brushsvg.convert("two.svg", "long.ngc", brush=brush, cell=named)
     assert brushsvg.check("long.ngc", "two.svg", brush=brush, cell=named).problems == ()

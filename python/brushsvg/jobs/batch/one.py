@@ -17,7 +17,7 @@ from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation.figures import PaintedPlan, measure
 from .. import conversion, outputs
-from ..choices import Choices, check_choices, fill_from_drawing, make_options
+from ..choices import Choices, check_choices, fill_from_drawing, make_options, report_ineffective_flags
 from ..preparation import preparation
 
 PICTURE_LONG_SIDE_PX = 480
@@ -146,7 +146,7 @@ def _convert(task: Task) -> TaskResult:
         )
     )
     cell_notices = conversion.list_cell_notices(simulated.cell) if simulated.is_program else []
-    notices = (*simulated.work.notices, *simulated.remarks(), *cell_notices)
+    notices = (*report_ineffective_flags(chosen), *simulated.work.notices, *simulated.remarks(), *cell_notices)
     measured = {item.name: getattr(total, item.name) for item in fields(Figures) if hasattr(total, item.name)}
     figures = Figures(
         strokes=len(simulated.work.plan.passes), time_s=simulated.time_s(), warnings=len(notices), **measured
