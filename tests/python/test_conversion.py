@@ -130,7 +130,7 @@ def test_a_plan_keeps_its_speed_when_another_one_is_requested(desk):
     assert brushsvg.write_plan(plan) == text
 
 
-def test_a_plan_is_as_on_the_paper_of_the_cell_whatever_the_project_says(desk):
+def test_a_plan_does_not_depend_on_the_z_offset_of_the_project(desk):
     choices = {"cell": "grbl-servo", "formats": [".json"]}
     plain = brushsvg.convert("two.svg", **choices)
     assert brushsvg.convert("two.svg", z_offset=-8, from_project=("z_offset",), **choices).text == plain.text

@@ -152,7 +152,7 @@ def test_a_refusal_of_write_program_has_its_advice(tmp_path):
     plan = plan_of([(-1, 10, 0), (-1, 10, -2), (40, 10, -2), (40, 10, 0)])
     with refused("mark-off-sheet left") as caught:
         brushsvg.write_program(tmp_path / "a.ngc", plan, brushsvg.find_brush("round-6"))
-    assert caught.value.advice.startswith("make the plan anew")
+    assert caught.value.advice and "--" not in caught.value.advice
 
 
 def test_write_program_reports_a_plan_of_another_brush(tmp_path):
