@@ -196,6 +196,12 @@ def test_a_self_referencing_variable_has_no_value():
     read(f"<style>:root{{{grown}}} path{{stroke-width:var(--v0)}}</style>{P}")
 
 
+@pytest.mark.parametrize("value", ["var(--none,)", "var(--none, /* nothing */)", "/* nothing */"])
+def test_path_data_in_css_without_a_value_count_as_not_given(value):
+    (element,) = read(f'<path d="M0 0H5" style="d: {value}"/>').elements
+    assert element.subpaths[0].cubics[-1, 3, 0] - element.subpaths[0].cubics[0, 0, 0] == pytest.approx(5)
+
+
 @pytest.mark.parametrize(
     ("css", "body"),
     [

@@ -82,10 +82,10 @@ def path_data_of(value: str) -> str | None:
     """Return the path data in a value of d: path("..."), "" for none, else None."""
     if value.lower() == "none":
         return ""
-    token, *others = tinycss2.parse_component_value_list(value, skip_comments=True)
-    if others or token.type != "function" or token.lower_name != "path":
+    tokens = tinycss2.parse_component_value_list(value, skip_comments=True)
+    if len(tokens) != 1 or tokens[0].type != "function" or tokens[0].lower_name != "path":
         return None
-    arguments = [argument for argument in token.arguments if argument.type not in ("whitespace", "comment")]
+    arguments = [argument for argument in tokens[0].arguments if argument.type not in ("whitespace", "comment")]
     return arguments[0].value if len(arguments) == 1 and arguments[0].type == "string" else None
 
 
