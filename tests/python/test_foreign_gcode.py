@@ -142,6 +142,7 @@ def test_a_servos_pen_is_down_between_m3_and_m5():
         ("J0.5", "J0.5 P2", "line-unread 8"),
         ("I0 J0.5", "I99999999999999999999 J0.5", "line-unread 8"),  # its radius was divided by zero
         ("I0 J0.5", "R99999999999999999999", "line-unread 8"),
+        ("I0 J0.5", f"R{'9' * 200}", "line-unread 8"),  # no float holds its square
     ],
 )
 def test_unknown_commands_are_refused(old, new, reported):

@@ -241,6 +241,8 @@ class _Interpreter:
             raise _unread_line_error(number, line)
         if "R" in values:
             radius = values["R"] * self.mm_per_unit
+            if abs(radius) > MAX_COORDINATE_MM:
+                raise _out_of_range_error(number, line)
             half, chord = (end - start)[:2] / 2, math.dist(start[:2], end[:2])
             if not 0 < chord <= 2 * abs(radius) + 0.01:
                 raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
