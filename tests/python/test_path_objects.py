@@ -157,6 +157,18 @@ def test_open_documents_are_read_like_their_files(tmp_path):
         assert ours.elements[0].colour == "#123456"
 
 
+def test_trees_that_cannot_be_written_as_xml_are_refused():
+    numbers = ET.Element("svg", {"width": "90mm", "height": 50})
+    deep = inner = ET.Element("svg", {"width": "90mm", "height": "50mm"})
+    for _ in range(10_000):
+        inner = ET.SubElement(inner, "g")
+    for tree, expected in ((numbers, "not-xml 50 int"), (deep, "drawing-too-large")):
+        with refused(expected):
+            brushsvg.read_drawing(tree)
+        with refused(expected):
+            brushsvg.convert(tree)
+
+
 def test_an_ezdxf_document_is_read_like_its_file(tmp_path):
     document = ezdxf.new("R2010", units=4)
     document.modelspace().add_lwpolyline([(0, 0, 1, 3, 0), (40, 10, 3, 1, 0.5), (60, 0, 1, 1, 0)])

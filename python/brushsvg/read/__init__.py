@@ -223,5 +223,15 @@ def _load_open_document(drawing) -> tuple | None:
     tree = getattr(drawing, "tree", drawing)
     root = tree.getroot() if hasattr(tree, "getroot") else tree
     if ElementTree.iselement(root) and isinstance(root, ElementTree.Element):
-        return _read_svg_bytes, ElementTree.tostring(root)
+        return _read_svg_bytes, _tree_to_bytes(root)
     return None
+
+
+def _tree_to_bytes(root: ElementTree.Element) -> bytes:
+    try:
+        return ElementTree.tostring(root)
+    except TypeError as problem:
+        sentence = f"the tree cannot be written as XML: {str(problem)[:80]}"
+        raise Error(sentence, code="not-xml", advice="its tags, attributes and texts must be str") from None
+    except RecursionError:
+        raise Error("the elements of the tree are nested too deep", code="drawing-too-large") from None
