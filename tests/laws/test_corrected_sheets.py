@@ -290,6 +290,7 @@ def test_a_corrected_plan_contains_its_corrections_and_the_original_plan(tmp_pat
         (lambda extra: extra["corrections"]["plan"]["passes"].pop(), "wrong-type"),
         (lambda extra: extra["corrections"].pop("strokes"), "wrong-type"),
         (lambda extra: extra["corrections"]["strokes"][0]["correction"].pop("start_mm"), "wrong-type"),
+        (lambda extra: extra["corrections"]["strokes"][0].update(stroke="nobody"), "corrections-of-another-job"),
     ],
 )
 def test_damaged_corrections_in_a_plan_are_refused(tmp_path, capsys, change, code):

@@ -176,7 +176,10 @@ def remove_corrections(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
     before = _core.read_plan(json.dumps(before))
     if sorted(each.stroke for each in before.passes) != sorted(each.stroke for each in plan.passes):
         raise Error("these must be the strokes of the plan", f"{CORRECTIONS_KEY}.plan", code="wrong-type")
-    return before, _read_corrections(record, f"{CORRECTIONS_KEY}.", {})
+    corrections = _read_corrections(record, f"{CORRECTIONS_KEY}.", {})
+    if unknown := {each.stroke for each in corrections} - {each.stroke for each in before.passes}:
+        raise _other_job_error(min(unknown), "there is no such stroke")
+    return before, corrections
 
 
 def _correct_pass(a_pass, correction: Correction, brush):
