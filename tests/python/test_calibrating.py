@@ -3,6 +3,7 @@
 Both return the same brush, the same report and the same refusals.
 """
 
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -39,6 +40,19 @@ def test_python_and_the_command_give_equal_bytes_and_reports(table, tmp_path, ca
 def test_names_come_from_the_call_or_the_file(table):
     assert brushsvg.calibrate(table).brush.name == "mine"
     assert brushsvg.calibrate(table, "other").brush.name == "other"
+
+
+def test_the_name_in_measurements_yields_only_to_the_name_in_the_call(tmp_path):
+    rows = [line.split(",") for line in NUMBERS.splitlines()[1:]]
+    measured = {"name": "own"}
+    for kind, depth_mm, value_mm in rows:
+        measured.setdefault(kind, []).append({"depth_mm": float(depth_mm), "value_mm": float(value_mm)})
+    assert brushsvg.calibrate(measured).brush.name == "own"
+    assert brushsvg.calibrate(measured, "other").brush.name == "other"
+    path, out = tmp_path / "measured.json", tmp_path / "brush.json"
+    path.write_text(json.dumps({"format": "brushsvg/measurements", "version": 1, **measured}))
+    assert main(["calibrate", str(path), "-o", str(out), "--quiet"]) == 0
+    assert brushsvg.find_brush(out).name == "own"
 
 
 def test_a_calibration_of_numbers_has_no_photograph(table):

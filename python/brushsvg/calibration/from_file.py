@@ -29,6 +29,7 @@ def fit_measurements(
     measured: str | os.PathLike[str] | Mapping[str, Any],
     name: str = "",
     *,
+    default_name: str = "",
     absolute: bool = False,
     total: bool = False,
     machine: tuple[str, ...] = (),
@@ -40,7 +41,8 @@ def fit_measurements(
 
     The options are described in jobs.calibrating.CalibrationOptions.
 
-    measured: a path, or the contents of a measurement .json. Raises Error for a file that cannot be read, for
+    measured: a path, or the contents of a measurement .json. name: the name of the brush, by default the one in the
+    measurements, else default_name, else the name of the file. Raises Error for a file that cannot be read, for
     measurements that leave a law undetermined, and for measurements that no brush can have.
     """
     require_type(measured, (str, os.PathLike, dict), "a path, or a dict of measurements")
@@ -58,7 +60,7 @@ def fit_measurements(
     def read(file: str) -> bytes:
         return read_bytes(os.path.join(folder, file))
 
-    name = contents.name or name or stem
+    name = name or contents.name or default_name or stem
     if contents.marks is None:
         if machine:
             sentence = "--machine needs painted marks: measured numbers say nothing of the machine"

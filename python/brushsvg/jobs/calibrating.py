@@ -290,10 +290,16 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
 
 
 def run_calibration(
-    source: str | Mapping | Sequence[str], name: str, options: CalibrationOptions, stage, warn: Warn
+    source: str | Mapping | Sequence[str],
+    name: str,
+    options: CalibrationOptions,
+    stage,
+    warn: Warn,
+    default_name: str = "",
 ) -> BrushCalibration:
     """Return a brush with its report; see calibrate.
 
+    default_name: the name of a brush whose measurements have none, instead of the name of their first file.
     warn: called with a file and the warnings about the file.
     """
     if why := find_contradiction(source, options):
@@ -308,8 +314,8 @@ def run_calibration(
     several = isinstance(source, (tuple, list))
     photos = source if several else [source] if is_photograph(source) else None
     if not photos:
-        return _calibrate_from_measurements(source, name, options, stage, warn)
-    name = name or os.path.splitext(os.path.basename(photos[0]))[0]
+        return _calibrate_from_measurements(source, name, default_name, options, stage, warn)
+    name = name or default_name or os.path.splitext(os.path.basename(photos[0]))[0]
     if options.plan is not None:
         return _update_from_job(photos, name, options, stage, warn)
     read = read_chart_photographs(photos, options, stage, warn)
@@ -344,12 +350,13 @@ def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, s
     return read
 
 
-def _calibrate_from_measurements(source, name, options, stage, warn) -> BrushCalibration:
+def _calibrate_from_measurements(source, name, default_name, options, stage, warn) -> BrushCalibration:
     file = "" if isinstance(source, Mapping) else source
     with name_file_in_errors(file):
         calibration = fit_measurements(
             source,
             name,
+            default_name=default_name,
             absolute=options.absolute,
             total=options.total,
             machine=options.machine,

@@ -13,10 +13,10 @@ def calibrate_file(args) -> None:
     from ....jobs.calibrating import run_calibration
 
     check_outputs(args, args.output, args.picture, args.marks_picture, sources=[args.output])
-    name = os.path.splitext(os.path.basename(args.output))[0]
+    default_name = os.path.splitext(os.path.basename(args.output))[0]
     source = args.photos or args.input
     with refuse_errors(""):  # errors name their file themselves
-        calibration = run_calibration(source, name, args.options, stage, warn)
+        calibration = run_calibration(source, "", args.options, stage, warn, default_name)
         files = {args.output: write_brush(calibration.brush)}
         if args.picture:
             files[args.picture] = calibration.plot(suffix_of(args.picture))
