@@ -332,6 +332,7 @@ def test_a_chart_file_is_read_back_unchanged():
         ({"id": "0123abcd"}, "plan", "chart-strokes 0123abcd"),
         ({"bar": {"at_mm": [5, 5], "length_mm": -3}}, "bar.length_mm", "out-of-range -3"),
         ({"labels": [{"text": "a", "at_mm": [1, 2]}]}, "labels[0].width_mm", "not-a-number"),
+        ({"labels": [{"text": "", "at_mm": [1, 2], "width_mm": 3}]}, "labels[0]", "wrong-type"),
         (
             {"markers": [{"id": 0, "corners_mm": [[0, 0], [1, 0], [1, 1], [0, 1]]}] * 2},
             "markers",

@@ -131,7 +131,7 @@ def _read_bar(row, most_mm: float) -> Bar:
 
 
 def _read_label(row: dict, where: str, most_mm: float) -> Label:
-    if not isinstance(row.get("text"), str):
+    if not isinstance(row.get("text"), str) or not row["text"]:
         raise Error("a label needs a text", where, code="wrong-type")
     at_mm = _read_lengths(row.get("at_mm"), f"{where}.at_mm", 2, most_mm)
     return Label(row["text"], at_mm, json_fields.number(row.get("width_mm"), f"{where}.width_mm", 0, most_mm))
