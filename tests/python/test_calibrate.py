@@ -317,6 +317,8 @@ def test_a_column_in_millimetres_is_not_another_unit():
         ({"format": "brushsvg/measurements", "version": 2}, "version"),
         ({"format": "brushsvg/measurements", "version": 1, "lag": {}}, "lag"),
         ({"format": "brushsvg/measurements", "version": 1, "depth_range_mm": [5, 1]}, "depth_range_mm"),
+        ({"format": "brushsvg/measurements", "version": 1, "kind": "liner"}, "kind"),
+        ({"format": "brushsvg/measurements", "version": 1, "about": 5}, "about"),
     ],
 )
 def test_invalid_json_is_refused(content, where):

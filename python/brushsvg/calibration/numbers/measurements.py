@@ -39,7 +39,7 @@ _CENTRE_LINE_KEYS = ("points_mm", "picture", "mm_per_px", "corner_px", "towards"
 TOWARDS = ("right", "left", "up", "down")
 MIN_LINE_POINTS = 6  # points of a centre line, which determine two lengths
 _TABLE_KINDS = tuple(kind for kind, names in KINDS.items() if names == ("value_mm",))
-_GENERAL_KEYS = ("format", "version", "name", "kind", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
+_GENERAL_KEYS = ("format", "version", "name", "depth_range_mm", "max_speed_mm_s", "about", *KINDS)
 _MARK_KEYS = ("plan", "marks", "expected")  # keys of whole painted marks: see mark_input.read_painted
 # Expected errors of a sheet and its marks, as standard deviations that a person can estimate.
 EXPECTED_KEYS = ("placement_mm", "turn_deg", "displacement_mm", "height_mm")
@@ -67,7 +67,6 @@ class Measurements:
 
     rows: dict[str, list[Row]]
     name: str = ""
-    about: str = ""
     depth_range_mm: tuple[float, float] | None = None
     max_speed_mm_s: float = 25.0
     depths_mm: list[float] = field(default_factory=list)
@@ -243,9 +242,10 @@ def _read_json(text: str) -> Measurements:
         if listed := json_fields.objects(content.get(kind, []), kind):
             read = _READERS.get(kind, _read_row)
             rows[kind] = [read_row for i, row in enumerate(listed) for read_row in read(kind, row, f"{kind}[{i}]")]
-    name, about = content.get("name", ""), content.get("about", "")
-    if not isinstance(name, str) or not isinstance(about, str):
-        raise Error("name and about must be text", "name", code="wrong-type")
+    name = content.get("name", "")
+    for key in ("name", "about"):
+        if not isinstance(content.get(key, ""), str):
+            raise Error("this must be a text", key, code="wrong-type")
     depth_range = content.get("depth_range_mm")
     if depth_range is not None:
         depth_range = json_fields.numbers(depth_range, "depth_range_mm", 2)
@@ -260,7 +260,7 @@ def _read_json(text: str) -> Measurements:
     if "marks" not in content:
         if misplaced := [key for key in _MARK_KEYS if key in content]:
             raise Error("this says something of marks, and there are none", misplaced[0], code="measurements-mixed")
-        return Measurements(rows, name, about, depth_range, speed)
+        return Measurements(rows, name, depth_range, speed)
     if rows:
         raise Error(
             "marks contain what the other kinds measure, and are fitted alone: leave these out, or make two files",
@@ -268,9 +268,7 @@ def _read_json(text: str) -> Measurements:
             code="measurements-mixed",
         )
     plan, marks = content.get("plan"), content["marks"]
-    return Measurements(
-        rows, name, about, depth_range, speed, [], plan, marks, _read_expected(content.get("expected", {}))
-    )
+    return Measurements(rows, name, depth_range, speed, [], plan, marks, _read_expected(content.get("expected", {})))
 
 
 def _read_expected(given) -> dict:
