@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +13,9 @@ from .. import _core, json_fields
 from ..errors import Error, name_file_in_errors
 from ..files import read_bytes
 from ..geometry.polylines import evenly
-from ..geometry.rotation import rotation
 from ..reporting.report_text import Report, plural, table, verdict
 from .corrections import MIN_MARKS
-from .next_corrections import MAX_MISSING_FOR_PLACE
+from .next_corrections import MAX_MISSING_FOR_PLACE, displacement_mm
 from .photographs import Comparison
 
 FORMAT = "brushsvg/repeatability"
@@ -84,12 +84,16 @@ class Repeats:
     once: tuple[str, ...] = ()
 
 
-def repeats(plan, sheets: list[Comparison]) -> Repeats:
+def repeats(plan, files: Sequence[str], sheets: Sequence[Comparison]) -> Repeats:
     """Measure the repeatability over sheets, or over copies on one sheet.
 
-    sheets: comparisons of sheets that were painted with the same plan. Raises Error where nothing was painted twice.
+    files: the photograph of each sheet, for errors. sheets: comparisons of sheets that were painted with the same plan.
+    Raises Error where nothing was painted twice.
     """
-    places = [_places_by_stroke(found) for found in sheets]
+    places = []
+    for file, found in zip(files, sheets, strict=True):
+        with name_file_in_errors(file):
+            places.append(_places_by_stroke(found))
     names = [a_pass.stroke for a_pass in plan.passes]
     over_sheets = len(sheets) > 1
     groups = [[name] for name in names] if over_sheets else _group_copies(plan)
@@ -147,14 +151,11 @@ def _places_by_stroke(found: Comparison) -> dict[str, tuple[float, float, float]
     if found.spread_mm is None:
         sentence = f"fewer than {MIN_MARKS} of its marks are found, which do not determine the pose of the sheet"
         raise Error(sentence, code="marks-missing")
-    sheet, out = found.common, {}
-    for row in found.strokes:
-        if row.placed.found and row.missing <= MAX_MISSING_FOR_PLACE:
-            middle = np.array([row.middle_mm])
-            beyond = middle + row.placed.shift_mm - sheet.moved(middle, found.middle_mm)
-            x, y = (beyond @ rotation(-sheet.turn_rad))[0].tolist()
-            out[row.stroke] = (x, y, row.placed.wider_mm)
-    return out
+    return {
+        row.stroke: (*displacement_mm(row, found).tolist(), row.placed.wider_mm)
+        for row in found.strokes
+        if row.placed.found and row.missing <= MAX_MISSING_FOR_PLACE
+    }
 
 
 def _group_copies(plan) -> list[list[str]]:

@@ -80,7 +80,7 @@ def _report_repeats(args, sheet) -> None:
     for path, comparison in zip(args.photos, sheets, strict=True):
         warn(path, list(comparison.notices))
     with refuse_errors(args.photos[0]):
-        repeatability = repeats(sheet.plan, sheets)
+        repeatability = repeats(sheet.plan, args.photos, sheets)
     files, details, picture = {}, args.details, args.picture or ""
     if args.output:
         is_json = suffix_of(args.output) == ".json"
