@@ -14,9 +14,12 @@ from diagnostics import in_json, refused
 
 import brushsvg
 from brushsvg import _core
+from brushsvg.calibration.overlap.lag_by_outlines import refuse_assumed
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.model.library import SHIPPED, brush_names, find_brush, save_brush, unknown_keys
+from brushsvg.model.confidence import learned_of
+from brushsvg.model.describe import one_line
+from brushsvg.model.library import SHIPPED, brush_like, brush_names, find_brush, save_brush, unknown_keys
 
 ROOT = Path(__file__).parents[2]
 LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -368,6 +371,11 @@ def test_a_hand_written_brush_may_have_extra_keys(extra):
     brush = find_brush("round-6")
     brush.extra = extra
     assert unknown_keys(brush) == []
+    assert one_line(brush).startswith("round, lines")
+    assert learned_of(brush) == {}
+    assert json.loads(brush_like("own", brush).extra)["footprints"]["assumed"] is True
+    with refused("footprints-assumed", "footprints"):
+        refuse_assumed(brush)
 
 
 def test_a_name_without_extension_suggests_the_existing_file(tmp_path, monkeypatch):

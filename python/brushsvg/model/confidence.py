@@ -6,11 +6,11 @@ The 95 % band of the law's polynomial follows from the covariance of the brush.
 from __future__ import annotations
 
 import itertools
-import json
 
 import numpy as np
 
 from .. import _core
+from .extra_keys import read_extra_keys
 
 # Key of a brush file: the earlier brushes, the photographs they learned from, and how deep their marks were.
 LEARNED = "learned"
@@ -55,7 +55,7 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
 
 def learned_of(brush) -> dict:
     """Return what a brush file says about its origin; {} where it says nothing."""
-    learned = json.loads(brush.extra or "{}").get(LEARNED)
+    learned = read_extra_keys(brush.extra).get(LEARNED)
     return learned if isinstance(learned, dict) else {}
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 import textwrap
 
 from .. import _core
 from .confidence import paint_interval_per_m
+from .extra_keys import read_extra_keys
 
 LAWS = (
     ("lag", "lever from the centre of friction to the TCP"),
@@ -22,7 +22,7 @@ def one_line(brush: _core.Brush) -> str:
 
     It is what the file says about itself, or otherwise follows from the laws.
     """
-    about = json.loads(brush.extra).get("about")
+    about = read_extra_keys(brush.extra).get("about")
     return about if isinstance(about, str) and about else reach(brush)
 
 

@@ -12,6 +12,7 @@ from .. import _core
 from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import find_file, names_in, read_bytes, write_files
 from ..suggestions import nearest_name
+from .extra_keys import read_extra_keys
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
 _LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
@@ -70,32 +71,20 @@ def unknown_keys(brush: _core.Brush) -> list[Notice]:
 
     Such a key is kept and has no effect.
     """
-    entries = _parse_object(brush.extra)
+    entries = read_extra_keys(brush.extra)
     tables = [
         ("", entries, _KEYS),
-        ("footprints.", _parse_object(json.dumps(entries.get("footprints"))), _KEYS_OF_FOOTPRINTS),
+        ("footprints.", read_extra_keys(json.dumps(entries.get("footprints"))), _KEYS_OF_FOOTPRINTS),
     ]
-    tables += [(f"{law}.", _parse_object(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
+    tables += [(f"{law}.", read_extra_keys(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
     if brush.paint:
-        tables.append(("paint.", _parse_object(brush.paint.extra), _KEYS_OF_PAINT))
+        tables.append(("paint.", read_extra_keys(brush.paint.extra), _KEYS_OF_PAINT))
     return [
         _make_unknown_notice(where + key, where, key, known)
         for where, entries, known in tables
         for key in entries
         if key not in known
     ]
-
-
-def _parse_object(text: str) -> dict:
-    """Return the JSON object in a text, or {} if there is none.
-
-    A brush made by hand may contain anything here. A value that is no object is refused when the brush is written.
-    """
-    try:
-        parsed = json.loads(text)
-    except (ValueError, RecursionError):
-        return {}
-    return parsed if isinstance(parsed, dict) else {}
 
 
 def _make_unknown_notice(path: str, where: str, key: str, known: tuple[str, ...]) -> Notice:
@@ -151,7 +140,7 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
             source=f"Taken from brush {like.name}: {known.source}",
             assumed=True,
         )
-    entries = json.loads(like.extra)
+    entries = read_extra_keys(like.extra)
     outlines = entries.get("footprints") if isinstance(entries.get("footprints"), dict) else {}
     outlines = {key: value for key, value in outlines.items() if key != "standard_error_mm"}
     source = f"Taken from brush {like.name}: {outlines.get('source', '')}".strip()

@@ -15,6 +15,7 @@ import numpy as np
 from ... import _core
 from ...errors import Error, Notice
 from ...model.confidence import places
+from ...model.extra_keys import read_extra_keys
 from ...model.laws.fitted import need_fits
 from .dab_outlines import MAX_SMOOTHING_MM, Dab, Outlines, Shape, average_dabs, widths_at
 
@@ -210,7 +211,7 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
         "not in them."
     )
     unsure = max(shape.unsure_mm for shape in shapes)
-    extra = json.loads(before.extra or "{}") | {
+    extra = read_extra_keys(before.extra) | {
         "footprints": {"source": source, "assumed": False, "standard_error_mm": round(unsure, 3)}
     }
     brush.extra = json.dumps(extra)

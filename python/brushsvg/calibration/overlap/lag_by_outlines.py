@@ -8,7 +8,6 @@ usual fit.
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 
 import cv2
@@ -19,6 +18,7 @@ from ... import _core
 from ...errors import Error
 from ...geometry.rings import signed_area
 from ...model.confidence import LAWS, places
+from ...model.extra_keys import read_extra_keys
 from ..marks.from_marks import LAG_TERMS, MarkCalibration
 from ..marks.stray_marks import MAX_RESIDUAL_SIGMAS
 
@@ -257,14 +257,20 @@ def _lag_covariance(calibration: MarkCalibration, of_step: np.ndarray) -> np.nda
     return out
 
 
+def _keys_of_outlines(own: _core.Brush) -> dict:
+    """Return what a brush file says about its outlines."""
+    keys = read_extra_keys(own.extra).get("footprints")
+    return keys if isinstance(keys, dict) else {}
+
+
 def _outline_error_mm(own: _core.Brush) -> float:
     """Return the standard error of the outlines from the brush file [mm]."""
-    error_mm = json.loads(own.extra or "{}").get("footprints", {}).get("standard_error_mm", 0.0)
+    error_mm = _keys_of_outlines(own).get("standard_error_mm", 0.0)
     return float(error_mm) if isinstance(error_mm, (int, float)) and np.isfinite(error_mm) else 0.0
 
 
 def refuse_assumed(own: _core.Brush) -> None:
-    if json.loads(own.extra or "{}").get("footprints", {}).get("assumed", True):
+    if _keys_of_outlines(own).get("assumed", True):
         raise Error(
             f"the outlines of brush {own.name} are assumed, not measured: measure them first, by a photograph of dabs",
             "footprints",

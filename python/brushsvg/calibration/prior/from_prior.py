@@ -22,6 +22,7 @@ from ...model.confidence import (
     learned_of,
     places,
 )
+from ...model.extra_keys import read_extra_keys
 from ...model.laws.fitted import need_fits
 from ..marks.from_marks import (
     GAP_TERMS,
@@ -406,7 +407,7 @@ def with_lineage(updated_brush: _core.Brush, brush: _core.Brush, photos: list[st
 
 
 def _write_learned(updated_brush: _core.Brush, learned: dict) -> None:
-    updated_brush.extra = json.dumps(json.loads(updated_brush.extra or "{}") | {LEARNED: learned})
+    updated_brush.extra = json.dumps(read_extra_keys(updated_brush.extra) | {LEARNED: learned})
 
 
 def _read_learned(brush) -> dict:
