@@ -3,6 +3,8 @@
 The strokes of that sheet began elsewhere, by up to a lag.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnostics import refused
@@ -30,6 +32,14 @@ def test_a_stroke_may_start_up_to_twice_the_lag_away():
     """
     (made,) = apply_corrections(plan(), (correction(5.8, True),), BRUSH).passes
     assert made.poses_mm[0].tolist() == pytest.approx([30.5, 30, 0])
+
+
+def test_the_width_of_a_stroke_without_depth_is_not_corrected():
+    grazing = _core.Pass("a", np.array(POSES, float) * (1, 1, 0), 20.0)
+    without_depth = _core.Plan("round-6", BRUSH.sha256, (100.0, 60.0), [grazing])
+    wider = replace(correction(0.0, False), wider_mm=0.3)
+    moved = apply_corrections(without_depth, (wider,), BRUSH).passes[0].poses_mm
+    np.testing.assert_allclose(moved, grazing.poses_mm + np.array((0.5, 0.0, 0.0)))
 
 
 @pytest.mark.parametrize(("away_mm", "replanned"), [(5.8, False), (21.0, True)])

@@ -24,9 +24,12 @@ def offset_edges(a_pass, by_mm: float, brush):
     """
     refuse_width(a_pass, by_mm, brush)
     a_pass = with_chords(a_pass)
+    half_mm = _mean_half_width_mm(a_pass, brush)
+    if half_mm <= 0:
+        return a_pass  # it paints nothing, so it has no edges
     poses = np.array(a_pass.poses_mm, dtype=float)
     before = np.maximum(-poses[:, 2], 0.0)
-    share = 1 + by_mm / _mean_half_width_mm(a_pass, brush)
+    share = 1 + by_mm / half_mm
     _, deepest = measured_depths_mm(brush)
     depths = np.linspace(0.0, max(deepest, float(before.max())), DEPTH_SAMPLES)
     after = np.interp(share * brush.half_width(before), brush.half_width(depths), depths)
@@ -44,11 +47,13 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
         sentence = f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected"
         raise Error(sentence, a_pass.stroke, code="width-correction-refused")
     half_mm, (least, deepest) = _mean_half_width_mm(a_pass, brush), measured_depths_mm(brush)
+    if half_mm <= 0:
+        return
     low, high = 2 * float(brush.half_width(least)), 2 * float(brush.half_width(deepest))
     widest_mm = 2 * float(brush.half_width(-np.array(a_pass.poses_mm)[:, 2]).max())
     share = 1 + by_mm / half_mm
     target_mm = share * (widest_mm if by_mm > 0 else 2 * half_mm)
-    if low <= target_mm <= high or half_mm <= 0:
+    if low <= target_mm <= high:
         return
     sentence = (
         f"with its width corrected by {2 * by_mm:+.2f} mm it would be {target_mm:.2f} mm wide, outside the range "
