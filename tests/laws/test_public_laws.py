@@ -209,6 +209,7 @@ def test_the_printed_condition_does_not_make_every_bristle_unique():
         (lambda: laws.follow([[0, 0], [9, 0]], 1.0, 3.0, (-5, 0)), "out-of-range"),
         (lambda: laws.tip_direction(2.0, 1.0, 3.0, 3.0, 1.0), "out-of-range"),
         (lambda: laws.from_angles(1.5, [], []), "measurement-missing"),
+        (lambda: laws.fit_law([1, 2, 3], [1, 2, 4], 1, floor_mm=[0, 1]), "wrong-type"),
         (lambda: laws.bristle(3.0, np.ones_like), "wrong-type"),
         (lambda: laws.bristle(np.zeros_like, np.ones_like), "out-of-range"),
         (lambda: laws.bristle_of_article(0.5, "free"), "choice-unknown"),

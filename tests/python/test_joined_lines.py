@@ -67,6 +67,11 @@ def test_lines_of_different_kinds_are_not_joined(other):
     assert join_lines(made) == (made, [])
 
 
+def test_a_stroke_without_a_line_is_not_joined():
+    made = [_core.Stroke()]
+    assert join_lines(made) == (made, [])
+
+
 def test_widths_are_continuous_at_the_joint():
     first, second = of("M10 30H40", "M50 30H40")
     first.half_width = [(0.0, 1.0), (1.0, 2.0)]

@@ -135,6 +135,7 @@ def test_the_way_of_a_plan_with_arcs_is_as_long_as_its_passes():
         (np.array([[0, 0, 1, 0, 2, 0, 3, 0], [4, 0, 5, 0, 6, 0, 7, 0]]), 2, "wrong-type 2"),
         (np.array([[0, 0, 1, 0, 2, 0, np.nan, 0]]), 2, "not-finite"),
         (np.zeros((0, 8)), 2, "stroke-empty"),
+        ([[10**400] * 8], 2, "wrong-type '(n, 4, 2)'"),
         ("M0 0 L10 0", 0, "out-of-range 0 (0"),
         ("M0 0 L10 0", np.nan, "out-of-range nan (0"),
     ],

@@ -140,6 +140,7 @@ def test_lines_may_be_nested_lists(painted):
         ({"blank": [[[[5, 5], [9, 9]]]]}, "wrong-type blank"),
         ({"blank": [[["x", 5]]]}, "wrong-type blank"),
         ({"blank": [[[5, np.nan], [9, 9]]]}, "not-finite blank"),
+        ({"blank": [[[5, 10**400], [9, 9]]]}, "wrong-type blank"),
         ({"toolpath_mm": [[5, 5], [9, 9]]}, "wrong-type toolpath_mm"),
         ({"toolpath_mm": [None]}, "wrong-type toolpath_mm"),
         ({"colours": "rgb"}, "wrong-type rgb"),

@@ -118,7 +118,7 @@ def check_lines(lines: Iterable[ArrayLike], what: str) -> list[np.ndarray]:
     """
     try:
         arrays = [np.asarray(line, dtype=float) for line in lines]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         arrays = None
     if arrays is None or any(each.size and (each.ndim != 2 or each.shape[1] not in (2, 3)) for each in arrays):
         raise Error(f"{what} is not a list of lines, each an array of points (n, 2) or (n, 3)", code="wrong-type")

@@ -121,8 +121,9 @@ def _find_continuation(chain: _Chain, at_end: bool, near: dict, lines: dict, use
 
 
 def _is_open_line(stroke) -> bool:
-    ends = stroke.middle_mm[0, :2], stroke.middle_mm[-1, 6:]
-    return not (stroke.closed or stroke.target_mm) and np.hypot(*(ends[0] - ends[1])) > MAX_GAP_MM
+    if stroke.closed or stroke.target_mm or not len(stroke.middle_mm):
+        return False
+    return np.hypot(*(stroke.middle_mm[0, :2] - stroke.middle_mm[-1, 6:])) > MAX_GAP_MM
 
 
 def _can_join(one, other) -> bool:

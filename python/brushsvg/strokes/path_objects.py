@@ -141,7 +141,7 @@ def _read_array(path, id: str) -> np.ndarray:
         if np.iscomplexobj(table):
             table = np.stack([table.real, table.imag], axis=-1)
         cubics = np.asarray(table, dtype=float).reshape(len(table), 4, 2)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise _not_cubics_error(id) from None
     broken = [k for k in range(1, len(cubics)) if not _meets(cubics[k - 1, 3], cubics[k, 0])]
     if broken:

@@ -7,7 +7,7 @@ import math
 from numpy.typing import ArrayLike
 
 from ... import _core
-from ...errors import Error, need_truth, require_type
+from ...errors import Error, need_number, need_truth, require_type
 from .numbers import DEEPEST_MM, FARTHEST_MM, numbers
 
 
@@ -44,7 +44,7 @@ def fit_law(
         (float(depth.min(initial=0.0)), float(depth.max(initial=1.0))),
         max(-1, min(degree, 99)),
         through_zero=bool(through_zero),
-        floor=-math.inf if floor_mm is None else float(numbers(floor_mm, "the floor [mm]", -FARTHEST_MM, FARTHEST_MM)),
+        floor=-math.inf if floor_mm is None else need_number(floor_mm, "the floor [mm]", -FARTHEST_MM, FARTHEST_MM),
         norm=_core.Norm.absolute if absolute else _core.Norm.squares,
     )
     return _core.fit_law(depth, value, shape)
