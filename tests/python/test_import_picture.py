@@ -88,6 +88,11 @@ def test_warnings_with_one_code_are_one_line():
     assert gives(texts[-2], "p0", "8", "0.0 mm") and texts[-1] == "x: another"
 
 
+def test_a_warning_about_the_whole_drawing_is_its_sentence_alone():
+    notice = Notice("", "it has no widths")
+    assert notice.text in [word for word, *_ in words_of(BODY, [notice])]
+
+
 def test_elements_named_like_parts_keep_their_own_colours():
     line = '<path id="icon/{}" d="M{} 5v9"/>'.format
     words = words_of("".join(line(k, 5 + 3 * k) for k in range(1, 7)))

@@ -205,9 +205,8 @@ def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
         for notice in summarize_notices(notice for notice in notices if notice.damaged == is_damage)
     ]
     for colour, notice in listed[:MAX_LISTED]:
-        for line in textwrap.wrap(
-            f"{notice.where}: {notice.text}", _letters_per_line(canvas), subsequent_indent="    "
-        ):
+        text = ": ".join(filter(None, (notice.where, notice.text)))
+        for line in textwrap.wrap(text, _letters_per_line(canvas), subsequent_indent="    "):
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
     if len(listed) > MAX_LISTED:
