@@ -11,7 +11,7 @@ BODY = """<g inkscape:groupmode="layer" inkscape:label="Ink"><path id="a" d="M10
 
 
 def box(layout, body=BODY):
-    return bounds_mm(arrange(read(body), layout)).round(9).tolist()
+    return bounds_mm(arrange(read(body), layout).elements).round(9).tolist()
 
 
 def test_the_default_layout_leaves_the_drawing_unchanged():
@@ -20,8 +20,8 @@ def test_the_default_layout_leaves_the_drawing_unchanged():
 
 
 def test_bounds_include_the_curve_and_its_width():
-    assert bounds_mm(read('<path d="M20 10Q25 0 30 10"/>')).round(9).tolist() == [19.5, 39.5, 30.5, 45.5]
-    assert bounds_mm(read('<path d="M0 0C0 20 20 20 20 0"/>'), with_widths=False).round(9).tolist() == [
+    assert bounds_mm(read('<path d="M20 10Q25 0 30 10"/>').elements).round(9).tolist() == [19.5, 39.5, 30.5, 45.5]
+    assert bounds_mm(read('<path d="M0 0C0 20 20 20 20 0"/>').elements, with_widths=False).round(9).tolist() == [
         0,
         35,
         20,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,7 +64,7 @@ def arrange(design: Design, layout: Layout) -> Design:
 
 def _place(design: Design, layout: Layout) -> Design:
     keeps_width = layout.width_mm is not None
-    lines, marks = bounds_mm(design, with_widths=False), bounds_mm(design)
+    lines, marks = bounds_mm(design.elements, with_widths=False), bounds_mm(design.elements)
     scale = layout.scale or 1.0
     if layout.fit_mm is not None:
         scale = _fitting_scale(lines, marks, layout.fit_mm, keeps_width)
@@ -76,16 +77,16 @@ def _place(design: Design, layout: Layout) -> Design:
     else:
         shift = (marks[:2] + marks[2:]) / 2 - (scaled[:2] + scaled[2:]) / 2
     width_scale = 1.0 if keeps_width else scale
-    return replace(design, elements=tuple(_scale_and_move(e, scale, shift, width_scale) for e in design.elements))
+    return replace(design, elements=tuple(scale_and_move(e, scale, shift, width_scale) for e in design.elements))
 
 
-def bounds_mm(design: Design, with_widths: bool = True) -> np.ndarray:
+def bounds_mm(elements: Iterable[Element], with_widths: bool = True) -> np.ndarray:
     """Return the bounds x0, y0, x1, y1 [mm] of the target marks, shape (4,).
 
     with_widths: include half the stroke widths; otherwise the bounds of the middle lines and outlines alone.
     """
     box = np.array([math.inf, math.inf, -math.inf, -math.inf])
-    for element in design.elements:
+    for element in elements:
         if not element.subpaths:
             continue
         halves = [half_width_mm(element, subpath) if with_widths else 0.0 for subpath in element.subpaths]
@@ -212,7 +213,8 @@ def _set_width(element: Element, width_mm: float) -> Element:
     return replace(element, stroke_width_mm=width_mm, subpaths=plain, settings=settings)
 
 
-def _scale_and_move(element: Element, scale: float, shift: np.ndarray, width_scale: float) -> Element:
+def scale_and_move(element: Element, scale: float, shift: np.ndarray, width_scale: float) -> Element:
+    """Return the element scaled about the origin and then moved by a shift [mm], with scaled widths."""
     return replace(
         element,
         stroke_width_mm=element.stroke_width_mm * width_scale,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..errors import list_first
-from .design import Design, Element, Notice
+from .design import Element, Notice
 from .layout import bounds_mm
 
 _MAX_NAMED_ELEMENTS = 5  # elements that a sentence names
@@ -32,5 +32,5 @@ def keep_on_page(
 
 
 def _touches_page(element: Element, page_mm: tuple[float, float], top_mm: float) -> bool:
-    x0, y0, x1, y1 = bounds_mm(Design(page_mm, (element,)))
+    x0, y0, x1, y1 = bounds_mm([element])
     return not (x1 < 0 or y1 < top_mm - page_mm[1] or x0 > page_mm[0] or y0 > top_mm)

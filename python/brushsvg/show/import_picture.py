@@ -72,7 +72,7 @@ def overview(suffix: str, design: Design, strokes: list, notices: list[Notice]) 
 
 def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _Canvas:
     w, h = design.sheet_mm
-    box = bounds_mm(design)
+    box = bounds_mm(design.elements)
     x0, y0 = min(0.0, float(box[0])), min(0.0, float(box[1]))
     x1, y1 = max(w, float(box[2])), max(h, float(box[3]))
     px_per_mm = SHEET_PX / max(x1 - x0, y1 - y0)

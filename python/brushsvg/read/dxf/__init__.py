@@ -8,11 +8,12 @@ from __future__ import annotations
 from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Notice
 from ..empty_drawing import empty_drawing_error
+from ..layout import bounds_mm
 from .entity_walk import EntityWalk
 from .file import open_dxf
 from .linetypes import DashCutter
 from .pieces_to_elements import find_pattern_restarts, join_pieces, piece_to_element
-from .placement import drawn_extents, keep_in_range, move_to_origin, place_with_margin
+from .placement import keep_in_range, move_to_origin, place_with_margin
 from .units import find_unit, report_large_unit
 
 _MAX_FLAT_RANGE_MM = 1e-3  # a larger range of heights is reported
@@ -46,7 +47,7 @@ def read_dxf(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     ]
     notices += dashes.notices
     if options.units is None:
-        lower, upper = drawn_extents(elements)
-        notices += report_large_unit(document, float((upper - lower).max()))
+        x0, y0, x1, y1 = bounds_mm(elements).tolist()
+        notices += report_large_unit(document, max(x1 - x0, y1 - y0))
     sheet_mm, placed = (options.sheet_mm, tuple(elements)) if options.sheet_mm else place_with_margin(elements)
     return Design(sheet_mm, placed, tuple(notices), layers=walk.pens.hidden())

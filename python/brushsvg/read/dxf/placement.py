@@ -9,8 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...geometry.cubics import extremes
 from ..design import Element, Notice
+from ..layout import bounds_mm, scale_and_move
 from ..svg.paths.path_to_cubics import MAX_COORDINATE_MM
 from .entity_walk import Piece
 
@@ -54,25 +54,7 @@ def place_with_margin(elements: list[Element]) -> tuple[tuple[float, float], tup
 
     The sheet, (width, height) [mm], is the bounding box of the elements with their widths, plus a margin of 20 mm.
     """
-    lower, upper = drawn_extents(elements)
-    shift = MARGIN_MM - lower
-    width, height = (upper + shift + MARGIN_MM).tolist()
-    return (width, height), tuple(_shift_element(element, shift) for element in elements)
-
-
-def drawn_extents(elements: list[Element]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lower left and upper right corner of elements with their widths."""
-    cubics, halves = [], []
-    for element in elements:
-        for subpath in element.subpaths:
-            widest = element.stroke_width_mm if subpath.widths is None else subpath.widths[:, 1].max()
-            cubics.append(subpath.cubics)
-            halves.append(np.full(len(subpath.cubics), widest / 2))
-    half = np.concatenate(halves)[:, None]
-    points = extremes(np.concatenate(cubics)).reshape(-1, len(half), 2)
-    return (points - half).min(axis=(0, 1)), (points + half).max(axis=(0, 1))
-
-
-def _shift_element(element: Element, shift: np.ndarray) -> Element:
-    subpaths = tuple(replace(subpath, cubics=subpath.cubics + shift) for subpath in element.subpaths)
-    return replace(element, subpaths=subpaths)
+    box = bounds_mm(elements)
+    shift = MARGIN_MM - box[:2]
+    width, height = (box[2:] + shift + MARGIN_MM).tolist()
+    return (width, height), tuple(scale_and_move(element, 1.0, shift, 1.0) for element in elements)

@@ -14,6 +14,7 @@ from ...errors import Error
 from .. import AS_DRAWN, ReadOptions
 from ..design import Design, Element, Notice, SubPath
 from ..empty_drawing import empty_drawing_error
+from ..layout import scale_and_move
 from .dips import find_dips, read_comments
 from .pen import MAX_HOP_MM, read_pen
 from .toolpaths import Way, read_moves
@@ -65,7 +66,9 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
         return Design(options.sheet_mm, tuple(elements), tuple(notices))
     shift = MARGIN_MM - ends.min(axis=0)
     width, height = (ends.max(axis=0) + shift + MARGIN_MM).tolist()
-    return Design((width, height), tuple(_shift_element(element, shift) for element in elements), tuple(notices))
+    return Design(
+        (width, height), tuple(scale_and_move(element, 1.0, shift, 1.0) for element in elements), tuple(notices)
+    )
 
 
 def _suggest_readings(all_ways: list[Way], kind: str) -> str:
@@ -155,8 +158,3 @@ def _line_to_element(chain: list) -> Element:
     a, b = path[:-1], path[1:]
     cubics = np.stack([a, a + (b - a) / 3, a + (b - a) * 2 / 3, b], axis=1)
     return Element(f"line{chain[0].line}", (SubPath(cubics),), LINE_WIDTH_MM)
-
-
-def _shift_element(element: Element, shift: np.ndarray) -> Element:
-    (line,) = element.subpaths
-    return Element(element.id, (SubPath(line.cubics + shift),), element.stroke_width_mm)
