@@ -156,7 +156,7 @@ def compare_paint(strokes: list[TargetStroke], painted: np.ndarray, canvas: Canv
 
 def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, bytes]]) -> None:
     for (name, _), each in zip(photos[1:], painted[1:], strict=True):
-        overlap = _overlap(painted[0] > EDGE_LEVEL, each > EDGE_LEVEL)
+        overlap = overlap_of_masks(painted[0] > EDGE_LEVEL, each > EDGE_LEVEL)
         if overlap < MIN_SAME_SHEET_OVERLAP:
             sentence = (
                 f"its paint overlaps with that of {photos[0][0]} by {overlap:.2f}, less than "
@@ -256,8 +256,8 @@ def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
         is_painted = is_painted.astype(bool)
         moved, found = drawn, [stroke_found for stroke_found in located if stroke_found.stroke.is_drawn]
         strokes = [stroke for stroke in strokes if stroke.is_drawn]
-    predicted = _overlap(_mask([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
-    _refuse_other_job(max(predicted, _overlap(_mask([*chain(*moved)], canvas), is_painted)), name)
+    predicted = overlap_of_masks(_mask([*chain(*(stroke.predicted for stroke in strokes))], canvas), is_painted)
+    _refuse_other_job(max(predicted, overlap_of_masks(_mask([*chain(*moved)], canvas), is_painted)), name)
     sheet, spread_mm = _fit_sheet_pose([stroke_found.row for stroke_found in found], common, middle)
     has_target = all(stroke.target is not None for stroke in strokes)
     target_rings = [*chain(*(stroke.target if has_target else stroke.predicted for stroke in strokes))]
@@ -266,7 +266,7 @@ def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
         for stroke_found in found
     ]
     as_painted, placed, each_placed = (
-        _overlap(_mask(rings, canvas), is_painted)
+        overlap_of_masks(_mask(rings, canvas), is_painted)
         for rings in (target_rings, [sheet.moved(ring, middle) for ring in target_rings], [*chain(*each)])
     )
     marks = _mask([*chain(*(stroke_found.locate(stroke_found.stroke.predicted) for stroke_found in found))], canvas)
@@ -381,7 +381,8 @@ def _mask(rings: list[np.ndarray], canvas: Canvas) -> np.ndarray:
     return canvas.filled(rings) > 0.5 if rings else np.zeros(canvas.shape, bool)
 
 
-def _overlap(mask_a: np.ndarray, mask_b: np.ndarray) -> float:
+def overlap_of_masks(mask_a: np.ndarray, mask_b: np.ndarray) -> float:
+    """Return the intersection over union of two masks, 1 if both are empty."""
     union = float((mask_a | mask_b).sum())
     return float((mask_a & mask_b).sum()) / union if union else 1.0
 
@@ -434,12 +435,14 @@ def _locate_stroke(
     whole = Placed((float(shift[0]), float(shift[1])), common.turn_rad + found.turn_rad, found.wider_mm, found.found)
     row = Compared(
         stroke.stroke,
-        _overlap(local_canvas.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
-        _overlap(local_canvas.filled(stroke.predicted) > 0.5, is_mine),
+        overlap_of_masks(local_canvas.filled(stroke.target) > 0.5, is_mine) if stroke.target else None,
+        overlap_of_masks(local_canvas.filled(stroke.predicted) > 0.5, is_mine),
         whole,
         (float(start[0]), float(start[1])),
         float((at_last & ~(window_paint / strength > EDGE_LEVEL)).sum()) / float(max(at_last.sum(), 1)),
-        _overlap(local_canvas.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine),
+        overlap_of_masks(
+            local_canvas.filled(locate(grow_rings(stroke.predicted, found.wider_mm), found)) > 0.5, is_mine
+        ),
     )
     return _LocatedStroke(stroke, row, lambda each: locate(each, found))
 

@@ -15,6 +15,7 @@ import numpy as np
 from .. import _core
 from ..geometry.arc_length import knots, parameters_at
 from ..read.svg.paths.power_stroke import johan
+from .svg_text import printable, quoted
 
 WIDTH_TOLERANCE = 0.02  # of the width: a width that varies less is written as constant
 _OUTLINE_TOLERANCE_MM = 0.01
@@ -46,7 +47,7 @@ def lines_svg(strokes: list, sheet_mm: tuple[float, float], title: str = "") -> 
     lines = [
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"',
         f' width="{width:.9g}mm" height="{height:.9g}mm" viewBox="0 0 {width:.9g} {height:.9g}">',
-        f"<title>{escape(_printable(title), quote=False)}</title>",
+        f"<title>{escape(printable(title), quote=False)}</title>",
         "<defs>",
         *(effect for effect, _ in drawn if effect),
         "</defs>",
@@ -54,7 +55,7 @@ def lines_svg(strokes: list, sheet_mm: tuple[float, float], title: str = "") -> 
     for layer, pairs in groupby(zip(first_passes, drawn, strict=True), key=lambda pair: pair[0].layer):
         paths = [path for _, (_, path) in pairs]
         if layer:
-            lines += [f'<g inkscape:groupmode="layer" inkscape:label={_quoted(layer)}>', *paths, "</g>"]
+            lines += [f'<g inkscape:groupmode="layer" inkscape:label={quoted(layer)}>', *paths, "</g>"]
         else:
             lines += paths
     return "\n".join([*lines, "</svg>", ""])
@@ -80,7 +81,7 @@ def _effect_and_path(stroke, name: str, height_mm: float) -> tuple[str, str]:
     half_widths = np.array([half for _, half in stroke.half_width])
     line = _line_path(stroke, height_mm)
     outline_attribute = ' data-outline="yes"' * bool(stroke.target_mm)
-    path_start = f'<path id="{name}" data-stroke={_quoted(stroke.id)}{outline_attribute}{_setting_attributes(stroke)}'
+    path_start = f'<path id="{name}" data-stroke={quoted(stroke.id)}{outline_attribute}{_setting_attributes(stroke)}'
     if np.ptp(half_widths) <= WIDTH_TOLERANCE * half_widths.max():
         style = (
             f"fill:none;stroke:{stroke.colour};stroke-width:{half_widths.min() + half_widths.max():.6g};"
@@ -157,15 +158,7 @@ def _setting_attributes(stroke) -> str:
     named = {name: getattr(stroke.settings, key) for key, name in _SETTINGS.items()}
     words = {True: "yes", False: "no"}
     return "".join(
-        f" data-brushsvg-{name}={_quoted(words[value] if isinstance(value, bool) else f'{value}')}"
+        f" data-brushsvg-{name}={quoted(words[value] if isinstance(value, bool) else f'{value}')}"
         for name, value in named.items()
         if value is not None
     )
-
-
-def _printable(text: str) -> str:
-    return "".join(letter if letter.isprintable() else " " for letter in text)
-
-
-def _quoted(text: str) -> str:
-    return f'"{escape(_printable(text))}"'

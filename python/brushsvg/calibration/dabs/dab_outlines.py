@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import Error, Notice
 from ...geometry.polylines import lengths
-from ...geometry.rings import signed_area
+from ...geometry.rings import centroid, signed_area
 from ...geometry.rotation import rotation
 
 POINT_SPACING_MM = 0.05  # greatest distance of the points along a ring
@@ -205,13 +205,6 @@ def _close_densely(ring: np.ndarray) -> np.ndarray:
     return np.column_stack([np.interp(places, at, closed[:, k]) for k in (0, 1)])
 
 
-def _centroid(ring: np.ndarray) -> np.ndarray:
-    """Return the centroid of the area of a ring."""
-    after = np.roll(ring, -1, axis=0)
-    cross = ring[:, 0] * after[:, 1] - after[:, 0] * ring[:, 1]
-    return (ring + after).T @ cross / (3 * cross.sum())
-
-
 @dataclass(frozen=True)
 class _Sheet:
     """The pose of the sheet: shifted, and turned about its middle."""
@@ -232,7 +225,7 @@ def _fit_sheet(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab
     """
     while True:
         depths = sorted({dab.depth_mm for dab in dabs})
-        found = np.array([_centroid(_outer_ring(dab)) for dab in dabs])
+        found = np.array([centroid([_outer_ring(dab)]) for dab in dabs])
         place = np.array([dab.place_mm for dab in dabs])
         columns = np.zeros((len(dabs), 2, 3 + 2 * len(depths)))
         columns[:, :, :2] = np.eye(2)
@@ -267,7 +260,7 @@ def _fit_axis_offset(seen: list[PatchDab]) -> tuple[Callable[[float], float], fl
     The distance is smaller than the scatter of single dabs. The significance is its ratio to the distance by chance.
     """
     depths = np.array([patch_dab.dab.depth_mm for patch_dab in seen])
-    off_axis = np.array([_centroid(patch_dab.outline_mm)[1] for patch_dab in seen])
+    off_axis = np.array([centroid([patch_dab.outline_mm])[1] for patch_dab in seen])
     wide = np.array([np.ptp(patch_dab.outline_mm[:, 1]) for patch_dab in seen])
     usual = {depth: float(wide[depths == depth].mean()) for depth in depths.tolist()}
     columns = np.array([usual[depth] for depth in depths.tolist()])  # a shape that grows keeps its asymmetry
@@ -293,7 +286,7 @@ class _DabsOfDepth:
 
     def __init__(self, depth: float, seen: list[PatchDab], across_mm: float):
         self.depth = depth
-        middles = np.array([_centroid(patch_dab.outline_mm) for patch_dab in seen])
+        middles = np.array([centroid([patch_dab.outline_mm]) for patch_dab in seen])
         self.middle = np.array([middles[:, 0].mean(), across_mm])
         self.seen = [
             replace(

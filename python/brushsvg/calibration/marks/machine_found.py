@@ -146,14 +146,14 @@ def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str
     is_bent = has_field(found)
     lines = ["[machine]"] if set(parts) - {"backlash", "field"} or any(backlash) or is_bent else []
     if "lean" in parts:
-        lines.append(f"lean_mm_per_mm = {_format_pair(machine.lean_mm_per_mm)}  {SERVO_REMARK}")
+        lines.append(f"lean_mm_per_mm = {format_pair(machine.lean_mm_per_mm)}  {SERVO_REMARK}")
     if "axes" in parts:
-        lines += [f"scale = {_format_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
+        lines += [f"scale = {format_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
     if "tilt" in parts:
         height = fit.height_mm - float(np.dot(machine.tilt_mm_per_mm, fit.centre_mm))
         lines += [
             f"height_mm = {height:.3f}  {PEN_REMARK}",
-            f"tilt_mm_per_mm = {_format_pair(machine.tilt_mm_per_mm)}  {SERVO_REMARK}",
+            f"tilt_mm_per_mm = {format_pair(machine.tilt_mm_per_mm)}  {SERVO_REMARK}",
         ]
     if any(backlash):
         lines.append("backlash_mm = [{:.3f}, {:.3f}]  ".format(*backlash) + ARM_REMARK)
@@ -171,7 +171,7 @@ def field_lines(machine) -> list[str]:
     return [f"field_mm = [{rows}]", f"field_middle_mm = {middle}", f"field_reach_mm = {reach}"]
 
 
-def _format_pair(values) -> str:
+def format_pair(values) -> str:
     return "[{:.5f}, {:.5f}]".format(*values)
 
 

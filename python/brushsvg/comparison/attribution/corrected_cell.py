@@ -9,7 +9,7 @@ from collections.abc import Container
 
 import numpy as np
 
-from ...calibration.marks.machine_found import field_lines
+from ...calibration.marks.machine_found import field_lines, format_pair
 from ...machine.cells.cell import LEAST_BACKLASH_MM, Machine
 from .faults import Faults
 from .model import MACHINE, PAPER
@@ -114,13 +114,13 @@ def as_table(machine: Machine) -> list[str]:
     """
     lines = ["[machine]"]
     if any(machine.lean_mm_per_mm):
-        lines.append(f"lean_mm_per_mm = {_format_pair(machine.lean_mm_per_mm)}")
+        lines.append(f"lean_mm_per_mm = {format_pair(machine.lean_mm_per_mm)}")
     if machine.skew or machine.scale != (1.0, 1.0):
-        lines += [f"scale = {_format_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
+        lines += [f"scale = {format_pair(machine.scale)}", f"skew = {machine.skew:.5f}"]
     if machine.height_mm or any(machine.tilt_mm_per_mm):
         lines += [
             f"height_mm = {machine.height_mm:.3f}",
-            f"tilt_mm_per_mm = {_format_pair(machine.tilt_mm_per_mm)}",
+            f"tilt_mm_per_mm = {format_pair(machine.tilt_mm_per_mm)}",
         ]
     if machine.map_mm:
         rows = ", ".join("[{:.3f}, {:.3f}, {:.4f}]".format(*row) for row in machine.map_mm)
@@ -130,7 +130,3 @@ def as_table(machine: Machine) -> list[str]:
     if machine.field_mm:
         lines += field_lines(machine)
     return lines
-
-
-def _format_pair(values) -> str:
-    return "[{:.5f}, {:.5f}]".format(*values)

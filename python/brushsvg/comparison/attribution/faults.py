@@ -21,7 +21,7 @@ from ..edge_offsets import (
     sample_outlines,
     signed_offsets_mm,
 )
-from ..photographs import Comparison, TargetStroke
+from ..photographs import Comparison, TargetStroke, overlap_of_masks
 from ..placing import Canvas
 from .model import BRUSH, MACHINE, PAPER, SHEET, FaultModel, Number
 
@@ -225,7 +225,7 @@ def _gains_of_causes(model, names, strokes, fault_values, own, covariance, outli
 
     def reached(numbers, places):
         rings = [ring for rings in _rings_with_own_places(model, names, numbers, places) for ring in rings]
-        return _overlap(canvas.filled(rings) > 0.5, target)
+        return overlap_of_masks(canvas.filled(rings) > 0.5, target)
 
     overlap = reached(fault_values, own)
     shares = []
@@ -286,17 +286,12 @@ def _missing_paint_gain(model, names, fault_values, own, found: Comparison, whol
     for each in rings:
         inner = canvas.filled(each) > 0.5 if each else np.zeros_like(painted)
         missing |= inner & ~painted & target
-    overlap = _overlap(painted, target)
-    gain = _overlap(painted | missing, target) - overlap
+    overlap = overlap_of_masks(painted, target)
+    gain = overlap_of_masks(painted | missing, target) - overlap
     around = float(sum(np.hypot(*np.diff(ring, axis=0).T).sum() for each in rings for ring in each))
     doubt = MODEL_EDGE_ERROR_MM * around * canvas.px_per_mm**2 / max(float(missing.sum()), 1.0)
     gain, low, high = (gain * max(0.0, 1 - times * doubt) for times in (1.0, 2.0, 0.0))
     return Share(MISSING_PAINT, gain, low, high if gain else 0.0)
-
-
-def _overlap(mask_a: np.ndarray, mask_b: np.ndarray) -> float:
-    union = float((mask_a | mask_b).sum())
-    return float((mask_a & mask_b).sum()) / union if union else 1.0
 
 
 def _inseparable_causes(model: FaultModel, covariance, slopes) -> tuple[tuple[str, str], ...]:
