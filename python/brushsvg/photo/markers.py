@@ -359,7 +359,8 @@ def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=
     marker = np.repeat(sorted(corners), 4)
     mm = np.vstack([printed.corners_mm[i] for i in sorted(corners)])
     px = np.vstack([corners[i] for i in sorted(corners)])
-    marker, mm, px = (rms_of_marker[np.isfinite(px).all(axis=1)] for rms_of_marker in (marker, mm, px))
+    is_seen = np.isfinite(px).all(axis=1)
+    marker, mm, px = marker[is_seen], mm[is_seen], px[is_seen]
     middle = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2])
     radius = float(np.hypot(*middle))
     middle = middle + shift_px
@@ -426,7 +427,7 @@ def _fit_without_covered(view: View, corners: dict, clear: dict, printed: Printe
             _fit_view(corners | {k: _mask_corners(corners[k], hidden[k]) for k in chosen}, printed, shape)
             for chosen in combinations(sorted(hidden), count)
         ]
-        others = min(fits, key=lambda is_clear: is_clear.residual_mm)
+        others = min(fits, key=lambda fit: fit.residual_mm)
         if others.residual_mm < others.most_residual_mm / MIN_COVERED_FACTOR:
             return others
     return view

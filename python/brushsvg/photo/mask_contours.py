@@ -17,7 +17,6 @@ def mask_outlines(paint: np.ndarray, level: float, mm_per_px: float, left_top_mm
     the top; left_top_mm: the picture's upper left corner, which is a corner of a pixel and not its centre; least_mm2:
     parts and holes with a smaller area are left out.
     """
-    _rows, _columns = paint.shape
     border = cv2.copyMakeBorder(np.float32(paint), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0.0)
     fine = cv2.resize(border, None, fx=UPSAMPLING, fy=UPSAMPLING, interpolation=cv2.INTER_LINEAR)
     above = np.uint8(fine > level)

@@ -150,7 +150,7 @@ def _landing_rows(trace, landed: np.ndarray) -> np.ndarray:
 
 
 def _painting_rows(move: Move, start_mm: np.ndarray, trace, first_pose: int, program: Program) -> np.ndarray:
-    """Return the rows of the trace from pose `first` through the move's points."""
+    """Return the rows of the trace from pose first_pose through the move's points."""
     pose = np.asarray(trace.pose)
     chosen = (pose > first_pose) & (pose <= first_pose + len(move.points_mm))
     along_mm = np.concatenate([[0.0], distances(move, start_mm)])

@@ -245,7 +245,8 @@ def _refuse_other_frames(found: list) -> None:
                 f"marks[{i}]",
                 code="mark-off-stroke",
             )
-    if (worst := int(own_distances.argmax())) is not None and own_distances[worst] > MAX_MARK_DISTANCE_MM:
+    worst = int(own_distances.argmax())
+    if own_distances[worst] > MAX_MARK_DISTANCE_MM:
         raise Error(
             f"the mark of stroke {found[worst][0]!r} is {own_distances[worst]:.0f} mm from it, more than "
             f"{MAX_MARK_DISTANCE_MM:g} mm: are plan and marks those of one sheet, both in mm from its "

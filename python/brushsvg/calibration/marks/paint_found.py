@@ -102,7 +102,7 @@ def _share_in_residuals(one: tuple[float, float], other: tuple[float, float]) ->
     return float(np.clip((one[1] - other[1]) / (other[0] - one[0]), MIN_KEPT_SHARE, 1.0))
 
 
-def restore_fresh_marks(painted: Painted, calibration: MarkCalibration, rate_per_m: float) -> list:
+def restore_fresh_marks(painted: Painted, calibration: MarkCalibration, rate_per_m: float) -> Painted:
     """Return the marks of a brush that is freshly dipped everywhere.
 
     Edges are moved away from the path of the widest section by the width that is lost.

@@ -82,7 +82,7 @@ def best_predicting(
     if not results:
         return largest_overlap(targets, begin, options, look)
     left_out = {kind: np.vstack([result.overlaps for result in results[kind]]).mean(axis=0) for kind in results}
-    kind = max(left_out, key=lambda result: left_out[result].sum())
+    kind = max(left_out, key=lambda name: left_out[name].sum())
     search = Search(begin, options, targets, mean_place(targets))
     starts = [result.x for result in results[kind] if len(result.x) == len(search.begin)]
     if starts:
@@ -90,7 +90,7 @@ def best_predicting(
     else:  # the parts have fewer marks, which determine fewer numbers of a law
         kind, x = _search_few(search, targets, look, kind)
     best = _finish_search(search, kind, x, targets, look)
-    means = {result: (float(in_place), float(moved)) for result, (in_place, moved) in left_out.items()}
+    means = {name: (float(in_place), float(moved)) for name, (in_place, moved) in left_out.items()}
     return replace(best, parts=len(results["edges"]), left_out=means)
 
 

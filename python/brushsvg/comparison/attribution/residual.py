@@ -16,8 +16,8 @@ def subtract_faults(
 ) -> Comparison:
     """Return the comparison without the faults that a corrected cell compensates.
 
-    certain: these faults, from `corrected_cell.sure`; plan: as it was sent to the machine; strokes: the strokes that
-    were compared.
+    certain: these faults, from `corrected_cell.significant_part`; plan: as it was sent to the machine; strokes: the
+    strokes that were compared.
     """
     names = tuple(stroke.stroke for stroke in strokes if stroke.predicted)
     model = FaultModel(plan, brush, names, found.middle_mm)

@@ -27,7 +27,8 @@ class Curve:
     closed: whether the line ends where it begins.
     widths: (n, 2), at the start and end of each cubic; None if the entity has no widths. A width of 0 is drawn with
     the line weight of the entity.
-    anew: (n,), whether the pattern of a line type restarts at each cubic; None if it continues along the whole line.
+    pattern_restarts: (n,), whether the pattern of a line type restarts at each cubic; None if it continues along the
+    whole line.
     """
 
     cubics: np.ndarray

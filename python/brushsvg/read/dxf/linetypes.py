@@ -30,8 +30,8 @@ class DashCutter:
     def cut(self, element: Element, pen: Pen, pattern_restarts: list[np.ndarray]) -> Element:
         """Return the element with each dash as a sub-path.
 
-        anew: for each sub-path, the indices of the cubics at which the pattern restarts, without the first cubic.
-        Raises Error if there are too many dashes.
+        pattern_restarts: for each sub-path, the indices of the cubics at which the pattern restarts, without the first
+        cubic. Raises Error if there are too many dashes.
         """
         if pen.line_type is None or element.fill_rule:
             return element
