@@ -401,6 +401,15 @@ def test_no_depth_is_rounded_beyond_the_brush_range(deepest):
     assert max(stroke.depth_mm for stroke in made.strokes) == pytest.approx(deepest, abs=0.01)
 
 
+@pytest.mark.parametrize("dabs", [False, True])
+def test_a_machine_that_does_not_reach_the_depths_of_the_brush_is_refused(dabs):
+    brush = find_brush("round-6")
+    for least, reached in ((0, 0), (0.5, 0.3), (0.5, 0.5)):
+        brush.depth_range_mm = (least, 10)
+        with refused(f"depth-out-of-range {reached} {least} 10 heights.lowest_mm", "brush"):
+            chart(brush, A4, deepest_mm=reached, dabs=dabs)
+
+
 @pytest.mark.parametrize("sheet", ["9x9", "1x5000"])
 def test_a_sheet_without_room_for_its_markers_is_refused(sheet, tmp_path, capsys):
     status, _, ((_, reported),) = in_json(capsys, "chart", "-o", tmp_path / "c.json", "--sheet", sheet)

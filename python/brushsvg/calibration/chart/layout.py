@@ -168,7 +168,8 @@ def chart(
     whose lag is known. one_load: paint with one load of paint, in an order that separates the narrowing of marks from
     depth.
 
-    Raises Error for a pen, and for a sheet that is too small. The message names a sufficient size.
+    Raises Error for a pen, for a machine that does not reach the depths of the brush, and for a sheet that is too
+    small. The message then names a sufficient size.
     """
     require_type(brush, _core.Brush, "a brush")
     _core.check(brush)
@@ -185,6 +186,20 @@ def chart(
     if brush.is_rigid():
         sentence = f"brush {brush.name} is a pen: it has no lag that could be calibrated"
         raise Error(sentence, "brush", code="lag-not-calibrated")
+    least, most = brush.depth_range_mm
+    if deepest_mm <= least:
+        sentence = (
+            f"the machine reaches a depth of {deepest_mm:g} mm, and brush {brush.name} is used between {least:g} and "
+            f"{most:g} mm"
+        )
+        raise Error(
+            sentence,
+            "brush",
+            deepest_mm,
+            (least, most),
+            code="depth-out-of-range",
+            advice="lower heights.lowest_mm of the cell if the brush may go deeper",
+        )
     side = _marker_side(sheet_mm)
     margins = side + QUIET * side + 2 * EDGE_MM  # space of the edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - margins
