@@ -372,3 +372,17 @@ TEST_CASE("the reported error is the measured one, also for plans made with a fi
         CHECK_MESSAGE(std::abs(seen.largest_mm - made.tracking_error.largest_mm) < 1e-9, "at " << tolerance_mm);
     }
 }
+
+TEST_CASE("a stroke whose thin start has its widest section at the tip is narrowed in a finite number of steps") {
+    // Steps were a share of the distance from the tip to the widest section at the start. Where it is 0, the search
+    // never ended, and its widths filled the memory.
+    Brush brush = shipped("round-6");
+    brush.tip_to_widest.floor_slope = 0.0;
+    CompensateOptions options;
+    options.start = Terminal::automatic;
+    const Stroke comma = stroke_of(polyline({V(20, 50), V(80, 50)}), {{0.0, 0.3}, {0.009, 1.5}, {1.0, 1.5}});
+    const CompensatedPass found = compensate(comma, brush, options);
+    CHECK(found.pass.poses_mm.rows() > 2);
+    CHECK(found.pass.poses_mm.rows() < 200);
+    CHECK(found.pass.poses_mm.allFinite());
+}

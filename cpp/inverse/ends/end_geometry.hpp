@@ -34,6 +34,7 @@ struct EndTuning {
     double hiding_share = 0.8;
     /// Step between the knots of a narrowing, in lengths of the footprint's rear.
     double narrowing_step = 1.0 / 12.0;
+    double min_narrowing_step_mm = 1e-3;  ///< where that length is 0: no finer change of a width is visible
     /// Largest distance from a line's start to the middle of the ball in which it begins.
     double max_ball_distance = 2.0;
     /// Where marks narrow faster, the brush is pressed deeper: a disc would be a knob.

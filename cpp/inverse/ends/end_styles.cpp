@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "brushsvg/checkpoint.hpp"
 #include "brushsvg/footprint.hpp"
 #include "brushsvg/region.hpp"
 #include "inverse/landing.hpp"
@@ -69,8 +70,10 @@ std::optional<NarrowedStroke> narrow_start(const Stroke& stroke, const Brush& br
                                            double rear_mm) {
     Stroke out = stroke;
     out.half_width.clear();
-    const double step_mm = kEndTuning.narrowing_step * brush.tip_to_widest(depth_of(stroke, brush, 0.0));
+    const double step_mm = std::max(kEndTuning.min_narrowing_step_mm,
+                                    kEndTuning.narrowing_step * brush.tip_to_widest(depth_of(stroke, brush, 0.0)));
     for (double s = from_mm; s < length_mm; s += step_mm) {
+        checkpoint();
         const double at = s / length_mm, full = depth_of(stroke, brush, at), least = brush.depth_range_mm[0];
         const auto sticks_out = [&](double depth) { return s - brush.tip_to_widest(depth) < rear_mm; };
         if (sticks_out(full)) {
