@@ -87,11 +87,12 @@ void check_lag(const Brush& brush) {
         }
         return;
     }
-    const LawMinimum worst = find_minimum(brush.lag, lo, hi);
+    // A brush passes the depths above its range when it is set down and lifted.
+    const LawMinimum worst = find_minimum(brush.lag, 0.0, hi);
     if (worst.value < 0.0)
         throw Error("law-negative",
-                    format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths %.2f and ",
-                           worst.value, worst.depth, lo) +
+                    format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths 0.00 and ",
+                           worst.value, worst.depth) +
                         format("%.2f mm", hi),
                     "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
     // A lag of zero is only valid at depth 0, where the lever begins to grow.

@@ -74,7 +74,7 @@ void require_usable(const Brush& brush) {
         throw Error("out-of-range",
                     format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kMaxDepthMm),
                     "depth_range_mm");
-    require_law(brush.lag, lo, hi, true, "lag");
+    require_law(brush.lag, 0.0, hi, true, "lag");
     require_law(brush.tip_gap, lo, hi, false, "tip_gap");
     require_law(brush.tip_to_widest, lo, hi, false, "tip_to_widest");
     require_law(brush.half_width, lo, hi, true, "half_width");

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "brushsvg/simulate.hpp"
 #include "refusal.hpp"
 #include "round6.hpp"
 
@@ -24,6 +25,21 @@ TEST_CASE("the article's printed coefficients make the lag negative and are refu
     Brush brush = shipped("round-6");
     brush.lag.coefficients.back() = 2.1e-4;
     CHECK(agrees(refusal(brush), "law-negative", "lag", {"-5.200", "10.00"}));
+}
+
+TEST_CASE("a lag that is negative at depths smaller than the least one is refused") {
+    // The brush passes these depths when it is set down and lifted. Its patch would be ahead of the handle there.
+    Brush brush = shipped("round-6");
+    brush.depth_range_mm[0] = 2.0;
+    brush.lag.coefficients = {-1.0, 1.0};
+    CHECK(agrees(refusal(brush), "law-negative", "lag", {"-1.000", "0.00"}));
+    Pass pass;
+    pass.poses_mm.resize(3, 3);
+    pass.poses_mm << 0, 0, -0.5, 20, 0, -0.5, 20, 20, -0.5;
+    CHECK(agrees(refusal([&] { simulate(pass, brush); }), "out-of-range", "lag"));
+    brush.lag.floor = 0.0;
+    CHECK(!refusal(brush));
+    CHECK(simulate(pass, brush).contact_mm.row(0).norm() == 0.0);
 }
 
 TEST_CASE("a lag that is zero is refused, except at depth 0 alone") {
