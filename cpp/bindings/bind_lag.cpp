@@ -111,7 +111,11 @@ py::list follow_lags(const std::vector<Pass>& passes, const std::vector<PassMark
         throw Error("sizes-differ", std::to_string(passes.size()) + " passes and marks of " +
                                         std::to_string(marks.size()) + ": each pass needs its own");
     std::vector<LagLaw<double>> laws;
-    for (const Profile& lag : lags) laws.push_back(make_law_between(lag, depth_range_mm[0], depth_range_mm[1]));
+    for (const Profile& lag : lags) {
+        make_law_between(lag, depth_range_mm[0], depth_range_mm[1]);  // throws for a lag that is not positive
+        // the brush passes the depths above its range when it is set down and lifted
+        laws.push_back(make_law(pieces(lag, 0.0, depth_range_mm[1] + 1e-9)));
+    }
     std::vector<std::vector<FollowedRows>> followed(passes.size());
     {
         const ReleasedGil unlocked;

@@ -94,3 +94,19 @@ def test_a_law_on_its_floor_does_not_move():
     law = _core.Profile([-1.0, 1.0], floor=0.0)
     moved = uncertainty._law_derivatives(law, np.array([0.5, 2.0]))
     np.testing.assert_allclose(moved, [[0, 0], [1, 2]])
+
+
+def _plan_of(*poses):
+    plan = _core.Plan()
+    plan.passes = [_core.Pass("s", poses)]
+    return plan
+
+
+def test_a_law_is_followed_at_depths_smaller_than_the_least_one():
+    brush = find_brush("round-6")
+    brush.depth_range_mm = (4, 10)
+    brush.lag = _core.Profile([0.5, 0.5], floor=2.0)  # its floor ends at 3 mm
+    plan = _plan_of([0, 0, -7], [50, 0, 0])
+    marks = _core.simulate(plan, brush)
+    ((contact, _),) = _core.follow_lags(plan.passes, marks.passes, [brush.lag], brush.depth_range_mm)
+    assert contact[:, :, 0] == pytest.approx(np.array(marks.passes[0].contact_mm), abs=1e-9)
