@@ -9,15 +9,18 @@ namespace {
 using namespace brushsvg;
 using Eigen::Vector2d;
 
-/// Visit the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1).
+/// Visit the pieces of a law that a straight move passes, in the order of travel: visit(piece, t0, t1). A move at one
+/// depth is on one piece, also if another one begins within the rounding of that depth.
 template <class Visit>
 void visit_pieces(const LagLaw<double>& law, double depth0, double depth1, Visit&& visit) {
     double from = 0.0;
     for (std::size_t k = 0; k < law.pieces.size(); ++k) {
         const auto& piece = law.pieces[depth1 >= depth0 ? k : law.pieces.size() - 1 - k];
         const double end = depth1 >= depth0 ? piece.hi : piece.lo;
-        const double to = k + 1 == law.pieces.size() ? 1.0 : (end - depth0) / (depth1 - depth0);
+        const bool is_last = k + 1 == law.pieces.size() || depth0 == depth1;
+        const double to = is_last ? 1.0 : std::clamp((end - depth0) / (depth1 - depth0), from, 1.0);
         visit(piece, from, to);
+        if (to == 1.0) return;
         from = to;
     }
 }

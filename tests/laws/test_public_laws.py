@@ -51,6 +51,14 @@ def test_theorem_1_solves_its_differential_equation():
     assert laws.alpha_on_ramp(1.2, 20.0, lag, 2.0, 8.0) == pytest.approx(0.160941370, abs=1e-9)
 
 
+def test_a_ramp_of_one_depth_next_to_a_floor_is_finite():
+    law = laws.Profile([0.5, 0.5], floor=2.0, floor_slope=0.01)
+    kink = 1.5 / 0.49  # here the floor ends
+    for depth in (kink, np.nextafter(kink, 0.0), kink - 5e-10, kink + 5e-10):
+        found = laws.alpha_on_ramp(1.0, 2.0, law, depth, depth)
+        assert found == pytest.approx(laws.alpha_after(1.0, 2.0, law(depth)), abs=1e-8)
+
+
 def test_arrays_broadcast_and_constant_depth_equals_a_ramp():
     alpha0, s, lag = (
         np.linspace(-1.5, 1.5, 5)[:, None, None],
