@@ -386,3 +386,15 @@ TEST_CASE("a stroke whose thin start has its widest section at the tip is narrow
     CHECK(found.pass.poses_mm.rows() < 200);
     CHECK(found.pass.poses_mm.allFinite());
 }
+
+TEST_CASE("a stroke that is thinner than a picture's finest pixel at one end is compensated") {
+    // The pixels in which its end styles are compared were a share of that width, and refused as too fine.
+    CompensateOptions options;
+    options.start = options.end = Terminal::automatic;
+    for (const double thin_mm : {5e-6, 1e-8, 1e-300})
+        for (const bool is_start : {true, false}) {
+            const std::vector<WidthKnot> widths{{0.0, is_start ? thin_mm : 1.5}, {1.0, is_start ? 1.5 : thin_mm}};
+            const Stroke taper = stroke_of(polyline({V(20, 50), V(80, 50)}), widths);
+            CHECK(compensate(taper, shipped("round-6"), options).tracking_error.largest_mm < 0.1);
+        }
+}

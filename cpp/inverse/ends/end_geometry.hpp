@@ -15,6 +15,7 @@ namespace brushsvg {
 struct EndTuning {
     /// Half the side of the square about an end in which trials are compared. A pointed footprint reaches back by 2.
     double view_half_side = 3.0;
+    double min_view_half_width_mm = 1e-5;  ///< half width of a finer end in that square: no picture is finer
     double flattening_tolerance = 0.1;  ///< tolerance of the flattened path that shows which parts are near the square
     /// No footprint further from the square paints in it: a pointed one reaches back by 2.
     double footprint_reach = 3.0;

@@ -21,7 +21,7 @@ class EndView {
         const Line line(target, brush);
         const PathEnd end = path_end(target, line, side);
         at_mm_ = end.at_mm;
-        half_mm_ = std::min(end.half_mm, brush.half_width_range_mm()[1]);
+        half_mm_ = std::max(kEndTuning.min_view_half_width_mm, std::min(end.half_mm, brush.half_width_range_mm()[1]));
         px_per_mm_ = kEndTuning.pixels_per_half_width / half_mm_;
         const double reach_mm = kEndTuning.view_half_side * half_mm_;
         window_ = {end.at_mm.x() - reach_mm, end.at_mm.y() - reach_mm, 2.0 * reach_mm, 2.0 * reach_mm};
