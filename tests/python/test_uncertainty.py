@@ -110,3 +110,13 @@ def test_a_law_is_followed_at_depths_smaller_than_the_least_one():
     marks = _core.simulate(plan, brush)
     ((contact, _),) = _core.follow_lags(plan.passes, marks.passes, [brush.lag], brush.depth_range_mm)
     assert contact[:, :, 0] == pytest.approx(np.array(marks.passes[0].contact_mm), abs=1e-9)
+
+
+def test_a_lag_of_zero_at_touch_down_has_a_finite_uncertainty():
+    brush = find_brush("round-6")
+    brush.lag = _core.Profile([0.0, 1.2, 0.01])
+    count = sum(len(getattr(brush, law).coefficients) for law in uncertainty.LAWS)
+    brush.covariance = np.diag([0.0, 1e-4, 1e-6, *[0.0] * (count - 3)]).tolist()
+    plan = _plan_of([0, 0, -7], [50, 0, -3], [50, 40, -3])
+    (effects,) = uncertainty._all_effects(plan, brush, _core.simulate(plan, brush))
+    assert np.isfinite(effects.d_middle).all() and np.any(effects.d_middle)

@@ -193,7 +193,8 @@ def _lag_steps(brush, step: np.ndarray):
     depths = np.linspace(*brush.depth_range_mm, 101)
     change = np.abs(np.polynomial.polynomial.polyval(depths, step))
     lag = brush.lag(depths)
-    part = min(1.0, 0.5 * float(np.min(lag / np.maximum(change, 1e-300))))
+    # Where the step changes nothing, it has no limit: a lag may be 0 at depth 0.
+    part = min(1.0, 0.5 * float(np.min(np.divide(lag, change, out=np.full_like(lag, np.inf), where=change > 0.0))))
     return *(changed_lag(brush, sign * part * step) for sign in (1, -1)), part
 
 
