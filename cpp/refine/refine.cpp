@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "brushsvg/coverage.hpp"
 #include "brushsvg/excess_turning.hpp"
@@ -95,8 +96,9 @@ struct Target {
     Coverage pixels;
 
     Target(Rings rings, double half_width_mm) : outline(std::move(rings)), area_mm2(area(outline)) {
-        Eigen::RowVector2d low = outline[0].colwise().minCoeff(), high = outline[0].colwise().maxCoeff();
+        Eigen::RowVector2d low = Eigen::RowVector2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
         for (const Ring& ring : outline) {
+            if (ring.rows() == 0) continue;
             low = low.cwiseMin(ring.colwise().minCoeff());
             high = high.cwiseMax(ring.colwise().maxCoeff());
         }
@@ -157,7 +159,7 @@ RefinedPass refine(const Stroke& stroke, const Brush& brush, const RefineOptions
     const double half_width = mean_half_width(stroke, brush);
     const PatchSamples base = patch_path(dense, brush, kSampleSpacingHalfWidths * half_width, kMaxSamples);
     const Rings target_rings = target_outline(stroke, kRingToleranceMm);
-    if (base.size() < 2 || brush.is_rigid() || target_rings.empty()) return closed;
+    if (base.size() < 2 || brush.is_rigid() || !(area(target_rings) > 0.0)) return closed;
     const double way = path_length(base);
     // a thread: no footprint shows in it
     if (way > kMaxSpacingHalfWidths * half_width * double(base.size())) return closed;

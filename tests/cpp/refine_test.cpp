@@ -292,6 +292,19 @@ TEST_CASE("dabs, hairlines, closed lines, pens and threads are painted or left u
     CHECK(refine(line(), pen).plan.pass.poses_mm == compensate(line(), pen).pass.poses_mm);
 }
 
+TEST_CASE("rings without points or area in a target outline change nothing") {
+    const Brush brush = shipped("round-6");
+    Stroke with_empty = head(), flat = line();
+    with_empty.target_mm.insert(with_empty.target_mm.begin(), Ring(0, 2));
+    CHECK(refine(with_empty, brush).plan.pass.poses_mm == refine(head(), brush).plan.pass.poses_mm);
+    Ring thread(3, 2);
+    thread << 20, 20, 50, 20, 35, 20;
+    flat.target_mm = {thread};
+    CHECK_FALSE(refine(flat, brush).is_improved);
+    flat.target_mm = {Ring(0, 2)};
+    CHECK_FALSE(refine(flat, brush).is_improved);
+}
+
 TEST_CASE("refined plans keep paint and tool on the sheet") {
     const Brush brush = shipped("round-6");
     // the target mark's end is on the edge of the sheet; the closed form begins 0.9 mm inside of it
