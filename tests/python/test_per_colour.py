@@ -78,6 +78,15 @@ def test_outdated_programs_of_removed_colours_are_reported(desk, capsys):
     ), reported
 
 
+def test_a_program_just_written_is_not_outdated(desk, capsys):
+    """The program at ./out.ngc was once taken for one of an earlier run, with the advice to delete it."""
+    for output in ("./out.ngc", f"{desk}//out.ngc"):
+        status, _, reported = in_json(capsys, "convert", "word.svg", "-o", "out.ngc")
+        assert status == 0 and not is_reported(reported, "programs-of-before")
+        status, _, reported = in_json(capsys, "convert", "word.svg", "-o", output)
+        assert status == 0 and not is_reported(reported, "programs-of-before"), output
+
+
 def test_a_page_has_the_same_sheet_in_each_program(desk, capsys):
     """Every program of a page has the same sheet.
 

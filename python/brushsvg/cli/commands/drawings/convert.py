@@ -113,7 +113,8 @@ def _report_leftover_programs(output: str, files: Collection[str], called_before
     name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
     existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
     existing += [each for each in called_before if path.with_name(each).exists()]
-    leftover = sorted({each for each in existing if str(path.with_name(each)) not in files}, key=_make_sort_key)
+    written = set(map(Path, files))  # a path may be spelled ./out.ngc
+    leftover = sorted({each for each in existing if path.with_name(each) not in written}, key=_make_sort_key)
     if not leftover:
         return []
     sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
