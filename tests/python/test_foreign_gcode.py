@@ -93,6 +93,18 @@ def test_a_servo_may_be_controlled_by_m300():
     assert drawn(unicorn) == {6: [80.0, 20.0], 8: [80.0, 60.0], 12: [140.0, 60.0]}
 
 
+@pytest.mark.parametrize("command", ["M203 X500 Y500 Z100", "M117 X10 Z9", "N7 M204 X9", "M84 X Y E", "M106 S50"])
+def test_settings_and_messages_of_marlin_do_not_move_the_pen(desk, capsys, command):
+    """M203 Z100 sets a speed limit. It was once read as a lift to 100 mm, and M106 S50 as a servo angle."""
+    dragged = "G21\nG90\nG0 Z5\nG0 X10 Y10\nG1 Z-2 F600\nG1 X60 Y10\n;\nG0 X10 Y30\nG1 X60 Y30\nG0 Z5\n"
+    servo = "G21\nG90\nM280 P0 S50\nG1 X20 Y20 F900\nM280 P0 S30\nG1 X80 Y20\n;\nG1 X80 Y60\nM280 P0 S50\n"
+    for text in (dragged, servo):
+        assert drawn(text.replace(";", command)) == drawn(text)
+    (desk / "dragged.gcode").write_text(dragged.replace(";", command))
+    status, _, reported = in_json(capsys, "check", "dragged.gcode", "--brush", "round-6")
+    assert status == 1 and is_reported(reported, "rapid-too-low 8"), reported
+
+
 def test_check_does_not_read_a_tone_as_a_servo_command(desk, capsys):
     (desk / "tone.gcode").write_text("G21\nG90\nM300 S30\nG1 X20 Y20 F900\nG1 X40 Y20\nM300 S50\nG1 X60 Y20\n")
     status, _, notices = in_json(capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo")
