@@ -136,6 +136,45 @@ def test_flags_have_no_effect_on_a_plan(desk, capsys):
         assert is_reported(reported, f"flag-without-effect {flag}"), reported
 
 
+@pytest.mark.parametrize(
+    ("command", "flags"),
+    [
+        ("convert lines.gcode -o out.ngc", "--units in --select #a --background keep"),
+        ("check d.ngc", "--scale 2 --layer Ink --width 3 --colour red --wide clamp --join --speed 5"),
+        ("preview d.svg -o seen.png --show strokes", "--colour red --join --detail fine --corners turn --speed 5"),
+        ("preview d.svg --all-brushes", "--pen z"),
+        ("cell place ur5e", "--scale 2 --layer Ink --wide passes"),
+        ("cell place ur5e d.svg", "--units in"),
+    ],
+)
+def test_flags_without_effect_are_reported(desk, capsys, command, flags):
+    """These flags were once dropped without a word."""
+    (desk / "lines.gcode").write_text("G21\nG0 Z5\nG0 X10 Y10\nG1 Z0 F600\nG1 X60 Y10\nG0 Z5\n")
+    assert main(["convert", "d.svg", "-o", "d.ngc"]) == 0
+    assert not is_reported(in_json(capsys, *command.split())[2], "flag-without-effect")
+    status, _, reported = in_json(capsys, *command.split(), *flags.split())
+    assert status == 0
+    for flag in (word for word in flags.split() if word.startswith("--")):
+        assert is_reported(reported, f"flag-without-effect {flag}"), (flag, reported)
+
+
+def test_settings_of_a_project_are_not_reported_as_without_effect(desk, capsys):
+    (desk / "brushsvg.toml").write_text(
+        'format = "brushsvg/project"\nversion = 1\n[defaults]\nwide = "clamp"\nbackground = "keep"\n'
+    )
+    for command in ("preview d.svg -o seen.png --show strokes", "convert d.svg -o d.ngc", "check d.ngc"):
+        status, _, reported = in_json(capsys, *command.split())
+        assert status == 0 and not is_reported(reported, "flag-without-effect"), (command, reported)
+
+
+def test_cell_place_takes_the_brush_that_the_drawing_names(desk, capsys):
+    """It once placed the job of another brush than convert paints with."""
+    (desk / "pen.svg").write_text((desk / "d.svg").read_text().replace("<svg", '<svg data-brushsvg-brush="liner-1"', 1))
+    for command in ("cell place ur5e pen.svg", "convert pen.svg -o pen.script --cell ur5e"):
+        status, _, reported = in_json(capsys, *command.split())
+        assert status == 1 and is_reported(reported, "width-out-of-reach liner-1"), (command, reported)
+
+
 @pytest.mark.parametrize("command", ["convert", "preview"])
 def test_flags_for_gcode_have_no_effect_on_an_svg(desk, capsys, command):
     out = ["-o", "d.ngc"] if command == "convert" else ["-o", "seen.png", "--show", "strokes"]

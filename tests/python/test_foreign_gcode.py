@@ -312,7 +312,7 @@ def test_convert_accepts_foreign_programs_and_check_agrees(desk, capsys, name):
 
 @pytest.mark.parametrize(
     "flags",
-    ["--width 3", "--scale 2", "--z-offset 1", "--speed 5", "--as stroke", "--lenient", "--wide clamp"],
+    ["--width 3", "--scale 2", "--z-offset 1", "--speed 5", "--as stroke", "--lenient", "--wide clamp", "--colour red"],
 )
 def test_check_refuses_flags_without_effect(desk, capsys, flags):
     (desk / "f.ngc").write_text(INCHES)

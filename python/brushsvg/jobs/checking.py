@@ -52,6 +52,7 @@ from .choices import (
     load_cell,
     make_options,
     path_of,
+    report_flags_without_effect,
     report_ineffective_flags,
     suffix_of,
 )
@@ -69,6 +70,8 @@ Warn = Callable[[str, Iterable[Notice]], object]
 MAX_BORDER_DIFFERENCE_MM = 0.02  # how far rounding of a plan can displace the edges of its paint
 # Choices that a program defines itself, in its header.
 SET_BY_PROGRAM = ("compensation", "tolerance", "lag", "terminals", "start", "end", "margin_strokes")
+# Flags that say how a drawing becomes strokes. Without a drawing, --sheet is still the sheet of the program.
+DRAWING_FLAGS = ("colour", "speed", *(flag for flag in (*LAYOUT_FLAGS, *PLANNING_FLAGS) if flag != "sheet"))
 
 
 @dataclass(frozen=True)
@@ -171,10 +174,10 @@ def check_program(
         cell = preflight.as_exact_as(load_cell(chosen.cell or header.cell), tolerance_mm)
         brush = load_brush(chosen.brush) or find_brush(header.brush)
         read = read_program(text, suffix, cell)
+    if chosen.input is None:
+        warn(path, report_flags_without_effect(chosen, DRAWING_FLAGS, "a program that is checked without its drawing"))
     warn(path, report_renamed(Path(path).stem, suffix, cell, POSTS[cell.language].name_in(text)))
     warn(cell.name, list_arm_notices(cell))
-    if chosen.input is None:
-        warn(path, report_ineffective_flags(drop_from_project(chosen, chosen.from_project)))
     program = _OwnProgram(path, text, header, read, cell, brush)
     if header.border_mm or header.heights_mm or header.first_mm:
         return _check_setup_program(program, chosen, stage, warn)
@@ -377,9 +380,9 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
         sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
         raise Error(sentence, code="nothing-to-compare")
     chosen = drop_from_project(chosen, {*CHOICES} - {"brush", "cell", "sheet", "paper_z"})
-    for flag in (*LAYOUT_FLAGS, *PLANNING_FLAGS, "speed", "z-offset", "corrections"):
+    for flag in (*DRAWING_FLAGS, "z-offset", "corrections"):
         given = getattr(chosen, CHOICE_BY_FLAG.get(flag, flag))
-        if flag not in ("sheet", "paper-z") and given:
+        if flag != "paper-z" and given:
             sentence = f"brushsvg did not write it: --{flag} would change nothing"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = load_cell(chosen.cell), load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)

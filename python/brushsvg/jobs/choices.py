@@ -306,7 +306,8 @@ def drop_overruled(chosen: Choices, settings: Mapping[str, object] | None = None
         return chosen
     settings = settings or {}
     made_here = {name for name in CHOICES if getattr(chosen, name) is not None} - {*chosen.from_project}
-    dropped = {*settings} - {"brush", "cell"} | _find_ineffective_choices(chosen)
+    ineffective = {CHOICE_BY_FLAG.get(flag, flag) for flag in _list_ineffective_flags(chosen.input)[0]}
+    dropped = {*settings} - {"brush", "cell"} | ineffective
     if "terminals" in made_here:
         dropped |= {"start", "end"}
     for option, excluded_by in (("fit", "scale"), ("scale", "fit")):
@@ -360,38 +361,37 @@ def _find_plan_brush(chosen: Choices) -> str | None:
     return name if name in brush_names() else None
 
 
-def _find_ineffective_choices(chosen: Choices) -> set[str]:
-    """Return the names of choices that have no effect on this kind of drawing."""
-    suffix, flags = suffix_of(chosen.input), ()
+def _list_ineffective_flags(source) -> tuple[tuple[str, ...], str]:
+    """Return the flags that have no effect on this kind of drawing, and the kind in words."""
+    suffix = suffix_of(source)
     if suffix == ".json":
-        flags = (*LAYOUT_FLAGS, *PLANNING_FLAGS)
-    elif suffix in GCODE:
-        flags = ("layer", "select", "units")
-    elif chosen.input is not None:
-        is_svg, is_dxf = suffix in (".svg", ".svgz"), suffix == ".dxf"
-        flags = (*GCODE_FLAGS, *["units"] * is_svg, *["select"] * is_dxf)
-    return {CHOICE_BY_FLAG.get(flag, flag) for flag in flags}
+        return (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
+    if suffix in GCODE:
+        return ("units", "select", "background"), "G-code"
+    if suffix == ".dxf":
+        return (*GCODE_FLAGS, "select", "background"), "a DXF"
+    if suffix in (".svg", ".svgz"):
+        return (*GCODE_FLAGS, "units"), "an SVG"
+    return (() if source is None else GCODE_FLAGS), "a drawing that is not G-code"
 
 
 def report_ineffective_flags(chosen: Choices) -> list[Notice]:
-    """Return notices on the flags that have no effect on this input.
+    """Return notices on the flags that have no effect on this kind of drawing."""
+    return report_flags_without_effect(chosen, *_list_ineffective_flags(chosen.input))
 
-    The poses of a plan are fixed, and some flags only apply to G-code. Without an input, as for a program that is
-    compared with no drawing, no flag that reads or plans a drawing has an effect.
+
+def report_flags_without_effect(chosen: Choices, flags: Iterable[str], subject: str) -> list[Notice]:
+    """Return a notice on each of these flags that was given.
+
+    Settings of a project file are no mistake: they serve many drawings and commands.
+
+    subject: what the flags have no effect on, in words.
     """
-    suffix = suffix_of(chosen.input)
-    flags, subject = GCODE_FLAGS, "a drawing that is not G-code"
-    if chosen.input is None:
-        flags = [flag for flag in (*LAYOUT_FLAGS, "colour", "speed", *PLANNING_FLAGS) if flag != "sheet"]
-        subject = "a program that is compared with no drawing"
-    elif suffix == ".json":
-        flags, subject = (*LAYOUT_FLAGS, *PLANNING_FLAGS), "a plan, whose poses are fixed"
-    elif suffix in GCODE:
-        flags = ()
+    names = {flag: CHOICE_BY_FLAG.get(flag, flag) for flag in flags}
     return [
         Notice("", f"--{flag} has no effect on {subject}", code="flag-without-effect", about=flag)
-        for flag in flags
-        if getattr(chosen, CHOICE_BY_FLAG.get(flag, flag)) is not None
+        for flag, name in names.items()
+        if getattr(chosen, name) is not None and name not in chosen.from_project
     ]
 
 

@@ -25,9 +25,7 @@ _IGNORED_CODES = {  # commands that do not change the way of a pen
 _MESSAGE_COMMAND = re.compile(r"(?:N\d+\s*)?M\s*0*[01](?![\d.])")
 # Commands of Marlin that do not change the way of a pen. All other words of their line are settings, as in M203 X500,
 # or a message, as in M117 X10.
-_MARLIN_COMMAND = re.compile(
-    r"(?:N\d+\s*)?M\s*0*(?:17|18|82|83|84|105|106|107|114|117|201|203|204|205|400)(?![\d.])"
-)
+_MARLIN_COMMAND = re.compile(r"(?:N\d+\s*)?M\s*0*(?:17|18|82|83|84|105|106|107|114|117|201|203|204|205|400)(?![\d.])")
 _MODAL_GROUPS = ({0, 1, 2, 3}, {20, 21}, {90, 91}, {90.1, 91.1})  # G codes: a line may have one of each group
 _KNOWN_LETTERS = set("GMNTXYZIJRFSPELHOQKD")
 # Commands whose S is a time, an angle or a tone, and not the power.

@@ -7,6 +7,7 @@ import os
 from dataclasses import replace
 
 from ....errors import Error, Notice
+from ....jobs.choices import LAYOUT_FLAGS, report_flags_without_effect
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine.arm.inverse_kinematics import is_installed, joints_of
 from ....machine.cells import cell_check as cell_checks
@@ -28,7 +29,7 @@ from ....machine.program import find_stations_out_of_limits
 from ....machine.writer import whole_program
 from ....model.library import find_brush
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
-from ...steps.options import load_brush, load_exact_cell, make_choices
+from ...steps.options import apply_drawing_settings, load_brush, load_exact_cell, make_choices
 from ...steps.output_places import check_outputs, print_list, suffix_of, write_outputs
 from ...steps.prepared import prepare
 
@@ -79,10 +80,13 @@ def cell_place(args) -> None:
             raise Error(sentence, code="arm-missing")
         joints = joints_of(cell.arm)
     if args.drawing:
-        work = prepare(make_choices(args, input=args.drawing, cell=args.input), cell)
+        chosen = apply_drawing_settings(make_choices(args, input=args.drawing, cell=args.input), args.drawing)
+        work = prepare(chosen, cell)
         sheet_mm = work.plan.sheet_mm
         program = whole_program(split_into_loads(work.plan, work.brush, cell), work.brush, cell)
     else:
+        flags = (flag for flag in (*LAYOUT_FLAGS, "wide") if flag != "sheet")
+        warn(args.input, report_flags_without_effect(make_choices(args, input=None), flags, "the whole sheet"))
         sheet_mm = args.sheet or DEFAULT_SHEET_MM
         program = over_sheet(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
     stage("following the joints")

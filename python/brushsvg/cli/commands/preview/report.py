@@ -6,7 +6,7 @@ The report says how close the paint comes to the drawing.
 from __future__ import annotations
 
 from ....jobs import outputs
-from ....jobs.choices import make_layout, make_read_options
+from ....jobs.choices import make_layout, make_read_options, report_ineffective_flags
 from ....jobs.options import DEFAULT_BRUSH
 from ....jobs.preparation import other_brushes, other_sizes
 from ....model.library import brush_names, find_brush
@@ -14,7 +14,7 @@ from ....notice_summary import summarize_notices
 from ....read import read_drawing
 from ....read.layout import arrange
 from ....show.evaluation import report
-from ...console import RefusedError, print_text, refuse_errors, stage
+from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.options import apply_drawing_settings, make_choices, make_options
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 from ...steps.prepared import prepare_and_simulate
@@ -54,6 +54,7 @@ def preview_report(args) -> None:
 def _report_all_brushes(args) -> None:
     # The default brush takes the place of the brush that the drawing names.
     chosen = apply_drawing_settings(make_choices(args, brush=DEFAULT_BRUSH), args.input)
+    warn(args.input, report_ineffective_flags(chosen))
     names = [*brush_names(), *(name for name in args.brush or () if name not in brush_names())]
     brushes = []
     for name in names:

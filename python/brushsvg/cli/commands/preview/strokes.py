@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 from ....errors import Error, Notice
-from ....jobs.choices import make_layout, make_read_options, report_ineffective_flags
+from ....jobs.choices import (
+    PLANNING_FLAGS,
+    make_layout,
+    make_read_options,
+    report_flags_without_effect,
+    report_ineffective_flags,
+)
 from ....jobs.options import DEFAULT_BRUSH
 from ....jobs.preparation.preparation import limit_depth
 from ....model.library import find_brush
@@ -15,11 +21,15 @@ from ...console import refuse_errors, stage, warn
 from ...steps.options import apply_drawing_settings, make_choices, make_options
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 
+# Flags that change strokes after they are read.
+LATER_FLAGS = ("colour", "speed", *(flag for flag in PLANNING_FLAGS if flag != "script"))
+
 
 def preview_strokes(args) -> None:
     check_outputs(args, args.output)
     chosen = make_choices(args)
-    warn(args.input, report_ineffective_flags(chosen))
+    later_flags = report_flags_without_effect(chosen, LATER_FLAGS, "the strokes as they are read")
+    warn(args.input, [*report_ineffective_flags(chosen), *later_flags])
     with refuse_errors(args.input):
         stage("reading")
         design = arrange(read_drawing(args.input, make_read_options(chosen)), make_layout(chosen))
