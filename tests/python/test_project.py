@@ -635,6 +635,8 @@ def test_init_without_a_terminal_uses_flags_as_answers(desk, capsys):
     assert "brush" not in brushsvg.read_project(desk / "w" / NAME).settings
     for more, code in (
         ("--cell ur5", "cell-unknown ur5e"),
+        ("--cell=", "cell-unknown"),  # as with "$CELL" of a shell; it was once the default cell
+        ("--cell ur5e --brush=", "brush-unknown"),
         ("--cell ur5e --brush roun-6", "brush-unknown round-6"),
         ("--cell ur5e --brush mine.json --speed 300", "speed-out-of-range 300 mine 25"),
     ):

@@ -32,8 +32,8 @@ def init_project(args) -> None:
     check_outputs(args, args.output, sources=[args.output])
     folder = os.path.dirname(os.path.abspath(args.output))
     with refuse_errors(""):  # errors name the brush or cell themselves
-        cell = _read_cell(args.cell, folder) if args.cell else None
-        brush = _read_brush(args.brush, folder) if args.brush else None
+        cell = None if args.cell is None else _read_cell(args.cell, folder)
+        brush = None if args.brush is None else _read_brush(args.brush, folder)
     paper, speed = args.sheet, args.paint_speed
 
     def read_speed(text: str, folder: str) -> float | None:
