@@ -83,12 +83,22 @@ def test_a_missing_source_tree_is_reported_with_the_zip_to_use(profile, tmp_path
     assert not profile.exists()
 
 
+def write_damaged(path):
+    """Write a zip whose compressed bytes are no data."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("brushsvg_program.py", "x = 1\n" * 1000)
+    data = bytearray(path.read_bytes())
+    data[50:58] = b"\xff" * 8
+    path.write_bytes(data)
+
+
 def test_a_file_other_than_the_plugin_zip_is_refused(profile, tmp_path, zipped):
     for name, make in (
         ("missing.zip", lambda path: None),
         ("text.zip", lambda path: path.write_text("no zip")),
         ("other.zip", lambda path: zipfile.ZipFile(path, "w").writestr("a.exe", "x")),
         ("short.zip", lambda path: path.write_bytes(zipped.read_bytes()[:2000])),
+        ("damaged.zip", write_damaged),
     ):
         make(tmp_path / name)
         with pytest.raises(Error) as caught:

@@ -11,6 +11,7 @@ import shutil
 import sys
 import sysconfig
 import zipfile
+import zlib
 from pathlib import Path
 
 from ..errors import Error
@@ -116,5 +117,5 @@ def _read_zip(path: str) -> dict[str, bytes]:
     except OSError as problem:
         sentence = f"the file cannot be read: {(problem.strerror or str(problem)).lower()}"
         raise Error(sentence, file=path, code="file-unreadable") from None
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError):
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
         raise Error("this is not a zip that can be read", file=path, code="plugin-zip") from None
