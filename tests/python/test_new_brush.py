@@ -391,3 +391,9 @@ def test_the_lag_from_a_turn_is_the_lag_of_the_brush():
         assert lag_of_turn(turn, width) == pytest.approx(brush.lag(depth), abs=0.3)
         ahead = brush.tip_to_widest(depth) - brush.tip_gap(depth)
         assert brush.lag(depth) - ahead == pytest.approx(turn, abs=0.3)
+
+
+def test_a_wrong_speed_is_reported_as_a_speed(capsys):
+    """Its message was once that of a factor of playback."""
+    assert main("brush new -o mine.json --lag 5 --width-at 3=4 --speed fast".split()) == 2
+    assert gives(capsys.readouterr().err, "--speed", "'fast'", "mm/s")

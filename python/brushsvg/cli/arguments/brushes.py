@@ -283,7 +283,9 @@ def add_brush(commands) -> None:
     new.add_argument("--widths", metavar="FILE", help="the same as a table, depth_mm,width_mm (.csv)")
     new.add_argument("--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width")
     new.add_argument("--like", metavar="BRUSH", help="take all laws from this one, a name or a brush.json, as assumed")
-    new.add_argument("--speed", metavar="MM/S", type=values.speed, help="at most; default: 25, or as --like has it")
+    new.add_argument(
+        "--speed", metavar="MM/S", type=values.paint_speed, help="at most; default: 25, or as --like has it"
+    )
     flags.add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
     plot = subcommands.add_parser("plot", help="draw the brush laws with confidence bands, and the footprints")

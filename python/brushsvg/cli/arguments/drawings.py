@@ -225,7 +225,7 @@ def add_preview(commands) -> None:
     preview.add_argument(
         "--playback",
         metavar="FACTOR",
-        type=values.speed,
+        type=values.playback_factor,
         help="with .html: how much faster than the robot the page begins; default: 1",
     )
     preview.add_argument("--all-brushes", action="store_true", help="report one line for each brush, the best first")

@@ -102,7 +102,7 @@ def scale(text: str) -> float:
     return _need_in_range(value, 1e-4, 1e4, f"{value:g} is outside the range [0.0001, 10000]")
 
 
-def speed(text: str) -> float:
+def playback_factor(text: str) -> float:
     value = _parse_number(text, f"{text[:24]!r} is not a factor; write for example 5")
     return _need_in_range(value, 0.1, 1000.0, f"{value:g} is outside the range [0.1, 1000]")
 
