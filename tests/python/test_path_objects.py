@@ -138,6 +138,7 @@ def test_the_way_of_a_plan_with_arcs_is_as_long_as_its_passes():
         ([[10**400] * 8], 2, "wrong-type '(n, 4, 2)'"),
         ("M0 0 L10 0", 0, "out-of-range 0 (0"),
         ("M0 0 L10 0", np.nan, "out-of-range nan (0"),
+        ("M0 0 L10 0", 2e6, "out-of-range 2e+06 (0"),  # the message named this limit, and nothing compared with it
     ],
 )
 def test_invalid_paths_are_refused(path, width_mm, expected):

@@ -33,12 +33,12 @@ def stroke_from_path(
     page_height_mm, y points down from the upper edge of a page of that height, as in SVG. Path data that end in Z
     are closed, and so are a Path or an array that end where they began.
 
-    Raises Error if the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is not
-    positive.
+    Raises Error if the path is damaged, empty, broken into several lines or beyond 1e6 mm, or the width is outside
+    the range (0, 1e6] mm.
     """
     width_mm = as_number(width_mm, "a width in mm")
     require_type(id, str, "a stroke's id")
-    if not (np.isfinite(width_mm) and width_mm > 0):
+    if not 0 < width_mm <= 1e6:
         raise Error(f"the width {width_mm:g} mm is outside the range (0, 1e6] mm", where=id, code="out-of-range")
     if isinstance(path, str):
         cubics, closed = _read_text(path, id)
