@@ -293,6 +293,16 @@ def test_check_refuses_dangerous_programs(desk, capsys, old, new, reported):
     assert status == 1 and is_reported(messages, reported)
 
 
+def test_comments_and_byte_order_marks_are_skipped(desk, capsys):
+    """A semicolon in brackets is part of the comment. check once refused a byte order mark that convert skips."""
+    (desk / "marked.gcode").write_text(
+        "\ufeffG21 (mm; no inches)\nG0 Z5 ; up (a\nG0 X30 Y30\nG1 Z-1 F300\nG1 X60 F600\nG0 Z5\n", "utf-8"
+    )
+    for command in ("check marked.gcode", "convert marked.gcode -o out.ngc --width 3"):
+        status, _, reported = in_json(capsys, *command.split())
+        assert status == 0 and not is_reported(reported, "line-unread"), reported
+
+
 def test_a_missing_unit_is_reported(desk, capsys):
     (desk / "f.gcode").write_text("G0 Z5\nG0 X30 Y30\nG1 Z-1 F300\nG1 X60 F600\nG0 Z5\n")
     status, _, reported = in_json(capsys, "check", "f.gcode")

@@ -79,7 +79,7 @@ def ways_and_end(text: str) -> tuple[list[Way], float | None]:
     M2 and M30 end the value of M3, as M5 does. They do not move a servo of M280.
     """
     interpreter = _Interpreter()
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1):
         interpreter.run_line(number, line)
     return list(_insert_dots(interpreter.ways)), interpreter.pen_value()
 
@@ -110,7 +110,7 @@ class _Interpreter:
         self.by_laser = False
 
     def run_line(self, number: int, line: str) -> None:
-        code = re.sub(r"\([^()]*\)", "", line.partition(";")[0]).strip().upper()
+        code = re.sub(r"\([^()]*\)|;.*", "", line).strip().upper()
         code = re.sub(r"\*\d+$", "", code.lstrip("/"))  # a checksum
         if re.match(r"(?:N\d+\s*)?G28(?!\d)", code):  # axes without numbers name the axes to home
             code = re.sub(r"([XYZ])(?!\s*[-+.\d])", r"\g<1>0", code)
