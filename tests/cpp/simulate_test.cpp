@@ -186,7 +186,8 @@ TEST_CASE("an empty pass and a pass of one pose are simulated") {
 }
 
 TEST_CASE("a law leaves its floor also at depths smaller than the least one of the brush") {
-    // Found by the fuzzer: the brush was 0.05 mm behind where its law says 0.69 mm, at a depth of 0 with a least depth of 0.4 mm.
+    // Found by the fuzzer: the brush was 0.05 mm behind where its law says 0.69 mm, at a depth of 0 with a least depth
+    // of 0.4 mm.
     Brush brush = shipped("round-6");
     brush.depth_range_mm[0] = 0.4;
     brush.lag.coefficients = {0.689, 1.801, -0.111};
