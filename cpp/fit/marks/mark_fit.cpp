@@ -256,7 +256,6 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     if (fit.model.layout().machine_numbers > 0) wider.tail(kMachineErrors - MachineIndex::field).setOnes();
     const MatrixXd whole = wider.asDiagonal() * to * mean_square_error(fit, options, solved.log_likelihood_ratio) *
                            to.transpose() * wider.asDiagonal();
-    require_variances(whole);
     for (Index i = 0; i < whole.rows(); ++i) {
         const VectorXd row = whole.row(i).transpose();
         out.covariance.emplace_back(row.data(), row.data() + row.size());
@@ -290,6 +289,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         out.marks.push_back(std::move(residual));
     }
     if (!options.noise_mm) require_brushlike_marks(marks, out);
+    require_variances(whole);  // marks that no brush paints are named above
     out.outlier_share = outlier_weight / std::max(1.0, out.samples);
     out.slim = slim / std::max(1.0, out.samples);
     // Squares are divided by the points per independent point, and the loss passes the share `slope` of them.
