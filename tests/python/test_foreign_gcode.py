@@ -105,6 +105,15 @@ def test_settings_and_messages_of_marlin_do_not_move_the_pen(desk, capsys, comma
     assert status == 1 and is_reported(reported, "rapid-too-low 8"), reported
 
 
+def test_other_commands_of_a_line_are_read():
+    """Several controllers read more than one command from a line. M17 G0 Z5 was once skipped with its move."""
+    text = "G21\nG90\nG0 Z5\nG0 X10 Y10\nG1 Z-2 F600\nG1 X60 Y10\nG0 Z5\nG0 X10 Y30\nG1 Z-2\nG1 X60 Y30\nG0 Z5\nM84\n"
+    several = text.replace("G90\n", "G90 M82\n").replace("Z-2 F600\n", "Z-2 F600 M400\n")
+    assert drawn(several) == drawn(text.replace("Y10\nG0 Z5\n", "Y10\nM17 G0 Z5\n")) == drawn(text)
+    with refused("line-unread M106"):
+        drawn(text.replace("G0 X10 Y30", "M106 S50 G0 X10 Y30"))
+
+
 def test_check_does_not_read_a_tone_as_a_servo_command(desk, capsys):
     (desk / "tone.gcode").write_text("G21\nG90\nM300 S30\nG1 X20 Y20 F900\nG1 X40 Y20\nM300 S50\nG1 X60 Y20\n")
     status, _, notices = in_json(capsys, "check", "tone.gcode", "--brush", "round-6", "--cell", "marlin-servo")

@@ -19,13 +19,15 @@ from ...errors import Error
 _WORD = re.compile(r"([A-Z])\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*")
 _IGNORED_CODES = {  # commands that do not change the way of a pen
     "G": {4, 10, 17, 21.1, 40, 43, 43.1, 49, 54, 61, 64, 80, 94},
-    "M": {0, 1, 2, 6, 7, 8, 9, 30, 300},
+    "M": {0, 1, 2, 6, 7, 8, 9, 17, 18, 30, 82, 83, 84, 105, 107, 114, 300, 400},
 }
 # Commands that a message may follow, for example: M0 change the pen.
 _MESSAGE_COMMAND = re.compile(r"(?:N\d+\s*)?M\s*0*[01](?![\d.])")
 # Commands of Marlin that do not change the way of a pen. All other words of their line are settings, as in M203 X500,
-# or a message, as in M117 X10.
-_MARLIN_COMMAND = re.compile(r"(?:N\d+\s*)?M\s*0*(?:17|18|82|83|84|105|106|107|114|117|201|203|204|205|400)(?![\d.])")
+# or a message, as in M117 X10. Other controllers read several commands from a line, as in M17 G0 Z5.
+_MARLIN_COMMAND = re.compile(
+    r"(?:N\d+\s*)?M\s*0*(?:117(?![\d.])|(?:17|18|82|83|84|105|106|107|114|201|203|204|205|400)(?![\d.])[^GM]*$)"
+)
 _MODAL_GROUPS = ({0, 1, 2, 3}, {20, 21}, {90, 91}, {90.1, 91.1})  # G codes: a line may have one of each group
 _KNOWN_LETTERS = set("GMNTXYZIJRFSPELHOQKD")
 # Commands whose S is a time, an angle or a tone, and not the power.
