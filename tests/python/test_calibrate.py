@@ -97,6 +97,17 @@ def test_a_typing_error_does_not_give_a_negative_lag(tmp_path):
     assert status == 1 or min(find_brush(tmp_path / "b.json").lag(d) for d in np.linspace(0, 7, 99)) > 0
 
 
+def test_a_lag_is_not_negative_above_the_depth_range():
+    """A brush passes these depths when it is set down. The line through these values is -2 mm at depth 0."""
+    depths = [3, 4, 5, 6, 7, 8, 9]
+    lags = [1.0, 2.0, 3.1, 4.0, 5.0, 6.1, 7.0]
+    measured = {"format": "brushsvg/measurements", "version": 1, "depth_range_mm": [3, 9]}
+    measured |= {"lag": values(lags, depths), "width": values([1 + 0.5 * depth for depth in depths], depths)}
+    brush = brushsvg.calibrate(measured).brush
+    assert brush.depth_range_mm == (3, 9) and min(brush.lag(np.linspace(0, 9, 99))) == 0
+    assert brush.lag(np.array(depths)) == pytest.approx(lags, abs=0.1)
+
+
 def test_values_that_contradict_each_other_are_not_called_usable(tmp_path, capsys):
     """A lag of 70 mm for 7 mm is a typing error. Two widths leave no interval that could show it."""
     measured = {"format": "brushsvg/measurements", "version": 1, "depth_range_mm": [0, 5]}

@@ -574,10 +574,12 @@ class _LawFitter:
         points, fitted = self.fitted[law].points, self.fitted[law].fit.law
         kinds = sorted({point.where.split("[")[0] for point in points})
         read = "a table" if kinds[0].startswith("line") else " and ".join(kinds)
-        deepest = self.range_mm[1]
+        least, deepest = self.range_mm
+        # The fitted lag is positive in the depth range. When it is set down, the brush also passes the depths above.
+        has_floor = law == "lag" and least > 0
         return _core.Profile(
             fitted.coefficients,
-            floor=fitted.floor,
+            floor=0.0 if has_floor else fitted.floor,
             floor_slope=MIN_WIDEST_PER_HALF_WIDTH * half(deepest) / deepest if law == "tip_to_widest" else 0.0,
             calibrated_mm=fitted.calibrated_mm,
             source=f"Fitted to {len(points)} values from {read}.",
