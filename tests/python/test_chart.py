@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import shapely
 from diagnostics import agrees, gives, in_json, refused
+from numpy.polynomial.polynomial import polyval
 from programs import RUNNABLE
 from sampling import sample
 
@@ -20,6 +21,7 @@ from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_pdf, chart_svg
+from brushsvg.calibration.marks.from_marks import laws_of
 from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.cli import main
 from brushsvg.errors import Error
@@ -379,6 +381,18 @@ def test_chart_reports_the_expected_accuracy_of_the_brush(tmp_path, capsys):
     rough = lag_bands("--sheet", "a5", "--noise", "0.3")
     assert len(a5) == 4 and a4.mean() < a5.mean() < 0.2
     assert rough.mean() > 1.5 * a5.mean()
+
+
+def test_a_chart_expects_no_negative_lag(tmp_path, capsys):
+    """The laws that are fitted to marks have no floor. Those of this brush were once negative at depth 0."""
+    brush = find_brush("round-6")
+    brush.depth_range_mm, brush.lag = (3.0, 10.0), _core.Profile([-2.0, 1.0], floor=0.0)
+    (tmp_path / "deep.json").write_text(_core.write_brush(brush))
+    words = ("chart", "-o", str(tmp_path / "chart.json"), "--brush", str(tmp_path / "deep.json"))
+    assert main([*words, "--strokes", "few"]) == 0, capsys.readouterr().err
+    lags = laws_of(brush).lag
+    assert polyval(np.linspace(0, 10, 99), lags).min() > 0
+    assert polyval(np.linspace(3, 10, 99), lags) == pytest.approx(np.linspace(1, 8, 99), abs=0.3)
 
 
 def test_wrong_usage_is_refused(tmp_path, capsys):

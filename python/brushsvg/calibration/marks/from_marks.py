@@ -430,8 +430,13 @@ def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HA
     widest = np.array([brush.tip_to_widest(d) for d in depths])
     ends = [(s.outline_mm[:, 0].max(), s.depth_mm) for s in brush.footprints.dragged]
     front = [(end - brush.tip_to_widest(d)) / max(brush.half_width(d), 1e-6) for end, d in ends]
+    lag = fit_nearest(brush.lag, list(range(lag_terms)))
+    deepest = brush.depth_range_mm[1]
+    if polyval(np.linspace(0.0, deepest, 41), lag).min() < 0:  # these laws have no floor
+        shape = _core.LawShape((0.0, deepest), lag_terms - 1, positive=True)
+        lag = _core.fit_law(depths, brush.lag(depths), shape).law.coefficients
     return _core.MarkLaws(
-        fit_nearest(brush.lag, list(range(lag_terms))),
+        lag,
         fit_nearest(brush.tip_gap, list(range(1, GAP_TERMS + 1))),
         fit_nearest(brush.half_width, list(range(1, half_terms + 1))),
         float(widest @ half / (half @ half)),
