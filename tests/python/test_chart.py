@@ -395,6 +395,16 @@ def test_a_chart_expects_no_negative_lag(tmp_path, capsys):
     assert polyval(np.linspace(3, 10, 99), lags) == pytest.approx(np.linspace(1, 8, 99), abs=0.3)
 
 
+def test_a_chart_is_made_for_a_brush_with_outlines_of_greater_depths(tmp_path, capsys):
+    """A brush.json with a smaller depth range keeps its outlines. This was once an unexpected error."""
+    brush = find_brush("round-6")
+    brush.depth_range_mm = (0.0, 6.0)
+    (tmp_path / "short.json").write_text(_core.write_brush(brush))
+    words = ("chart", "-o", str(tmp_path / "chart.json"), "--brush", str(tmp_path / "short.json"))
+    assert main([*words, "--strokes", "few"]) == 0, capsys.readouterr().err
+    assert laws_of(brush).front_per_half == pytest.approx(laws_of(find_brush("round-6")).front_per_half)
+
+
 def test_wrong_usage_is_refused(tmp_path, capsys):
     out = str(tmp_path / "plan.json")
     for flags, expected in (

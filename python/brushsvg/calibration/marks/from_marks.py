@@ -429,7 +429,10 @@ def laws_of(brush: _core.Brush, lag_terms: int = LAG_TERMS, half_terms: int = HA
     half = np.array([brush.half_width(d) for d in depths])
     widest = np.array([brush.tip_to_widest(d) for d in depths])
     ends = [(s.outline_mm[:, 0].max(), s.depth_mm) for s in brush.footprints.dragged]
-    front = [(end - brush.tip_to_widest(d)) / max(brush.half_width(d), 1e-6) for end, d in ends]
+    # Outlines may be of greater depths than the brush may be pressed to.
+    front = [
+        (end - brush.tip_to_widest.extrapolated(d)) / max(brush.half_width.extrapolated(d), 1e-6) for end, d in ends
+    ]
     lag = fit_nearest(brush.lag, list(range(lag_terms)))
     deepest = brush.depth_range_mm[1]
     if polyval(np.linspace(0.0, deepest, 41), lag).min() < 0:  # these laws have no floor
