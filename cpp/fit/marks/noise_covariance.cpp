@@ -299,7 +299,8 @@ MatrixXd covariance(const MarkProblem& at) {
 }
 
 void require_variances(const MatrixXd& covariance) {
-    if (!(covariance.diagonal().minCoeff() >= 0.0))
+    constexpr double kRounding = 1e-9;  // of the largest variance
+    if (covariance.diagonal().minCoeff() < -kRounding * covariance.diagonal().maxCoeff())
         throw Error(
             "fit-failed",
             "these marks do not determine how certain the brush is: add strokes at other depths and with bends");
