@@ -120,3 +120,18 @@ def test_a_lag_of_zero_at_touch_down_has_a_finite_uncertainty():
     plan = _plan_of([0, 0, -7], [50, 0, -3], [50, 40, -3])
     (effects,) = uncertainty._all_effects(plan, brush, _core.simulate(plan, brush))
     assert np.isfinite(effects.d_middle).all() and np.any(effects.d_middle)
+
+
+def test_the_uncertainty_is_proportional_to_that_of_the_lag():
+    """A large step once made the lag negative at depths smaller than the least one."""
+    brush = find_brush("round-6")
+    brush.depth_range_mm, brush.lag = (4, 10), _core.Profile([0.05, 1.0])
+    count = sum(len(getattr(brush, law).coefficients) for law in uncertainty.LAWS)
+    plan = _plan_of([0, 0, -7], [50, 0, -0.5], [50, 40, -0.2], [90, 40, -5])
+    found = []
+    for deviation in (1e-3, 1.0):
+        brush.covariance = np.diag([deviation**2, *[0.0] * (count - 1)]).tolist()
+        (effects,) = uncertainty._all_effects(plan, brush, _core.simulate(plan, brush))
+        found.append(np.array(effects.d_middle) / deviation)
+    assert np.isfinite(found).all() and np.abs(found[0]).max() > 0.1
+    assert found[1] == pytest.approx(found[0], abs=0.05 * np.abs(found[0]).max())
