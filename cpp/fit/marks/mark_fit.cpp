@@ -289,7 +289,6 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
         out.marks.push_back(std::move(residual));
     }
     if (!options.noise_mm) require_brushlike_marks(marks, out);
-    require_variances(whole);  // marks that no brush paints are named above
     out.outlier_share = outlier_weight / std::max(1.0, out.samples);
     out.slim = slim / std::max(1.0, out.samples);
     // Squares are divided by the points per independent point, and the loss passes the share `slope` of them.

@@ -6,7 +6,6 @@
 
 #include "base/run_cancellable.hpp"
 #include "brushsvg/checkpoint.hpp"
-#include "brushsvg/error.hpp"
 #include "no_brush.hpp"
 
 namespace brushsvg::fit {
@@ -296,14 +295,6 @@ MatrixXd covariance(const MarkProblem& at) {
     const MatrixXd inverse = inverse_hessian(at, marks, weighing);
     const MatrixXd out = inverse.topRows(g) * spread * inverse.leftCols(g);
     return weighing.is_given ? out : add_misfit(out, mark_influences(at, marks, inverse), at);
-}
-
-void require_variances(const MatrixXd& covariance) {
-    constexpr double kRounding = 1e-9;  // of the largest variance
-    if (covariance.diagonal().minCoeff() < -kRounding * covariance.diagonal().maxCoeff())
-        throw Error(
-            "fit-failed",
-            "these marks do not determine how certain the brush is: add strokes at other depths and with bends");
 }
 
 }  // namespace brushsvg::fit

@@ -27,8 +27,4 @@ VectorXd distance_from_minimum(const MarkProblem& at);
 /// is the autocovariance of the weighing, and P comes from the priors.
 MatrixXd covariance(const MarkProblem& at);
 
-/// Refuses a covariance with a negative variance that is not due to rounding. The sum over the autocovariance ends at
-/// some point, and what is left can be negative in directions that the marks hardly determine.
-void require_variances(const MatrixXd& covariance);
-
 }  // namespace brushsvg::fit
