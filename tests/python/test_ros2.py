@@ -20,6 +20,7 @@ from test_robot_scripts import GOLDEN, LEANING, SQUARE, TURNED, on
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
 from brushsvg import _core, batch, convert, write_plan
+from brushsvg.errors import Error
 from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.moves import program_in_robot_frame
@@ -169,7 +170,10 @@ def test_check_accepts_a_job_as_table_and_as_json(tmp_path, capsys):
         status, printed, reported = call(capsys, "check", out, str(tmp_path / "a.json"))
         assert (RUNNABLE in printed) if suffix != ".cdr" else (status == 1 and gives(reported[-1], ".csv"))
     message = (tmp_path / "a.cdr").read_bytes()
-    assert convert(plan, tmp_path / "py.cdr", cell="fr3").text == (tmp_path / "py.cdr").read_bytes() == message
+    done = convert(plan, tmp_path / "py.cdr", cell="fr3")
+    assert done.texts[".cdr"] == (tmp_path / "py.cdr").read_bytes() == message
+    with pytest.raises(Error, match="binary"):
+        _ = done.text
     made = batch([("line", DRAWING)], tmp_path / "many", cell="fr3", format=".cdr", executor=ThreadPoolExecutor(1))
     assert [row.code for row in made.rows] == [""] and (tmp_path / "many/programs/line.cdr").read_bytes()[:1] == b"\0"
     text = (tmp_path / "a.traj").read_text()

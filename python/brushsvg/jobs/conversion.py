@@ -100,9 +100,12 @@ class Conversion:
     files: tuple[str, ...] = ()
 
     @property
-    def text(self) -> str | bytes:
-        """The text of the first format, or the bytes of a binary one."""
-        return next(iter(self.texts.values()))
+    def text(self) -> str:
+        """The text of the first format. Raises Error for a binary one, whose bytes are in texts."""
+        suffix, text = next(iter(self.texts.items()))
+        if isinstance(text, bytes):
+            raise Error(f"{suffix} is binary and has no text: texts[{suffix!r}] has its bytes", code="wrong-type")
+        return text
 
 
 def convert(
