@@ -116,7 +116,7 @@ py::list follow_lags(const std::vector<Pass>& passes, const std::vector<PassMark
     std::vector<LagLaw<double>> laws;
     for (const Profile& lag : lags) {
         make_law_between(lag, depth_range_mm[0], depth_range_mm[1]);  // throws for a lag that is not positive
-        // the brush passes the depths above its range when it is set down and lifted
+        // the brush passes smaller depths than its range has when it is set down and lifted
         laws.push_back(make_law(pieces(lag, 0.0, depth_range_mm[1] + 1e-9)));
     }
     std::vector<std::vector<FollowedRows>> followed(passes.size());

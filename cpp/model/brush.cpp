@@ -87,7 +87,7 @@ void check_lag(const Brush& brush) {
         }
         return;
     }
-    // A brush passes the depths above its range when it is set down and lifted.
+    // A brush passes smaller depths than its range has when it is set down and lifted.
     const LawMinimum worst = find_minimum(brush.lag, 0.0, hi);
     if (worst.value < 0.0)
         throw Error("law-negative",

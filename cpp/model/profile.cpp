@@ -23,7 +23,7 @@ double evaluate(const std::vector<double>& c, double x) {
 
 double Profile::at(double depth_mm) const {
     if (depth_range_mm) {
-        // A brush passes the depths above its range when it is set down and lifted.
+        // A brush passes smaller depths than its range has when it is set down and lifted.
         const double deepest = (*depth_range_mm)[1];
         if (!(depth_mm >= -kDepthRoundingMm && depth_mm <= deepest + kDepthRoundingMm)) {
             char text[160];

@@ -575,7 +575,7 @@ class _LawFitter:
         kinds = sorted({point.where.split("[")[0] for point in points})
         read = "a table" if kinds[0].startswith("line") else " and ".join(kinds)
         least, deepest = self.range_mm
-        # The fitted lag is positive in the depth range. When it is set down, the brush also passes the depths above.
+        # The fitted lag is positive in the depth range. When it is set down, the brush also passes smaller depths.
         has_floor = law == "lag" and least > 0
         return _core.Profile(
             fitted.coefficients,

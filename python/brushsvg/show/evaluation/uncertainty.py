@@ -191,7 +191,8 @@ def _lag_steps(brush, step: np.ndarray):
     Returns also the share of the step that was taken. The share is limited so that the lag r stays above 0.
     """
     least, deepest = brush.depth_range_mm
-    # When it is set down, the brush also passes the depths above its range. A floor keeps its lag from being negative.
+    # When it is set down, the brush also passes smaller depths than its range has. A floor keeps its lag from being
+    # negative.
     depths = np.linspace(least if brush.lag.floor >= 0 else 0.0, deepest, 101)
     change = np.abs(np.polynomial.polynomial.polyval(depths, step))
     lag = brush.lag(depths)
