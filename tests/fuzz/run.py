@@ -50,6 +50,7 @@ def main() -> int:
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "fuzz")
     parser.add_argument("--kept", type=Path, default=ROOT / "build" / "fuzz-kept")
     given = parser.parse_args()
+    given.kept = given.kept.resolve()  # the environment there names its folders in a file of paths
     chosen = _chosen(_known(given.build), given.targets)
     if not chosen:
         print(f"no fuzz target is called {' or '.join(given.targets)}", file=sys.stderr)

@@ -478,10 +478,24 @@ def off_mm(stroke: np.ndarray, target: np.ndarray, sound: np.ndarray | None) -> 
             gap = _to_path(middle[:: max(1, len(middle) // 200)], target[:: max(1, len(target) // 2000)]).max()
             if gap > 3 * OFF_MM:
                 return float(gap)
-    if walkable(stroke, target, near):
+    if _keep_pace(stroke, target) or walkable(stroke, target, near):
         return 0.0
     far = max(_to_path(stroke[::3], target[::3]).max(), _to_path(target[::3], stroke[::3]).max())
     return max(float(far), OFF_MM * 1.001)
+
+
+def _keep_pace(one: np.ndarray, other: np.ndarray) -> bool:
+    """Return whether two walkers stay within OFF_MM if both always have covered the same share of their paths.
+
+    This is one of the ways to walk both paths. It is quicker to try than all ways.
+    """
+    covered = [np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(each, axis=0), axis=1))]) for each in (one, other)]
+    shares = [each / max(each[-1], 1e-9) for each in covered]
+    for path, share, to, to_share in ((one, shares[0], other, shares[1]), (other, shares[1], one, shares[0])):
+        partner = np.column_stack([np.interp(share, to_share, axis) for axis in to.T])
+        if (np.linalg.norm(path - partner, axis=1) > OFF_MM).any():
+            return False
+    return True
 
 
 def walkable(one: np.ndarray, other: np.ndarray, near_mm: float) -> bool:

@@ -172,7 +172,7 @@ def _choose_degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
     if degree == LAW_DEGREES[law]:
         return degree, []
     few = f"{different} depths" if coefficients == different else f"{len(depths_mm)} values"
-    return degree, [f"of degree {degree} instead of {LAW_DEGREES[law]}, for there are {few}"]
+    return degree, [f"of degree {degree} instead of {LAW_DEGREES[law]}, because there are {few}"]
 
 
 class _LawFitter:
