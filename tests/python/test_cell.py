@@ -376,6 +376,12 @@ def test_an_unknown_language_is_reported_instead_of_its_tables(tmp_path, capsys)
     assert status == 0 and is_reported(reported, "language-unknown 'KRL' krl robodk", "language"), reported
 
 
+def test_a_language_of_ones_own_may_have_motors_without_a_servo():
+    """Such a cell once ended in an AttributeError, because only EBB cells have motors and all of them a servo."""
+    cell = replace(find_cell("axidraw-ebb"), language="mine", servo=None)
+    assert parse_cell(write_cell(cell)) == cell
+
+
 def test_a_page_of_a_cell_shows_how_the_tool_is_turned():
     cell = find_cell("ur5e")
     tool = replace(cell.tool, tcp_mm=(130.0, 0.0, 45.0), rotation_deg=(0.0, 90.0, 0.0), spin_deg=25.0)

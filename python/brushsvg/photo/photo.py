@@ -16,8 +16,8 @@ from . import PHOTOS
 
 # Brands of HEIC and AVIF files.
 HEIF_BRANDS = (b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1", b"avif")
-# First bytes of the formats in PHOTOS.
-IMAGE_SIGNATURES = re.compile(rb"\xff\xd8\xff|\x89PNG\r|II\*\0|MM\0\*|RIFF....WEBP", re.DOTALL)
+# First bytes of the formats in PHOTOS. OpenCV decodes more formats, some from a few bytes into a huge picture.
+IMAGE_SIGNATURES = re.compile(rb"\xff\xd8\xff|\x89PNG\r|II[*+]\0|MM\0[*+]|RIFF....WEBP", re.DOTALL)
 # Messages of libjpeg, libpng and libtiff about pixels that they had to invent. Extra bytes before the end of a JPEG are
 # no damage, because many cameras write them.
 DAMAGE_MESSAGES = re.compile(
@@ -73,6 +73,8 @@ def read_photo(data: bytes) -> np.ndarray:
             "Settings, Camera, Formats, Most Compatible)",
             code="photo-format",
         )
+    if not IMAGE_SIGNATURES.match(data):
+        raise Error(f"this is no picture that can be read; known are {' '.join(PHOTOS)}", code="photo-format")
     pixels, messages = _decode(data)
     damage = DAMAGE_MESSAGES.search(messages)
     if damage:
@@ -81,11 +83,9 @@ def read_photo(data: bytes) -> np.ndarray:
             "more",
             code="photo-damaged",
         )
-    if pixels is None and IMAGE_SIGNATURES.match(data):
+    if pixels is None:
         sentence = "the picture cannot be read: it is damaged, cut short, too large or of an unusual kind"
         raise Error(sentence, code="photo-damaged")
-    if pixels is None:
-        raise Error(f"this is no picture that can be read; known are {' '.join(PHOTOS)}", code="photo-format")
     if pixels.shape[0] * pixels.shape[1] > MAX_PIXELS:
         raise Error(
             f"the picture has {pixels.shape[1]} x {pixels.shape[0]} pixels, more than {MAX_PIXELS:.0f}: scale it down",
@@ -126,7 +126,7 @@ def _decode(data: bytes) -> tuple[np.ndarray | None, str]:
             sys.stderr.flush()
         os.dup2(captured.fileno(), 2)
         try:
-            pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
+            pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
             if pixels is not None and not data.startswith(b"\xff\xd8"):  # a JPEG has no transparency
                 pixels = _composite_on_white(pixels, cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED))
         except cv2.error:  # too large for OpenCV, or damaged

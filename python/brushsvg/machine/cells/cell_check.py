@@ -343,7 +343,7 @@ def _check_motors(cell: Cell) -> None:
                 where=f"speeds.{name}",
                 code="out-of-range",
             )
-    if (value := max((row[1] for row in cell.servo.table), default=0)) > MAX_EBB_SERVO_VALUE:
+    if cell.servo and (value := max((row[1] for row in cell.servo.table), default=0)) > MAX_EBB_SERVO_VALUE:
         sentence = f"value {value:g} is outside the range [0, {MAX_EBB_SERVO_VALUE}] of 1/12 microseconds"
         raise Error(sentence, where="servo.table", code="servo-table")
 
