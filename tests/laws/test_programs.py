@@ -16,16 +16,9 @@ from sampling import sample
 from brushsvg import _core
 from brushsvg.errors import Error
 from brushsvg.machine import writer
-from brushsvg.machine.cells.cell import (
-    ARCS_IN_SEGMENTS,
-    Heights,
-    Machine,
-    Paper,
-    Reload,
-    Station,
-    robot_from_paper,
-)
+from brushsvg.machine.cells.cell import Heights, Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg.machine.cells.language_limits import ARCS_IN_SEGMENTS
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.program import Job

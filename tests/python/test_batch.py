@@ -30,8 +30,9 @@ from brushsvg.cli import main
 from brushsvg.jobs.batch import executors, one, run
 from brushsvg.jobs.batch.items import list_words
 from brushsvg.jobs.batch.manifest import FORMAT, format_row
-from brushsvg.machine.cells.cell import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS, RoboDK
+from brushsvg.machine.cells.cell import RoboDK
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.language_limits import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS
 from brushsvg.show.contact_sheet import ACROSS, CARD_W, DOWN, GAP, PICTURE_H, WORDS_H, Card, contact_sheets
 
 COMMAND = Path(sys.executable).with_name("brushsvg")

@@ -19,7 +19,7 @@ from test_robot_scripts import sound
 from urscript_stub import run as run_stub
 
 from brushsvg import _core, convert
-from brushsvg.machine.cells import cell
+from brushsvg.machine.cells import language_limits
 from brushsvg.machine.cells.cell import Workspace
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.posts import ebb
@@ -60,7 +60,7 @@ def job(request, tmp_path, capsys, monkeypatch):
         path.parent.mkdir()
         with monkeypatch.context() as patch:
             if path.parent.name == "whole":
-                patch.setitem(cell.MAX_PROGRAM_LINES, find_cell(name).language, NO_LIMIT)
+                patch.setitem(language_limits.MAX_PROGRAM_LINES, find_cell(name).language, NO_LIMIT)
             status, _, reported = call(capsys, "convert", str(tmp_path / "waves.json"), "-o", str(path), "--cell", name)
             assert status == 0, reported
     assert files_of(paths[0]) == paths[:1]
@@ -183,8 +183,8 @@ def test_a_page_of_a_thousand_strokes_is_split(name, tmp_path, capsys, monkeypat
         with monkeypatch.context() as patch:
             if folder == "whole":
                 patch.setattr(ebb, "MIN_SLICE_MS", 1)
-                for language in cell.MAX_PROGRAM_LINES:
-                    patch.setitem(cell.MAX_PROGRAM_LINES, language, NO_LIMIT)
+                for language in language_limits.MAX_PROGRAM_LINES:
+                    patch.setitem(language_limits.MAX_PROGRAM_LINES, language, NO_LIMIT)
             status, _, reported = call(capsys, "convert", words[0], "-o", str(path), *words[1:])
             assert status == 0, reported
         texts.append(text_of(files_of(path)))

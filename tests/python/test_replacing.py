@@ -10,7 +10,7 @@ import pytest
 from diagnostics import in_json, is_reported
 
 from brushsvg.cli.steps import replacing
-from brushsvg.machine.cells.cell import MAX_PROGRAM_POINTS
+from brushsvg.machine.cells.language_limits import MAX_PROGRAM_POINTS
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60"><g fill="none" '

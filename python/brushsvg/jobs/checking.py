@@ -30,7 +30,7 @@ from ..model.library import brush_names, find_brush
 from ..read import settings_in
 from ..read.gcode import is_ours
 from ..show.evaluation.report import Report
-from ..verify import against_plan, against_regenerated, pace, setup_programs, simulate_program
+from ..verify import against_plan, against_regenerated, pauses_in_paint, setup_programs, simulate_program
 from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
 from ..verify.readback.header import read_header as read_header
@@ -354,7 +354,9 @@ def _compare_with_rewritten(
         least_s = duration_s(fastest_program)
     changed_line = against_regenerated.differing_line(program.text, program.read, rewritten, cell, least_s, most_s)
     notices = (
-        [Notice("", changed_line, code="program-changed")] if changed_line else pace.stops(program.read, at_own_speeds)
+        [Notice("", changed_line, code="program-changed")]
+        if changed_line
+        else pauses_in_paint.find_pauses(program.read, at_own_speeds)
     )
     return rewritten, notices
 

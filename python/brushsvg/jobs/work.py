@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from .. import _core
-from ..errors import Error
 from ..machine.cells.cell import Cell
 from ..machine.paint_reload import PlanInLoads, is_later_part
 from ..machine.program import WHOLE_JOB, CheckedProgram, Job
@@ -95,35 +94,8 @@ def list_strokes_from(work: Work, loads: PlanInLoads, first_load: int) -> list |
     return work.strokes[sum(not is_later_part(a_pass) for a_pass in painted) :]
 
 
-def list_colours(work: Work) -> list[str]:
-    """Return the colours of the strokes as "#rrggbb" in lower case, the lightest first.
-
-    Dark paint covers light paint, and rests of dark paint in the brush spoil light paint.
-    """
-
-    def lightness(colour: str) -> float:  # luma of ITU-R BT.601
-        red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
-        return 0.299 * red + 0.587 * green + 0.114 * blue
-
-    distinct = dict.fromkeys(each.colour.lower() for each in work.plan.passes if each.colour)
-    return sorted(distinct, key=lightness, reverse=True)
-
-
-def select_colour(work: Work, colour: str) -> Work:
-    """Return the work with the strokes of one colour.
-
-    Strokes without a colour are painted with the first colour. Error if no stroke has the colour.
-    """
-    all_colours = list_colours(work)
-    if colour not in all_colours:
-        known_colours = ", ".join(all_colours) or "none"
-        sentence = f"nothing is painted in {colour}; colours of this drawing: {known_colours}"
-        raise Error(sentence, "colour", code="nothing-to-paint")
-    painted_colours = {"", colour} if colour == all_colours[0] else {colour}
-    return _select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour.lower() in painted_colours])
-
-
-def _select_rows(work: Work, rows: list[int]) -> Work:
+def select_rows(work: Work, rows: list[int]) -> Work:
+    """Return the work with only these passes of its plan, in this order."""
     old_plan = work.plan
     plan = _core.Plan(
         old_plan.brush,
@@ -143,4 +115,4 @@ def order_nearest_first(work: Work) -> Work:
     Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
     places, and no stroke is painted backwards.
     """
-    return _select_rows(work, travel_order.nearest_first(work.plan.passes))
+    return select_rows(work, travel_order.nearest_first(work.plan.passes))

@@ -10,7 +10,8 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry import polylines
-from .cells.cell import LEAST_SPEED_MM_S, Cell, servo_stands
+from .cells.cell import Cell, servo_stands
+from .cells.language_limits import LEAST_SPEED_MM_S
 from .frames import transform_points
 from .realised.distortion import commanded_heights_mm
 

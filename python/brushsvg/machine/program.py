@@ -12,15 +12,8 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.inverse_kinematics import is_installed
 from .arm.place import find_unreachable
-from .cells.cell import (
-    MAX_PROGRAM_LINES,
-    MAX_PROGRAM_POINTS,
-    Cell,
-    Station,
-    robot_from_paper,
-    shorten_visit,
-    value_mm,
-)
+from .cells.cell import Cell, Station, robot_from_paper, shorten_visit, value_mm
+from .cells.language_limits import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS
 from .frames import transform_points
 from .moves import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .paint_reload import PlanInLoads, station_visits

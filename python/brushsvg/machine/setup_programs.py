@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Error, Notice
-from .cells.cell import LEAST_SPEED_MM_S, Cell, reason_for_no_waiting, robot_from_paper
+from .cells.cell import Cell, reason_for_no_waiting, robot_from_paper
+from .cells.language_limits import LEAST_SPEED_MM_S
 from .move_extents import make_paths
 from .moves import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .program import approach_mm_s, find_moves_out_of_limits, out_of_arm, point_above, safe_point_above

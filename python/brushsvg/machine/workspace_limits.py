@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import Notice
-from .cells.cell import LEAST_SPEED_MM_S, Cell
+from .cells.cell import Cell
+from .cells.language_limits import LEAST_SPEED_MM_S
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
 from .moves import Move, Section
 from .realised.backlash import half_mm

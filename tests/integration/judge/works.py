@@ -8,16 +8,9 @@ import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from brushsvg.machine.cells.cell import (
-    CONTACT_KEYS,
-    Contact,
-    Machine,
-    Paper,
-    Reload,
-    Station,
-    reason_for_no_backlash,
-)
+from brushsvg.machine.cells.cell import Contact, Machine, Paper, Reload, Station, reason_for_no_backlash
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.machine.cells.language_limits import CONTACT_KEYS
 from brushsvg.model.library import find_brush
 
 from .checked import converted, put

@@ -18,7 +18,8 @@ from ...machine.preflight import check_job
 from ...machine.program import Job
 from ...model.confidence import fitted_down_to_mm, law_band
 from ...model.describe import LAWS
-from ..work import Work, select_colour
+from ..work import Work
+from .colours import select_colour
 
 MARGIN_KIND = "margin"
 DEPTH_COUNT = 3  # a straight stroke at the smallest depth, and a corner at each of the other depths

@@ -31,7 +31,8 @@ from ...strokes.wide_shapes import find_wide_lines, within_reach
 from ...suggestions import did_you_mean
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
-from ..work import KnownSimulation, Work, select_colour
+from ..work import KnownSimulation, Work
+from .colours import select_colour
 from .compensated import fit_ends_to_machine, make_compensation
 from .margin_strokes import add_margin_strokes
 from .paint_astray import find_off_middle_line, find_paint_outside

@@ -16,14 +16,9 @@ from ..posts import POSTS
 from ..realised.smooth_field import max_field_slope
 from ..workspace_limits import find_broken_limits
 from .cell import (
-    ARCS_IN_SEGMENTS,
-    CONTACT_KEYS,
     DEFAULT_FANUC_CONFIGURATION,
-    LEAST_ACCELERATION_MM_S2,
-    LEAST_SPEED_MM_S,
     MIN_WALL_TILT_DEG,
     RELOAD_OCCASIONS,
-    REQUIRED_TABLES,
     Cell,
     Machine,
     Speeds,
@@ -35,6 +30,7 @@ from .cell import (
     robot_from_paper,
     value_mm,
 )
+from .language_limits import ARCS_IN_SEGMENTS, CONTACT_KEYS, LEAST_ACCELERATION_MM_S2, LEAST_SPEED_MM_S, REQUIRED_TABLES
 
 # Largest tilt of paper next to which the brush dips into a vessel without a remark. The shipped arms allow no more.
 MAX_DIP_TILT_DEG = 15.0

@@ -82,7 +82,7 @@ def sources_of_post(cell: Cell) -> list[str]:
 
 def circles_by(cell: Cell) -> str:
     """Return how a circle is defined on a cell, see Post."""
-    from ..cells.cell import ARCS_IN_SEGMENTS
+    from ..cells.language_limits import ARCS_IN_SEGMENTS
 
     post = POSTS.get(cell.language)
     if cell.language in ARCS_IN_SEGMENTS and not cell.arc_segment_mm:

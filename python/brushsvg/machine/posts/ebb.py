@@ -11,14 +11,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..cells.cell import (
-    LEAST_SPEED_MM_S,
-    min_part_mm,
-    mm_from_step_counts,
-    servo_parts,
-    servo_stands,
-    steps_from_mm,
-)
+from ..cells.cell import min_part_mm, mm_from_step_counts, servo_parts, servo_stands, steps_from_mm
+from ..cells.language_limits import LEAST_SPEED_MM_S
 from ..moves import Move, Program, Wait
 from ..trajectory import joint_speed_limits, time_lines
 from .gcode_servo import TOUCHING_MEANINGS, lift_steps, line_feeds_mm_min, servo_values_at

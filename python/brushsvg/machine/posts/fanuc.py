@@ -12,7 +12,8 @@ from tempfile import SpooledTemporaryFile
 
 import numpy as np
 
-from ..cells.cell import MAX_PROGRAM_POINTS, Cell
+from ..cells.cell import Cell
+from ..cells.language_limits import MAX_PROGRAM_POINTS
 from ..frames import rotation_deg
 from ..moves import Move, Program, Section, Wait, via_point
 from .dobot import round_down_speed_mm_s

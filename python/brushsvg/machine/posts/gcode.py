@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cells.cell import MAX_RADIUS_DIFFERENCE_MM
+from ..cells.language_limits import MAX_RADIUS_DIFFERENCE_MM
 from ..moves import MEANINGS_AT_SAFE_HEIGHT, Move, Program, Wait
 from .text import BRACKETS, IMMEDIATE_COMMANDS, feed_of_speed_mm_min, format_number, format_rows, plain_text
 

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...errors import Error
-from ..cells.cell import UNITS_MM, Cell
+from ..cells.cell import Cell
+from ..cells.language_limits import UNITS_MM
 from ..moves import Move, Program
 from .text import QUOTES, STATEMENT_ENDS, format_rows, plain_text
 

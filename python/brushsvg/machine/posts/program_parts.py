@@ -9,7 +9,7 @@ from collections.abc import Container, Iterator
 
 import numpy as np
 
-from ..cells.cell import MAX_PROGRAM_LINES
+from ..cells.language_limits import MAX_PROGRAM_LINES
 from ..moves import Program
 from .script import LanguageWords, write_section
 

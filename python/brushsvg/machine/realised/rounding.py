@@ -13,15 +13,8 @@ from math import atan2, ceil, dist, hypot, inf, tau
 import numpy as np
 
 from ... import _core
-from ..cells.cell import (
-    MAX_RADIUS_DIFFERENCE_MM,
-    Cell,
-    Servo,
-    is_too_steep_for_servo,
-    least_move_mm,
-    round_points,
-    unit_mm,
-)
+from ..cells.cell import Cell, Servo, is_too_steep_for_servo, least_move_mm, round_points, unit_mm
+from ..cells.language_limits import MAX_RADIUS_DIFFERENCE_MM
 from ..frames import is_upright, transform_points
 from ..moves import via_point
 from ..posts import POSTS, circles_by

@@ -10,7 +10,8 @@ import re
 from functools import cache, lru_cache
 
 from ...errors import Error
-from ...machine.cells.cell import ARCS_IN_SEGMENTS, Cell
+from ...machine.cells.cell import Cell
+from ...machine.cells.language_limits import ARCS_IN_SEGMENTS
 from ...machine.posts.gcode import DIALECTS, HELD_UP, comment
 from ...machine.posts.gcode_servo import height_at
 from . import Act, Readback, Step

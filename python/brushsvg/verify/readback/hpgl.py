@@ -6,7 +6,8 @@ import math
 import re
 
 from ...errors import Error
-from ...machine.cells.cell import UNITS_MM, Cell
+from ...machine.cells.cell import Cell
+from ...machine.cells.language_limits import UNITS_MM
 from ...machine.posts.hpgl import CM_S, HELD_UP, comment
 from . import Act, Readback, Step, unread_error
 

@@ -6,7 +6,8 @@ import re
 
 import numpy as np
 
-from ...machine.cells.cell import LEAST_ACCELERATION_MM_S2, Cell
+from ...machine.cells.cell import Cell
+from ...machine.cells.language_limits import LEAST_ACCELERATION_MM_S2
 from ...machine.frames import of_quaternion
 from ...machine.posts.text import PROGRAM_END
 from . import Readback

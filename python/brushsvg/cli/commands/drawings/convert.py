@@ -14,8 +14,9 @@ import numpy  # noqa: F401  # before the core: if memory is short, numpy then ra
 from ....errors import Notice
 from ....jobs import conversion, outputs, prediction
 from ....jobs.choices import choose_margin_strokes
+from ....jobs.preparation.colours import list_colours, select_colour
 from ....jobs.preparation.margin_strokes import describe_expected_accuracy
-from ....jobs.work import Work, list_colours, select_colour
+from ....jobs.work import Work
 from ....machine.pen_changes import has_pens, may_pause, pens_changed
 from ....machine.program import Job
 from ....machine.writer import called_programs, path_next_to

@@ -19,7 +19,7 @@ SPEED_ROUNDING_MM_S = 0.011  # rounding of a speed that is written in steps of 0
 MAX_PAUSE_S = 0.01  # rounded places and times change the time of a part by up to 0.003 s
 
 
-def stops(read: Readback, program: Program) -> list[Notice]:
+def find_pauses(read: Readback, program: Program) -> list[Notice]:
     """Report the first part of a stroke that is slower than the rest of it.
 
     read: the program as read back; program: the program that brushsvg would write. A stroke may be slower as a whole,
