@@ -16,7 +16,7 @@ from brushsvg.jobs.work import order_nearest_first
 from brushsvg.machine import moves, program, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.model.library import find_brush
-from brushsvg.planning import travel_order
+from brushsvg.planning import shortest_travel
 from brushsvg.reporting.report_text import format_overlap
 from brushsvg.show.evaluation import figures, report
 
@@ -116,9 +116,9 @@ def test_loads_of_a_stroke_stay_together_in_nearest_first_order():
         poses = [(begin, 20, 0), (begin, 20, -2), (end, 20, -2), (end, 20, 0)]
         passes.append(_core.Pass(name, np.array(poses, dtype=float), 10.0))
         passes[-1].load = load
-    assert travel_order.nearest_first(passes) == [0, 1, 2]
+    assert shortest_travel.nearest_first(passes) == [0, 1, 2]
     passes[1].load = 0
-    assert travel_order.nearest_first(passes) == [0, 2, 1], "b begins where a ends"
+    assert shortest_travel.nearest_first(passes) == [0, 2, 1], "b begins where a ends"
 
 
 FEW_COLOURS = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"

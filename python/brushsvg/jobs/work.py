@@ -8,7 +8,7 @@ from .. import _core
 from ..machine.cells.cell import Cell
 from ..machine.paint_reload import PlanInLoads, is_later_part
 from ..machine.program import WHOLE_JOB, CheckedProgram, Job
-from ..planning import travel_order
+from ..planning import shortest_travel
 from ..read.design import Notice
 from .options import Options
 
@@ -115,4 +115,4 @@ def order_nearest_first(work: Work) -> Work:
     Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
     places, and no stroke is painted backwards.
     """
-    return select_rows(work, travel_order.nearest_first(work.plan.passes))
+    return select_rows(work, shortest_travel.nearest_first(work.plan.passes))

@@ -1,4 +1,7 @@
-"""Judge a planned job: the one place that defines the verdict of `report`, `check` and `convert --report`.
+"""Judge a planned job for `report`, `check` and `convert --report`.
+
+The limits of the overlap, 0.70 and 0.95, are USABLE_OVERLAP and GOOD_OVERLAP of reporting.report_text, because
+`compare` and `calibrate` judge overlaps as well.
 
 do not use:   a limit forbids running the program; no stroke can be painted; the overlap is below 0.70
 usable, but:  strokes are left out; the overlap is below 0.95; paint visibly misses the drawing; a law of the brush was

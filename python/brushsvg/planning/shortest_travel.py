@@ -1,4 +1,4 @@
-"""Order of passes with the shortest ways between them."""
+"""Reorder passes so that the tool travels less between them (--order nearest)."""
 
 from __future__ import annotations
 
