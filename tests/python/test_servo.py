@@ -312,6 +312,22 @@ def test_check_accepts_a_pose_with_the_previous_servo_value(tmp_path, monkeypatc
     assert status == 0, reported
 
 
+@pytest.mark.parametrize("scale", [0.94, 1.06])
+def test_check_times_a_slope_by_the_commanded_way(tmp_path, monkeypatch, capsys, scale):
+    """Check accepts a slope that is painted at the speed limit by a machine with errors of scale.
+
+    A machine with a scale of 0.94 goes 0.94 mm for each commanded mm, and a feed is for commanded mm. Check divided the
+    shorter way by the feed, and refused its own program as 5 % too fast.
+    """
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text(write_cell(replace(CELL, machine=Machine(scale=(scale, scale)))))
+    poses = np.array([(20, 20, 0), (26, 20, -7.8), (40, 20, -7.8), (46, 20, 0)])
+    Path("p.json").write_text(write_plan(_core.Plan("round-6", "", (100, 60), [_core.Pass("a", poses, 25.0)])))
+    assert call(capsys, "convert", "p.json", "-o", "p.nc", "--cell", "mine.toml")[0] == 0
+    status, _, reported = call(capsys, "check", "p.nc", "p.json", "--cell", "mine.toml")
+    assert status == 0, reported
+
+
 @pytest.mark.parametrize("width_mm", [0.0503, 0.0707, 0.1103])
 def test_rounded_parts_of_a_steep_path_are_not_a_jump(width_mm):
     """Rounded parts of a steep path do not look like a jump.
@@ -329,6 +345,10 @@ def test_rounded_parts_of_a_steep_path_are_not_a_jump(width_mm):
 def test_a_lift_before_any_feed_has_a_speed():
     text = GOLDEN.read_text(encoding="utf-8").replace("G21 G90", "M3 S800\nM3 S796\nG21 G90")
     read = read_program(text, ".ngc", CELL)
+    assert all(step.speed_mm_s > 0 for section in read.sections for step in section.steps)
+    ebb = GOLDEN.with_name("two_strokes.ebb").read_text(encoding="utf-8")
+    begin, feed, rest = ebb.partition("# feed 6000.0 mm/min\n")
+    read = read_program(begin + "S2,17280,4,0,25\n" + feed + rest, ".ebb", find_cell("axidraw-ebb"))
     assert all(step.speed_mm_s > 0 for section in read.sections for step in section.steps)
 
 

@@ -178,7 +178,7 @@ def walk_sections(
     for section in read.sections:
         track = _track_of_section(section, frame, here)
         low = _true_track(track, cell) if _match_stroke_title(section) else track
-        notices = [*_check_moves(section, low, brush, cell, here_low, paper_mm)]
+        notices = [*_check_moves(section, low, track, brush, cell, here_low, paper_mm)]
         notices += _check_backlash(read, section, low, frame, brush, cell, paper_mm)
         if len(track.points):
             ends = [ends[0] if ends else track.points[0], track.points[-1]]
@@ -491,11 +491,18 @@ def _arcs_of_touch(owner: np.ndarray, centres: list) -> list:
 
 
 def _check_moves(
-    section: ReadSection, track: Track, brush, cell: Cell, here: np.ndarray | None, paper_mm: float
+    section: ReadSection,
+    track: Track,
+    commanded: Track,
+    brush,
+    cell: Cell,
+    here: np.ndarray | None,
+    paper_mm: float,
 ) -> Iterator[Notice]:
     """Report moves that are too fast while the brush touches, or too low in the air.
 
-    A move is too low in the air if it goes sideways below the safe height.
+    A move is too low in the air if it goes sideways below the safe height. track: the way of the tool; commanded: the
+    same points as the program states them.
     """
     if not len(track.points):
         return
@@ -526,9 +533,10 @@ def _check_moves(
             yield Notice("", sentence, code="travel-too-low")
     if cell.servo:
         first, last = np.diff(np.r_[False, touches, False].astype(int)).nonzero()[0].reshape(-1, 2).T
+        ways_mm = np.linalg.norm(np.diff(commanded.points[:, :2], axis=0, prepend=before[:1, :2]), axis=1)
+        from_mm, to_mm = (np.minimum(points[:, 2], paper_mm + slack) for points in (before, track.points))
         for on in map(slice, first, last):
-            top = paper_mm + slack
-            yield from _check_servo_tip_speed(steps[on], before[on], track.points[on], cell, limit, top)
+            yield from _check_servo_tip_speed(steps[on], ways_mm[on], from_mm[on], to_mm[on], cell, limit)
         yield from _check_servo_lifts(steps, before, track.points, cell, paper_mm)
 
 
@@ -566,16 +574,16 @@ def _check_backlash(
 
 
 def _check_servo_tip_speed(
-    steps: list, before: np.ndarray, after: np.ndarray, cell: Cell, limit: float, top_mm: float
+    steps: list, ways_mm: np.ndarray, before_mm: np.ndarray, after_mm: np.ndarray, cell: Cell, limit: float
 ) -> Iterator[Notice]:
     """Report where the tip of a servo's brush is too fast in one touch.
 
     The feed of a servo is the speed of the path without the lift. Its heights change in steps of at least one value.
     Over any number of moves, the tip may be at most two steps and one value ahead of the distance that the limit
-    allows in their time. before, after: (n, 3) start and end of each step [mm]; limit: [mm/s].
+    allows in their time. ways_mm: (n,) commanded flat length of each step, for which its feed is; before_mm, after_mm:
+    (n,) height of the tip at its start and end, at most where it touches; limit: [mm/s].
     """
     lead_mm = _max_servo_lead_mm(cell)
-    ways_mm = np.linalg.norm(after[:, :2] - before[:, :2], axis=1)
     speeds = np.array([step.speed_mm_s for step in steps])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(steps)), where=speeds > 0)
     took_s = np.maximum(took_s, [step.took_s for step in steps])
@@ -585,9 +593,8 @@ def _check_servo_tip_speed(
     rounded_s = np.divide(0.71 * unit_mm(cell), speeds, out=np.zeros(len(steps)), where=took_s > 0)
     rounded_s = np.max([rounded_s, np.r_[rounded_s[1:], 0.0], np.r_[0.0, rounded_s[:-1]]], axis=0)
     begins_mm = ends_mm - ways_mm
-    starts, ends = np.minimum(before[:, 2], top_mm), np.minimum(after[:, 2], top_mm)
     for count in _window_lengths(len(steps)):
-        rise_mm = np.abs(ends[count - 1 :] - starts[: len(steps) - count + 1])
+        rise_mm = np.abs(after_mm[count - 1 :] - before_mm[: len(steps) - count + 1])
         on_mm = ends_mm[count - 1 :] - begins_mm[: len(steps) - count + 1]
         path_mm = np.hypot(on_mm, np.maximum(rise_mm - lead_mm, 0.0))
         seconds = ends_s[count - 1 :] - begins_s[: len(steps) - count + 1]

@@ -133,7 +133,8 @@ class _Reader:
     def _step(self, number: int, took_s: float = 0.0) -> None:
         x, y = self._place()
         height = self._height(self.value)
-        self.out.section().steps.append(Step(number, False, x, y, height, self.feed_mm_s, took_s=took_s))
+        speed_mm_s = self.feed_mm_s or self.cell.speeds.press_mm_s  # a lift may come before the first feed
+        self.out.section().steps.append(Step(number, False, x, y, height, speed_mm_s, took_s=took_s))
 
     def _place(self) -> tuple[float, float]:
         x, y = (self.mm_from_steps @ self.steps).tolist()
