@@ -253,3 +253,17 @@ def test_place_numbers_stay_inside_the_picture_and_off_the_paint(painted):
     for text in texts:
         x, y, size = (float(text.get(key)) for key in ("x", "y", "font-size"))
         assert 0 <= x <= SHEET[0] - 0.65 * size and size <= y + 0.2 * size and y <= SHEET[1]
+
+
+def test_the_legend_of_misplaced_paint_fits_a_narrow_picture():
+    """The last entry, of surplus paint, was once cut off on a narrow sheet."""
+    plain, with_legend = (decode(overlap_png(np.zeros((2400, 240)), np.zeros((2400, 240)), shown)) for shown in (0, 1))
+    assert plain.shape[1] == 240 and len(with_legend) > 2400
+    assert (with_legend[2400:] != 255).any(axis=(0, 2)).nonzero()[0].max() < with_legend.shape[1] - 20
+    tree = ET.fromstring(overlap_svg([], [], (30.0, 300.0)))
+    texts = list(tree.iter(f"{SVG}text"))
+    assert len(texts) == 3
+    for text in texts:
+        assert float(text.get("x")) + 0.55 * float(text.get("font-size")) * len(text.text) <= float(
+            tree.get("viewBox").split()[2]
+        )

@@ -20,18 +20,19 @@ def overlap_png(
 ) -> bytes:
     """Draw where paint is missing and where there is too much paint.
 
-    The given places are numbered. target, painted: (rows, columns) covered share of each pixel; places: number -> (x,
-    y) px.
+    The given places are numbered, and the picture is at least as wide as its legend. target, painted: (rows, columns)
+    covered share of each pixel; places: number -> (x, y) px.
     """
     common = np.minimum(target, painted)
     rows, columns = common.shape
     size = max(14, round(0.016 * max(rows, columns)))
-    image = blank_canvas((rows + 2 * size * legend, columns), "#ffffff")
+    foot, width = (2 * size, max(columns, _legend_width(size))) if legend else (0, columns)
+    image = blank_canvas((rows + foot, width), "#ffffff")
     shares = ((common, BOTH), (target - common, MISSING), (painted - common, OVERSPILL))
     page = np.full((rows, columns, 3), 255.0)
     for share, colour in shares:  # the shares of a pixel add up; they do not cover each other
         page -= share[..., None] * (255.0 - np.array(bgr(colour)))
-    image[:rows] = np.round(page).clip(0, 255).astype(np.uint8)
+    image[:rows, :columns] = np.round(page).clip(0, 255).astype(np.uint8)
     _number_places(image, np.maximum(target, painted) > MIN_COVERAGE, places or {}, size)
     if legend:
         write_legend(image, size, rows + size // 2, size)
@@ -48,6 +49,14 @@ def _number_places(image: np.ndarray, marks: np.ndarray, places: Mapping[int, tu
             ends = [tuple(map(round, end)) for end in label.leader]
             cv2.line(image, *ends, bgr(TEXT), max(1, size // 12), cv2.LINE_AA)
         write_text(image, str(number), (round(label.left), round(label.top + 0.86 * size)), size, 700, TEXT)
+
+
+def _legend_width(size: int) -> int:
+    """Return the width [px] of the legend with its margins.
+
+    size: height of the letters (px).
+    """
+    return sum(text_width(words, size, 400) + 7 * size // 2 for _, words in OVERLAP_COLOURS)
 
 
 def write_legend(image: np.ndarray, x: int, y: int, size: int) -> None:

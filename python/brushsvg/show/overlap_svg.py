@@ -32,8 +32,8 @@ def overlap_svg(
 ) -> str:
     """Draw where paint is missing and where there is too much paint.
 
-    Lengths are millimetres of the sheet. target, painted: rings of everything that was drawn, and of all paint; places:
-    number -> (x, y) on the sheet, shown with rings and numbers.
+    Lengths are millimetres of the sheet, and the picture is at least as wide as its legend. target, painted: rings of
+    everything that was drawn, and of all paint; places: number -> (x, y) on the sheet, shown with rings and numbers.
     """
     width, height = sheet_mm
     size = max(2.0, 0.018 * max(width, height))
@@ -42,25 +42,27 @@ def overlap_svg(
         for name, rings in (("wanted", target), ("painted", painted))
     }
     foot = height + 2.5 * size
+    entry_widths = [size * (3.0 + 0.55 * len(words)) for _, words in OVERLAP_COLOURS]
+    across = max(width, sum(entry_widths))
     lines = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{foot:g}mm" '
-        f'viewBox="0 0 {width:g} {foot:g}">',
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{across:g}mm" height="{foot:g}mm" '
+        f'viewBox="0 0 {across:g} {foot:g}">',
         f"<title>{escape(printable(title), quote=False)}</title>",
         f'<clipPath id="wanted"><path d="{data["wanted"]}"/></clipPath>',
-        f'<rect width="{width:g}" height="{foot:g}" fill="#ffffff"/>',
+        f'<rect width="{across:g}" height="{foot:g}" fill="#ffffff"/>',
         f'<path fill="{MISSING}" d="{data["wanted"]}"/>',
         f'<path fill="{OVERSPILL}" d="{data["painted"]}"/>',
         f'<path fill="{BOTH}" clip-path="url(#wanted)" d="{data["painted"]}"/>',
     ]
     lines += _number_places([*target, *painted], sheet_mm, places, size) if places else []
     x = size
-    for colour, words in OVERLAP_COLOURS:
+    for (colour, words), entry_width in zip(OVERLAP_COLOURS, entry_widths, strict=True):
         lines.append(f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>')
         lines.append(
             f'<text x="{x + 1.5 * size:g}" y="{height + 1.85 * size:g}" font-family="sans-serif" '
             f'font-size="{size:g}" fill="#22252b">{words}</text>'
         )
-        x += size * (3.0 + 0.55 * len(words))
+        x += entry_width
     return "\n".join([*lines, "</svg>", ""])
 
 
