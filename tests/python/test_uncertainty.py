@@ -4,13 +4,14 @@ The notice appears once if nothing is known.
 """
 
 import json
+import re
 
 import cv2
 import numpy as np
 import pytest
 from diagnostics import gives
 
-from brushsvg import _core, find_brush
+from brushsvg import _core, find_brush, marks_png, marks_svg
 from brushsvg.cli import main
 from brushsvg.show.evaluation import uncertainty
 
@@ -83,6 +84,22 @@ def test_a_picture_shows_the_band_and_a_legend(drawing, tmp_path, suffix):
     changed = np.abs(plain - banded).max(axis=2) > 20
     assert changed[: changed.shape[0] * 9 // 10].mean() > 0.01  # around the marks
     assert changed[changed.shape[0] * 9 // 10 :].mean() > 0.001  # the legend
+
+
+@pytest.mark.parametrize("sheet_mm", [(100.0, 100.0), (60.0, 200.0)])
+def test_the_legend_of_a_band_ends_inside_the_sheet(sheet_mm):
+    """On a square sheet, its last words were once cut off."""
+    plan = _plan_of([20, 20, -5], [30, 20, -5])
+    brush = find_brush("round-6")
+    marks = _core.simulate(plan, brush)
+    _core.trace_outlines(marks, brush)
+    band = uncertainty.band(plan, brush, marks)
+    text = marks_svg(marks, sheet_mm, ["#000000"], band=band).split("<text ")[1]
+    x, size = (float(re.search(f'{name}="([0-9.]+)"', text)[1]) for name in ("x", "font-size"))
+    assert x + 0.55 * size * len(band.words) <= sheet_mm[0]
+    image = cv2.imdecode(np.frombuffer(marks_png(marks, brush, sheet_mm, ["#000000"], band=band), np.uint8), 0)
+    dark = (image[-image.shape[0] // 20 :] < 128).any(axis=0).nonzero()[0]
+    assert len(dark) and dark.max() < 0.99 * image.shape[1]
 
 
 def test_a_band_is_refused_for_other_formats(drawing, tmp_path, capsys):

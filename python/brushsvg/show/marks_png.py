@@ -10,7 +10,17 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import Error, require_type
-from .marks_svg import BAND, LINE_WIDTH_SHARE, TOOLPATH, Band, check_lines, check_picture, known_colour, travels
+from .marks_svg import (
+    BAND,
+    LINE_WIDTH_SHARE,
+    TOOLPATH,
+    Band,
+    band_letter_height,
+    check_lines,
+    check_picture,
+    known_colour,
+    travels,
+)
 from .overlap_svg import MISSING
 from .png_canvas import (
     PNG_LONG_SIDE_PX,
@@ -76,7 +86,8 @@ def marks_png(
 
 
 def _draw_band(image, band, window, px_per_mm: float) -> None:
-    size = max(12, round(min(image.shape[:2]) / 40))
+    rows, columns = image.shape[:2]
+    size = max(12, round(band_letter_height(band.words, columns, rows)))
     left, low = size, image.shape[0] - size
     for rings in filter(None, band.rings):
         blend(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)

@@ -160,7 +160,7 @@ def _line_data(points_mm: np.ndarray, height: float) -> str:
 
 
 def _band_elements(band, width: float, height: float) -> list[str]:
-    size = round(min(width, height) / 40, 3)
+    size = round(band_letter_height(band.words, width, height), 3)
     lines = []
     for rings in filter(None, band.rings):
         data = " ".join(path_data(ring, height) for ring in rings)
@@ -172,6 +172,11 @@ def _band_elements(band, width: float, height: float) -> list[str]:
         left += 2.5 * size
     text = f'x="{left:g}" y="{low - 0.15 * size:g}" font-family="sans-serif" font-size="{size:g}"'
     return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
+
+
+def band_letter_height(words: str, width: float, height: float) -> float:
+    """Return the height of the letters with which a band's legend fits a sheet, in the unit of the sheet's sides."""
+    return min(min(width, height) / 40, width / (4.5 + 0.55 * len(words)))
 
 
 def _error_attributes(error, is_astray: bool) -> str:
