@@ -324,9 +324,11 @@ def selection(ids: list[str]) -> list[str]:
 def element_of(by_id: dict, where: str):
     """Return the element of a stroke, None if it is unknown.
 
-    where: the id, id/2 for a part of the element, id#2 for a pass, use/id for a copy.
+    where: the id, id/2 for a part of the element, id#2 for a pass, use/id for a copy; each may end in ~2 for a lane
+    and +2 for a load.
     """
-    for name in (where, where.rpartition("#")[0], where.rpartition("/")[0], where.partition("/")[0]):
+    whole = re.sub(r"(~\d+)?(\+\d+)?$", "", where)
+    for name in (where, whole, whole.rpartition("#")[0], whole.rpartition("/")[0], whole.partition("/")[0]):
         if name in by_id:
             return by_id[name]
     return None

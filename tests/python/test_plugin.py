@@ -140,6 +140,17 @@ def test_a_module_missing_in_inkscapes_python_is_reported_with_its_package(tmp_p
     assert done.stderr.endswith(f"  {sys.executable} -m pip install {module}\n")
 
 
+@pytest.mark.parametrize("name", ["n", "n/2", "n#2", "n~3", "n/2#2~3", "n+2", "n~3+2", "copy/n~3", "a~2"])
+def test_a_part_of_a_stroke_belongs_to_its_element(monkeypatch, name):
+    """A line that is lifted at a corner is painted as n, n~2 and n~3."""
+    monkeypatch.syspath_prepend(SOURCE)
+    from brushsvg_program import element_of
+
+    element = {"n": "n", "copy": "copy", "a": "a", "a~2": "a~2"}
+    assert element_of(element, name) == {"c": "copy", "a": "a~2"}.get(name[0], "n")
+    assert element_of(element, "other~2") is None
+
+
 def test_the_extensions_folder_follows_the_platform(monkeypatch):
     monkeypatch.delenv("INKSCAPE_PROFILE_DIR", raising=False)
     monkeypatch.delenv("XDG_CONFIG_HOME", raising=False)
