@@ -9,6 +9,7 @@ from svg_text import HEAD, read
 
 from brushsvg import strokes
 from brushsvg.cli import main
+from brushsvg.read import settings_in
 from brushsvg.read.svg import read_svg
 from brushsvg.show.editable_svg import WIDTH_TOLERANCE, lines_svg
 
@@ -89,6 +90,18 @@ def test_preview_writes_editable_strokes(tmp_path, monkeypatch, capsys):
     assert main(["preview", "in.svg", "-o", "out.png", "--show", "strokes", "--editable"]) == 2
     assert not (tmp_path / "none.svg").exists() and not (tmp_path / "out.png").exists()
     assert gives(capsys.readouterr().err.splitlines()[-1], "--editable")
+
+
+def test_editable_strokes_keep_the_settings_of_the_whole_drawing(tmp_path, monkeypatch):
+    """The brush, machine and tolerance of the drawing were once lost, and convert took its own."""
+    monkeypatch.chdir(tmp_path)
+    said = {"brush": "liner-1", "cell": "grbl-3axis", "compensation": "none", "tolerance": "0.2mm", "wide": "clamp"}
+    said |= {"start": "butt", "end": "round"}
+    attributes = "".join(f' data-brushsvg-{name}="{value}"' for name, value in said.items())
+    (tmp_path / "in.svg").write_text(f"{HEAD.replace('<svg', f'<svg{attributes}', 1)}{LINE}</svg>")
+    assert main(["preview", "in.svg", "-o", "out.svg", "--show", "strokes", "--editable"]) == 0
+    before, after = settings_in("in.svg"), settings_in("out.svg")
+    assert before == after and before.keys() == said.keys()
 
 
 def test_editable_strokes_wider_than_the_brush_are_reported(tmp_path, monkeypatch, capsys):

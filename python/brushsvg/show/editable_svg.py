@@ -33,20 +33,24 @@ _SETTINGS = {
 }
 
 
-def lines_svg(strokes: list, sheet_mm: tuple[float, float], title: str = "") -> str:
+def lines_svg(
+    strokes: list, sheet_mm: tuple[float, float], title: str = "", job_settings: dict[str, str | float] | None = None
+) -> str:
     """Write one path per stroke, in millimetres of the sheet with y down, in layers.
 
     A stroke that is painted in several passes is written once. When the SVG is read, it gives the same strokes, with
     widths within WIDTH_TOLERANCE. data-stroke is the name of a stroke; data-outline marks strokes that come from the
-    outline of a shape.
+    outline of a shape. job_settings: those of the drawing, as read.settings_in returns them.
     """
     width, height = sheet_mm
     first_passes = [stroke for stroke in strokes if stroke.origin.repeat == 1]
     names = _unique_ids(first_passes)
+    said = {name: f"{value:.9g}mm" if name == "tolerance" else value for name, value in (job_settings or {}).items()}
+    attributes = "".join(f" data-brushsvg-{name}={quoted(value)}" for name, value in said.items())
     drawn = [_effect_and_path(stroke, name, height) for stroke, name in zip(first_passes, names, strict=True)]
     lines = [
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"',
-        f' width="{width:.9g}mm" height="{height:.9g}mm" viewBox="0 0 {width:.9g} {height:.9g}">',
+        f' width="{width:.9g}mm" height="{height:.9g}mm" viewBox="0 0 {width:.9g} {height:.9g}"{attributes}>',
         f"<title>{escape(printable(title), quote=False)}</title>",
         "<defs>",
         *(effect for effect, _ in drawn if effect),

@@ -13,7 +13,7 @@ from ....jobs.choices import (
 from ....jobs.options import DEFAULT_BRUSH
 from ....jobs.preparation.preparation import limit_depth
 from ....model.library import find_brush
-from ....read import read_drawing
+from ....read import read_drawing, settings_in
 from ....read.layout import arrange
 from ....strokes.extraction import strokes as strokes_of
 from ....strokes.wide_shapes import find_wide_lines
@@ -48,7 +48,7 @@ def preview_strokes(args) -> None:
         if args.editable:
             from ....show.editable_svg import lines_svg
 
-            picture = lines_svg(strokes, design.sheet_mm, design.title).encode()
+            picture = lines_svg(strokes, design.sheet_mm, design.title, settings_in(args.input)).encode()
         else:
             from ....show.import_picture import overview
 
