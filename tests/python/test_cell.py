@@ -390,6 +390,24 @@ def test_a_page_of_a_cell_shows_how_the_tool_is_turned():
     assert not any("turned" in line for line in cell_page(cell).splitlines())
 
 
+def test_a_page_of_a_cell_shows_its_arm_its_machine_errors_and_its_post():
+    """`cell show` once left out the tables arm, machine and robodk."""
+    machine = Machine(lean_mm_per_mm=(0.31, -0.04), skew=0.004, map_mm=((0.0, 0.0, 0.1), (9.0, 0.0, 0.2)))
+    cell = replace(find_cell("ur5e"), machine=machine, robodk=RoboDK("posts/mine.py"))
+    rows = [line.strip() for line in cell_page(cell).splitlines()]
+    for expected in (
+        "machine         lean_mm_per_mm: 0.31, -0.04",
+        "skew: 0.004",
+        "map_mm: 0, 0, 0.1; 9, 0, 0.2",
+        "arm             name: UR5e",
+        "limits_deg: -360, 360; -360, 360; -180, 180; -360, 360; -360, 360; -360, 360",
+        "robodk          post: posts/mine.py",
+    ):
+        assert expected in rows, rows
+    assert not any("height_mm" in row or "base_mm" in row for row in rows), "keys with their default are left out"
+    assert "machine" not in cell_page(replace(cell, machine=Machine()))
+
+
 @pytest.mark.parametrize(
     ("servo", "expected"),
     [

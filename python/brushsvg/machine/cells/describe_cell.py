@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import itertools
 
+from .cell import entries_of
+
+KEY_BY_KEY = ("machine", "arm", "robodk")  # tables that are shown under the names of their keys
+
 
 def cell_page(cell) -> str:
-    """Return everything that a cell file says, one fact per line."""
+    """Describe a cell, one fact per line."""
     heights, speeds, workspace, blending = cell.heights, cell.speeds, cell.workspace, cell.blending
     rows = [
         ("language", cell.language),
@@ -45,6 +49,9 @@ def cell_page(cell) -> str:
         rows.append(("contact", f"{limit_text} ends the program"))
     if cell.reload:
         rows.append(("fetches paint", _reload_text(cell.reload)))
+    for name in KEY_BY_KEY:
+        if table := getattr(cell, name):
+            rows += zip(itertools.chain([name], itertools.repeat("")), _table_facts(table), strict=False)
     rows += [("station", f"{station.name} at {_point_text(station.place_mm)} mm") for station in cell.stations]
     width = max(len(name) for name, _ in rows)
     lines = [f"{cell.name}: {cell.description}", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
@@ -75,6 +82,18 @@ def _reload_text(reload) -> str:
     }
     narrower = f", or where marks would be {reload.narrower_percent:g} % narrower" if reload.narrower_percent else ""
     return when[reload.when] + (narrower if reload.when == "length" else "")
+
+
+def _table_facts(table) -> list[str]:
+    """Return the keys of a table that differ from their defaults, each with its value."""
+    values = {key: getattr(table, key) for key in entries_of(table)}
+    return [f"{key}: {_value_text(value)}" for key, value in values.items() if value != getattr(type(table), key, None)]
+
+
+def _value_text(value) -> str:
+    if not isinstance(value, tuple):
+        return value if isinstance(value, str) else f"{value:g}"
+    return _point_text(value) if not isinstance(value[0], tuple) else "; ".join(map(_point_text, value))
 
 
 def _point_text(values) -> str:
