@@ -573,6 +573,18 @@ def test_commands_without_a_drawing_use_the_project_of_the_current_folder(desk, 
     assert "round-6-angles" in program and "148" in program
 
 
+def test_cell_place_uses_the_project_and_names_only_settings_that_it_uses(desk, capsys):
+    """`cell place` once ignored the project file, and so it placed another job than `convert` paints."""
+    project('brush = "round-6-angles"\ncell = "xarm6"\npaper = "a5"\n[defaults]\nfit = "90x60"\nspeed = 9')
+    for words, used, fit in (("", "brush, sheet", "-"), (" d.svg", "brush, sheet, fit", f"90x60 {NAME}")):
+        capsys.readouterr()
+        assert main(f"cell place ur5e{words}".split()) == 0
+        assert f": settings used: {used}; --explain" in capsys.readouterr().err
+        lines = explained(capsys, *f"cell place ur5e{words}".split())
+        assert gives(lines["sheet"], "148x210", NAME) and gives(lines["brush"], "round-6-angles", NAME)
+        assert gives(lines["fit"], *fit.split()) and "cell" not in lines
+
+
 def test_a_comparison_of_brushes_includes_the_project_brush(desk, capsys):
     assert main(["brush", "new", "-o", "mine.json", "--like", "round-6", "--quiet"]) == 0
     project('brush = "mine.json"')
@@ -589,8 +601,9 @@ def test_a_comparison_of_brushes_includes_the_project_brush(desk, capsys):
 
 def test_every_command_with_a_drawing_supports_explain():
     commands = dict(command_parser()._subparsers._group_actions[0].choices)
-    setups = commands["setup"]._subparsers._group_actions[0].choices
-    commands |= {f"setup {name}": command for name, command in setups.items()}
+    for group in ("setup", "cell"):
+        choices = commands[group]._subparsers._group_actions[0].choices
+        commands |= {f"{group} {name}": command for name, command in choices.items()}
     offers = {name for name, command in commands.items() if "--explain" in command._option_string_actions}
     assert offers >= {
         "convert",
@@ -600,7 +613,7 @@ def test_every_command_with_a_drawing_supports_explain():
         "compare",
         "check",
     }
-    assert offers >= {"simulate-photo", "chart", "setup height", "setup first-run"}
+    assert offers >= {"simulate-photo", "chart", "setup height", "setup first-run", "cell place"}
 
 
 def test_project_settings_are_reported_unless_quiet(desk, capsys):

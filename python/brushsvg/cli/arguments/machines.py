@@ -159,6 +159,7 @@ def _add_cell_place(subcommands) -> None:
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     flags.add_layout(place)
     flags.add_wide(place)
+    flags.add_explain(place, "drawing")
     flags.add_write_options(place)
     place.set_defaults(run="cell_place", parser=place, check=_check_cell_place)
 

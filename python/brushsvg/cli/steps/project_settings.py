@@ -40,6 +40,8 @@ def use_project(args, argv: list[str] | None) -> None:
     excluded = {name for dest in EXCLUDED_BY if getattr(args, dest, False) for name in EXCLUDED_BY[dest]}
     if _writes_plan(args):  # the poses of a plan are relative to the paper, at any height of the paper
         excluded.add("z_offset")
+    if getattr(args, args.project_near or "", None) is None:  # without a drawing, these have no effect
+        excluded |= {*settable_options} - {*PROGRAM_SETTINGS}
     filled = [name for name in project.settings if name in settable_options and name not in typed_options | excluded]
     for name in filled:
         value = project.settings[name]
