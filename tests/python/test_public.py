@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from diagnostics import agrees, refused
+from diagnostics import agrees, are_reported, refused
 
 import brushsvg
 
@@ -166,6 +166,24 @@ def test_write_program_reports_a_plan_of_another_brush(tmp_path):
     plan.brush = "liner"
     (notice,) = brushsvg.write_program(tmp_path / "a.json", plan, brush)
     assert agrees(notice, "plan-of-other-brush liner round-6", "brush")
+
+
+@pytest.mark.parametrize(
+    ("cell", "name", "expected"),
+    [
+        ("grbl-servo", "a.gcode", ["paint-runs-out '[0, 20] mm' round-6", "colours-as-one --per-colour"]),
+        ("ur5e", "a.script", ["paint-runs-out '[0, 20] mm' round-6", "paper-example --taught"]),
+        ("ur5e", "a.json", []),
+    ],
+)
+def test_write_program_returns_the_notices_of_convert(tmp_path, cell, name, expected):
+    """It once said nothing of paint that runs out, of strokes painted with one pen, and of paper that nobody taught."""
+    brush, plan = brushsvg.find_brush("round-6"), plan_of(SOUND)
+    brush.paint = brushsvg._core.Paint(0.4, lasts_mm=20)
+    plan.passes = [brushsvg.Pass("s", SOUND, colour="#000000"), brushsvg.Pass("t", SOUND, colour="#ff0000")]
+    notices = brushsvg.write_program(tmp_path / name, plan, brush, cell=brushsvg.find_cell(cell))
+    assert are_reported(notices, *expected), notices
+    assert notices == list(brushsvg.convert(plan, tmp_path / name, brush=brush, cell=cell).notices)
 
 
 def test_unknown_choices_are_refused(tmp_path):

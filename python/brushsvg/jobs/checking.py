@@ -25,7 +25,7 @@ from ..machine.paint_reload import report_dry_brush, split_into_loads
 from ..machine.posts import GCODE, POSTS
 from ..machine.program import out_of_arm
 from ..machine.setup_programs import around
-from ..machine.writer import called_programs, parted_post, report_renamed
+from ..machine.writer import called_programs, list_arm_notices, parted_post, report_renamed
 from ..model.library import brush_names, find_brush
 from ..read import settings_in
 from ..read.gcode import is_ours
@@ -56,7 +56,7 @@ from .choices import (
     report_ineffective_flags,
     suffix_of,
 )
-from .conversion import list_arm_notices, make_choices
+from .conversion import make_choices
 from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options
 from .preparation import preparation

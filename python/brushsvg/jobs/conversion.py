@@ -17,7 +17,6 @@ from .. import _core
 from ..errors import (
     Error,
     Notice,
-    missing_packages_error,
     name_file_in_errors,
     need_number,
     need_one_of,
@@ -26,22 +25,11 @@ from ..errors import (
 )
 from ..files import write_files
 from ..machine import preflight, writer
-from ..machine.arm.inverse_kinematics import is_installed
 from ..machine.cells.cell import Cell
-from ..machine.cells.cell_check import OF_EXAMPLE
 from ..machine.moves import duration_s
-from ..machine.paint_reload import (
-    PlanInLoads,
-    fetched_mm,
-    report_dry_brush,
-    report_long_strokes,
-    report_missing_paint,
-    split_into_loads,
-)
-from ..machine.pen_changes import with_one_pen
+from ..machine.paint_reload import PlanInLoads, fetched_mm, split_into_loads
 from ..machine.posts import POSTS
-from ..machine.program import WHOLE_JOB, CheckedProgram, Job, beyond_part
-from ..machine.realised.smooth_field import beyond_field
+from ..machine.program import WHOLE_JOB, CheckedProgram, Job
 from ..notice_summary import summarize_notices
 from ..show.evaluation import report as reports
 from . import cancelling, outputs, prediction
@@ -288,7 +276,7 @@ def _make_conversion(
             measured_figures = outputs.make_report(first_simulation.work, first_simulation.marks, cell)
         if "report" in paths:
             files[paths["report"]] = reports.as_text(suffix_of(paths["report"]), measured_figures)
-    cell_notices = list_cell_notices(cell) if any(each.is_program for each in simulations.values()) else []
+    cell_notices = writer.list_cell_notices(cell) if any(each.is_program for each in simulations.values()) else []
     remarks = dict.fromkeys(remark for each in simulations.values() for remark in each.remarks())
     notices = (*ignored, *first_simulation.work.notices, *remarks, *cell_notices)
     conversion = Conversion(
@@ -357,24 +345,12 @@ class SimulatedWork:
     def remarks(self) -> list[Notice]:
         """Return the notices of a job that may be run."""
         first_stroke = self.walk.job.first_stroke
-        pen_notices = with_one_pen(self.loads.loads, self.cell, first_stroke) if self.is_program else []
-        brush, cell = self.work.brush, self.cell
         order_notices = _check_stroke_order(self.work, self.order, first_stroke)
-        field_notices = beyond_field(self.loads.loads, cell) if self.is_program else []
-        part_notices = beyond_part(self.loads, self.cell) if self.is_program else []
         lowering_notices = _check_lowering(self.walk.job.z_offset_mm) if self.is_program else []
-        dry_notices = report_dry_brush(self.loads, brush, cell, first_stroke) if self.is_program else []
-        return [
-            *report_missing_paint(brush, cell),
-            *order_notices,
-            *report_long_strokes(self.loads, brush, cell),
-            *dry_notices,
-            *pen_notices,
-            *field_notices,
-            *part_notices,
-            *lowering_notices,
-            *writer.report_renamed(self.name, self.suffix, self.cell),
-        ]
+        program_notices = writer.report_program(
+            self.suffix, self.loads, self.work.brush, self.cell, self.name, first_stroke
+        )
+        return [*order_notices, *lowering_notices, *program_notices]
 
     def time_s(self) -> float | None:
         """Return how long the machine takes for the program, or for one of the plan."""
@@ -466,19 +442,3 @@ def estimate_output_time_s(suffix: str, plan, walk: CheckedProgram, brush, cell:
     if suffix != ".json":
         return duration_s(walk.made)
     return estimate_time_s(split_into_loads(plan, brush, cell), brush, cell)
-
-
-def list_cell_notices(cell: Cell) -> list[Notice]:
-    """Return notices on what makes a program less certain than it looks.
-
-    These are a paper position that nobody taught, and an arm whose joints were not checked.
-    """
-    return [*([OF_EXAMPLE] if cell.paper.example else []), *list_arm_notices(cell)]
-
-
-def list_arm_notices(cell: Cell) -> list[Notice]:
-    if not cell.arm or is_installed():
-        return []
-    sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"
-    advice = missing_packages_error("its joints need", "ssik").sentence
-    return [Notice("arm", sentence, code="arm-not-followed", advice=advice)]

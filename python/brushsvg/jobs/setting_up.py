@@ -35,7 +35,7 @@ from .choices import (
     report_ineffective_flags,
     suffix_of,
 )
-from .conversion import default_suffix, list_cell_notices, make_choices
+from .conversion import default_suffix, make_choices
 from .options import DEFAULT_BRUSH
 from .preparation import preparation
 
@@ -177,7 +177,7 @@ def make_border(
             title, brush.name, len(plan.passes), plan.sheet_mm, notes, around_mm, program, job
         )
         text = _text_of(post, program, header, path, suffix, warn)
-    warn(cell.name, list_cell_notices(cell))
+    warn(cell.name, writer.list_cell_notices(cell))
     return SetupProgram(text, duration_s(program))
 
 
@@ -192,7 +192,7 @@ def make_first_run(chosen: Choices, path: str | None, warn: Warn = lambda file, 
         program = setup_programs.first_run(brush, cell, chosen.sheet, *DEFAULT_HEIGHTS_MM)
         header = header_lines.first_header(brush.name, chosen.sheet, DEFAULT_HEIGHTS_MM, program)
         text = _text_of(post, program, header, path, suffix, warn)
-    warn(cell.name, list_cell_notices(cell))
+    warn(cell.name, writer.list_cell_notices(cell))
     warn(cell.name, setup_programs.report_missing_air_run(cell, chosen.sheet))
     count = len(setup_programs.stroke_heights_mm(*DEFAULT_HEIGHTS_MM)) + 1
     return SetupProgram(text, duration_s(program), count)
@@ -211,7 +211,7 @@ def make_height(
         program = setup_programs.paper_height(brush, cell, chosen.sheet, *heights_mm)
         header = header_lines.height_header(brush.name, chosen.sheet, heights_mm, program)
         text = _text_of(post, program, header, path, suffix, warn)
-    warn(cell.name, list_cell_notices(cell))
+    warn(cell.name, writer.list_cell_notices(cell))
     return SetupProgram(text, duration_s(program), len(setup_programs.stroke_heights_mm(*heights_mm)))
 
 

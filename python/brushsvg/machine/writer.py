@@ -8,17 +8,28 @@ from dataclasses import replace
 from pathlib import Path
 
 from .. import _core
-from ..errors import Error, Notice, require_type
+from ..errors import Error, Notice, missing_packages_error, require_type
 from ..files import write_files
+from .arm.inverse_kinematics import is_installed
 from .cells.cell import Cell
+from .cells.cell_check import OF_EXAMPLE
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
 from .moves import Program, duration_s, program_in_robot_frame
-from .paint_reload import PlanInLoads, split_into_loads, station_visits
+from .paint_reload import (
+    PlanInLoads,
+    report_dry_brush,
+    report_long_strokes,
+    report_missing_paint,
+    split_into_loads,
+    station_visits,
+)
+from .pen_changes import with_one_pen
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush
-from .program import WHOLE_JOB, CheckedProgram, Job, make_checked_program, out_of_arm, unchecked_program
+from .program import WHOLE_JOB, CheckedProgram, Job, beyond_part, make_checked_program, out_of_arm, unchecked_program
 from .realised.backlash import compensate_backlash
+from .realised.smooth_field import beyond_field
 
 
 def post_for(suffix: str, cell: Cell) -> Post:
@@ -205,6 +216,39 @@ def time_s(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_
     return duration_s(whole_program(loads, brush, cell, job))
 
 
+def report_program(
+    suffix: str, loads: PlanInLoads, brush: _core.Brush, cell: Cell, name: str, first_stroke: int = 1
+) -> list[Notice]:
+    """Return notices on the paint, the pens and the name of a job that may be run.
+
+    suffix: the extension of the program, or ".json" for a plan, which no machine paints yet.
+    name: the stem of the file; "" for none.
+    """
+    notices = [*report_missing_paint(brush, cell), *report_long_strokes(loads, brush, cell)]
+    if suffix != ".json":
+        notices += report_dry_brush(loads, brush, cell, first_stroke)
+        notices += with_one_pen(loads.loads, cell, first_stroke)
+        notices += beyond_field(loads.loads, cell)
+        notices += beyond_part(loads, cell)
+    return [*notices, *report_renamed(name, suffix, cell)]
+
+
+def list_cell_notices(cell: Cell) -> list[Notice]:
+    """Return notices on what makes a program less certain than it looks.
+
+    These are a paper position that nobody taught, and an arm whose joints were not checked.
+    """
+    return [*([OF_EXAMPLE] if cell.paper.example else []), *list_arm_notices(cell)]
+
+
+def list_arm_notices(cell: Cell) -> list[Notice]:
+    if not cell.arm or is_installed():
+        return []
+    sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"
+    advice = missing_packages_error("its joints need", "ssik").sentence
+    return [Notice("arm", sentence, code="arm-not-followed", advice=advice)]
+
+
 def write_program(
     path: str | os.PathLike[str],
     plan: _core.Plan,
@@ -217,8 +261,8 @@ def write_program(
     The program is in the cell's language. The extension of path decides between the two.
 
     There is a notice if the plan was made for another brush, or with another file of this brush. The program paints
-    with the given brush, and its header counts these notices. Another notice says if the controller cannot have the
-    name of the file as the name of the program.
+    with the given brush, and its header counts these notices. The other notices are those of `convert` on the paint,
+    the pens, the name of the program and the cell.
 
     Raises Error, and writes nothing, if paint leaves the sheet or a limit of the brush or the cell is broken.
     """
@@ -237,4 +281,5 @@ def write_program(
     notes = [f"warnings: {len(notices)}"] if notices else []
     name = Path(path).stem
     write_files(in_files(path, encode_checked(suffix, plan, walk, brush, title, notes, name)))
-    return [*notices, *report_renamed(name, suffix, cell)]
+    cell_notices = list_cell_notices(cell) if suffix != ".json" else []
+    return [*notices, *report_program(suffix, loads, brush, cell, name), *cell_notices]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from ...jobs import choices
 from ...jobs.choices import CHOICES, Choices
-from ...jobs.conversion import list_cell_notices
 from ...jobs.options import Options
 from ...machine.cells.cell import Cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
+from ...machine.writer import list_cell_notices
 from ..console import refuse_errors, warn
 from .output_places import suffix_of
 

@@ -12,7 +12,7 @@ from importlib import metadata
 from ... import _core
 from ...errors import Error, Notice, describe_unexpected
 from ...machine.program import Job
-from ...machine.writer import join_pieces
+from ...machine.writer import join_pieces, list_cell_notices
 from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation.figures import PaintedPlan, measure
@@ -145,7 +145,7 @@ def _convert(task: Task) -> TaskResult:
             work.unreached,
         )
     )
-    cell_notices = conversion.list_cell_notices(simulated.cell) if simulated.is_program else []
+    cell_notices = list_cell_notices(simulated.cell) if simulated.is_program else []
     notices = (*report_ineffective_flags(chosen), *simulated.work.notices, *simulated.remarks(), *cell_notices)
     measured = {item.name: getattr(total, item.name) for item in fields(Figures) if hasattr(total, item.name)}
     figures = Figures(
