@@ -131,22 +131,24 @@ def format_value(number: float) -> str:
     return str(number)[:40] if isinstance(number, int) else f"{number:g}"
 
 
-def require_type(value, kind: type | tuple[type, ...], what: str) -> None:
+def require_type(value, kind: type | tuple[type, ...], what: str, name: str = "") -> None:
     """Raise Error if a value does not have the expected Python type.
 
     what: the expected type in words. True and False count as numbers only if kind contains bool.
+    name: the argument or key with the value, "" if there is only one.
     """
     kinds = kind if isinstance(kind, tuple) else (kind,)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
-        raise Error(f"{type(value).__name__} {str(value)[:40]!r} is not {what}", code="wrong-type")
+        found = f"{type(value).__name__} {str(value)[:40]!r}"
+        raise Error(f"{name} must be {what}, not {found}" if name else f"{found} is not {what}", code="wrong-type")
 
 
-def as_number(value, what: str) -> float:
+def as_number(value, what: str, name: str = "") -> float:
     """Return a value as a float; raise Error unless it is a number.
 
     what: the expected number in words. Fractions and numpy's scalars are numbers, too.
     """
-    require_type(value, Real, what)
+    require_type(value, Real, what, name)
     try:
         return float(value)
     except OverflowError:  # an integer of hundreds of digits
@@ -155,7 +157,7 @@ def as_number(value, what: str) -> float:
 
 def need_number(value, what: str, least: float, greatest: float) -> float:
     """Return a value as a float; raise Error unless it is a number in the range."""
-    number = as_number(value, f"a number, which {what} is")
+    number = as_number(value, "a number", what)
     if not least <= number <= greatest:
         sentence = f"{what}, {number:g}, is outside the range [{least:g}, {greatest:g}]"
         raise Error(sentence, range=(least, greatest), code="out-of-range")
@@ -165,7 +167,7 @@ def need_number(value, what: str, least: float, greatest: float) -> float:
 def need_numbers(values, what: str, count: int, least: float, greatest: float) -> tuple[float, ...]:
     """Return a tuple, list or array as floats; raise Error unless it has `count` numbers in the range."""
     values = as_listed(values)
-    require_type(values, (tuple, list), f"{count} numbers, which {what} is")
+    require_type(values, (tuple, list), f"{count} numbers", what)
     if len(values) != count:
         raise Error(f"{what} has {len(values)} numbers, not {count}", what, code="wrong-type")
     return tuple(need_number(value, f"a number of {what}", least, greatest) for value in values)
@@ -178,7 +180,7 @@ def need_truth(value, what: str) -> None:
     """
     is_numpy_bool = getattr(getattr(value, "dtype", None), "kind", "") == "b" and value.ndim == 0
     if not (isinstance(value, bool) or is_numpy_bool):
-        sentence = f"{type(value).__name__} {str(value)[:40]!r} is not True or False, which {what} is"
+        sentence = f"{what} must be True or False, not {type(value).__name__} {str(value)[:40]!r}"
         raise Error(sentence, code="wrong-type")
 
 
@@ -194,7 +196,7 @@ def need_one_of(value, choices: tuple, what: str) -> None:
     """Raise Error if a value is none of the choices."""
     if not any(value is choice or (type(value) is str and value == choice) for choice in choices):
         known = ", ".join(map(str, choices[:-1]))
-        raise Error(f"{what} is {known} or {choices[-1]}, not {str(value)[:40]!r}", code="choice-unknown")
+        raise Error(f"{what} must be {known} or {choices[-1]}, not {str(value)[:40]!r}", code="choice-unknown")
 
 
 def missing_packages_error(what: str, *packages: str) -> Error:

@@ -239,7 +239,7 @@ def calibrate(
         given = source if isinstance(source, dict) else os.fspath(source)
     require_type(name, str, "the name of a brush")
     if progress is not None and not callable(progress):
-        require_type(progress, Callable, "a callable, which progress is")
+        require_type(progress, Callable, "a callable", "progress")
     notices: list[Notice] = []
     calibration = run_calibration(
         given,
@@ -282,7 +282,7 @@ def make_checked_options(options: Mapping[str, Any]) -> CalibrationOptions:
         ("cell", (Cell,), "a name, a path or a Cell"),
     ):
         if name in options:
-            require_type(options[name], (str, os.PathLike, *loaded), f"{kinds}, which {name} is")
+            require_type(options[name], (str, os.PathLike, *loaded), kinds, name)
             if not isinstance(options[name], loaded):
                 options[name] = os.fspath(options[name])
     need_one_of(options.get("aim", "edges"), AIMS, "aim")

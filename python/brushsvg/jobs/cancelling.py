@@ -44,11 +44,11 @@ def run(work: Callable, progress: Callable[[str], object] | None = None, cancel=
     and loops in C++ also run lines of Python (bindings.hpp). Both callables are called in the thread of the caller.
     """
     if progress is not None and not callable(progress):
-        require_type(progress, Callable, "a callable, which progress is")
+        require_type(progress, Callable, "a callable", "progress")
     if cancel is None:
         return work(progress or (lambda text: None))
     is_cancelled = getattr(cancel, "is_set", cancel)
-    require_type(is_cancelled, Callable, "a callable or an event, which cancel is")
+    require_type(is_cancelled, Callable, "a callable or an event", "cancel")
     messages, outcome = deque(maxlen=1), []
 
     def run_work() -> None:

@@ -129,7 +129,7 @@ def check(
     program that cannot be read or followed. Such a program may press deeper than the laws of the brush reach. All
     other reasons not to run the program are in `problems`.
     """
-    require_type(program, (str, os.PathLike), "a path, which program is")
+    require_type(program, (str, os.PathLike), "a path", "program")
     chosen = make_choices(drawing, choices)
     chosen = drop_from_project(chosen, SET_BY_PROGRAM)
     for name in SET_BY_PROGRAM:

@@ -166,7 +166,7 @@ def check_choices(chosen: Choices) -> Choices:
 
     Raises Error for a value that the flag of the command line would refuse as well.
     """
-    require_type(chosen.from_project, (tuple, list), "a list of choices, which from_project is")
+    require_type(chosen.from_project, (tuple, list), "a list of choices", "from_project")
     for name in chosen.from_project:
         need_one_of(name, CHOICES, "a name of from_project")
     chosen = drop_overruled(chosen)
@@ -190,7 +190,7 @@ def check_choices(chosen: Choices) -> Choices:
         if getattr(chosen, name) is not None:
             need_texts(getattr(chosen, name), name)
     if chosen.select is not None:
-        require_type(chosen.select, str, "a text, which select is")
+        require_type(chosen.select, str, "a text", "select")
     for name in ("brush", "cell", "corrections"):
         kinds = {"brush": (_core.Brush,), "cell": (Cell,)}.get(name, ())
         if getattr(chosen, name) is not None:

@@ -156,12 +156,12 @@ def compare(
     another job.
     """
     single = isinstance(photos, (str, os.PathLike))
-    require_type(photos, (str, os.PathLike, tuple, list), "a path or a list of paths, which photos are")
+    require_type(photos, (str, os.PathLike, tuple, list), "a path or a list of paths", "photos")
     paths = [photos] if single else list(photos)
     if not paths:
         raise Error("there is no photograph", "photos", code="wrong-type")
     for path in paths:
-        require_type(path, (str, os.PathLike), "a path, which each of photos is")
+        require_type(path, (str, os.PathLike), "a path", "each of photos")
     chosen, notices = make_choices(drawing, choices), []
 
     def work(stage) -> PaintedJob:

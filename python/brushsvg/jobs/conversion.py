@@ -168,13 +168,13 @@ def convert(
             sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
             raise Error(sentence, name, code="program-format")
     refuse_file_used_twice(chosen, [out, *paths.values()])
-    require_type(formats, (tuple, list), "a list of extensions, which formats is")
+    require_type(formats, (tuple, list), "a list of extensions", "formats")
     for extension in formats:
         require_type(extension, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
     need_truth(lenient, "lenient")
     need_truth(figures, "figures")
-    require_type(from_stroke, Integral, "a whole number, which from_stroke is")
+    require_type(from_stroke, Integral, "a whole number", "from_stroke")
     first_stroke = int(need_number(from_stroke, "from_stroke", 1, 1e8))
     suffixes = [*([] if out is None else [suffix_of(out)]), *formats]
     chosen = refuse_job_of_plan(chosen, suffixes, first_stroke)
@@ -220,7 +220,7 @@ def make_choices(drawing, choices: Mapping) -> Choices:
 
 def _is_path_given(path, name: str) -> bool:
     if path is not None:
-        require_type(path, (str, os.PathLike), f"a path, which {name} is")
+        require_type(path, (str, os.PathLike), "a path", name)
     return path is not None
 
 

@@ -139,7 +139,7 @@ def _write(
 ) -> SetupProgram:
     """Make a program, write it if it has a path, and add the notices."""
     if out is not None:
-        require_type(out, (str, os.PathLike), "a path, which out is")
+        require_type(out, (str, os.PathLike), "a path", "out")
     refuse_file_used_twice(chosen, [out])
     path, notices = None if out is None else os.fspath(out), []
     made = make(path, lambda _, some: notices.extend(some))

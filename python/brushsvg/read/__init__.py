@@ -57,7 +57,7 @@ def check_read_options(options: ReadOptions) -> ReadOptions:
 
     Raises Error if an option is of a wrong type or out of range.
     """
-    require_type(options, ReadOptions, "options to read a drawing with, as ReadOptions are")
+    require_type(options, ReadOptions, "a ReadOptions")
     sheet_mm, paper_z_mm = options.sheet_mm, options.paper_z_mm
     if sheet_mm is not None:
         sheet_mm = need_numbers(sheet_mm, "sheet_mm", 2, *SIZE_MM)
@@ -72,14 +72,14 @@ def check_read_options(options: ReadOptions) -> ReadOptions:
     need_texts(options.skip_comments, "skip_comments")
     need_truth(options.lenient, "lenient")
     if options.select is not None:
-        require_type(options.select, str, "a text, which select is")
+        require_type(options.select, str, "a text", "select")
     return replace(options, sheet_mm=sheet_mm, paper_z_mm=paper_z_mm, skip_regions_mm=regions)
 
 
 def need_regions(regions, what: str) -> tuple[tuple[float, ...], ...]:
     """Return rectangles (x0, y0, x1, y1) in mm as floats; raise Error for anything else."""
     regions = as_listed(regions)
-    require_type(regions, (tuple, list), f"a list of regions, (x0, y0, x1, y1) in mm, which {what} is")
+    require_type(regions, (tuple, list), "a list of regions, (x0, y0, x1, y1) in mm", what)
     return tuple(need_numbers(region, f"a region of {what}", 4, -1e6, 1e6) for region in regions)
 
 
@@ -88,9 +88,9 @@ def need_texts(texts, what: str) -> None:
 
     One text would be read as a list of its letters.
     """
-    require_type(texts, (tuple, list), f"a list of texts, which {what} is")
+    require_type(texts, (tuple, list), "a list of texts", what)
     for text in texts:
-        require_type(text, str, f"a text, which {what} has")
+        require_type(text, str, "a text", f"each of {what}")
 
 
 @dataclass(frozen=True)

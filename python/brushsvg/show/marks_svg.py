@@ -57,7 +57,7 @@ def marks_svg(
     width, height = check_picture(marks, sheet_mm, colours, band)
     blank, toolpath_mm = check_lines(blank, "blank"), check_lines(toolpath_mm, "toolpath_mm")
     for text, what in ((title, "title"), (made, "made")):
-        require_type(text, str, f"a text, which {what} is")
+        require_type(text, str, "a text", what)
     _need_outlines(marks)
     if tracking_errors and len(tracking_errors) != len(marks.passes):
         sentence = f"tracking_errors has {len(tracking_errors)} entries, not {len(marks.passes)}, one for each pass"

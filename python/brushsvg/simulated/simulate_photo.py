@@ -81,15 +81,15 @@ def simulate_photo(
     Raises Error for what cannot be painted, and for a page that is too large for the camera.
     """
     if out is not None:
-        require_type(out, (str, os.PathLike), "a path, which out is")
+        require_type(out, (str, os.PathLike), "a path", "out")
         if suffix_of(out) not in PHOTO_EXTENSIONS:
             sentence = f"out {os.fspath(out)[:80]!r} does not end in {' or '.join(PHOTO_EXTENSIONS)}"
             raise Error(sentence, "out", code="program-format")
     if studio is not None:
-        require_type(studio, (str, os.PathLike), "a path, which studio is")
+        require_type(studio, (str, os.PathLike), "a path", "studio")
     if true_brush is not None:
-        require_type(true_brush, (str, os.PathLike, _core.Brush), "a name, a path or a brush, which true_brush is")
-    require_type(seed, Integral, "a whole number, which seed is")
+        require_type(true_brush, (str, os.PathLike, _core.Brush), "a name, a path or a brush", "true_brush")
+    require_type(seed, Integral, "a whole number", "seed")
     seed = int(need_number(seed, "seed", 1, 1e8))
     chart = drawing if isinstance(drawing, Chart) else None
     chosen = make_choices(chart.plan if chart else drawing, choices)

@@ -103,7 +103,7 @@ def batch(
         made of another drawing with that name, a brush or a cell. Raises CancelledError when `cancel` is set;
         finished drawings are kept.
     """
-    require_type(out, (str, os.PathLike), "a path, which out is")
+    require_type(out, (str, os.PathLike), "a path", "out")
     require_type(format, str, "an extension, such as '.ngc'")
     need_one_of(order, ORDERS, "order")
     extensions = {".json", *(extension for post in POSTS.values() for extension in post.extensions)}
@@ -116,11 +116,11 @@ def batch(
     if cluster is not None:
         require_type(cluster, str, "the address of a scheduler")
     if progress is not None:
-        require_type(progress, Callable, "a callable, which progress is")
+        require_type(progress, Callable, "a callable", "progress")
     if executor is None and cluster is None:
         executors.end_repeated_script()
     is_cancelled = getattr(cancel, "is_set", cancel) or (lambda: False)
-    require_type(is_cancelled, Callable, "a callable or an event, which cancel is")
+    require_type(is_cancelled, Callable, "a callable or an event", "cancel")
     if "corrections" in choices:
         raise Error("corrections are of one drawing, not of a batch", "corrections", code="options-contradict")
     count = int(need_number(os.cpu_count() if jobs is None else jobs, "jobs", 1, 1000))

@@ -68,7 +68,7 @@ def find_project(drawing: str | os.PathLike[str]) -> Project | None:
 
 def find_project_file(drawing: str | os.PathLike[str]) -> str | None:
     """Find the path of the project file of a drawing, or None; see find_project."""
-    require_type(drawing, (str, os.PathLike), "a path, which the drawing of a project is")
+    require_type(drawing, (str, os.PathLike), "a path", "the drawing of a project")
     try:
         folder = os.path.abspath(drawing)
     except OSError:  # the current folder was removed

@@ -20,10 +20,10 @@ def read_value(choice: str, value: object, key: str) -> object:
 
     try:
         if choice == "join":
-            require_type(value, bool, f"true or false, which {key} is")
+            require_type(value, bool, "true or false", key)
             return value
         if choice in ("layer", "skip_region", "skip_comment"):
-            require_type(value, list, f"a list of texts, which {key} is")
+            require_type(value, list, "a list of texts", key)
             return [_read_typed(choice, _format_as_typed(each, key), key) for each in value]
         text = _format_as_typed(value, key)
         if choice in CHOICE_VALUES and text not in CHOICE_VALUES[choice]:
@@ -40,7 +40,7 @@ def _format_as_typed(value: object, key: str) -> str:
     """Return the text that a user would type for a value of TOML."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return str(value)[:400]
-    require_type(value, str, f"a text or a number, which {key} is")
+    require_type(value, str, "a text or a number", key)
     return str(value)
 
 

@@ -87,7 +87,7 @@ def text_svg(
 
 
 def _checked(name: str, value: float, maximum: float, unit: str = "") -> float:
-    number = as_number(value, f"a number, which {name} is")
+    number = as_number(value, "a number", name)
     if not 0 < number <= maximum:
         sentence = f"{name} {number:g}{unit} is outside the range (0, {maximum:g}]{unit}"
         raise Error(sentence, "", number, (0, maximum), code="out-of-range")
