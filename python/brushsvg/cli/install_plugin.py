@@ -96,8 +96,8 @@ def _read_tree(source: Path) -> dict[str, bytes]:
     paths = sorted(path for path in source.glob("*") if path.suffix in _SUFFIXES or path.name == "LICENSE")
     if not paths:
         raise Error(
-            "the extension is not part of this package, its licence being another: give its zip, "
-            "brushsvg-inkscape.zip, which `make plugins` makes of the source",
+            "the extension has another licence and is not part of this package: give its zip, "
+            "brushsvg-inkscape.zip, which `make plugins` builds from the source",
             code="plugin-missing",
         )
     return {path.name: path.read_bytes() for path in paths}

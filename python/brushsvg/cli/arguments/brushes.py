@@ -30,25 +30,25 @@ def add_chart(commands) -> None:
     chart.add_argument(
         "--dabs",
         action="store_true",
-        help="dabs in place of strokes, to measure the footprints of a brush whose lag is known: give it with --brush",
+        help="dabs instead of strokes, to measure the footprints of a brush whose lag is known: give it with --brush",
     )
     chart.add_argument(
         "--paint",
         action="store_true",
-        help="painted with one load, each depth early and late: for calibrate --paint, which finds how marks narrow as "
-        "paint runs out",
+        help="strokes to paint with one load, each depth early and late, for calibrate --paint, which finds how marks "
+        "narrow as paint runs out",
     )
     chart.add_argument("--page", metavar="FILE", help="also write the page to print, markers and labels (.pdf .svg)")
     chart.add_argument(
         "--chart",
         metavar="FILE",
-        help="also write the places of markers and strokes, to read the painted chart by (.json)",
+        help="also write where markers and strokes are, which calibrate needs to read the painted chart (.json)",
     )
     chart.add_argument(
         "--noise",
         metavar="MM",
         type=values.noise,
-        help="standard deviation of a digitized edge, for the confidence intervals to expect of strokes; "
+        help="standard deviation of a digitized edge, to predict the confidence intervals of strokes; "
         f"default: {values.EDGE_NOISE_MM:g}",
     )
     flags.add_z_offset(chart)
@@ -73,13 +73,13 @@ def add_calibrate(commands) -> None:
         "inputs",
         metavar="IN",
         nargs="+",
-        help=f"what was measured (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
+        help=f"measurements (.json .csv), or photographs of one painted chart or job ({' '.join(PHOTOS)})",
     )
     flags.add_output(calibrate, "a brush (.json); with --scan, outlines in mm (.json)")
     calibrate.add_argument(
         "--scan",
         action="store_true",
-        help="only read the outlines of one photograph: calibrate takes them later",
+        help="only read the outlines of one photograph, for a later calibrate",
     )
     _add_photo_options(calibrate)
     calibrate.add_argument(
@@ -90,14 +90,14 @@ def add_calibrate(commands) -> None:
     calibrate.add_argument(
         "--prior",
         metavar="NAME|FILE",
-        help="with --plan: the brush that painted it, as it is known up to now",
+        help="with --plan: the brush that painted it, which calibrate then updates",
     )
     calibrate.add_argument(
         "--aim",
         choices=("edges", "overlap"),
         default="edges",
-        help="of painted marks: fit the edges of the usual mark, or go on from there to the largest overlap, if that "
-        "predicts marks left out better; it has no intervals; default: edges",
+        help="for painted marks: fit their edges, or continue to the largest overlap if that predicts marks left out "
+        "of the fit better; overlap gives no confidence intervals; default: edges",
     )
     calibrate.add_argument(
         "--norm",
@@ -118,12 +118,13 @@ def add_calibrate(commands) -> None:
     calibrate.add_argument(
         "--cell",
         metavar="NAME|FILE",
-        help="the machine that painted: with --machine, find only what its cell can undo",
+        help="the machine that painted: with --machine, estimate only errors that its cell can correct",
     )
     calibrate.add_argument(
         "--paint",
         action="store_true",
-        help="from marks painted in the order of their plan with one load of paint: also find how they narrow",
+        help="also find how marks narrow as paint runs out; needs marks painted in the order of their "
+        "plan with one load",
     )
     calibrate.add_argument(
         "--brush",
@@ -134,14 +135,14 @@ def add_calibrate(commands) -> None:
     calibrate.add_argument(
         "--spread",
         metavar="FILE",
-        help="for photographs: how well the studio repeats, as compare --sheets found it (.json)",
+        help="for photographs: how well the studio repeats, from compare --sheets (.json)",
     )
     calibrate.add_argument(
         "--height",
         metavar="MM",
         type=values.noise,
-        help="for photographs of strokes: how exactly the paper's height is known (standard deviation), 0.05 behind "
-        "brushsvg setup height; default: 0.3, as by eye",
+        help="for photographs of strokes: standard deviation of the paper's height; use 0.05 after brushsvg setup "
+        "height; default: 0.3, for a height set by eye",
     )
     flags.add_picture(calibrate, "the brush laws, data and residuals")
     calibrate.add_argument("--details", action="store_true", help="print all tables of the report")
@@ -155,13 +156,13 @@ def _add_photo_options(command) -> None:
         "--bar",
         metavar="MM",
         type=values.width,
-        help="how long the printed bar is by a ruler, where the page was not printed at 100 %%",
+        help="length of the printed bar, measured with a ruler, if the page was not printed at 100 %%",
     )
     command.add_argument(
         "--dpi",
         metavar="DPI",
         type=values.resolution,
-        help="resolution of a flatbed scan of a sheet without printed markers: the strokes themselves show its place",
+        help="resolution of a flatbed scan of a sheet without printed markers, whose strokes show how it is placed",
     )
     command.add_argument(
         "--mirrored",
@@ -227,7 +228,7 @@ def _check_scan(args) -> None:
 
     args.run = "scan_file"
     if len(args.inputs) > 1:
-        args.parser.error("--scan reads one photograph; without --scan, calibrate takes several of one sheet")
+        args.parser.error("--scan reads one photograph; without --scan, calibrate reads several of one sheet")
     _refuse_heic(args, args.inputs)
     given = [
         each.name
@@ -270,7 +271,7 @@ def add_brush(commands) -> None:
         action="append",
         type=values.lag_at,
         default=[],
-        help="the same at a press depth, for a lag that grows with depth; give it once per measured depth",
+        help="the lag at a press depth, if the lag grows with depth; give it once per measured depth",
     )
     new.add_argument(
         "--width-at",
@@ -280,11 +281,23 @@ def add_brush(commands) -> None:
         default=[],
         help="width painted at a press depth, in mm; give it once per measured depth",
     )
-    new.add_argument("--widths", metavar="FILE", help="the same as a table, depth_mm,width_mm (.csv)")
-    new.add_argument("--depth-max", metavar="MM", type=values.width, help="default: that of the deepest width")
-    new.add_argument("--like", metavar="BRUSH", help="take all laws from this one, a name or a brush.json, as assumed")
+    new.add_argument("--widths", metavar="FILE", help="the widths as a table, depth_mm,width_mm (.csv)")
     new.add_argument(
-        "--speed", metavar="MM/S", type=values.paint_speed, help="at most; default: 25, or as --like has it"
+        "--depth-max",
+        metavar="MM",
+        type=values.width,
+        help="the largest press depth; default: the depth of the deepest width",
+    )
+    new.add_argument(
+        "--like",
+        metavar="BRUSH",
+        help="copy all laws from this brush, a name or a brush.json, and mark them as assumed",
+    )
+    new.add_argument(
+        "--speed",
+        metavar="MM/S",
+        type=values.paint_speed,
+        help="the largest painting speed; default: 25, or the speed of --like",
     )
     flags.add_write_options(new)
     new.set_defaults(run="brush_new", parser=new, check=_check_brush_new)
@@ -316,7 +329,7 @@ def _check_brush_new(args) -> None:
     if args.lag is None and not args.lag_at:
         args.parser.error("the following arguments are required: --lag or --lag-at, or --like BRUSH")
     if args.lag is not None and args.lag_at:
-        args.parser.error("argument --lag: the same at every depth, not together with --lag-at")
+        args.parser.error("argument --lag: not allowed with --lag-at: --lag is the lag at every depth")
     if not (args.width_at or args.widths):
         args.parser.error("give at least one width, as --width-at 4=5 or in a table, --widths FILE")
 

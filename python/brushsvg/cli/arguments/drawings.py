@@ -74,14 +74,21 @@ def add_batch(commands) -> None:
     )
     flags.add_output(batch, "a folder for programs, pictures and tables")
     batch.add_argument("--words", metavar="FILE", help="a text: each line is set in --font and painted (.txt)")
-    batch.add_argument("--font", metavar="FILE", help="of --words, as for brushsvg text")
-    batch.add_argument("--size", metavar="MM", type=values.width, help="of the em of --font; default: 20")
+    batch.add_argument("--font", metavar="FILE", help="the font of --words, as for brushsvg text")
+    batch.add_argument("--size", metavar="MM", type=values.width, help="the size of the em of --font; default: 20")
     batch.add_argument(
-        "--format", metavar="EXT", choices=(".json", *PROGRAMS), help="of programs; default: the cell's first"
+        "--format",
+        metavar="EXT",
+        choices=(".json", *PROGRAMS),
+        help="the language of the programs; default: the cell's first",
     )
-    batch.add_argument("--jobs", metavar="N", type=values.jobs, help="processes; default: one for each processor")
     batch.add_argument(
-        "--cluster", metavar="ADDRESS", help="of a scheduler of Dask's, whose workers do it (tcp://host:8786)"
+        "--jobs", metavar="N", type=values.jobs, help="the number of processes; default: one for each processor"
+    )
+    batch.add_argument(
+        "--cluster",
+        metavar="ADDRESS",
+        help="the address of a Dask scheduler, whose workers convert the drawings (tcp://host:8786)",
     )
     batch.add_argument("--parquet", action="store_true", help="also write the table as table.parquet")
     flags.add_choices(batch)
@@ -117,7 +124,7 @@ def add_compare(commands) -> None:
         "photos",
         metavar="PHOTO",
         nargs="+",
-        help=f"of the painted page of `convert --page` ({' '.join(PHOTOS)})",
+        help=f"a photograph of the painted page of `convert --page` ({' '.join(PHOTOS)})",
     )
     flags.add_input(compare)
     flags.add_choices(compare)
@@ -140,7 +147,7 @@ def add_compare(commands) -> None:
     compare.add_argument(
         "--sheets",
         action="store_true",
-        help="each photograph shows another sheet, or the one shows copies of strokes: how well they repeat",
+        help="report how well sheets repeat: each photograph shows another sheet, or one shows copies of the strokes",
     )
     flags.add_report(compare)
     flags.add_write_options(compare)
@@ -149,7 +156,7 @@ def add_compare(commands) -> None:
 
 def _check_compare(args) -> None:
     if suffix_of(args.input) in PHOTOS and any(suffix_of(path) in DRAWINGS for path in args.photos):
-        args.parser.error(f"the drawing or plan stands last, behind the photographs: {args.input} is a photograph")
+        args.parser.error(f"give the drawing or plan last, after the photographs: {args.input} is a photograph")
     check_drawing(args)
     for flag, value in (
         ("corrected-cell", args.corrected_cell),
@@ -181,7 +188,9 @@ def add_simulate_photo(commands) -> None:
     simulate.add_argument(
         "--true-brush", metavar="NAME|FILE", help="the brush that paints; default: the one of the plan"
     )
-    simulate.add_argument("--seed", metavar="N", type=values.count, default=1, help="of chance; default: 1")
+    simulate.add_argument(
+        "--seed", metavar="N", type=values.count, default=1, help="the seed of the random errors; default: 1"
+    )
     flags.add_write_options(simulate)
     simulate.set_defaults(run="simulate_photo_file", parser=simulate, check=_check_simulate_photo)
 
@@ -226,7 +235,7 @@ def add_preview(commands) -> None:
         "--playback",
         metavar="FACTOR",
         type=values.playback_factor,
-        help="with .html: how much faster than the robot the page begins; default: 1",
+        help="with .html: the speed at which the page starts, as a multiple of the robot's; default: 1",
     )
     preview.add_argument("--all-brushes", action="store_true", help="report one line for each brush, the best first")
     flags.add_report(preview)
@@ -286,8 +295,10 @@ def add_text(commands) -> None:
         required=True,
         help="an SVG font of single lines, the name of one of Inkscape's, or a TrueType or OpenType font",
     )
-    text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="of the em; default: 20")
-    text.add_argument("--width", metavar="MM", type=values.width, help="of the lines of an SVG font; default: 1")
+    text.add_argument("--size", metavar="MM", type=values.width, default=20.0, help="the size of the em; default: 20")
+    text.add_argument(
+        "--width", metavar="MM", type=values.width, help="the width of the lines of an SVG font; default: 1"
+    )
     text.add_argument(
         "--sheet", metavar="WxH", type=values.sheet, help="the sheet; default: the text and 20 mm around it"
     )

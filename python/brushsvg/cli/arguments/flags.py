@@ -50,8 +50,8 @@ def add_list_show_check(commands, kind: str, about: str, shown: str, file: str):
     Returns the subparsers, to which further commands can be added.
     """
     subcommands = commands.add_parser(kind, help=about).add_subparsers(metavar="WHAT", required=True)
-    subcommands.add_parser("list", help="list the shipped ones").set_defaults(run=f"{kind}_list")
-    show = subcommands.add_parser("show", help=f"show {shown} of one")
+    subcommands.add_parser("list", help=f"list the shipped {kind}s").set_defaults(run=f"{kind}_list")
+    show = subcommands.add_parser("show", help=f"show {shown} of one {kind}")
     show.add_argument("input", metavar="NAME", help=f"a shipped {kind}, or a {file}")
     show.set_defaults(run=f"{kind}_show")
     check = subcommands.add_parser("check", help=f"check whether a {kind} file is usable")
@@ -69,7 +69,7 @@ def add_job_options(command: argparse.ArgumentParser) -> None:
 
 def add_order(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--order", choices=("drawn", "nearest"), default="drawn", help="of strokes in a layer; default: drawn"
+        "--order", choices=("drawn", "nearest"), default="drawn", help="order of the strokes in a layer; default: drawn"
     )
 
 
@@ -144,13 +144,14 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add(
         "--compensation",
         choices=("none", "constant", "closed", "refined"),
-        help="of the lag: none, one for all, closed form, refined; default: closed",
+        help="how to compensate the lag: not at all, with one lag for all strokes, in closed form, or refined; "
+        "default: closed",
     )
     add(
         "--lag",
         metavar="MM",
         type=values.lag,
-        help="the one of --compensation constant; default: that at the stroke's median depth",
+        help="the lag for --compensation constant; default: the lag at the stroke's median depth",
     )
     add(
         "--tolerance",
@@ -161,12 +162,12 @@ def add_choices(command: argparse.ArgumentParser, several_brushes: bool = False)
     add(
         "--terminals",
         choices=TERMINALS,
-        help="both ends of all strokes: round, butt (cut straight), pointed, or what suits each; default: auto; "
+        help="both ends of all strokes: round, butt (cut straight), pointed, or the best for each; default: auto; "
         "with --compensation closed or refined",
     )
     add("--start", choices=TERMINALS, help="the start of strokes, where it differs from --terminals")
     add("--end", choices=TERMINALS, help="the end of strokes, where it differs from --terminals")
-    add("--lenient", action="store_true", help="paint what is sound of damaged geometry")
+    add("--lenient", action="store_true", help="paint the undamaged part of damaged geometry")
     add_explain(command)
 
 
@@ -193,19 +194,19 @@ def add_stroke_choices(command: argparse.ArgumentParser) -> None:
     add(
         "--corners",
         choices=("auto", "turn"),
-        help="corners: the brush turns in place; default: auto, it is lifted where that is better",
+        help="at corners: turn the brush in place; default: auto, lift it where that is better",
     )
     add(
         "--detail",
         choices=("draft", "normal", "fine"),
-        help="filled shapes: how small a corner gets a stroke of its own; default: normal",
+        help="filled shapes: how small a corner can be to get its own stroke; default: normal",
     )
     add_script(command)
     add(
         "--join",
         action="store_true",
         default=None,
-        help="paint lines that meet end to end, in one colour and width, as one",
+        help="paint lines of one colour and width that meet end to end as one stroke",
     )
 
 
@@ -223,7 +224,7 @@ def add_script(command: argparse.ArgumentParser, what: str = "filled shapes: how
         "--script",
         choices=SCRIPTS,
         help=f"{what}; arabic: from right to left, bodies before dots; devanagari: the headline last; default: auto, "
-        "as the characters of a text say",
+        "from the characters of the text",
     )
 
 
@@ -235,13 +236,13 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         type=values.sheet,
         help="the sheet in mm, with units, or a2 to a5, letter; default: the drawing's",
     )
-    add("--units", choices=("mm", "in"), help="of a drawing that does not say them (DXF)")
+    add("--units", choices=("mm", "in"), help="the unit of a drawing that does not define it (DXF)")
     add(
         "--layer",
         metavar="NAME",
         action="append",
         type=values.words,
-        help="paint this layer; several: more than once",
+        help="paint this layer; repeat it for more layers",
     )
     add(
         "--select",
@@ -254,21 +255,26 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         choices=BACKGROUNDS,
         help="keep: paint a white shape that covers the page; default: auto, leave it out (SVG)",
     )
-    add("--pen", choices=PENS, help="what lifts the pen of G-code: Z, or a servo (M3); default: found out")
-    add("--paper-z", metavar="MM", type=values.paper_z, help="the height at which G-code draws, and beyond it")
+    add("--pen", choices=PENS, help="what lifts the pen in G-code: Z, or a servo (M3); default: detected")
+    add(
+        "--paper-z",
+        metavar="MM",
+        type=values.paper_z,
+        help="the height of the paper in G-code; lines at this height or beyond it are drawn",
+    )
     add(
         "--skip-region",
         metavar="X0,Y0,X1,Y1",
         action="append",
         type=values.region,
-        help="leave out strokes of G-code in this rectangle (mm), such as dips at a pot; several: more than once",
+        help="leave out strokes of G-code in this rectangle (mm), such as dips at a pot; repeat it for more",
     )
     add(
         "--skip-comment",
         metavar="TEXT",
         action="append",
         type=values.words,
-        help="leave out strokes of G-code that follow a comment with this text; several: more than once",
+        help="leave out strokes of G-code that follow a comment with this text; repeat it for more",
     )
     add(
         "--width",
@@ -280,13 +286,16 @@ def add_layout(command: argparse.ArgumentParser) -> None:
         "--as",
         dest="paths_as",
         choices=("stroke", "outline"),
-        help="paths are lines, fills count as none; or outlines of shapes, strokes count as none; default: as drawn",
+        help="stroke: follow paths as lines, ignore fills; outline: paths outline shapes, ignore strokes; "
+        "default: as drawn",
     )
     size = command.add_mutually_exclusive_group()
     size.add_argument(
         "--fit", metavar="WxH", type=values.size, help="scale the marks to this size, centred on the sheet"
     )
-    size.add_argument("--scale", metavar="FACTOR", type=values.scale, help="scale it, widths too: 1.5 or 150%%")
+    size.add_argument(
+        "--scale", metavar="FACTOR", type=values.scale, help="scale the drawing and its widths: 1.5 or 150%%"
+    )
     add(
         "--origin",
         metavar="X,Y",

@@ -68,7 +68,9 @@ def _add_height(commands) -> None:
         default=-1.0,
         help="height of the last stroke; default: -1",
     )
-    height.add_argument("--step", metavar="MM", type=values.step, default=0.1, help="between strokes; default: 0.1")
+    height.add_argument(
+        "--step", metavar="MM", type=values.step, default=0.1, help="the height between two strokes; default: 0.1"
+    )
     flags.add_explain(height, None)
     flags.add_write_options(height)
     height.set_defaults(run="height_file", parser=height, check=_check_height)
@@ -101,7 +103,7 @@ def add_check(commands) -> None:
     flags.add_speed(check)
     flags.add_corrections(check)
     check.add_argument("--z-offset", metavar="MM", type=values.height, help="default: the one that the program names")
-    check.add_argument("--lenient", action="store_true", help="paint what is sound of damaged geometry")
+    check.add_argument("--lenient", action="store_true", help="paint the undamaged part of damaged geometry")
     flags.add_picture(check, "what will be painted")
     flags.add_explain(check)
     flags.add_report(check)
@@ -122,7 +124,7 @@ def _check_check(args) -> None:
     if args.input is not None:
         check_drawing(args)
     elif args.corrections is not None:
-        args.parser.error("--corrections needs the drawing that they are of")
+        args.parser.error("--corrections needs the drawing that they belong to")
     read = [
         (args.program, PROGRAMS),
         (args.input, DRAWINGS),
@@ -152,9 +154,9 @@ def add_cell(commands) -> None:
 
 
 def _add_cell_place(subcommands) -> None:
-    place = subcommands.add_parser("place", help="find where the paper can be for an arm to reach the drawing")
+    place = subcommands.add_parser("place", help="find where to put the paper so that an arm reaches the drawing")
     place.add_argument("input", metavar="NAME", help="a shipped cell, or a cell.toml, with an arm")
-    place.add_argument("drawing", metavar="IN", nargs="?", help="what is painted; default: the whole sheet")
+    place.add_argument("drawing", metavar="IN", nargs="?", help="the drawing to paint; default: the whole sheet")
     flags.add_output(place, "a picture of the table (.png .svg)", False)
     place.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     flags.add_layout(place)

@@ -42,7 +42,7 @@ class _Parser(argparse.ArgumentParser):
     def _get_values(self, action, arg_strings):
         # argparse drops "--" anywhere, so that --width=-- would become an empty list.
         if action.option_strings and "--" in arg_strings:
-            raise argparse.ArgumentError(action, "'--' is no value")
+            raise argparse.ArgumentError(action, "'--' is not a value")
         return super()._get_values(action, arg_strings)
 
     def _check_value(self, action, value):

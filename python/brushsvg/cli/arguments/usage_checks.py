@@ -23,7 +23,7 @@ def suffix_of(path: str) -> str:
 def check_drawing(args) -> None:
     """Refuse flags that need a drawing of another kind, or another flag."""
     if args.units and suffix_of(args.input) in (".svg", ".svgz"):
-        args.parser.error("--units is for drawings that do not say them; an SVG does")
+        args.parser.error("--units is for drawings that do not define their unit; an SVG does")
     if args.select and suffix_of(args.input) == ".dxf":
         args.parser.error("--select is for SVG; choose layers of a DXF with --layer")
     check_compensation(args)
@@ -60,7 +60,7 @@ def check_files(args, read, written) -> None:
         if path is not None and suffixes:
             check_extension(args, path, suffixes)
     if twice := find_file_used_twice([path for path, _ in read], [path for path, _ in written]):
-        args.parser.error(f"{twice} cannot be two files at once")
+        args.parser.error(f"{twice} is named for two files: name another file for one of them")
 
 
 def check_extension(args, path: str, suffixes: tuple[str, ...]) -> None:

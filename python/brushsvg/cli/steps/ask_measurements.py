@@ -15,9 +15,9 @@ from ..arguments import values
 from ..console import RefusedError, say
 
 # Medians over 12 hidden brushes, see benchmarks/typed_brushes.py.
-ACCURACY_GAIN = "paint overlaps a drawn word by 0.87 with lag and width of three depths, by 0.62 with those of one"
+ACCURACY_GAIN = "paint overlaps a drawn word by 0.87 with lag and width at three depths, by 0.62 with one depth"
 HOW_TO_MEASURE = (
-    "Choose three press depths, for example a quarter, half and all of the deepest that you use.",
+    "Choose three press depths, for example a quarter, half and all of your largest depth.",
     "At each depth paint a straight line of 40 mm, turn by 90 degrees, and paint 40 mm more.",
     "Width: measure across the straight part of the mark.",
     "Turn: measure how far before the tool's second line the middle of the mark starts to turn.",

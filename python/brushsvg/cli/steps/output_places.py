@@ -42,7 +42,7 @@ def _refuse_project_brush(args, paths: Collection[str | None]) -> None:
     """Refuse to replace the brush of the project file, as a typed brush is refused, also with --force."""
     brushes = args.brush if "brush" in getattr(args, "from_project", ()) else []
     if twice := find_file_used_twice([brushes] if isinstance(brushes, str) else brushes, paths):
-        sentence = "this is the brush that brushsvg.toml names, and cannot be two files at once"
+        sentence = "brushsvg.toml names this file as the brush, so it cannot be written as well"
         raise RefusedError(twice, [Notice("", sentence, code="options-contradict", advice="give another name")])
 
 

@@ -39,11 +39,11 @@ def refuse_replacing(paths: Iterable[str], sources: Collection[str] = (), force:
             continue
         recorded = _read_record() if recorded is None else recorded
         if path in sources:
-            sentence = "the file is there already, and might be somebody's own"
+            sentence = "the file already exists, and may not be from brushsvg"
         elif _hash_path(path) not in recorded:
-            sentence = f"the file is there already, and brushsvg does not know that it wrote it{_explain_unwritable()}"
+            sentence = f"the file already exists, and brushsvg has no record of writing it{_explain_unwritable()}"
         elif recorded[_hash_path(path)] != _hash_content(path):
-            sentence = "the file is there already, and was changed since brushsvg wrote it"
+            sentence = "the file already exists, and was changed after brushsvg wrote it"
         else:
             continue
         advice = "give another name, or --force to replace it"

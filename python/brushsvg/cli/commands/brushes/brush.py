@@ -57,7 +57,7 @@ def brush_new(args) -> None:
     write_outputs(args, {path: text}, sources=[path])
     print_text(f"{path}: {reach(brush)}\n")
     if args.like is not None:
-        print_text(f"assumed: all of it, as {args.like} has it; brushsvg brush show {path} says how\n")
+        print_text(f"assumed: all laws, copied from {args.like}; see brushsvg brush show {path}\n")
         return
     assumed = [law for law, _ in LAWS if getattr(brush, law).assumed]
     deepest_mm, measured = brush.depth_range_mm[1], max(depth for depth, _ in widths)
@@ -70,7 +70,7 @@ def brush_new(args) -> None:
         assumed.append(
             f"lags beyond {lag_measured_mm:g} mm of depth ({brush.lag(deepest_mm):.1f} mm at {deepest_mm:g} mm)"
         )
-    print_text(f"assumed: {', '.join(assumed)} and the footprints; brushsvg brush show {path} says how\n")
+    print_text(f"assumed: {', '.join(assumed)} and the footprints; see brushsvg brush show {path}\n")
 
 
 def brush_plot(args) -> None:

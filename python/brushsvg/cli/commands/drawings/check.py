@@ -24,10 +24,10 @@ def check_file(args) -> None:
         result = check_program(args.program, make_choices(args), stage, warn)
     with refuse_errors(args.program):
         if result.is_foreign and args.lenient:
-            sentence = "brushsvg did not write it: --lenient would change nothing"
+            sentence = "brushsvg did not write this program: --lenient has no effect"
             raise Error(sentence, code="flag-without-effect")
         if result.work is None and args.picture:
-            raise Error("it paints no drawing: there is no picture of it", code="nothing-to-show")
+            raise Error("the program paints no drawing: there is no picture of it", code="nothing-to-show")
         if args.picture:
             outlined = prediction.trace_mark_outlines(result.marks, result.work.brush, stage)
             picture = outputs.make_picture(suffix_of(args.picture), result.work, outlined)

@@ -76,7 +76,7 @@ def cell_place(args) -> None:
     cell = load_exact_cell(args.input)
     with refuse_errors(args.input):
         if cell.arm is None:
-            sentence = f"cell {cell.name} has no table arm: nobody knows what its machine reaches"
+            sentence = f"cell {cell.name} has no [arm] table: brushsvg does not know what its machine reaches"
             raise Error(sentence, code="arm-missing")
         joints = joints_of(cell.arm)
     if args.drawing:
@@ -99,7 +99,7 @@ def cell_place(args) -> None:
     )
     followed_there = followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)
     if args.output:
-        stage("looking at the table")
+        stage("checking places for the paper")
         table = place.table_of(cell, program.robot_from_frame, joints)
         drawn = table_picture(
             suffix_of(args.output),
@@ -114,7 +114,9 @@ def cell_place(args) -> None:
         print_text(f"{args.input}: arm {cell.arm.name} reaches all of it with the paper where it is\n")
     elif nearest_place:
         pose = place.cell_at(cell, nearest_place.frame).paper
-        print_text(f"{args.input}: the sheet {nearest_place.text} would do: {_format_pose(pose)}\n")
+        print_text(
+            f"{args.input}: the arm reaches all of it with the sheet {nearest_place.text}: {_format_pose(pose)}\n"
+        )
     if followed_there.start_rad is not None:
         angles = ", ".join(str(round(math.degrees(angle))) for angle in followed_there.start_rad)
         print_text(f"{args.input}: it begins with its joints at {angles} degrees, or turned by whole turns\n")
