@@ -180,9 +180,9 @@ def test_check_accepts_a_job_as_table_and_as_json(tmp_path, capsys):
     (tmp_path / "a.traj").write_text(text.replace('0.02,"pose"', '0.02,"way"', 1))
     assert call(capsys, "check", str(tmp_path / "a.traj"))[0] == 1
     (tmp_path / "a.traj").write_text(text[:-4])
-    assert "no JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
+    assert "not valid JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
     (tmp_path / "a.traj").write_text("[" * 100_000)
-    assert "no JSON" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
+    assert "nested too deeply" in call(capsys, "check", str(tmp_path / "a.traj"))[2][-1]
 
 
 def test_programs_equal_the_golden_files():

@@ -199,7 +199,7 @@ def _warn_of_shortage(short: list[float], brush, deepest_mm: float) -> list[Noti
         return []
     strokes = "1 stroke comes" if count == 1 else f"{count} strokes come"
     sentence = (
-        f"{strokes} out up to {100 * max(short):.0f} % narrower than drawn as paint runs out: brush {brush.name} is "
-        f"pressed no deeper than {deepest_mm:.4g} mm for it"
+        f"{strokes} out up to {100 * max(short):.0f} % narrower than drawn as paint runs out: brush {brush.name} "
+        f"cannot be pressed deeper than {deepest_mm:.4g} mm to make up for it"
     )
     return [Notice("", sentence, code="paint-runs-out")]

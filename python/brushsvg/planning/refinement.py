@@ -41,16 +41,16 @@ class Refined:
         counts = (f"for {n} {'stroke' if n == 1 else 'strokes'} {why}" for why, n in count.items())
         return Notice(
             "",
-            f"refining changed nothing, the plan is that of closed: {', '.join(counts)}",
+            f"refining changed nothing, the plan is the one of closed compensation: {', '.join(counts)}",
             code="flag-without-effect",
             about="compensation",
         )
 
 
 # Reasons why a stroke keeps its pass in closed form.
-NO_GAIN = "no way was found that paints the drawing better"
-FORBIDDEN = "a refined way would break a limit of the cell or the sheet"
-WORSE = "a refined way would paint the letter worse"
+NO_GAIN = "no path was found that paints the drawing better"
+FORBIDDEN = "a refined path would break a limit of the cell or the sheet"
+WORSE = "a refined path would paint the letter worse"
 
 
 def refine_where_better(painted: list, targets: list, brush, closed, compensated, forbidden=None) -> Refined:

@@ -205,8 +205,8 @@ def _load_source(path) -> tuple:
     loaded = _load_open_document(path)
     if loaded is None:
         raise Error(
-            f"a {type(path).__name__} is neither the path of a drawing nor an open one, "
-            "an ezdxf document or an ElementTree",
+            f"a {type(path).__name__} is neither the path of a drawing, an open file, an ezdxf document nor an "
+            "ElementTree",
             code="drawing-format",
         )
     return loaded

@@ -40,8 +40,8 @@ def cut_into_dashes(subpath: SubPath, pattern_mm: list[float], offset_mm: float,
     count = total / period * len(pattern) / 2
     if count > limit:
         raise Error(
-            f"its dashes of {period:.4g} mm would make {count:.3g} strokes where {limit} are left of the drawing's "
-            "limit",
+            f"its dashes of {period:.4g} mm would make {count:.3g} strokes, but only {limit} are left of the "
+            "drawing's limit",
             code="drawing-too-large",
         )
     ends = np.cumsum(pattern)

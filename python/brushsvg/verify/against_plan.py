@@ -164,7 +164,7 @@ def _check_tool_axes(a_pass, lines: np.ndarray, planned) -> Problems:
     sentence = (
         f"line {lines[worst]}: the brush is held {off_deg[worst]:.3g} degrees from how the drawing asks for it, by "
         f"{float(tilts_deg(reference[worst])):.3g} degrees from upright: it was changed, or made with other flags or "
-        "of another drawing"
+        "from another drawing"
     )
     return [Notice(a_pass.stroke, sentence, code="held-otherwise")]
 
@@ -181,7 +181,7 @@ def _path_shares(poses: np.ndarray) -> np.ndarray:
 
 
 def _deviation_sentence(away_mm: float, limit_mm: float) -> str:
-    changed = "it was changed, or made with other flags or of another drawing"
+    changed = "it was changed, or made with other flags or from another drawing"
     if away_mm > limit_mm:
         return f"the program runs {away_mm:.2f} mm away from where the drawing asks it to: {changed}"
     return f"from here on the stroke is not painted once, from its start to its end, as the drawing asks: {changed}"

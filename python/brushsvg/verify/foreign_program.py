@@ -58,7 +58,7 @@ def foreign_program(
     ways, power = ways_and_end(text)
     lift = _lift_of_program(ways, cell)
     if lift and paper_z_mm is not None:
-        sentence = f"its pen goes by a servo, whose heights cell {cell.name} gives: --paper-z would change nothing"
+        sentence = f"a servo lifts its pen, to the heights that cell {cell.name} gives: --paper-z has no effect"
         raise Error(sentence, code="flag-without-effect")
     if not lift and paper_z_mm is None:
         _refuse_inverted(ways)
@@ -85,7 +85,7 @@ def foreign_program(
 def _unit_warnings(ways: list[Way]) -> tuple[Notice, ...]:
     if ways[0].unit_known:
         return ()
-    sentence = "neither G20 nor G21 stands before it: its numbers count as millimetres"
+    sentence = "neither G20 nor G21 comes before it: its numbers are read as millimetres"
     return (Notice(f"line {ways[0].line}", sentence, code="unit-assumed"),)
 
 
@@ -196,7 +196,7 @@ def _refuse_inverted(ways: list[Way]) -> None:
         return
     if pen and pen.is_inverted:
         advice = "convert it for your machine, or give --paper-z MM where Z counts upwards"
-        raise Error(f"{pen.how}: no cell's does", code="z-inverted", advice=advice)
+        raise Error(f"{pen.how}: no cell counts Z downwards", code="z-inverted", advice=advice)
 
 
 def _heights_over_paper(way: Way, lift: Lift | None, paper_z_mm: float) -> np.ndarray:
@@ -219,17 +219,21 @@ def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
     up_and_down = cell.pen.servo_values if cell.pen else ()
     if pen_kind(ways) == "z":
         if (cell.servo or up_and_down) and any(np.isfinite(way.points_mm[:, 2]).any() for way in ways):
-            sentence = f"its pen goes by Z, and cell {cell.name} lifts its brush by a servo"
+            sentence = f"Z lifts its pen, but a servo lifts the brush of cell {cell.name}"
             raise Error(sentence, code="servo-unknown", advice=f"give a cell without a servo, --cell {Z_CELL}")
         return None
     values = sorted({way.power for way in ways if way.power is not None})
     line = next(way.line for way in ways if way.power is not None)
     if any(way.by_angle == 300 for way in ways):
-        sentence = f"line {line}: its pen goes by M300, which plays a tone on the machines of all cells"
-        raise Error(sentence, code="servo-unknown", advice="brushsvg convert paints -o its lines")
+        sentence = f"line {line}: it lifts the pen with M300, which plays a tone on the machines of all cells"
+        raise Error(
+            sentence,
+            code="servo-unknown",
+            advice="brushsvg convert reads the program as a drawing and writes one for your cell",
+        )
     if any(way.by_angle for way in ways):
         if not up_and_down:
-            sentence = f"line {line}: its pen goes by M280, and cell {cell.name} has no such servo"
+            sentence = f"line {line}: it lifts the pen with M280, but cell {cell.name} has no such servo"
             raise Error(
                 sentence,
                 code="servo-unknown",
@@ -237,7 +241,7 @@ def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
             )
         return _two_state_lift(ways, cell)
     if not cell.servo:
-        sentence = f"line {line}: its pen goes by M3 and M5, and cell {cell.name} has no servo"
+        sentence = f"line {line}: it lifts the pen with M3 and M5, but cell {cell.name} has no servo"
         fits = _is_in_table(values, find_cell(SERVO_VALUE_CELL))
         advice = f"--cell {SERVO_VALUE_CELL}, or one of your own like it" if fits else _advise_own_table(values)
         raise Error(sentence, code="servo-unknown", advice=advice)
@@ -245,7 +249,7 @@ def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
         least, most = _table_range(cell)
         used = " to ".join(f"S{value:g}" for value in dict.fromkeys((values[0], values[-1])))
         sentence = (
-            f"line {line}: its pen is lifted by M3 {used}, and the servo's table of cell "
+            f"line {line}: it lifts the pen with M3 {used}, but the servo's table of cell "
             f"{cell.name} has values from {least:g} to {most:g}"
         )
         raise Error(sentence, code="servo-unknown", advice=_advise_own_table(values))
@@ -285,7 +289,7 @@ def _nothing_painted_error(ways: list[Way], cell: Cell, lift: Lift | None, paper
     heights = np.concatenate([way.points_mm[:, 2] for way in ways]) if ways else np.array([])
     heights = heights[np.isfinite(heights)]
     if lift:
-        sentence = f"the brush never touches the paper: by cell {cell.name} all values of the servo are above it"
+        sentence = f"the brush never touches the paper: all servo values are above it in cell {cell.name}"
         advice = "" if cell.pen else _advise_own_table(sorted({way.power for way in ways if way.power is not None}))
     elif not len(heights):
         sentence = "the brush never touches the paper: no line names a height (Z) or moves a servo (M3, M280)"

@@ -36,7 +36,9 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     """
     text = data.decode("utf-8-sig", errors="replace")
     if is_ours(text):
-        sentence = "brushsvg wrote this program: its ways lead a brush and are no drawing; convert the drawing"
+        sentence = (
+            "brushsvg wrote this program: its lines move a brush and are not a drawing; convert the drawing instead"
+        )
         raise Error(sentence, code="program-ours")
     all_ways = read_moves(text)
     pen = read_pen(all_ways, options.pen, options.paper_z_mm) if all_ways else None
@@ -60,7 +62,7 @@ def read_gcode(data: bytes, options: ReadOptions = AS_DRAWN) -> Design:
     notices.append(Notice("", sentence, code="gcode-no-width", advice="--width MM sets their width"))
     heights = np.concatenate([way.points_mm[:, 2] for chain in chains for way in chain])
     if np.isfinite(heights).all() and np.ptp(heights) > 1e-3:
-        sentence = f"its pen goes at heights from {heights.min():.6g} to {heights.max():.6g} mm: they are left out"
+        sentence = f"its pen moves at heights from {heights.min():.6g} to {heights.max():.6g} mm: they are left out"
         notices.append(Notice("z", sentence, code="gcode-not-flat"))
     if options.sheet_mm:
         return Design(options.sheet_mm, tuple(elements), tuple(notices))

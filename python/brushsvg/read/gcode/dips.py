@@ -47,7 +47,7 @@ def find_dips(strokes: list[tuple[int, np.ndarray]], comment_by_line: dict[int, 
     by_comment = _find_commented_dips(strokes, comment_by_line)
     if any(by_comment):
         return by_comment, "by their comments"
-    return _find_pot_dips([points for _, points in strokes]), "by their place, to which the program comes back"
+    return _find_pot_dips([points for _, points in strokes]), "by their place, to which the program returns"
 
 
 def _find_commented_dips(strokes: list[tuple[int, np.ndarray]], comment_by_line: dict[int, str]) -> list[bool]:

@@ -151,7 +151,7 @@ def _decide_by_height(
     drawn = [level for level, is_down in zip(levels, down, strict=True) if is_down and level is not None]
     travel = [level for level, is_down in zip(levels, down, strict=True) if not is_down and level is not None]
     sign = -1.0 if is_inverted else 1.0
-    how = "its pen goes by Z" + (", which counts downwards" if is_inverted else "")
+    how = "Z lifts its pen" + (", which counts downwards" if is_inverted else "")
     how += f": down to z {sign * max(drawn) + 0.0:g} mm" if drawn else ", and is never down"
     how += f", up from z {sign * min(travel) + 0.0:g} mm" if travel else ""
     return down, how, is_inverted
@@ -253,9 +253,9 @@ def _decide_by_servo(all_ways: list[Way], is_sideways: list[bool]) -> tuple[list
     down_values = sorted(value for value in values if value not in up)
     up_values = sorted(value for value in up if value is not None)
     how = (
-        f"its pen goes by a servo: down at S{', S'.join(f'{value:g}' for value in down_values[:3])}"
+        f"a servo lifts its pen: down at S{', S'.join(f'{value:g}' for value in down_values[:3])}"
         if down_values
-        else "its pen goes by a servo"
+        else "a servo lifts its pen"
     )
     return down, how + (
         f", up at S{', S'.join(f'{value:g}' for value in up_values[:3])}" if up_values else ", up at S0 or M5"

@@ -243,7 +243,7 @@ class _Interpreter:
         start, end = way.points_mm
         turn = 1 if self.motion == 3 else -1
         if not np.isfinite([*start[:2], *end[:2]]).all():
-            raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
+            raise Error(f"line {number}: a circle without a starting point", code="line-incomplete")
         if ("R" in values and {"I", "J"} & set(values)) or values.get("P", 1.0) != 1.0:
             raise _unread_line_error(number, line)
         if "R" in values:
@@ -252,14 +252,14 @@ class _Interpreter:
                 raise _out_of_range_error(number, line)
             half, chord = (end - start)[:2] / 2, math.dist(start[:2], end[:2])
             if not 0 < chord <= 2 * abs(radius) + 0.01:
-                raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
+                raise Error(f"line {number}: {line.strip()[:40]!r} is not a valid circle", code="line-incomplete")
             offset = math.sqrt(max(radius**2 - chord**2 / 4, 0.0)) * turn * (1 if radius > 0 else -1)
             centre = start[:2] + half + offset * np.array([-half[1], half[0]]) * 2 / chord
         elif {"I", "J"} & set(values):
             offset_mm = np.array([values.get("I", 0.0), values.get("J", 0.0)]) * self.mm_per_unit
             centre = offset_mm + self.offset_mm[:2] if self.absolute_centres else start[:2] + offset_mm
         else:
-            raise Error(f"line {number}: {line.strip()[:40]!r} is no circle", code="line-incomplete")
+            raise Error(f"line {number}: {line.strip()[:40]!r} is not a valid circle", code="line-incomplete")
         if not np.abs(centre).max() <= MAX_COORDINATE_MM:
             raise _out_of_range_error(number, line)
         radii = [math.dist(point[:2], centre) for point in (start, end)]
@@ -293,7 +293,7 @@ def _is_servo_angle(code: float, values: dict) -> bool:
 
 
 def _out_of_range_error(number: int, line: str) -> Error:
-    return Error(f"line {number}: {line.strip()[:40]!r} leads beyond 1e6 mm", code="line-unread")
+    return Error(f"line {number}: {line.strip()[:40]!r} goes beyond 1e6 mm", code="line-unread")
 
 
 def _unread_line_error(number: int, line: str) -> Error:

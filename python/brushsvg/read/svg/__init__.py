@@ -90,7 +90,7 @@ def _notices_outside_tree(document: Document, root: ET.Element, page: Page) -> l
     """Return notices about content outside of the tree: style sheets and comments."""
     notices = []
     if "xml-stylesheet" in document.instructions:
-        sentence = "CSS in another file is not read: what it says is missing"
+        sentence = "CSS in another file is not read: its rules are ignored"
         notices.append(Notice("xml-stylesheet", sentence, code="css-unread"))
     if page.in_px and (program_and_pixels := _find_other_pixel_size(document, root)):
         own_page = page if root.get("viewBox") is None else read_page(root.attrib)  # for any requested sheet

@@ -285,7 +285,7 @@ class PaintedElements:
         try:
             path_length = number(text)
         except Error as error:
-            self.notes.add(node, context, f"pathLength: {error}; it counts as not given", code="path-length-unread")
+            self.notes.add(node, context, f"pathLength: {error}; it is ignored", code="path-length-unread")
             return 1.0
         if path_length < 0:
             return 1.0
@@ -304,4 +304,4 @@ def _out_of_range_sentence(attributes, tag: str, place: int) -> str:
     if name is None:
         return "its geometry is beyond 1e6 mm: left out"
     found = shapes.snippet(attributes[name], place)
-    return f"{name} leads beyond 1e6 mm at character {place + 1}: found {found}; read up to there"
+    return f"{name} goes beyond 1e6 mm at character {place + 1}: found {found}; read up to there"

@@ -67,7 +67,7 @@ class TreeWalk:
             self.by_id.setdefault(node.get("id", ""), node)
             animations += local_name(node) in _ANIMATIONS
         if animations:
-            sentence = f"animations are not read: {animations} left out, what they move or show counts as without them"
+            sentence = f"animations are not read: {animations} left out, elements are read as if they were not animated"
             notices = [*notices, Notice("svg", sentence, code="animations-unread")]
         self.notes = NoticeList(root, [*page.notices, *self.rules.notices, *notices])
         paints = PaintServers(self.by_id, self.rules.declarations_for)
@@ -199,7 +199,7 @@ class TreeWalk:
             self.notes.add(
                 node,
                 context,
-                "its transforms lead beyond all numbers: left out",
+                "its transforms give numbers that are not finite: left out",
                 damaged=True,
                 code="geometry-out-of-range",
             )
@@ -233,7 +233,7 @@ class TreeWalk:
         if not written and _TRANSFORMS.isdisjoint(properties):
             return None
         if node is self.root and context.copied is None:
-            sentence = "programs disagree on a transform of the drawing itself, which counts as none: put it on a group"
+            sentence = "programs disagree on a transform of the drawing itself, so it is ignored: put it on a group"
             sentence += " around all that is drawn"
             self.notes.add(node, context, sentence, damaged=True, code="transform-unread")
             return None
@@ -265,7 +265,7 @@ class TreeWalk:
         try:
             return read(*words)
         except Error as error:
-            self.notes.add(node, context, f"{error}; it counts as not given", damaged=True, code="transform-unread")
+            self.notes.add(node, context, f"{error}; it is ignored", damaged=True, code="transform-unread")
             return None
 
     def _reference_box(self, node: ET.Element, context: Context) -> ReferenceBox:
@@ -311,7 +311,7 @@ class TreeWalk:
             if context.style.inherited["visibility"] != "visible":
                 return
             if not reference:
-                self.notes.add(node, context, "it has no href, so it uses nothing: left out", code="use-of-nothing")
+                self.notes.add(node, context, "it has no href, so it shows nothing: left out", code="use-of-nothing")
                 return
             reason = _explain_missing_target(reference, self.by_id)
             sentence = f"what it uses, {reference[:40]!r}, {reason}: left out"

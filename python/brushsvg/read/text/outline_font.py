@@ -49,7 +49,7 @@ def set_lines(data: bytes, lines: list[str], size_mm: float) -> TypesetText:
     is_filled = not setter.is_single_line_font()
     notices: tuple[Notice, ...] = tuple(_unused_part_notices(unpacked, setter.face))
     if _has_only_graphite_rules(setter.face) and any(map(needs_shaping, "".join(lines))):
-        sentence = "the font joins its letters by rules of Graphite, which are not read: they are set one by one"
+        sentence = "the font joins its letters with Graphite rules, which are not read: letters are set one by one"
         advice = "use a font with OpenType rules"
         notices += (Notice("text", sentence, code="font-rules-unread", advice=advice),)
     if not is_filled:
@@ -65,21 +65,21 @@ def _unused_part_notices(data: bytes, face: hb.Face) -> Iterator[Notice]:
     if data.startswith(b"ttcf") and (count := int.from_bytes(data[8:12], "big")) > 1:
         yield Notice(
             "font",
-            f"it is a collection of {count} fonts, of which the first is taken",
+            f"it is a collection of {count} fonts, of which the first is used",
             code="font-of-choices",
-            advice="take another one out of it beforehand, as with fonttools ttLib -y 1 -o second.ttf FILE",
+            advice="extract another one first, for example with fonttools ttLib -y 1 -o second.ttf FILE",
         )
     if axes := _axes(face.reference_table("fvar").data or b""):
         named = ", ".join(f"{tag} {default:g}" for tag, default in axes)
         tag, default = axes[0]
         yield Notice(
             "font",
-            f"it is a variable font, taken as it is by default: {named}",
+            f"it is a variable font, used at its default: {named}",
             code="font-of-choices",
-            advice=f"make another instance of it beforehand, as with fonttools varLib.instancer FILE {tag}={default:g}",
+            advice=f"make another instance first, for example with fonttools varLib.instancer FILE {tag}={default:g}",
         )
     if any(face.reference_table(tag).data for tag in _COLOUR_TABLES):
-        sentence = "it is a font of colours, which are not read: of its letters plain outlines are painted"
+        sentence = "it is a colour font: its colours are not read, and plain outlines of its letters are painted"
         yield Notice("font", sentence, code="font-of-colours")
 
 

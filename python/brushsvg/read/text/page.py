@@ -101,7 +101,7 @@ def _curve_extents(placed: list[tuple[PlacedGlyph, np.ndarray]]) -> tuple[np.nda
             known_extents[id(glyph.subpaths)] = points.min(axis=0), points.max(axis=0)
         corners += [corner + origin for corner in known_extents[id(glyph.subpaths)]]
     if not corners:
-        raise Error("the text leaves nothing to paint", "text", code="nothing-to-paint")
+        raise Error("the text has nothing to paint", "text", code="nothing-to-paint")
     return np.min(corners, axis=0), np.max(corners, axis=0)
 
 

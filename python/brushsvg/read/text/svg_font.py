@@ -155,7 +155,7 @@ class _Typesetter:
             return ()
         line = trace(commands, (self.mm_per_unit, 0, 0, -self.mm_per_unit, 0, 0), self.mm_per_unit)
         if line.beyond is not None:
-            self._skip(node, f"d leads beyond 1e6 mm at character {line.beyond + 1}")
+            self._skip(node, f"d goes beyond 1e6 mm at character {line.beyond + 1}")
             return ()
         if line.lone_movetos:
             count = "a moveto" if line.lone_movetos == 1 else f"{line.lone_movetos} movetos"

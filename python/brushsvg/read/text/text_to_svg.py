@@ -45,7 +45,7 @@ def text_svg(
     Raises Error if a number is out of range, the font cannot be read, or nothing of the text can be painted.
     """
     require_type(text, str, "a text")
-    require_type(font, bytes, "what a font file holds, as bytes")
+    require_type(font, bytes, "the content of a font file, as bytes")
     need_one_of(script, SCRIPTS, "script")
     size_mm = _checked("size", size_mm, 1000, " mm")
     width_mm = None if width_mm is None else _checked("width", width_mm, 1000, " mm")
@@ -75,7 +75,7 @@ def text_svg(
     if not any(typeset.lines):
         reasons = "; ".join(notice.sentence for notice in notices if notice.where != "font")
         raise Error(
-            "the text leaves nothing to paint" + (f": {reasons}" if reasons else ""),
+            "the text has nothing to paint" + (f": {reasons}" if reasons else ""),
             "text",
             code="nothing-to-paint",
         )

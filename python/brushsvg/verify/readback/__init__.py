@@ -131,7 +131,7 @@ def add_circle(out: Readback, number: int, via: np.ndarray, end: np.ndarray, spe
     """
     steps = out.section().steps
     if not steps:
-        raise Error(f"line {number}: a circle from nowhere", code="line-incomplete")
+        raise Error(f"line {number}: a circle without a starting point", code="line-incomplete")
     start = np.array([steps[-1].x, steps[-1].y])
     to_via, to_end = via[:2] - start, end[:2] - start
     cross = to_via[0] * to_end[1] - to_via[1] * to_end[0]

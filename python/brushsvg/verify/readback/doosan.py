@@ -78,7 +78,9 @@ def read_doosan(text: str, cell: Cell) -> Readback:
         ast.parse(text)
     except (SyntaxError, ValueError) as mistake:
         at = getattr(mistake, "lineno", None) or 1
-        raise Error(f"line {at}: no DRL, which is read as Python is: {mistake}", code="line-unread") from None
+        raise Error(
+            f"line {at}: this is not DRL, which has the syntax of Python: {mistake}", code="line-unread"
+        ) from None
     script = Script(
         remark="# ",
         lines=_LINES,

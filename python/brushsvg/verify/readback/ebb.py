@@ -33,7 +33,7 @@ def read_ebb(text: str, cell: Cell) -> Readback:
     if not reader.ended:
         raise Error("the last lines are missing: half of the program was lost", code="program-cut-short")
     if any(reader.steps):
-        sentence = "its steps do not lead back to where it began: a line was lost, or changed"
+        sentence = "its steps do not end where it began: a line was lost, or changed"
         raise Error(sentence, code="line-incomplete")
     return reader.out
 
@@ -143,7 +143,7 @@ class _Reader:
     def _move(self, number: int, line: str, time_ms: int, steps_1: int, steps_2: int) -> None:
         self._check_ready(number, line)
         if not time_ms or (self.value is None and (steps_1 or steps_2)):
-            raise Error(f"line {number}: {line!r} goes at no known height, or in no time", code="line-incomplete")
+            raise Error(f"line {number}: {line!r} moves at an unknown height, or takes no time", code="line-incomplete")
         if not steps_1 and not steps_2:
             if self.pending_value is not None:
                 raise unread_error(number, line)

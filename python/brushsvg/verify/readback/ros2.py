@@ -39,9 +39,9 @@ def as_table(text: str) -> str:
     try:
         json.loads(text)
     except ValueError as mistake:
-        raise Error(f"it is no JSON: {mistake}", code="line-unread") from None
+        raise Error(f"it is not valid JSON: {mistake}", code="line-unread") from None
     except RecursionError:
-        raise Error("it is no JSON that brushsvg writes: its lists nest too deep", code="line-unread") from None
+        raise Error("brushsvg does not write such JSON: its lists are nested too deeply", code="line-unread") from None
     lines = text.splitlines()
     if lines[0].rstrip(" ") != _FIRST_JSON_LINE:
         raise unread_error(1, lines[0])
@@ -92,7 +92,7 @@ def read_ros2(text: str, cell: Cell) -> Readback:
     for (number, line), row in zip(lines, found, strict=True):
         if row:
             if header_count != 1:
-                raise Error(f"line {number}: no line says once what the columns are", code="line-unread")
+                raise Error(f"line {number}: exactly one line must name the columns", code="line-unread")
             reader.row(number, next(values), tuple(next(tips)), row[2], next(turns))
         elif line == COLUMNS:
             header_count += 1
@@ -143,18 +143,18 @@ class _RowReader:
         now_s, limit_mm_s = values[0], 1e3 * values[8]
         if self.here is None:
             if kind != "pose" or now_s != 0:
-                raise Error(f"line {number}: the first row is no pose at time 0", code="line-unread")
+                raise Error(f"line {number}: the first row is not a pose at time 0", code="line-unread")
             self._add_pose(number, tip, (limit_mm_s, limit_mm_s), now_s, turned)
             return
         if now_s < self.now_s + MIN_TIME_STEP_S:
-            raise Error(f"line {number}: time {now_s:g} s does not go on", code="line-unread")
+            raise Error(f"line {number}: time {now_s:g} s is not later than the row before", code="line-unread")
         after_s, way_mm = now_s - self.now_s, math.dist(tip, self.last)
         if kind == "rest":
             if self.ways or way_mm > self.near_mm or limit_mm_s or not self._is_same_rotation(turned, self.turned):
-                raise Error(f"line {number}: it moves while it rests", code="line-unread")
+                raise Error(f"line {number}: the tool moves during a pause", code="line-unread")
             step = self.out.section().steps[-1] if self.out.section().steps else None
             if step is None:
-                raise Error(f"line {number}: it rests nowhere", code="line-unread")
+                raise Error(f"line {number}: it pauses before any pose", code="line-unread")
             self.out.acts.append(Act(number, "wait", same=(after_s,)))
             self.now_s = self.begin_s = now_s
             return
@@ -211,12 +211,12 @@ class _RowReader:
             along = float(step @ way) / length if length else 0.0
             sideways_mm = float(np.linalg.norm(step - along * way / length)) if length else math.inf
             if sideways_mm > self.near_mm or not done - self.near_mm <= along <= length + self.near_mm:
-                raise Error(f"line {number}: it is on no straight line to the next pose", code="line-unread")
+                raise Error(f"line {number}: it is not on a straight line to the next pose", code="line-unread")
             a, b, c = (self.upright if each is None else each for each in (self.turned, its_turn, turned))
             share = min(max(along / length, 0.0), 1.0)
             if not self._is_same_rotation(b, turned_to(turned_on(-a[:, 2], -c[:, 2], share), self.upright)):
-                raise Error(f"line {number}: the tool is not turned on evenly to the next pose", code="line-unread")
+                raise Error(f"line {number}: the tool does not turn evenly to the next pose", code="line-unread")
             if its_mm_s != limit_mm_s:
-                raise Error(f"line {number}: its limit is not that of the next pose", code="line-unread")
+                raise Error(f"line {number}: its speed limit differs from the one of the next pose", code="line-unread")
             done = along
         self.ways = []

@@ -154,7 +154,7 @@ def _rise_lines(part: NumberedLines) -> list[str]:
 def _check_repeated_lines(part: NumberedLines, expected: list[str], found: list[str]) -> None:
     if found != expected:
         raise Error(
-            f"line {part[0][0]}: this part begins or ends otherwise than the one before it: a part is missing, "
-            "is another job's, or was changed",
+            f"line {part[0][0]}: this part does not begin or end like the one before it: a part is missing, belongs "
+            "to another job, or was changed",
             code="program-cut-short",
         )

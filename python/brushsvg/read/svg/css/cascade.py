@@ -126,7 +126,7 @@ def cascade(
             if "var(" in value.lower():
                 value, problem = substitute_variables(value, inherited)
                 if problem:  # here CSS does not fall back to a weaker declaration
-                    sentence = f"{name} {text[:40]!r} {problem}: it counts as not given"
+                    sentence = f"{name} {text[:40]!r} {problem}: it is ignored"
                     if name != "font-size":
                         is_damage = name == "stroke-width" or name in _GEOMETRY_PROPERTIES
                         problems.append(Notice("", sentence, is_damage, code="css-invalid", about=name))
@@ -139,7 +139,7 @@ def cascade(
                     break
                 continue
             if name in _LENGTH_PROPERTIES and _BARE_NUMBER.fullmatch(value) and float(value):
-                sentence = f"{name} {value[:40]!r} of its style has no unit: it counts as not given"
+                sentence = f"{name} {value[:40]!r} of its style has no unit: it is ignored"
                 problems.append(Notice("", sentence, code="css-invalid", about=name))
                 continue
             if name in _GEOMETRY_PROPERTIES:

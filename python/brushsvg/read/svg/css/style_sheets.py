@@ -78,7 +78,7 @@ class StyleSheets:
                     self._note("@namespace is not read: its rules count for all elements", about="@namespace")
             elif rule.type == "at-rule" and rule.lower_at_keyword not in _IRRELEVANT_AT_RULES:
                 name = f"@{rule.at_keyword[:40]}"
-                self._note(f"{name} is not read: what it says is missing", about=name)
+                self._note(f"{name} is not read: its rules are ignored", about=name)
             elif rule.type == "error":
                 self._note(
                     f"line {rule.source_line} is not CSS: {rule.message[:80]}",
@@ -121,7 +121,7 @@ class StyleSheets:
         known = [_MEDIA_QUERIES.get(query.removeprefix("only ")) for query in queries]
         if True not in known and None in known:
             self._note(
-                f"@media {queries[known.index(None)][:60]} is not read: what it says is missing",
+                f"@media {queries[known.index(None)][:60]} is not read: its rules are ignored",
                 about="@media",
             )
         return True in known

@@ -37,7 +37,7 @@ def find_problem(name: str, value: str, diagonal: float) -> Notice | None:
         if not URL.match(value) and parse_colour(value) is None:
             return Notice(
                 "",
-                f"{name} {value[:40]!r} is not a colour: it counts as not given",
+                f"{name} {value[:40]!r} is not a colour: it is ignored",
                 code="colour-invalid",
                 about=name,
             )
@@ -46,11 +46,11 @@ def find_problem(name: str, value: str, diagonal: float) -> Notice | None:
             if length_px(value, diagonal) < 0:
                 raise Error(f"{value[:24]!r} is negative", code="out-of-range")
         except Error as error:
-            return Notice("", f"stroke-width: {error}; it counts as not given", True, code="stroke-width-invalid")
+            return Notice("", f"stroke-width: {error}; it is ignored", True, code="stroke-width-invalid")
     elif name in _OPACITY_PROPERTIES and not _SHARE.fullmatch(value):
         return Notice(
             "",
-            f"{name} {value[:40]!r} is not a number: it counts as not given",
+            f"{name} {value[:40]!r} is not a number: it is ignored",
             code="css-invalid",
             about=name,
         )
@@ -107,9 +107,9 @@ def substitute_variables(value: str, inherited: dict[str, str]) -> tuple[str, st
             name, comma, fallback = tinycss2.serialize(token.arguments).partition(",")
             replacement = inherited.get(name.strip(), fallback.strip() if comma else None)
             if replacement is None:
-                problem = problem or f"names {name.strip()[:40]}, which nothing says"
+                problem = problem or f"names {name.strip()[:40]}, which is not defined"
             elif depth > 20:
-                problem = problem or f"leads through {name.strip()[:40]} in a circle, or too far"
+                problem = problem or f"leads through {name.strip()[:40]} in a circle, or too deeply"
             elif len(replacement) + sum(map(len, parts)) > _MAX_VALUE_LENGTH:
                 problem = problem or f"grows beyond {_MAX_VALUE_LENGTH} characters"
             else:
