@@ -318,7 +318,7 @@ def test_a_refusal_of_a_damaged_drawing_says_how_to_draw_the_rest(desk, capsys):
     status, _, err = run(capsys, "convert", "x.svg", "-o", "out.ngc")
     assert status == 1
     assert [line.split(": ")[2] for line in err] == ["worse", "worse", "worse", "off", "worse", "worse"]
-    hint = "; --lenient draws what is sound"
+    hint = "; --lenient paints the undamaged part"
     assert err[-1].endswith(hint) and not any(hint in line for line in err[:-1])
     _, reported = in_json(capsys, "convert", "x.svg", "-o", "out.ngc")[2][-1]
     assert agrees(reported, "geometry-damaged 17 'nan 4'", "worse") and reported.damaged

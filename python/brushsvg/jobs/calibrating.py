@@ -148,7 +148,7 @@ class BrushCalibration(Generic[Fit]):
     def picture(self) -> bytes:
         """Return the flattened photograph with the read and predicted outlines, as a PNG."""
         if self._read is None:
-            raise Error("it was not made of photographs of a chart", code="nothing-to-show")
+            raise Error("this calibration was not made from photographs of a chart", code="nothing-to-show")
         if self.kind == "dabs":
             return photo_report.dabs_picture(self._read, self.fit)
         return photo_report.read_picture(self._read, self.fit if self.kind == "marks" else self.fit.made)
@@ -407,7 +407,7 @@ def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibr
             f"{_path_of(options.chart) or 'this'} is a chart of dabs: give the brush whose lag is known, --brush FILE",
         ),
         (bool(options.machine), "--machine needs strokes: dabs say nothing about the machine"),
-        (options.height_mm is not None, "--height is for strokes: dabs count as deep as they were requested"),
+        (options.height_mm is not None, "--height is for strokes: calibrate takes the depths of dabs from the chart"),
     ):
         if is_broken:
             raise Error(why, code="options-contradict")

@@ -80,8 +80,8 @@ def find_contradiction(source, options: CalibrationOptions) -> str:
     other = next((path for path in photos if not is_photograph(path)), "")
     is_photo = all(map(is_photograph, photos))
     rules = [
-        (options.cell is not None and not options.machine, "--cell limits --machine: give --machine"),
-        (len(photos) > 1 and not is_photo, f"only photographs can be several: {other} is not one"),
+        (options.cell is not None and not options.machine, "--cell needs --machine, whose errors it limits"),
+        (len(photos) > 1 and not is_photo, f"you can give several photographs, but {other} is not one"),
     ]
     if options.plan is not None or options.prior is not None:
         is_incomplete = options.plan is None or options.prior is None
@@ -90,12 +90,12 @@ def find_contradiction(source, options: CalibrationOptions) -> str:
             flag_name = flag.removesuffix("_mm")
             rules.append((bool(getattr(options, flag)), f"--{flag_name} is not for a job (--plan)"))
         rules.append((options.absolute, "--norm is not for a job (--plan)"))
-        rules.append((options.aim != "edges", "--aim is not for a job (--plan): a brush is updated by edges"))
+        rules.append((options.aim != "edges", "--aim is not for a job (--plan): edges update the brush"))
         rules.append((not is_photo, "--plan needs photographs of the painted job"))
         return next((why for is_broken, why in rules if is_broken), "")
     rules += [
-        (options.paint and options.brush is not None, "--paint finds a brush of its own: leave --brush out"),
-        (options.paint and options.aim != "edges", "--paint is found by edges: leave --aim overlap out"),
+        (options.paint and options.brush is not None, "--paint fits a new brush: leave --brush out"),
+        (options.paint and options.aim != "edges", "--paint fits the edges of marks: leave --aim overlap out"),
     ]
     if is_photo:
         is_wrong_scan = options.dpi is not None and (len(photos) > 1 or options.bar_mm is not None)
@@ -108,7 +108,7 @@ def find_contradiction(source, options: CalibrationOptions) -> str:
                 options.chart is None,
                 "photographs need --chart, the chart.json that was written with the page",
             ),
-            (is_wrong_scan, "--dpi is for one scan, and without --bar: it shows no printed page"),
+            (is_wrong_scan, "--dpi is for one scan of a sheet without markers: leave --bar and other photographs out"),
         ]
     else:
         for flag in ("mirrored", "chart", "bar_mm", "dpi", "brush", "spread", "height_mm"):

@@ -134,10 +134,10 @@ def check(
     chosen = drop_from_project(chosen, SET_BY_PROGRAM)
     for name in SET_BY_PROGRAM:
         if getattr(chosen, name) is not None:
-            sentence = f"a program says itself how it was made: {name} would change nothing"
+            sentence = f"the program's header says how it was made: {name} has no effect"
             raise Error(sentence, name, code="flag-without-effect")
     if drawing is None and chosen.corrections is not None:
-        raise Error("corrections need the drawing that they are of", "corrections", code="options-contradict")
+        raise Error("corrections need the drawing that they belong to", "corrections", code="options-contradict")
     notices: list[Notice] = []
     result = cancelling.run(
         lambda stage: check_program(os.fspath(program), chosen, stage, lambda _, warnings: notices.extend(warnings)),
@@ -207,10 +207,10 @@ class _OwnProgram:
 def _read_with_called_files(path: str, suffix: str, text: str) -> str:
     """Return the text of a program and of the files that it calls, next to it."""
     if suffix == ".robodk":
-        sentence = "what a post of RoboDK's kind writes is in a language of its own, which is not read back"
+        sentence = "brushsvg cannot read back what a RoboDK post writes"
         raise Error(sentence, code="program-format")
     if suffix == ".cdr":
-        sentence = "a serialized message says nothing of brush and paper: check the .csv of the same job"
+        sentence = "a serialized message does not name brush and paper: check the .csv of the same job"
         raise Error(sentence, code="program-format")
     if suffix == ".traj":
         text = as_table(text)
@@ -300,7 +300,7 @@ def _report_offset(z_offset_mm: float) -> list[Notice]:
         return []
     where = "higher" if z_offset_mm > 0 else "lower"
     sentence = (
-        f"the program was made with --z-offset {z_offset_mm:g}: all limits were checked for a paper "
+        f"the program was made with --z-offset {z_offset_mm:g}: all limits were checked for paper "
         f"{abs(z_offset_mm):g} mm {where} than the cell has it"
     )
     return [Notice("", sentence, code="paper-offset")]
@@ -379,13 +379,13 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
     Finds what a brush would paint with it, and which limits it breaks.
     """
     if chosen.input is not None:
-        sentence = "brushsvg did not write it: it paints no drawing that is known; check it alone"
+        sentence = "brushsvg did not write this program and does not know its drawing: check it without a drawing"
         raise Error(sentence, code="nothing-to-compare")
     chosen = drop_from_project(chosen, {*CHOICES} - {"brush", "cell", "sheet", "paper_z"})
     for flag in (*DRAWING_FLAGS, "z-offset", "corrections"):
         given = getattr(chosen, CHOICE_BY_FLAG.get(flag, flag))
         if flag != "paper-z" and given:
-            sentence = f"brushsvg did not write it: --{flag} would change nothing"
+            sentence = f"brushsvg did not write this program: --{flag} has no effect"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = load_cell(chosen.cell), load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
     foreign = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
@@ -404,7 +404,10 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
     cell, brush = program.cell, program.brush
     with name_file_in_errors(program.path):
         if (header.heights_mm or header.first_mm) and chosen.input is not None:
-            raise Error("it finds the paper's height and paints no drawing: check it alone", code="nothing-to-compare")
+            raise Error(
+                "it finds the paper's height and paints no drawing: check it without a drawing",
+                code="nothing-to-compare",
+            )
         if header.sheet_mm is None:
             raise Error("its header does not say how large the sheet is", code="sheet-unknown")
     work = _prepare_as_made(program, chosen, stage, warn) if chosen.input is not None else None
@@ -439,8 +442,8 @@ def _compare_border(header, work: Work, stage) -> list[Notice]:
         return []
     template = "{0:.2f} to {2:.2f} mm, {1:.2f} to {3:.2f} mm"
     sentence = (
-        f"the program goes round {template.format(*commanded_mm)}, paint and tool of the drawing stay within "
-        f"{template.format(*needed_mm)}: it was changed, or made with other flags or of another drawing"
+        f"the program goes round {template.format(*commanded_mm)}, but the paint and the tool of the drawing stay "
+        f"within {template.format(*needed_mm)}: it was changed, or made with other flags or from another drawing"
     )
     return [Notice("", sentence, code="border-elsewhere")]
 
@@ -460,7 +463,7 @@ def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -
     header, source = program.header, chosen.input
     if header.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with name_file_in_errors(program.path):
-            sentence = "its strokes were moved by corrections, which are not known here"
+            sentence = "corrections moved its strokes, and the check does not have them"
             raise Error(sentence, code="corrections-missing", advice="give --corrections FILE")
     if suffix_of(source) != ".json":
         with name_file_in_errors(path_of(source)):

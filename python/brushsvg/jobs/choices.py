@@ -205,7 +205,7 @@ def check_choices(chosen: Choices) -> Choices:
         _refuse_lag_without_effect(chosen)
     suffix = suffix_of(chosen.input)
     if chosen.units and suffix in (".svg", ".svgz"):
-        sentence = "units are for drawings that do not say them; an SVG does"
+        sentence = "units are for drawings that do not define their unit; an SVG does"
         raise Error(sentence, "units", code="options-contradict")
     if chosen.select and suffix == ".dxf":
         sentence = "select is for SVG; layers of a DXF are chosen by layer"
@@ -268,7 +268,7 @@ def refuse_file_used_twice(chosen: Choices, written: Iterable[object], more_read
     """
     read = (chosen.input, chosen.brush, chosen.cell, chosen.corrections, *more_read)
     if twice := find_file_used_twice(read, written):
-        sentence = "this cannot be two files at once: give each file that is read or written a path of its own"
+        sentence = "this file is named twice: each file that is read or written needs its own path"
         raise Error(sentence, file=twice, code="options-contradict")
 
 

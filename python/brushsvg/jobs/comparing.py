@@ -131,7 +131,7 @@ class PaintedJob:
         The target is grey, a red line shows the prediction, and the worst places have the numbers of the report.
         """
         if self._shown is None:
-            raise Error("it was not made of photographs", code="nothing-to-show")
+            raise Error("this comparison was not made from photographs", code="nothing-to-show")
         return comparison_png(*self._shown, self.faults)
 
 
@@ -320,8 +320,8 @@ def _report_uncorrectable(faults: Faults, cell: Cell, left_out: dict[str, str]) 
     ]
     notices = []
     if print_scale:
-        sentence = f"the page was probably printed at {100 * print_scale:.1f} %: both axes seem to be as much off"
-        advice = "measure its bar and print it at 100 %; the scale goes into no cell"
+        sentence = f"the page was probably printed at {100 * print_scale:.1f} %: both axes are off by this much"
+        advice = "measure its bar and print it at 100 %; the corrected cell does not include this scale"
         notices.append(Notice("page", sentence, code="page-scale", advice=advice))
     if not uncorrectable:
         return notices

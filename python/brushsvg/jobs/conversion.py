@@ -199,7 +199,7 @@ def refuse_job_of_plan(chosen: Choices, suffixes: Sequence[str], first_stroke: i
     chosen = drop_from_project(chosen, ["z_offset"])
     for name, is_given in (("from_stroke", first_stroke > 1), ("z_offset", chosen.z_offset)):
         if is_given:
-            sentence = f"{name} is for programs; a .json is the plan of the whole job, on the paper"
+            sentence = f"{name} is for programs; a plan (.json) always has the whole job, on the paper"
             raise Error(sentence, name, code="options-contradict")
     return chosen
 
@@ -212,7 +212,7 @@ def make_choices(drawing, choices: Mapping) -> Choices:
     choice_names = {name for name in Choices.__dataclass_fields__ if name != "input"}
     for name in choices:
         if name not in choice_names:
-            raise TypeError(f"{name!r} is no choice; known are {', '.join(sorted(choice_names))}")
+            raise TypeError(f"{name!r} is not an option; known are {', '.join(sorted(choice_names))}")
     chosen = check_choices(Choices(input=drawing, **choices))
     refuse_ends_without_effect(chosen)
     return chosen
@@ -362,8 +362,8 @@ def _check_lowering(z_offset_mm: float) -> list[Notice]:
     if z_offset_mm > -MAX_SILENT_LOWERING_MM:
         return []
     sentence = (
-        f"the tool goes {-z_offset_mm:g} mm further down than where the cell has the paper, which the strokes of "
-        "`brushsvg setup height` seldom ask for"
+        f"the tool goes {-z_offset_mm:g} mm lower than the cell's paper; `brushsvg setup height` rarely finds so large "
+        "a difference"
     )
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
@@ -383,10 +383,10 @@ def _check_stroke_order(work: Work, order: str, first_stroke: int) -> list[Notic
     if all(dips[:1] == [0.0] for dips in dips_mm):
         return []
     sentence = (
-        "strokes are pressed as deep as the paint that the drawing's order leaves asks for: "
+        "the depths of the strokes allow for the paint that is left in the drawing's order: "
         f"{' and '.join(changes)} they come out wider or narrower than drawn"
     )
-    return [Notice("", sentence, code="paint-out-of-turn", advice="fetch paint more often: [reload] of the cell")]
+    return [Notice("", sentence, code="paint-out-of-turn", advice="fetch paint more often: set [reload] in the cell")]
 
 
 def simulate_and_check(
@@ -423,7 +423,7 @@ def simulate_and_check(
     damaged = [] if lenient else [notice for notice in work.notices if notice.damaged]
     problems = summarize_notices([*walk.problems, *damaged])
     if damaged:
-        problems[-1] = replace(problems[-1], advice="--lenient draws what is sound")
+        problems[-1] = replace(problems[-1], advice="--lenient paints the undamaged part")
     return SimulatedWork(suffix, work, cell, notes, marks, loads, walk, problems, order, Path(path).stem)
 
 

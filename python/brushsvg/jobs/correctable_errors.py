@@ -24,6 +24,6 @@ def select_correctable_parts(parts: tuple[str, ...], cell: Cell) -> tuple[tuple[
     if not uncorrectable:
         return parts, []
     why = "; ".join(dict.fromkeys(left_out[CELL_KEY_BY_PART[part]] for part in uncorrectable))
-    sentence = f"cell {cell.name} cannot undo {', '.join(uncorrectable)}, which is not looked for: {why}"
+    sentence = f"cell {cell.name} cannot undo {', '.join(uncorrectable)}, so it is not estimated: {why}"
     kept = tuple(part for part in parts if part not in uncorrectable)
     return kept, [Notice("machine", sentence, code="machine-not-undone")]

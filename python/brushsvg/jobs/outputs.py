@@ -116,7 +116,7 @@ def overlap_picture(
     Raises Error for a plan, which has no target.
     """
     if work.strokes is None:
-        raise Error("a plan does not hold its target: give the drawing", code="plan-without-target")
+        raise Error("a plan does not have the target shapes: give the drawing", code="plan-without-target")
     if suffix == ".svg":
         target = figures.target_rings(work.strokes)
         at_mm = {place.number: place.place_mm for place in places}

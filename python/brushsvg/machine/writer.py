@@ -244,8 +244,8 @@ def list_cell_notices(cell: Cell) -> list[Notice]:
 def list_arm_notices(cell: Cell) -> list[Notice]:
     if not cell.arm or is_installed():
         return []
-    sentence = f"whether arm {cell.arm.name} reaches all that is painted was not looked at"
-    advice = missing_packages_error("its joints need", "ssik").sentence
+    sentence = f"brushsvg did not check whether arm {cell.arm.name} reaches everything that is painted"
+    advice = missing_packages_error("this check needs", "ssik").sentence
     return [Notice("arm", sentence, code="arm-not-followed", advice=advice)]
 
 

@@ -111,7 +111,7 @@ def _check_batch(args) -> None:
     if args.jobs is not None and args.cluster is not None:
         args.parser.error("--jobs is for this machine, not for --cluster")
     if args.z_offset and args.format == ".json":
-        args.parser.error("--z-offset is for programs; a .json is the plan of the whole job, on the paper")
+        args.parser.error("--z-offset is for programs; a plan (.json) always has the whole job, on the paper")
     check_files(args, [(args.words, (".txt",)), (args.font, None), (args.brush, None)], [])
     args.input = args.output
 

@@ -48,7 +48,7 @@ def check_job(args) -> None:
         ("--z-offset", args.z_offset),
     ):
         if value and suffix_of(args.output) == ".json":
-            args.parser.error(f"{flag} is for programs; a .json is the plan of the whole job, on the paper")
+            args.parser.error(f"{flag} is for programs; a plan (.json) always has the whole job, on the paper")
 
 
 def check_files(args, read, written) -> None:

@@ -96,7 +96,7 @@ def connect_cluster(address: str) -> Iterator[Executor]:
     try:
         client = Client(address, timeout=MAX_SCHEDULER_WAIT_S, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as problem:
-        sentence = f"no scheduler answers there: {str(problem).splitlines()[0][:200]}"
+        sentence = f"no scheduler answers at this address: {str(problem).splitlines()[0][:200]}"
         raise Error(sentence, file=address, code="cluster-unreachable") from None
     with client:
         yield client.get_executor()

@@ -71,7 +71,7 @@ def list_drawings(operands: Iterable[str | os.PathLike[str]], open_lists: tuple[
             matching_drawings = [path for path in matches if path.suffix.lower() in READERS]
             items += [_make_drawing_item(path, Path(path.name)) for path in matching_drawings]
             if not matching_drawings:
-                raise Error("no drawing has such a name", file=operand, code="file-unreadable")
+                raise Error("no drawing matches this pattern", file=operand, code="file-unreadable")
     return items
 
 
@@ -139,7 +139,7 @@ def _make_refused_item(name: str, source: str) -> Item:
     """Make an item that is refused when it is read, as no file can have its name."""
 
     def read() -> InMemory:
-        sentence = f"{name[:60]} cannot be the name of a file that is written: it holds more than printed letters"
+        sentence = f"{name[:60]} cannot be the name of a file: it has characters that cannot be printed"
         raise Error(sentence, code="name-invalid", advice="rename the drawing")
 
     return Item(name, source, "", read)
@@ -251,7 +251,7 @@ def file_name_key(name: str) -> str:
 def _suggest_remedy(first: Item, second: Item, items: list[Item]) -> str:
     """Return advice for two drawings that have one name."""
     if first.path and first.path == second.path:
-        return "it is one drawing: give it once"
+        return "both names are the same drawing: give it once"
     for drawing in (second, first):
         names = [item.name for item in items if drawing.path and item.path == drawing.path]
         if len(names) > 1:

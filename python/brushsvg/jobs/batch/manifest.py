@@ -178,7 +178,7 @@ class Manifest:
         for row in self._by_name.get(item.name, []):
             unchanged = [file for file in row.files.items() if self._has_file(file)]
             if unchanged and row.path not in ("", path) and (self.folder / row.path).exists():
-                sentence = f"{unchanged[0][0]} was made of {row.source}: that of {item.source} would be written over it"
+                sentence = f"{unchanged[0][0]} was made from {row.source}: {item.source} would replace it"
                 raise Error(sentence, file=str(self.folder), code="name-taken", advice="give another folder (-o)")
 
     def find_other_source(self, item: Item, path: str) -> str:

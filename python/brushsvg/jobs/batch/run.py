@@ -122,7 +122,9 @@ def batch(
     is_cancelled = getattr(cancel, "is_set", cancel) or (lambda: False)
     require_type(is_cancelled, Callable, "a callable or an event", "cancel")
     if "corrections" in choices:
-        raise Error("corrections are of one drawing, not of a batch", "corrections", code="options-contradict")
+        raise Error(
+            "corrections belong to one drawing: a batch cannot use them", "corrections", code="options-contradict"
+        )
     count = int(need_number(os.cpu_count() if jobs is None else jobs, "jobs", 1, 1000))
     if parquet:
         tables.need_parquet()
@@ -279,7 +281,10 @@ def _get_result(future: Future, item: Item, version: str) -> TaskResult:
 
 
 def _make_lost_worker_error(item: Item, broken: BrokenExecutor) -> Error:
-    sentence = f"a worker died, over {item.source} or another one; what was done before is kept: {broken}"
+    sentence = (
+        f"a worker process died while it converted {item.source} or another drawing; finished drawings are kept: "
+        f"{broken}"
+    )
     return Error(sentence.splitlines()[0], code="worker-lost")
 
 
@@ -309,7 +314,7 @@ class _TakenPlaces:
             other = other or self.folders.get(file_name_key(place.as_posix()))
             other = other or self.manifest.find_other_source(item, path)
             if other:
-                sentence = f"{path} belongs to {other}: {item.source} would be written over it"
+                sentence = f"{path} belongs to {other}: {item.source} would replace it"
                 raise Error(sentence, code="name-taken", advice="rename one of the two drawings")
 
 

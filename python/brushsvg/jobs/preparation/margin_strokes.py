@@ -60,11 +60,11 @@ def add_margin_strokes(work: Work) -> Work:
     if requested == "off" or deepest_mm <= 0 or (requested == "auto" and is_calibrated(work.brush, deepest_mm)):
         return work
     if work.brush.is_rigid():
-        return _warn_left_out(work, f"brush {work.brush.name} is a pen, which marks teach nothing")
+        return _warn_left_out(work, f"brush {work.brush.name} is a pen, and the strokes only help to calibrate a brush")
     placement = _place_passes(work, deepest_mm, painted_plan.passes[-1])
     if placement is None:
         width = work.plan.sheet_mm[0]
-        return _warn_left_out(work, f"the sheet is {width:g} mm wide, which is too narrow for them")
+        return _warn_left_out(work, f"the sheet is {width:g} mm wide, too narrow for them")
     passes, sheet_mm = placement
     drawn_plan, brush = work.plan, work.brush
     margin_plan = _core.Plan(drawn_plan.brush, drawn_plan.brush_sha256, sheet_mm, passes)
@@ -119,7 +119,8 @@ def describe_expected_accuracy(work: Work) -> str:
         for depth, lag, half_width in zip(depths, bands["lag"], bands["half_width"], strict=True)
     )
     return (
-        f"{len(passes)} margin strokes above the drawing take {seconds:.0f} s and teach brush {work.brush.name}. "
+        f"{len(passes)} margin strokes above the drawing take {seconds:.0f} s and help to calibrate brush "
+        f"{work.brush.name}. "
         "Paint the page, photograph it, and run brushsvg calibrate PHOTO --plan PLAN --prior BRUSH -o NEW.json. "
         f"Then you will know (95 %): {accuracies}"
     )

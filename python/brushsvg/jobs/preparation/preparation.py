@@ -370,7 +370,7 @@ def _read_design(source, reading: read.ReadOptions) -> Design:
     if not isinstance(source, Design):
         return read.read_drawing(source, reading)
     if reading.units or reading.select:
-        sentence = "units and select are for reading: a Design was read already"
+        sentence = "units and select are options for reading a file, and a Design was already read"
         raise Error(sentence, code="options-contradict")
     return source if reading.sheet_mm is None else replace(source, sheet_mm=reading.sheet_mm)
 

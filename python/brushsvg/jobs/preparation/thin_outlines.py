@@ -30,6 +30,6 @@ def remove_thin_outlines(design: Design, brush) -> tuple[Design, list[Notice]]:
 def _report_left_out(element: Element, least_mm: float) -> Notice:
     sentence = (
         f"its outline in {element.colour} is {element.stroke_width_mm:.2g} mm wide, finer than the brush's finest line "
-        f"of {least_mm:.2g} mm: left out, the shape is painted in {element.fill_colour}"
+        f"of {least_mm:.2g} mm: the outline is left out, and the shape is painted in {element.fill_colour}"
     )
     return Notice(element.id, sentence, layer=element.layer, code="outline-too-fine")

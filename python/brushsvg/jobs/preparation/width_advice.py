@@ -61,7 +61,7 @@ def _make_width_advice(lines: list, brush, measured: tuple[float, float], compen
     if not helps:
         return ""
     min_width_mm, max_width_mm = (2 * half for half in halves)
-    return f"--width MM, from {min_width_mm:.2g} to {max_width_mm:.2g}, gives all lines one width that was measured"
+    return f"--width MM, from {min_width_mm:.2g} to {max_width_mm:.2g}, gives all lines one width in the measured range"
 
 
 def _is_shallow_only_at_ends(stroke, run, brush, least_mm: float, greatest_mm: float) -> bool:
