@@ -177,11 +177,11 @@ def report_long_strokes(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> l
         return []
     every_mm, deepest_mm = load_length_mm(brush, cell), brush.depth_range_mm[1]
     last_mm = every_mm + brush.lag(deepest_mm) + deepest_mm  # the brush lifts over its own mark
-    sentence = "mm are painted without a place where the brush could be lifted, the range is [0,"
+    sentence = "mm are painted without a place where the brush could be lifted, outside the range [0,"
     return [
         Notice(
             a_pass.stroke,
-            f"{length_mm:.0f} {sentence} {every_mm:.4g}] mm of a load of paint",
+            f"{length_mm:.0f} {sentence} {every_mm:.4g}] mm that a load of paint lasts",
             code="load-too-long",
         )
         for a_pass in loads.loads
@@ -204,8 +204,8 @@ def report_dry_brush(loads: PlanInLoads, brush: _core.Brush, cell: Cell, first_s
     if longest_mm <= brush.paint.lasts_mm:
         return []
     sentence = (
-        f"{longest_mm:.0f} mm are painted without fetching paint, the range is [0, {brush.paint.lasts_mm:.4g}] mm, "
-        f"after which brush {brush.name} runs dry"
+        f"{longest_mm:.0f} mm are painted without fetching paint, outside the range [0, "
+        f"{brush.paint.lasts_mm:.4g}] mm, after which brush {brush.name} runs dry"
     )
     advice = 'fetch paint in time: [reload] of the cell with when = "length", and [[stations]]'
     return [Notice("", sentence, code="paint-runs-out", advice=advice)]

@@ -137,7 +137,7 @@ def off_sheet(
     advice = (
         "move the drawing or make room with --origin X,Y, --sheet WxH or --fit WxH"
         if of_drawing
-        else "make the plan anew, from a drawing that is moved or has more room"
+        else "make the plan again, from a drawing that is moved or has more room"
     )
     for trace in marks.passes:
         bounds_mm = _core.painted_bounds(trace, brush)

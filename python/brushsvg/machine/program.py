@@ -118,8 +118,8 @@ def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE
     problems += [
         Notice(
             a_pass.stroke,
-            f"{count} poses are outside the range [1, {MAX_PROGRAM_POINTS[cell.language]}] of one program, and a "
-            "stroke cannot be parted: --tolerance makes them fewer",
+            f"{count} poses are outside the range [1, {MAX_PROGRAM_POINTS[cell.language]}] of one program, "
+            "and a stroke cannot be split: a larger --tolerance gives fewer poses",
             code="poses-too-many",
         )
         for a_pass in (left_loads if cell.language in MAX_PROGRAM_POINTS else ())
@@ -145,7 +145,7 @@ def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
             a_pass.stroke,
             f"{count} poses are outside the range [1, {max_lines}] of one program, which the controller may not load",
             code="poses-too-many",
-            advice="--tolerance makes them fewer",
+            advice="a larger --tolerance gives fewer poses",
         )
         for a_pass in (loads.loads if max_lines else ())
         if (count := len(a_pass.poses_mm) + POSES_AROUND_STROKE) > max_lines

@@ -200,7 +200,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
     """
     heights = stroke_heights_mm(highest_mm, lowest_mm, step_mm)
     if cell.pen:
-        sentence = f"the pen of cell {cell.name} is up or down: it tries no heights in between"
+        sentence = f"the pen of cell {cell.name} is up or down: it cannot try heights in between"
         raise Error(sentence, code="pen-depth")
     if lowest_mm < cell.heights.lowest_mm or -lowest_mm > brush.depth_range_mm[1]:
         min_mm = max(cell.heights.lowest_mm, -brush.depth_range_mm[1])
@@ -293,7 +293,10 @@ def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np
     """
     count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
     if not 2 <= count <= 100:
-        sentence = f"from {highest_mm:g} to {lowest_mm:g} mm by {step_mm:g} mm are {count} strokes, not 2 to 100"
+        sentence = (
+            f"from {highest_mm:g} to {lowest_mm:g} mm in steps of {step_mm:g} mm there are {count} strokes, "
+            "not 2 to 100"
+        )
         raise Error(sentence, code="strokes-out-of-range")
     return highest_mm - step_mm * np.arange(count)
 

@@ -151,7 +151,7 @@ def find_vessels_near_travel(cell: Cell, z_offset_mm: float) -> list[Notice]:
             f"rim_mm {station.rim_mm:g} is above {top_mm:g} mm, clearance_mm below the safe height with --z-offset "
             f"{z_offset_mm:g}: a vessel on the table does not move down with the paper",
             code="cell-station",
-            advice="raise safe_mm of the cell, or teach the paper anew",
+            advice="raise safe_mm of the cell, or teach the paper again",
         )
         for station in (cell.stations if z_offset_mm < 0 else ())
         if not station.by_hand and station.rim_mm > top_mm + ROUNDING_MM

@@ -403,7 +403,7 @@ def _reach_notice(place: Place, arm: Arm) -> Notice:
 
 
 def _crossed_singularity_notice(place: Place, arm: Arm) -> Notice:
-    sentence = f"{_near(place)} arm {arm.name} passes through a singularity, where its joints rush or it stops"
+    sentence = f"{_near(place)} arm {arm.name} passes through a singularity, where its joints turn too fast or it stops"
     return Notice(place.name, sentence, code="singularity")
 
 

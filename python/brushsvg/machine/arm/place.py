@@ -20,7 +20,7 @@ TRIED_TURNS_DEG = (15, -15, 30, -30, 45, -45, 60, -60, 90, -90, 120, -120, 150, 
 # Largest number of places whose outermost points are in reach and that are followed completely. Nearly all such places
 # are right. After so many failures, the search gives up.
 MAX_FOLLOWED_PLACES = 80
-NOWHERE = "no shift or turn of the sheet was found that would do"
+NOWHERE = "no shift or turn of the sheet was found at which the arm reaches everything"
 MAX_TABLE_SQUARES = 45  # squares along the longer side of the table
 UNREACHED, LIMITED, SINGULAR, REACHED = range(4)  # ratings of a place on the table, from worst to best
 
@@ -62,7 +62,7 @@ def find_unreachable(program: Program, allowed: Callable[[Program], bool] | None
     if not problems or allowed is None:
         return list(problems)
     place = nearest(program, joints, allowed)
-    advice = f"the sheet {place.text} would do" if place else NOWHERE
+    advice = f"the arm reaches everything with the sheet {place.text}" if place else NOWHERE
     return [replace(problem, advice=advice) for problem in problems]
 
 

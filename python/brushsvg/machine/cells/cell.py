@@ -46,7 +46,9 @@ class Paper:
         (None, 3),
         default=(),
     )
-    flatness_mm: float = _number("how far off the plane of three the fourth point may be", 0.01, 10, default=0.5)
+    flatness_mm: float = _number(
+        "largest distance of the fourth point from the plane of the other three", 0.01, 10, default=0.5
+    )
     example: bool = _key("true until the paper has been taught: every program warns", "yes", default=False)
 
 
@@ -73,7 +75,7 @@ class Tool:
         "how fast the tool may turn where a plan tilts it", 0.1, 360, default=DEFAULT_TOOL_TURN_DEG_S
     )
     configuration: str = _key(
-        "fanuc: of the arm over the sheet, as the pendant shows it",
+        "fanuc: configuration of the arm over the sheet, as the pendant shows it",
         "text",
         default=DEFAULT_FANUC_CONFIGURATION,
     )
@@ -97,7 +99,7 @@ class Speeds:
     travel_mm_s: float = _number("at or above the safe height", 0.01, 5000)
     approach_mm_s: float = _number("on the way down to the clearance; the brush's limit where that is less", 0.01, 5000)
     press_mm_s: float = _number("straight down into the paper or paint, and up again", 0.01, 5000)
-    paint_mm_s: float = _number("the most while painting; the brush has a limit of its own", 0.01, 5000)
+    paint_mm_s: float = _number("limit while painting; the brush has its own limit", 0.01, 5000)
     acceleration_mm_s2: float = _number("for the time estimate, and where the language asks for one", 1, 50000)
 
 
@@ -109,13 +111,13 @@ DEFAULT_RAMP_S = 0.5
 class Blending:
     """How much of the joint of two moves the machine may cut, so as not to stand still there and bleed."""
 
-    tolerance_mm: float = _number("at most so far from the joint; 0: joints are met exactly", 0, 10)
-    radius_mm: float = _number("robots: blends begin so far before the joint at most", 0, 100, default=0.0)
+    tolerance_mm: float = _number("largest distance from the corner; 0: corners are exact", 0, 10)
+    radius_mm: float = _number("robots: largest distance before a corner at which a blend begins", 0, 100, default=0.0)
     step_mm: float = _number(
-        "dobot: blends are written in steps of so much, rounded down", 0.001, 1, default=DEFAULT_BLEND_STEP_MM
+        "dobot: blends are written in steps of this size, rounded down", 0.001, 1, default=DEFAULT_BLEND_STEP_MM
     )
     ramp_s: float = _number(
-        "fanuc: how long the arm takes to its speed, by which CNT cuts corners",
+        "fanuc: time that the arm needs to reach its speed; CNT cuts corners by it",
         0.02,
         5,
         default=DEFAULT_RAMP_S,
@@ -126,7 +128,7 @@ class Blending:
 class Workspace:
     """Where the tool may be."""
 
-    margin_mm: float = _number("beyond the sheet's edges: the TCP leads the brush", 0, 1e4)
+    margin_mm: float = _number("how far the TCP may go beyond the sheet's edges: it is ahead of the brush", 0, 1e4)
     tilt_limit_deg: float = _number("how far the paper's normal may lean from the robot's z axis", 0, 180)
     box_mm: tuple = _key("two opposite corners of a box in the robot's frame", (2, 3), default=())
     reach_mm: tuple = _key("least and greatest distance from the robot's origin", (2,), 0, 1e5, default=())
@@ -142,7 +144,7 @@ class Servo:
     """A pen lift that knows no millimetres: heights over the paper and the values that give them."""
 
     table: tuple = _key("rows of height in mm and value; both rise or fall steadily", (None, 2))
-    step_mm: float = _number("the value is renewed when the height has changed by so much", 0.01, 10, default=0.1)
+    step_mm: float = _number("a new value is written when the height has changed by this much", 0.01, 10, default=0.1)
     settle_s: float = _number("wait after a move of the lift alone", 0, 60, default=0.0)
 
 
@@ -180,13 +182,13 @@ class Contact:
     """What ends the program at once: the tool is pressed harder than any brush is. A brush that bends is not felt."""
 
     force_n: float = _number(
-        "urscript: more newtons than a brush may be pressed with, and than the sensor is off by",
+        "urscript: force that stops the arm; above the force of a pressed brush and the sensor's error",
         5,
         100,
         default=0.0,
     )
     sensitivity: int = _key(
-        "xarm: how soon the arm takes a resistance for a collision, 5 the soonest", "whole", 1, 5, default=0
+        "xarm: how sensitive the arm is to collisions; 5 is the most sensitive", "whole", 1, 5, default=0
     )
 
 
@@ -196,22 +198,21 @@ class Machine:
     goes where it should. x and y from the sheet's lower left corner."""
 
     lean_mm_per_mm: tuple = _key(
-        "x and y by which the tool gives way for each mm that it is pressed", (2,), -1.5, 1.5, (0.0, 0.0)
+        "how far the tool yields in x and y for each mm that it is pressed", (2,), -1.5, 1.5, (0.0, 0.0)
     )
     scale: tuple = _key("how far x and y go for each commanded mm", (2,), 0.9, 1.1, (1.0, 1.0))
     skew: float = _number("how far x goes for each commanded mm of y", -0.1, 0.1, default=0.0)
     height_mm: float = _number("how much higher the paper is at its corner than it was taught", -5, 5, default=0.0)
-    tilt_mm_per_mm: tuple = _key("by how much it rises along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
+    tilt_mm_per_mm: tuple = _key("slope of the paper along x and along y", (2,), -0.05, 0.05, (0.0, 0.0))
     map_mm: tuple = _key(
-        "x, y and how much higher still it is there, at all places of a grid: straight in between, and beyond the "
-        "grid as at its edge",
+        "x, y and the extra height there, at all places of a grid: linear in between, and constant beyond its edge",
         (None, 3),
         -2e3,
         2e3,
         (),
     )
     backlash_mm: tuple = _key(
-        "commanded way of the machine's own x and y before they follow, where they turn back",
+        "backlash: how far the machine's own x and y are commanded after a reversal before they move",
         (2,),
         0,
         3,
@@ -227,7 +228,7 @@ class Machine:
     )
     field_middle_mm: tuple = _key("x and y where u and v are 0", (2,), -2e3, 2e3, ())
     field_reach_mm: tuple = _key(
-        "how far from there along x and along y they are 1: the field was measured so far", (2,), 5, 2e3, ()
+        "distance from there along x and along y where they are 1: the field was measured up to there", (2,), 5, 2e3, ()
     )
 
 
@@ -243,16 +244,15 @@ class Arm:
         (None, 4),
     )
     limits_deg: tuple = _key("least and greatest angle of each joint", (None, 2), -1e4, 1e4)
-    speeds_deg_s: tuple = _key(
-        "the most that each joint turns by in a second; none: not checked", (None,), 0.1, 1e4, default=()
-    )
+    speeds_deg_s: tuple = _key("largest speed of each joint; none: not checked", (None,), 0.1, 1e4, default=())
     base_mm: tuple = _key("place of the first joint's frame in the robot's", (3,), default=(0.0, 0.0, 0.0))
     base_rotation_deg: tuple = _key("of that frame, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0))
     flange_rotation_deg: tuple = _key(
         "of the flange behind the last joint, about x, y, z", (3,), -360, 360, (0.0, 0.0, 0.0)
     )
     posture_deg: tuple = _key(
-        "joints somewhere over the paper: programs begin in the posture nearest to them; none: in any that does it all",
+        "joints somewhere over the paper: programs begin in the posture nearest to them; none: in any that reaches "
+        "everything",
         (None,),
         -1e4,
         1e4,
@@ -307,12 +307,11 @@ class Reload:
     """When to fetch paint. Stations of the stroke's colour are visited."""
 
     when: str = _key("length, stroke or layer", "text")
-    every_mm: float = _number("for length: paint lasts so far", 1, 1e6, default=300.0)
-    backtrack_mm: float = _number("a stroke goes on so far back in its own mark", 0, 100, default=5.0)
+    every_mm: float = _number("for length: how far a load of paint lasts", 1, 1e6, default=300.0)
+    backtrack_mm: float = _number("how far back in its own mark the brush lands after a reload", 0, 100, default=5.0)
     wash: str = _key("station to visit before the colour changes", "text", default="")
     narrower_percent: float = _number(
-        "for length, and a brush that says how its marks narrow: paint lasts until they are so much narrower; 0: not "
-        "looked at",
+        "for length, and a brush with paint data: reload before marks are this much narrower; 0: off",
         0,
         90,
         default=0.0,

@@ -103,7 +103,7 @@ def _check_tables(cell: Cell) -> None:
 def _check_contact(cell: Cell) -> None:
     used_key = CONTACT_KEYS.get(cell.language)
     if used_key is None:
-        sentence = f"language {cell.language!r} has no word for contact: what stops its arm is set on the controller"
+        sentence = f"language {cell.language!r} cannot set a contact force: set it on the controller"
         raise Error(sentence, where="contact", code="cell-contact")
     for key in CONTACT_KEYS.values():
         if bool(getattr(cell.contact, key)) != (key == used_key):
@@ -122,7 +122,7 @@ def _check_arm(cell: Cell) -> None:
             sentence = f"{len(values)} values are given for {ARM_JOINT_COUNT} joints"
             raise Error(sentence, where=f"arm.{key}", code="cell-arm")
     if any(number % 1 or number <= before for before, number in pairwise((0, *arm.numbers))):
-        sentence = f"{[*arm.numbers]} are no numbers of joints, each larger than the one before"
+        sentence = f"{[*arm.numbers]} are not joint numbers that rise"
         raise Error(sentence, where="arm.numbers", code="cell-arm")
     for number, (low, high) in enumerate(arm.limits_deg, 1):
         if not low < high:
@@ -328,7 +328,7 @@ MAX_EBB_SERVO_VALUE = 65_535  # largest pulse width of the servo of an EBB, in 1
 def _check_motors(cell: Cell) -> None:
     rows = np.array(cell.motors.steps_per_mm)
     if np.linalg.cond(rows) > 1e3:
-        sentence = "both motors turn for the same way: no place can be reached by them"
+        sentence = "both motors move along the same direction: they cannot reach the sheet"
         raise Error(sentence, where="motors.steps_per_mm", code="out-of-range")
     max_mm_s = MOST_STEPS_S / float(np.linalg.norm(rows, axis=1).max())
     for name in ("travel_mm_s", "approach_mm_s", "press_mm_s", "paint_mm_s"):
@@ -409,7 +409,9 @@ def _check_map(map_mm: tuple) -> None:
         sentence = f"no height is given at x {x:g}, y {y:g} mm, one of {len(xs)} x {len(ys)} places of a grid"
         raise Error(sentence, where=where, code="cell-machine")
     if min(len(xs), len(ys)) < 2:
-        raise Error(f"{len(xs)} x {len(ys)} places are no grid, 2 x 2 at least", where=where, code="cell-machine")
+        raise Error(
+            f"{len(xs)} x {len(ys)} places are not a grid: at least 2 x 2 are needed", where=where, code="cell-machine"
+        )
     for axis, lines in (("x", xs), ("y", ys)):
         for before, after in pairwise(lines):
             if after - before < MIN_GRID_SPACING_MM:
@@ -550,28 +552,28 @@ def _find_distance_below_rim(path: list, vessel: Station) -> float:
 
 # (key, smallest usual value, largest usual value, why a value outside this range is unusual)
 USUAL_RANGES = (
-    ("heights.safe_mm", 2.0, 200.0, "clips, vessels and drops of paint stand higher; or the way up is long"),
-    ("heights.lowest_mm", -50.0, -0.5, "few brushes bend so far; or nothing is painted"),
-    ("speeds.travel_mm_s", 1.0, 1000.0, "few machines are so fast or slow"),
-    ("speeds.approach_mm_s", 1.0, 200.0, "the tool comes down on the paper with it"),
-    ("speeds.press_mm_s", 0.5, 100.0, "the brush is pressed down with it"),
+    ("heights.safe_mm", 2.0, 200.0, "clips, vessels and drops of paint may be higher, or the lift takes long"),
+    ("heights.lowest_mm", -50.0, -0.5, "few brushes bend this far, or nothing is painted"),
+    ("speeds.travel_mm_s", 1.0, 1000.0, "few machines are this fast or slow"),
+    ("speeds.approach_mm_s", 1.0, 200.0, "the tool comes down on the paper at this speed"),
+    ("speeds.press_mm_s", 0.5, 100.0, "the brush is pressed down at this speed"),
     ("speeds.paint_mm_s", 1.0, 500.0, "bristles whip or dry at such a speed"),
     (
         "speeds.acceleration_mm_s2",
         10.0,
         10000.0,
-        "few machines accelerate so; the estimate of time hangs on it",
+        "few machines accelerate like this, and the time estimate depends on it",
     ),
     ("paper.flatness_mm", 0.0, 2.0, "half a millimetre already changes the width of a thin line"),
-    ("workspace.margin_mm", 5.0, 500.0, "the tool leads the brush by its lag, and goes no further for paint"),
+    ("workspace.margin_mm", 5.0, 500.0, "the tool is ahead of the brush by the lag and needs no more room"),
     ("servo.step_mm", 0.0, 0.5, "the depth is off by half of it"),
-    ("reload.every_mm", 20.0, 1e5, "few paint loads last for less or more"),
+    ("reload.every_mm", 20.0, 1e5, "few loads of paint last for less or more"),
 )
 
 
 OF_EXAMPLE = Notice(
     "paper",
-    "the paper's place is an example: teach the place of yours",
+    "the paper's place is an example: teach the place of your paper",
     code="paper-example",
     advice="brushsvg cell new --taught writes a cell with it",
 )

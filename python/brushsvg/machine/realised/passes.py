@@ -29,7 +29,7 @@ def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float =
 
     Raises Error for a tilted brush, because inexact machines are modelled with the brush upright.
     """
-    _core.refuse_tilted(passes, "machines are simulated with the brush upright")
+    _core.refuse_tilted(passes, "a machine's errors are simulated only with the brush upright")
     runs = []
     for a_pass in passes_with_backlash(passes, backlash_mm):
         poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float).reshape(-1, 3)

@@ -11,7 +11,7 @@ def on_way(a_pass, poses_mm, arcs, tool_axes=None):
     tool_axes: (n, 3) the brush's axes at the poses. If they are None, a pass with a tilted brush raises Error.
     """
     if tool_axes is None:
-        _core.refuse_tilted([a_pass], "a pass is moved to another way with the brush upright")
+        _core.refuse_tilted([a_pass], "a pass is moved to another path only with the brush upright")
     return _core.Pass(
         a_pass.origin,
         poses_mm,

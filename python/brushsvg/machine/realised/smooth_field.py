@@ -91,8 +91,7 @@ def beyond_field(passes, cell: Cell) -> list[Notice]:
     sentence = (
         f"the tool goes {far_mm[stroke]:.1f} mm beyond where the field of cell {cell.name} was measured, outside the "
         f"ranges [{x - reach_x:.1f}, {x + reach_x:.1f}] "
-        f"and [{y - reach_y:.1f}, {y + reach_y:.1f}] mm: there it is taken to be as at "
-        "its edge"
+        f"and [{y - reach_y:.1f}, {y + reach_y:.1f}] mm: beyond that, the field counts as at its edge"
     )
     return [
         Notice(

@@ -96,11 +96,13 @@ def check_tilt_limits(a_pass, cell: Cell) -> list[Notice]:
             f"at {turn * a_pass.speed_mm_s / lengths[worst]:.4g} degrees/s, outside the range [0, {limit:g}] degrees/s "
             f"of cell {cell.name}"
             if lengths[worst] > MIN_TURN_LENGTH_MM
-            else "on the spot, where a robot's speed says nothing of how fast it turns"
+            else "on the spot, where a robot's speed does not limit how fast it turns"
         )
         sentence = f"near x {x:.1f}, y {y:.1f} mm the tool would turn {speed_text}"
         notices.append(
-            Notice(name, sentence, code="tool-turns-too-fast", advice="paint slower, or turn it on a longer way")
+            Notice(
+                name, sentence, code="tool-turns-too-fast", advice="paint more slowly, or turn it over a longer path"
+            )
         )
     return notices
 
