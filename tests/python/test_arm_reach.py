@@ -122,7 +122,7 @@ def test_the_nearest_workable_position_may_need_a_rotation_of_the_paper():
     (problem,) = look(cell, plan).problems
     assert problem.code == "joint-limit"
     made = unchecked_program(split_into_loads(plan, BRUSH, cell), BRUSH, cell)
-    found = place.nearest(made, joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999)
+    found = place.find_nearest_place(made, joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999)
     assert found.turn_deg != 0
     there = place.cell_at(cell, found.frame)
     assert look(there, plan).problems == []
@@ -284,8 +284,8 @@ def test_refinement_does_not_search_a_place_of_the_paper(monkeypatch, tmp_path):
     (tmp_path / "curves.svg").write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" {size}><g {style}>{curves}</g></svg>'
     )
-    searches, nearest = [], place.nearest
-    monkeypatch.setattr(place, "nearest", lambda *given: searches.append(given) or nearest(*given))
+    searches, nearest = [], place.find_nearest_place
+    monkeypatch.setattr(place, "find_nearest_place", lambda *given: searches.append(given) or nearest(*given))
     convert = ["convert", str(tmp_path / "curves.svg"), "-o", str(tmp_path / "curves.mod")]
     assert main([*convert, "--cell", str(tmp_path / "far.toml"), "--compensation", "refined"]) == 1
     assert len(searches) == 1

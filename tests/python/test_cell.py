@@ -12,7 +12,7 @@ from diagnostics import agrees, are_reported, in_json, is_reported, refused
 
 from brushsvg.cli import main
 from brushsvg.machine.cells.cell import Machine, Paper, Reload, RoboDK, Servo, Station, Tool, robot_from_paper
-from brushsvg.machine.cells.cell_check import check, out_of_reach, remarks
+from brushsvg.machine.cells.cell_check import check, out_of_reach, report_unusual_values
 from brushsvg.machine.cells.cell_file import (
     SHIPPED,
     cell_names,
@@ -294,8 +294,8 @@ def test_a_sheet_is_out_of_reach_only_if_no_point_of_it_is_reachable():
 )
 def test_unusual_values_are_reported(table, change, expected):
     cell = replace(find_cell("ur5e"), paper=replace(find_cell("ur5e").paper, example=False))
-    assert remarks(cell) == []
-    (reported,) = remarks(replace(cell, **{table: replace(getattr(cell, table), **change)}))
+    assert report_unusual_values(cell) == []
+    (reported,) = report_unusual_values(replace(cell, **{table: replace(getattr(cell, table), **change)}))
     assert reported.where.startswith(table) and agrees(reported, expected), reported
 
 
@@ -313,14 +313,14 @@ def test_dips_next_to_leaning_paper_are_remarked_on(tilt_deg, by_hand, is_remark
         stations=(station,),
         reload=Reload("stroke"),
     )
-    reported = remarks(parse_cell(write_cell(leaning)))
+    reported = report_unusual_values(parse_cell(write_cell(leaning)))
     assert is_reported(reported, f"paper-tilted {tilt_deg} by_hand", "stations") is is_remarked, reported
 
 
 @pytest.mark.parametrize("name", cell_names())
 def test_shipped_cells_have_no_unusual_values(name):
     cell = find_cell(name)
-    assert [key for key, _ in remarks(cell)] == (["paper"] if cell.paper.example else [])
+    assert [key for key, _ in report_unusual_values(cell)] == (["paper"] if cell.paper.example else [])
     assert out_of_reach(cell) == []
 
 
@@ -448,8 +448,10 @@ def test_a_wall_that_was_taught_facing_away_is_reported(towards):
     away = replace(cell, paper=Paper(taught_mm=(right, left, (*np.add(up, right)[:2] - left[:2], 500.0))))
     for each in (towards_it, away):
         check(each)
-    assert [notice for notice in remarks(towards_it) if notice.code == "paper-faces-away"] == []
-    assert are_reported([notice for notice in remarks(away) if notice.where == "paper"], "paper-faces-away")
+    assert [notice for notice in report_unusual_values(towards_it) if notice.code == "paper-faces-away"] == []
+    assert are_reported(
+        [notice for notice in report_unusual_values(away) if notice.where == "paper"], "paper-faces-away"
+    )
 
 
 def test_paper_that_leans_on_purpose_is_taught_after_its_limit_is_raised(tmp_path, capsys):

@@ -16,7 +16,7 @@ from brushsvg.cli import main
 from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
-from brushsvg.machine.cells.cell_check import remarks
+from brushsvg.machine.cells.cell_check import report_unusual_values
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.moves import Wait
 from brushsvg.machine.paint_reload import (
@@ -284,7 +284,7 @@ def test_a_visit_inside_another_vessel_is_refused():
 
 def test_circles_wider_than_the_vessel_are_remarked_on():
     def reported(**changes):
-        return remarks(cell_with(Reload("stroke"), replace(WATER, **changes)))
+        return report_unusual_values(cell_with(Reload("stroke"), replace(WATER, **changes)))
 
     assert is_reported(reported(stir_mm=13.0, radius_mm=12.0), "unusual-value stir_mm 13 radius_mm 12", "station 1")
     assert not reported(stir_mm=12.0, radius_mm=12.0)

@@ -24,7 +24,7 @@ from ..machine.moves import duration_s
 from ..machine.paint_reload import report_dry_brush, split_into_loads
 from ..machine.posts import GCODE, POSTS
 from ..machine.program import out_of_arm
-from ..machine.setup_programs import around
+from ..machine.setup_programs import round_outwards
 from ..machine.writer import called_programs, list_arm_notices, parted_post, report_renamed
 from ..model.library import brush_names, find_brush
 from ..read import settings_in
@@ -434,7 +434,7 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
 def _compare_border(header, work: Work, stage) -> list[Notice]:
     """Return a notice if a run in the air does not go around the paint."""
     marks = prediction.predict(work, outlines=False, stage=stage)
-    needed_mm, commanded_mm = around(preflight.job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
+    needed_mm, commanded_mm = round_outwards(preflight.job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
     if (
         max(abs(commanded - needed) for commanded, needed in zip(commanded_mm, needed_mm, strict=True))
         <= MAX_BORDER_DIFFERENCE_MM

@@ -46,8 +46,8 @@ def header_lines(work: Work) -> tuple[str, ...]:
     elif any(notice.code == "margin-strokes-left-out" for notice in work.notices):
         lines += (f"{MARGIN_KIND}: 0 strokes",)
     if options.corrections:
-        farthest_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
-        lines += (f"corrections: {len(options.corrections)} strokes, shifted by {farthest_mm:.2f} mm at most",)
+        largest_shift_mm = max(np.hypot(*each.shift_mm) for each in options.corrections)
+        lines += (f"corrections: {len(options.corrections)} strokes, shifted by {largest_shift_mm:.2f} mm at most",)
     return lines
 
 

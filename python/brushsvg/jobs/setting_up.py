@@ -169,7 +169,7 @@ def make_border(
         walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, job, work.walk(cell, job), is_drawing)
         warn(file, [*work.notices, *(replace(problem, refused=True) for problem in walk.problems)])
         suffix, post = _find_post(path, cell)
-        around_mm = setup_programs.around(preflight.job_bounds_mm(plan, marks, brush))
+        around_mm = setup_programs.round_outwards(preflight.job_bounds_mm(plan, marks, brush))
         program = setup_programs.border(around_mm, brush, cell, plan.sheet_mm, job.z_offset_mm)
         title = f"border of {work.title or 'untitled'}"
         notes = outputs.header_lines(work)

@@ -31,7 +31,7 @@ AIR_RUN_RISES_MM = (30.0, 15.0)
 LAST_STROKE_MM, ONE_STROKE_DEPTH_MM = 30.0, 2.0
 
 
-def around(bounds_mm) -> tuple[float, float, float, float]:
+def round_outwards(bounds_mm) -> tuple[float, float, float, float]:
     """Round (left, bottom, right, top) outwards to hundredths of a millimetre.
 
     A header shows them with two decimals.

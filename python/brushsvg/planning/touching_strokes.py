@@ -41,28 +41,28 @@ def _find_restless(members: list[int], refined: list, closed: list, members_targ
     """Return a letter's strokes without whose refined marks it is better, one by one."""
     shape = _core.unite([ring for each in members_targets for ring in _core.target_outline(each, 0.01)])
 
-    def restless(marks: list) -> tuple[float, int]:
+    def measure_turns_and_thorns(marks: list) -> tuple[float, int]:
         whole = _core.Marks()
         whole.passes = marks
         _core.trace_outlines(whole, brush)
         return _core.excess_turning(whole.outline_mm, shape), _core.thorns(whole.outline_mm, shape)
 
-    turning, thorns = restless([closed[k] for k in members])
+    turning, thorns = measure_turns_and_thorns([closed[k] for k in members])
 
-    def cost(marks: list) -> float:
-        turns, has = restless(marks)
+    def penalty_of(marks: list) -> float:
+        turns, has = measure_turns_and_thorns(marks)
         return TURN_COST * max(0.0, turns - turning) + THORN_COST * max(0, has - thorns)
 
     def overlap(marks: list) -> float:
         return _core.common_area(marks, members_targets, brush).overlap
 
     marks, worse = [refined[k] for k in members], []
-    best = overlap(marks) - (best_penalty := cost(marks))
+    best = overlap(marks) - (best_penalty := penalty_of(marks))
     for place, k in enumerate(members):
         if best_penalty == 0.0:
             break
         without = [*marks[:place], closed[k], *marks[place + 1 :]]
-        penalty = cost(without)
+        penalty = penalty_of(without)
         if (reached := overlap(without) - penalty) > best:
             marks, best, best_penalty = without, reached, penalty
             worse.append(k)

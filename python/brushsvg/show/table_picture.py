@@ -7,7 +7,7 @@ from html import escape
 import cv2
 import numpy as np
 
-from ..machine.arm.place import LIMITED, REACHED, SINGULAR, UNREACHED, Table
+from ..machine.arm.place import LIMITED, REACHED, SINGULAR, UNREACHED, ReachTable
 from ..machine.cells.cell import Cell
 from ..machine.frames import transform_points
 from .png_canvas import TEXT, bgr, blank_canvas, encode_png, write_text
@@ -25,7 +25,7 @@ GRID_MM = 100.0
 TEXT_PX = 20
 
 
-def table_picture(suffix: str, table: Table, cell: Cell, sheet_mm, frame, found) -> str | bytes:
+def table_picture(suffix: str, table: ReachTable, cell: Cell, sheet_mm, frame, found) -> str | bytes:
     """Draw the table as .svg or .png.
 
     frame: (4, 4) pose of the paper in the robot's frame; found: (4, 4) pose where the paper could be, or None.
@@ -56,7 +56,7 @@ def _ticks(low: float, high: float) -> np.ndarray:
     return np.arange(np.ceil(low / GRID_MM), np.floor(high / GRID_MM) + 1) * GRID_MM + 0.0  # no -0
 
 
-def _draw_png(table: Table, step_mm: float, low, high, sheets, title: str) -> bytes:
+def _draw_png(table: ReachTable, step_mm: float, low, high, sheets, title: str) -> bytes:
     px_per_mm = LONG_SIDE_PX / (high - low).max()
     width, height = np.ceil((high - low) * px_per_mm).astype(int)
     head = 2 * TEXT_PX
@@ -93,7 +93,7 @@ def _draw_png(table: Table, step_mm: float, low, high, sheets, title: str) -> by
     return encode_png(image)
 
 
-def _draw_svg(table: Table, step_mm: float, low, high, sheets, title: str) -> str:
+def _draw_svg(table: ReachTable, step_mm: float, low, high, sheets, title: str) -> str:
     width, height = high - low
     head, foot, size = 30.0, 60.0, 13.0
     whole = max(float(width), 470.0)

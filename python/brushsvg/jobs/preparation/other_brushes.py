@@ -12,7 +12,7 @@ from .preparation import prepare
 
 
 @dataclass(frozen=True)
-class Suit:
+class BrushRating:
     """How well one brush paints a drawing.
 
     overlap: with all that was drawn, including strokes that the brush cannot paint.
@@ -30,7 +30,7 @@ class Suit:
     why: str = ""  # the first refused stroke, and the reason
 
 
-def rank_brushes(path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None) -> list[Suit]:
+def rank_brushes(path: str | os.PathLike[str], options: Options, brushes, stage=lambda text: None) -> list[BrushRating]:
     """Return how well each brush paints a drawing, the best brush first."""
     results = []
     for brush in brushes:
@@ -44,14 +44,14 @@ def rank_brushes(path: str | os.PathLike[str], options: Options, brushes, stage=
     return sort_best_first(results)
 
 
-def rate_brush(brush: str, rows, overlap: float | None, refused) -> Suit:
+def rate_brush(brush: str, rows, overlap: float | None, refused) -> BrushRating:
     """Return how well a brush paints a drawing, from the rows of a report.
 
     refused: notices on the strokes that the brush cannot paint.
     """
     measured = [row for row in rows if row.overlap is not None]
     worst = min(measured, key=lambda row: row.overlap, default=None)
-    return Suit(
+    return BrushRating(
         brush,
         overlap,
         worst and worst.stroke,
@@ -62,5 +62,5 @@ def rate_brush(brush: str, rows, overlap: float | None, refused) -> Suit:
     )
 
 
-def sort_best_first(ratings: list[Suit]) -> list[Suit]:
+def sort_best_first(ratings: list[BrushRating]) -> list[BrushRating]:
     return sorted(ratings, key=lambda each: (-(each.overlap or 0.0), each.brush))

@@ -20,7 +20,7 @@ TRIED_TURNS_DEG = (15, -15, 30, -30, 45, -45, 60, -60, 90, -90, 120, -120, 150, 
 # Largest number of places whose outermost points are in reach and that are followed completely. Nearly all such places
 # are right. After so many failures, the search gives up.
 MAX_FOLLOWED_PLACES = 80
-NOWHERE = "no shift or turn of the sheet was found at which the arm reaches everything"
+NO_PLACE_FOUND = "no shift or turn of the sheet was found at which the arm reaches everything"
 MAX_TABLE_SQUARES = 45  # squares along the longer side of the table
 UNREACHED, LIMITED, SINGULAR, REACHED = range(4)  # ratings of a place on the table, from worst to best
 
@@ -61,12 +61,12 @@ def find_unreachable(program: Program, allowed: Callable[[Program], bool] | None
     problems = follow(program, joints).problems
     if not problems or allowed is None:
         return list(problems)
-    place = nearest(program, joints, allowed)
-    advice = f"the arm reaches everything with the sheet {place.text}" if place else NOWHERE
+    place = find_nearest_place(program, joints, allowed)
+    advice = f"the arm reaches everything with the sheet {place.text}" if place else NO_PLACE_FOUND
     return [replace(problem, advice=advice) for problem in problems]
 
 
-def nearest(program: Program, joints: JointSolver, allowed: Callable[[Program], bool]) -> PaperPlace | None:
+def find_nearest_place(program: Program, joints: JointSolver, allowed: Callable[[Program], bool]) -> PaperPlace | None:
     """Find the nearest place of the paper at which the arm can run a program.
 
     Shifts of the paper are tried first, then turns. Returns None if no place that was tried works.
@@ -133,7 +133,7 @@ def _is_above_table(arm: Arm, joints_rad: np.ndarray, frame: np.ndarray) -> np.n
 
 
 @dataclass(frozen=True)
-class Table:
+class ReachTable:
     """A map of the paper's plane that shows where an arm can paint: of the table, or of a wall.
 
     axes: the two axes of the robot's frame that the map shows, 0 to 2: to the right, and up.
@@ -147,7 +147,7 @@ class Table:
     what: np.ndarray
 
 
-def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> Table:
+def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> ReachTable:
     """Rate each square of the paper's plane for the arm.
 
     The plane is seen along the axis of the robot's frame that is nearest to its normal. The map covers the cell's box,
@@ -171,7 +171,7 @@ def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> Table:
                 what[row, column] = min(
                     what[row, column], _rate_place(joints, cell, frame, paper_point + height * normal)
                 )
-    return Table((axes[0], axes[1]), x, y, what)
+    return ReachTable((axes[0], axes[1]), x, y, what)
 
 
 def _rate_place(joints: JointSolver, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> int:

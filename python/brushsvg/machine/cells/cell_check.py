@@ -579,7 +579,7 @@ OF_EXAMPLE = Notice(
 )
 
 
-def remarks(cell: Cell) -> list[Notice]:
+def report_unusual_values(cell: Cell) -> list[Notice]:
     """Report values that are unusual but may be intended. Each notice names the key."""
     notices = []
     for key, least, greatest, why in USUAL_RANGES:

@@ -277,7 +277,7 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
 
 
 def brushes_json(title: str, suits) -> str:
-    """Return several other_brushes.Suit as JSON, in their order.
+    """Return several other_brushes.BrushRating as JSON, in their order.
 
     Overlaps are rounded to 1e-6.
     """
@@ -287,7 +287,7 @@ def brushes_json(title: str, suits) -> str:
 
 
 def brushes_text(title: str, suits) -> str:
-    """Return a table of brushes that were tried on a drawing, see other_brushes.Suit."""
+    """Return a table of brushes that were tried on a drawing, see other_brushes.BrushRating."""
     lines = _ruled_table(
         [
             ("brush", [suit.brush for suit in suits]),

@@ -61,7 +61,7 @@ def cell_check(args) -> None:
         find_brush(DEFAULT_BRUSH), cell, frame
     ):
         raise RefusedError(args.input, problems)
-    warn(args.input, cell_checks.remarks(cell))
+    warn(args.input, cell_checks.report_unusual_values(cell))
     print_text(f"{args.input}: cell {cell.name} can be used\n")
 
 
@@ -93,7 +93,7 @@ def cell_place(args) -> None:
     followed = follow(program, joints)
     problems = [*followed.problems, *find_moves_out_of_limits(program, sheet_mm)]
     nearest_place = (
-        place.nearest(program, joints, lambda moved: not find_moves_out_of_limits(moved, sheet_mm))
+        place.find_nearest_place(program, joints, lambda moved: not find_moves_out_of_limits(moved, sheet_mm))
         if problems
         else None
     )
@@ -122,7 +122,7 @@ def cell_place(args) -> None:
         print_text(f"{args.input}: it begins with its joints at {angles} degrees, or turned by whole turns\n")
     if problems:
         if not nearest_place:
-            problems[0] = replace(problems[0], advice=place.NOWHERE)
+            problems[0] = replace(problems[0], advice=place.NO_PLACE_FOUND)
         raise RefusedError(args.drawing or args.input, problems)
 
 
@@ -153,5 +153,5 @@ def cell_new(args) -> None:
         )
         text = write_cell(replace(cell, name=own_name(name), paper=paper))
         new_cell = parse_cell(text)
-    warn(args.output, cell_checks.out_of_reach(new_cell) or cell_checks.remarks(new_cell))
+    warn(args.output, cell_checks.out_of_reach(new_cell) or cell_checks.report_unusual_values(new_cell))
     write_outputs(args, {args.output: text}, sources=[args.output])
