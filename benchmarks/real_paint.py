@@ -48,9 +48,9 @@ from brushsvg import _core
 from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words
-from brushsvg.calibration.overlap.overlap_choice import best_predicting
+from brushsvg.calibration.overlap.overlap_choice import find_best_prediction
 from brushsvg.calibration.overlap.overlap_search import (
-    Begin,
+    SearchStart,
     Target,
     best_shift,
     on_paper,
@@ -308,8 +308,8 @@ def by_overlap(strokes, fit, options):
     marks = painted_marks(strokes, [target.poses_mm for target in targets])
     options = copy(options)
     machine_found.ask_for(options, ("lean", "axes"))
-    begin = Begin(fit.laws, fit.height_mm, fit.shift_mm)
-    found = best_predicting(marks, targets, begin, options)
+    begin = SearchStart(fit.laws, fit.height_mm, fit.shift_mm)
+    found = find_best_prediction(marks, targets, begin, options)
     changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "offsets")}
     return _like(fit, **changed), found
 
@@ -360,7 +360,7 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
     at, depth = poses[:, :2] - fit.centre_mm, np.maximum(fit.height_mm - poses[:, 2:], 0.0)
     poses[:, :2] += np.column_stack([axes[0] * at[:, 0] + axes[2] * at[:, 1], axes[1] * at[:, 1]])
     poses[:, :2] += depth * lean
-    return fit.offsets.way(poses, fit.height_mm) if hasattr(fit, "offsets") else poses
+    return fit.offsets.displace_path(poses, fit.height_mm) if hasattr(fit, "offsets") else poses
 
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:

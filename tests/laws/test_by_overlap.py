@@ -21,7 +21,7 @@ import brushsvg  # noqa: E402
 from brushsvg.calibration.marks import machine_found  # noqa: E402
 from brushsvg.calibration.overlap import by_overlap, overlap_choice  # noqa: E402
 from brushsvg.calibration.overlap.by_overlap_report import chosen_in_words, report  # noqa: E402
-from brushsvg.calibration.overlap.overlap_search import Begin, Target  # noqa: E402
+from brushsvg.calibration.overlap.overlap_search import SearchStart, Target  # noqa: E402
 
 pytestmark = pytest.mark.long
 
@@ -117,7 +117,7 @@ def machine_added(made, fit=None):
         by_overlap._make_target(by_overlap._to_plan_frame(*each, edges), edges)
         for each in zip(made.painted.marks, made.fit.marks, strict=True)
     ]
-    return overlap_choice.largest_overlap(targets, Begin(made.fit.laws, made.fit.height_mm), options)
+    return overlap_choice.largest_overlap(targets, SearchStart(made.fit.laws, made.fit.height_mm), options)
 
 
 @pytest.mark.thorough
@@ -128,7 +128,7 @@ def test_the_report_shows_lean_and_map_of_edges_and_overlap():
     text = report(by_overlap._make_calibration(made, machine_added(made))).text(True)
     numbers = {line.split(":")[0]: NUMBER.findall(line) for line in text.splitlines()}
     assert np.array(numbers["lean"][:2], float) == pytest.approx(lean, abs=0.08)
-    assert np.array(numbers["ways"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
+    assert np.array(numbers["paths"][:4], float) == pytest.approx(np.ravel(by_map), abs=0.006)
 
 
 @pytest.mark.thorough
@@ -189,7 +189,7 @@ def by_one_depth(brush):
         (name, np.column_stack([poses[:, :2], np.full(len(poses), -brush.deepest)]))
         for name, poses in painter.chart_strokes(brush.deepest, 2)
     ]
-    begin = Begin(laws(brush, [float(brush.law("lag")(brush.deepest))]), 0.0)
+    begin = SearchStart(laws(brush, [float(brush.law("lag")(brush.deepest))]), 0.0)
     found = overlap_choice.largest_overlap(targets_of(strokes, brush), begin, reported(brush))
     return np.polynomial.Polynomial(found.laws.lag)
 
@@ -212,7 +212,7 @@ def test_changes_are_kept_if_they_predict_held_out_marks_and_reported():
     options.lag_terms, options.half_width_terms, options.round_tail = 2, 2, True
     options.widest_per_half, options.turn_rad = core.Prior(1.0, 0.4), 0.0
     machine_found.ask_for(options, ("lean",))
-    found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), options)
+    found = overlap_choice.find_best_prediction(marks, targets, SearchStart(laws(brush, [1.0, 1.0]), 0.0), options)
     assert found.kind == "machine"
     assert found.offsets.lean_mm_per_mm == pytest.approx(lean, abs=0.15)
     assert sum(found.left_out["machine"]) > sum(found.left_out["laws"]) + 0.02
@@ -233,6 +233,8 @@ def test_few_marks_do_not_show_which_brush_predicts_best():
     marks = [
         core.PaintedMark(name, poses, outlines(target)) for (name, poses), target in zip(strokes, targets, strict=True)
     ]
-    found = overlap_choice.best_predicting(marks, targets, Begin(laws(brush, [1.0, 1.0]), 0.0), reported(brush))
+    found = overlap_choice.find_best_prediction(
+        marks, targets, SearchStart(laws(brush, [1.0, 1.0]), 0.0), reported(brush)
+    )
     assert (found.kind, found.parts, found.left_out) == ("laws", 0, {})
     assert chosen_in_words(found)

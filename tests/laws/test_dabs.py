@@ -263,7 +263,7 @@ def test_strokes_and_dabs_together_predict_a_word(name, fitted, own_lag, tmp_pat
     assert np.abs(off).max() < 0.15, off
     assert np.mean(np.abs(off) < law_band(found.brush, "lag", depths)[0]) > 0.7, off
     reported = report(found)
-    assert gives(reported.text(True), found.own.name)
+    assert gives(reported.text(True), found.outline_brush.name)
     assert (reported.verdict == GOOD) == (name != "egg"), reported
 
 

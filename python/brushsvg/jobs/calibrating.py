@@ -151,7 +151,7 @@ class BrushCalibration(Generic[Fit]):
             raise Error("this calibration was not made from photographs of a chart", code="nothing-to-show")
         if self.kind == "dabs":
             return photo_report.dabs_picture(self._read, self.fit)
-        return photo_report.read_picture(self._read, self.fit if self.kind == "marks" else self.fit.made)
+        return photo_report.read_picture(self._read, self.fit if self.kind == "marks" else self.fit.mark_calibration)
 
 
 _REPORT_MODULES = {

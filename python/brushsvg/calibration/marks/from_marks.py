@@ -76,12 +76,12 @@ def calibrate_marks(
 ) -> MarkCalibration:
     """Fit a brush to painted marks.
 
-    options: sigmas of sheet, displacement and height. Depths, coefficients per law and the tail are set here.
+    options: sigmas of sheet, displacement and height. This function sets depths, coefficients per law and the tail.
 
     edge_mm: standard deviation of a common outward shift of all edges. It depends on the blur of a picture and on the
     threshold between paint and paper. No mark distinguishes it from a wider brush, so the intervals include it.
 
-    leave_out_strays: fit once more without marks that are not where or what the others predict.
+    leave_out_strays: fit once more without marks that do not fit the others.
 
     off: the marks as they would be if their processing was wrong by one standard deviation. The intervals include
     this error.
@@ -97,8 +97,8 @@ def calibrate_marks(
         raise Error(sentence, "depth_range_mm", code="depth-out-of-range")
     if deepest > MAX_DEPTH_PER_MEASURED * painted.deepest_mm:
         raise Error(
-            f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, the brush is to be pressed {deepest:g} "
-            f'mm: paint deeper ones, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',
+            f"the strokes were painted to a depth of {painted.deepest_mm:g} mm, but the depth range goes to "
+            f'{deepest:g} mm: paint deeper strokes, or give "depth_range_mm": [{least:g}, {painted.deepest_mm:g}]',
             "depth_range_mm",
             code="depth-not-measured",
         )
@@ -154,9 +154,9 @@ def refuse_many(astray: tuple[Stray, ...], painted: Painted, scale: SheetScale |
     if len(astray) > allowed:
         refuse_scale(scale)
         sentence = (
-            f"{len(astray)} of {len(painted.marks)} marks are not where or what the others say, the range is "
-            f"[0, {allowed}]: {', '.join(stray.mark.stroke for stray in astray)}; is anything on the page, is the "
-            "paint smeared, is it the page on which this chart was painted, and is its bar as long as it says?"
+            f"{len(astray)} of {len(painted.marks)} marks do not fit the others, at most {allowed} may: "
+            f"{', '.join(stray.mark.stroke for stray in astray)}. Check that nothing covers the page, that no paint is "
+            "smeared, that this chart was painted on this page, and that the bar on the page has its printed length"
         )
         raise Error(sentence, "marks", len(astray), code="marks-outlying")
 
@@ -465,8 +465,8 @@ def brush_of(laws, name: str, depth_range_mm, covariance: np.ndarray | None = No
     brush.footprints = _core.FootprintTable([_footprint(brush, depth, laws) for depth in depths])
     shape = "eggs" if laws.round_tail else "drops"
     brush.extra = outlines_assumed(
-        f"{shape} whose widest section and width are those of the laws, {laws.front_per_half:.2f} half widths long "
-        "in front of it."
+        f"{shape} with the width and the widest section of the laws, and {laws.front_per_half:.2f} half widths in "
+        "front of that section."
     )
     if covariance is not None:
         brush_covariance = to_brush_covariance(laws, covariance)
@@ -550,8 +550,8 @@ def refuse_many_outliers(fit, painted: Painted) -> None:
     outliers, marks = sum(residual.outlier for residual in fit.marks), len(painted.marks)
     if 2 * outliers > marks:
         raise Error(
-            f"{outliers} of {marks} marks are outliers, outside the range [0, {marks // 2}]: are the marks in mm, y "
-            "up, each with the id of its stroke?",
+            f"{outliers} of {marks} marks are outliers, outside the range [0, {marks // 2}]: check that the marks are "
+            "in mm with y up, and that each has the id of its stroke",
             "marks",
             code="marks-outlying",
         )
@@ -560,8 +560,8 @@ def refuse_many_outliers(fit, painted: Painted) -> None:
 def _refuse_undetermined(brush: _core.Brush, fit) -> None:
     for law, share, value in find_undetermined_laws(brush):
         if share > MAX_UNDETERMINED_SHARE:
-            advice = fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, at the deepest too"
-            sentence = f"these marks do not determine the {law.replace('_', ' ')}: {value}: {advice}"
+            advice = fit.remarks[0] if fit.remarks else "paint curved strokes at more depths, including the deepest"
+            sentence = f"these marks do not determine the {law.replace('_', ' ')} ({value}): {advice}"
             raise Error(sentence, law, code="law-undetermined")
 
 

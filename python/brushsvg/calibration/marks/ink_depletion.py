@@ -37,9 +37,9 @@ class InkDepletion:
 
     def describe(self) -> str:
         return (
-            f"the load ran dry between {self.whole_mm:.0f} mm, where stroke {self.whole} ends, the last whole mark, "
-            f"and {self.dry_mm:.0f} mm, the end of {self.dry}, which is missing or broken, as all after it are: "
-            "lasts_mm is the former"
+            f"the load ran dry between {self.whole_mm:.0f} mm and {self.dry_mm:.0f} mm: stroke {self.whole} is the "
+            f"last whole mark, and {self.dry} and all later strokes are missing or broken. The brush file has the "
+            "smaller number as lasts_mm"
         )
 
 

@@ -27,7 +27,7 @@ FIELD_TERMS = ("u u", "u v", "v v")
 # Remarks in the table on numbers that some machines cannot compensate, see cell.not_undone.
 SERVO_REMARK = "# leave this line out for a brush on a servo or a pen lift"
 PEN_REMARK = "# leave this line out for a pen lift"
-ARM_REMARK = "# only for a machine whose motors drive x and y each: leave this line out for an arm or an EBB"
+ARM_REMARK = "# only for a machine with one motor for x and one for y: leave this line out for an arm or an EBB"
 MIN_BACKLASH_MM = 0.01  # least backlash that is compensated by a cell
 # Size of a field's number, in half 95 % intervals. In 99 of 100 fits chance moves none of its six numbers this far
 # from 0.
@@ -63,7 +63,7 @@ def refuse_unknown_parts(machine) -> None:
     require_type(machine, (tuple, list, set, frozenset), f"a tuple of names (known: {known})")
     for part in machine:
         if not (isinstance(part, str) and part in PARTS):
-            sentence = f"{str(part)[:40]!r} is no part of a machine (known: {known})"
+            sentence = f"{str(part)[:40]!r} is not a known part of a machine (known: {known})"
             raise Error(sentence, "machine", code="choice-unknown")
 
 
@@ -118,9 +118,9 @@ def describe_numbers(found: list[Number]) -> list[str]:
         and min(number.half for number in field)
         > MAX_INTERVAL_PER_PRIOR * _core.interval_factor_95() * PARTS["field"][1]
     ):
-        lines.append("field: the marks do not show it; strokes all over the sheet would")
+        lines.append("field: these marks do not determine it; paint strokes all over the sheet")
     elif field and not has_field(found):
-        lines.append("field: none that is certain, and none for the cell")
+        lines.append("field: not significant, so the table for the cell file has none")
     return lines
 
 
@@ -189,8 +189,9 @@ def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
     if share <= MAX_DIRECTION_SHARE:
         return []
     sentence = (
-        f"the strokes go one way, by {share:.2f} of their length at {math.degrees(math.atan2(way[1], way[0])):.0f} "
-        f"degrees, outside the range [0, {MAX_DIRECTION_SHARE:g}]: lean that way and a lag that grows with depth look "
-        "alike, and neither is as sure as its interval says; add strokes the other way"
+        f"{100 * share:.0f} % of the stroke length goes in one direction, "
+        f"{math.degrees(math.atan2(way[1], way[0])):.0f} degrees, outside the range [0, {100 * MAX_DIRECTION_SHARE:g}] "
+        "%: lean in that direction looks like a lag that grows with depth, so both are less certain than their "
+        "intervals show. Add strokes in the opposite direction"
     )
     return [Notice("lean", sentence, code="lean-like-lag", about="lean")]

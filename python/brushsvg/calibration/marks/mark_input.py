@@ -22,7 +22,7 @@ MAX_EXTRA_WIDTH_MM = 60.0  # no brush paints a mark that is this much wider than
 MIN_AREA_MM2 = 0.1  # least area of a mark
 MAX_COORDINATE_MM = 1e6  # greatest coordinate
 MIN_TURNING_RAD = 0.35  # if all strokes turn less than this in total, lag looks like a displacement
-UPRIGHT = "brushes are found from marks of a brush held upright"
+UPRIGHT = "brushes are calibrated with marks of an upright brush"
 MIN_PAINTED_MM = 5.0  # a depth counts if at least this length was painted at it
 DEPTH_BINS = 20  # bins from 0 to the greatest depth
 DAB = "dab"  # kind of stroke in the settings of a plan: set down and lifted without moving along the paper
@@ -35,7 +35,7 @@ SHEET_ORIENTATIONS = (
     (((-1, 0), (0, 1)), "mirrored (x must go right)"),
     (((1, 0), (0, -1)), "upside down (y must go up)"),
     (((0, 1), (1, 0)), "with x and y exchanged"),
-    (((0, -1), (-1, 0)), "with x and y exchanged, both the other way round"),
+    (((0, -1), (-1, 0)), "with x and y exchanged and both reversed"),
 )
 
 
@@ -84,10 +84,10 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
         used_strokes.add(stroke)
         rings = [_read_ring(ring, f"{where}.outline_mm[{k}]") for k, ring in enumerate(outline)]
         if not rings:
-            raise Error("the mark has no outline: leave out what was not painted", where, code="mark-empty")
+            raise Error("the mark has no outline: leave out marks that were not painted", where, code="mark-empty")
         found.append((stroke, np.array(passes[stroke].poses_mm), rings))
     if not found:
-        raise Error("there is no mark in it", "marks", code="measurement-missing")
+        raise Error("there are no marks", "marks", code="measurement-missing")
     _refuse_other_frames(found)
     _refuse_foreign_outlines(found)
     painted_as = {stroke: number for number, stroke in enumerate(passes)}
@@ -140,7 +140,7 @@ def _read_passes(plan, read) -> dict[str, _core.Pass]:
             raise Error(f"two passes paint stroke {name[:60]!r}: give each its own name", "plan", code="stroke-twice")
         if plan_pass.settings.kind == DAB:
             raise Error(
-                f"{name[:60]!r} is a dab: dabs show the outline of the brush, but no lag",
+                f"{name[:60]!r} is a dab: dabs show the outline of the brush, but not its lag",
                 "plan",
                 code="dabs-tell-no-lag",
                 advice="brushsvg calibrate PHOTO --chart CHART.json --brush BRUSH",
@@ -213,8 +213,8 @@ def _refuse_other_frames(found: list) -> None:
     for factor, name in UNIT_FACTORS:
         if abs(math.log(max(scale, 1e-12) / factor)) < 0.5 and max(lengths) > 5.0:
             raise Error(
-                f"the marks are {scale:.3g} times as long as their strokes: are the outlines in {name}? They count in "
-                "mm",
+                f"the marks are {scale:.3g} times as long as their strokes: check whether the outlines are in {name}, "
+                "and write them in mm",
                 "marks",
                 code="marks-scaled",
             )
@@ -225,7 +225,7 @@ def _refuse_other_frames(found: list) -> None:
             np.hypot(*(points - planned - np.median(points - planned, axis=0)).T)
         )
         if rigid(flipped) < 0.3 * rigid(marked) and rigid(marked) > 10.0:
-            sentence = "the sheet of the marks stands upside down: y must go up, from the lower left corner"
+            sentence = "the sheet of the marks is upside down: y must go up, from the lower left corner"
             raise Error(sentence, "marks", code="marks-displaced")
     if own_distances.max() <= MAX_MARK_DISTANCE_MM and len(found) < 2:
         return
@@ -240,17 +240,17 @@ def _refuse_other_frames(found: list) -> None:
     for i in wrong:
         if nearest[i] in wrong or own_distances[i] > MAX_MARK_DISTANCE_MM:
             raise Error(
-                f"the mark of stroke {found[i][0]!r} is {own_distances[i]:.0f} mm from it, where stroke "
-                f"{found[nearest[i]][0]!r} was painted: do the marks have the ids of their strokes?",
+                f"the mark of stroke {found[i][0]!r} is {own_distances[i]:.0f} mm away from that stroke, where stroke "
+                f"{found[nearest[i]][0]!r} was painted: give each mark the id of its stroke",
                 f"marks[{i}]",
                 code="mark-off-stroke",
             )
     worst = int(own_distances.argmax())
     if own_distances[worst] > MAX_MARK_DISTANCE_MM:
         raise Error(
-            f"the mark of stroke {found[worst][0]!r} is {own_distances[worst]:.0f} mm from it, more than "
-            f"{MAX_MARK_DISTANCE_MM:g} mm: are plan and marks those of one sheet, both in mm from its "
-            "lower left corner?",
+            f"the mark of stroke {found[worst][0]!r} is {own_distances[worst]:.0f} mm away from that stroke, more than "
+            f"{MAX_MARK_DISTANCE_MM:g} mm: check that plan and marks belong to one sheet, and that both are in mm from "
+            "its lower left corner",
             f"marks[{worst}]",
             code="mark-off-stroke",
         )
@@ -272,21 +272,21 @@ def _refuse_moved_sheet(planned: np.ndarray, seen: np.ndarray) -> None:
     for matrix, words in SHEET_ORIENTATIONS:
         if np.linalg.norm(slopes / size - matrix) < 0.5:
             raise Error(
-                f"the sheet of the marks is {words}; outlines count from the lower left corner of the plan's sheet",
+                f"the sheet of the marks is {words}: measure outlines from the lower left corner of the plan's sheet",
                 "marks",
                 code="marks-displaced",
             )
     if abs(size - 1) > 0.2:
         raise Error(
-            f"the marks are {size:.3g} times as far apart as their strokes: are the outlines in pixels, or scanned at "
-            "another scale? They count in mm",
+            f"the marks are {size:.3g} times as far apart as their strokes: check whether the outlines are in pixels "
+            "or were scanned at another scale, and write them in mm",
             "marks",
             code="marks-scaled",
         )
     if (shift := float(np.hypot(*(seen - planned).mean(axis=0)))) > 0.5 * MAX_MARK_DISTANCE_MM:
         raise Error(
-            f"all marks are {shift:.0f} mm from their strokes, all the same way: outlines count from the lower left "
-            "corner of the plan's sheet",
+            f"all marks are {shift:.0f} mm away from their strokes, in one direction: measure outlines from the lower "
+            "left corner of the plan's sheet",
             "marks",
             code="marks-displaced",
         )
@@ -301,7 +301,7 @@ def _refuse_foreign_outlines(found: list) -> None:
         if (area := _core.area(_orient_rings(rings))) < MIN_AREA_MM2:
             raise Error(
                 f"the mark of stroke {stroke!r} has an area of {area:.2g} mm^2, less than {MIN_AREA_MM2:g}: leave out "
-                "what was not painted",
+                "marks that were not painted",
                 f"marks[{i}]",
                 code="mark-empty",
             )
@@ -311,7 +311,7 @@ def _refuse_foreign_outlines(found: list) -> None:
             if excess > MAX_EXTRA_WIDTH_MM:
                 raise Error(
                     f"a ring of the mark of stroke {stroke!r} is {excess:.0f} mm wider than its stroke, more than "
-                    f"{MAX_EXTRA_WIDTH_MM:g} mm: leave out what is not its paint, such as the border of the page",
+                    f"{MAX_EXTRA_WIDTH_MM:g} mm: leave out outlines that are not paint, such as the border of the page",
                     f"marks[{i}].outline_mm[{k}]",
                     code="mark-too-large",
                 )
@@ -344,15 +344,15 @@ def _refuse_uninformative(ways: list[np.ndarray]) -> None:
         raise Error(sentence, "plan", code="depths-too-few")
     if count == 1:
         raise Error(
-            "all was painted at one depth: how lag and width change with depth takes strokes at two depths or more, "
-            "better five",
+            "all strokes were painted at one depth, which does not show how lag and width change with depth: paint "
+            "strokes at two depths or more, better five",
             "plan",
             code="depths-too-few",
         )
     if all(_total_turning(poses) < MIN_TURNING_RAD for poses in ways):
         raise Error(
-            "all strokes are straight: lag and displacement of the marks cannot be separated; add corners, arcs and "
-            "reversals, at each depth",
+            "all strokes are straight, so lag and displacement of the marks cannot be separated: add corners, arcs and "
+            "reversals at each depth",
             "plan",
             code="law-undetermined",
         )

@@ -56,14 +56,14 @@ def report(calibration, of_photo: bool = False) -> Report:
         *low_overlap,
         *(f"the {law.replace('_', ' ')} is only known as {value}" for law, _, value in find_undetermined_laws(brush)),
         "" if fit.converged else NOT_CONVERGED,
-        (f"{strays} had to be left out" if calibration.strays_left_out else f"the fit is unlike {strays}")
+        (f"{strays} had to be left out" if calibration.strays_left_out else f"the fit does not explain {strays}")
         if calibration.strays
         else "",
-        f"{plural(len(unexpected), 'value')} of the sheet {'differs' if len(unexpected) == 1 else 'differ'} from what "
-        "was expected"
+        f"{plural(len(unexpected), 'value')} of the sheet {'is' if len(unexpected) == 1 else 'are'} larger than "
+        "expected"
         if unexpected
         else "",
-        f"{100 * fit.outlier_share:.0f} % of the edges had to be masked"
+        f"{100 * fit.outlier_share:.0f} % of the edge points are outliers"
         if fit.outlier_share > MAX_MASKED_SHARE
         else "",
         f"only {calibration.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
@@ -72,13 +72,13 @@ def report(calibration, of_photo: bool = False) -> Report:
     cell = machine_found.cell_table(fit, calibration.expected, machine_numbers)
     lines = [
         f"{name_and_depths(brush)}: {in_short(brush)}, from {len(calibration.painted.marks)} painted marks",
-        f"painted and predicted marks overlap by {format_overlap(moved)}, by {format_overlap(in_place)} with "
-        "the displacements of marks (mean of intersection over union)",
+        f"painted and predicted marks overlap by {format_overlap(in_place)} as painted, and by {format_overlap(moved)} "
+        "after each mark is moved to its predicted place (mean of intersection over union)",
         *(_describe_paint(calibration) if brush.paint else []),
         _describe_displacements(calibration),
         _list_worst_marks(calibration),
         *(
-            ["the machine has faults that its cell can undo: the details have a table for the cell file"]
+            ["the cell file can correct errors of this machine: copy the table [machine] from the details"]
             if cell
             else []
         ),
@@ -95,7 +95,7 @@ def report(calibration, of_photo: bool = False) -> Report:
         *_describe_sheet_and_machine(calibration),
         "",
         *_describe_residuals(calibration),
-        *(["", "for the cell:", *cell] if cell else []),
+        *(["", "for the cell file:", *cell] if cell else []),
     ]
     return Report(verdict(reasons_against, reservations), tuple(lines), (*details, "", *coefficients(brush)))
 
@@ -117,8 +117,8 @@ def _describe_displacements(calibration) -> str:
         np.sqrt(calibration.covariance[height_at(calibration.fit), height_at(calibration.fit)])
     )
     return (
-        f"{paper_height(calibration.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), "
-        f"{calibration.painted.marks[farthest].stroke} most, by {sizes[farthest]:.2f} mm"
+        f"{paper_height(calibration.fit.height_mm, half)}; marks are displaced by {_rms(sizes):.2f} mm (rms), at most "
+        f"by {sizes[farthest]:.2f} mm (stroke {calibration.painted.marks[farthest].stroke})"
     )
 
 
@@ -133,20 +133,20 @@ def _list_worst_marks(calibration) -> str:
 def _describe_paint(calibration) -> list[str]:
     paint, bends = calibration.brush.paint, calibration.paint_bends
     half = paint_interval_per_m(paint)
-    known = "" if paint.narrows_per_m > half else ": these marks do not show that they do"
+    unsure = "" if paint.narrows_per_m > half else ", which may be chance"
     lines = [
-        f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre of way since the dip{known} (95 %, up to "
-        f"{paint.calibrated_mm[1]:.0f} mm)"
+        f"marks narrow by {paint.narrows_per_m:.3f} +- {half:.2g} per metre painted since the dip (95 %, measured up "
+        f"to {paint.calibrated_mm[1]:.0f} mm){unsure}"
     ]
     if bends > _core.interval_factor_95(paint.degrees_of_freedom):
         lines.append(
-            f"they do not narrow by one rate, by {bends:.1f} standard deviations: it is one over the whole way, "
-            "and the freshly dipped width is off by more than its interval"
+            f"marks do not narrow at a constant rate (off by {bends:.1f} standard deviations). The rate is a mean over "
+            "the whole path, and the freshly dipped width may be off by more than its interval"
         )
     lines.append(
         calibration.dry.describe()
         if calibration.dry
-        else f"no mark ran dry: a load lasts {calibration.painted.way_mm:.0f} mm at least"
+        else f"no mark ran dry: one load lasts for at least {calibration.painted.way_mm:.0f} mm"
     )
     return lines
 
@@ -154,9 +154,11 @@ def _describe_paint(calibration) -> list[str]:
 def _describe_tail(calibration) -> str:
     gain = calibration.round_tail_gain
     if abs(gain) < MIN_CHI_SQUARE:
-        return "these marks do not show whether the footprint's tail is pointed or round; it is taken to be pointed"
+        return "these marks do not show whether the footprint's tail is pointed or round; a pointed tail is assumed"
     kinds = ("round", "pointed") if gain > 0 else ("pointed", "round")
-    return "footprints with a {} tail fit these marks, {} ones worse (chi-square {:.0f} more)".format(*kinds, abs(gain))
+    return "footprints with a {} tail fit these marks better than {} ones (chi-square {:.0f} less)".format(
+        *kinds, abs(gain)
+    )
 
 
 def _warn_of_few_depths(calibration) -> list[str]:
@@ -164,8 +166,9 @@ def _warn_of_few_depths(calibration) -> list[str]:
     if terms >= LAG_TERMS:
         return []
     return [
-        f"the lag is a polynomial of degree {terms - 1}, not {LAG_TERMS - 1}: {calibration.painted.depths} depths were "
-        "painted. Between them its error may exceed its confidence interval"
+        f"the lag is a polynomial of degree {terms - 1} instead of {LAG_TERMS - 1}, because only "
+        f"{calibration.painted.depths} depths were painted. Between these depths its error may exceed its confidence "
+        "interval"
     ]
 
 
@@ -195,8 +198,8 @@ def _list_departing_laws(calibration) -> list[str]:
     if not departing:
         return []
     return [
-        f"these marks need more coefficients than usual for {', '.join(departing)}; the intervals include how much "
-        "the laws may still differ in form"
+        f"these marks need more coefficients than usual for: {', '.join(departing)}. The intervals include the "
+        "remaining uncertainty about the form of the laws"
     ]
 
 
@@ -251,11 +254,12 @@ def _unit(key: str) -> str:
 
 def _remedy(key: str, sigma: float, of_photo: bool) -> str:
     if not of_photo:
-        return f': give "expected": {{"{key}": {sigma:g}}} if that is how exact the sheet is'
+        return f': if the sheet is no more exact than this, add "expected": {{"{key}": {sigma:g}}} to the measurements'
     of_flags = {
         "height_mm": (
-            f": add --height {sigma:g} if you know the height no better. A liner, whose lines are wide where it just "
-            "touches, looks like high paper: measure the height (brushsvg setup height), add --height 0.05"
+            f": if you do not know the height better, add --height {sigma:g}. Lines of a liner are wide at first "
+            "touch, which looks like high paper: for a liner, measure the height (brushsvg setup height) and add "
+            "--height 0.05"
         ),
         "displacement_mm": ": add --spread FILE, which brushsvg compare --sheets writes",
     }
@@ -265,7 +269,7 @@ def _remedy(key: str, sigma: float, of_photo: bool) -> str:
 def _describe_strays(calibration) -> list[str]:
     if calibration.strays_left_out and calibration.strays:
         names = ", ".join(stray.mark.stroke for stray in calibration.strays)
-        return [f"left out, not being where or what the other marks say: {names}"]
+        return [f"left out because they do not fit the other marks: {names}"]
     return [f"{notice.where}: {notice.text}" for notice in list_strays(calibration)]
 
 
@@ -284,13 +288,13 @@ def list_strays(calibration) -> list[Notice]:
         if stray.is_displaced:
             dx, dy = stray.displacement_mm
             what = (
-                f"its mark is displaced by {math.hypot(dx, dy):.1f} mm ({dx:+.1f}, {dy:+.1f}), the others scatter by "
-                f"{stray.spread_mm:.2f} mm"
+                f"its mark is displaced by {math.hypot(dx, dy):.1f} mm ({dx:+.1f}, {dy:+.1f}), while the "
+                f"displacements of the other marks scatter by {stray.spread_mm:.2f} mm"
             )
         else:
             what = (
-                f"its outline is off by {stray.rms_mm:.2f} mm (rms), the others by {stray.usual_rms_mm:.2f}: something "
-                "is on the mark, or it is smeared or torn"
+                f"its outline is off by {stray.rms_mm:.2f} mm (rms), the other outlines by "
+                f"{stray.usual_rms_mm:.2f} mm: something covers the mark, or it is smeared or torn"
             )
         sentence = f"{what}; found in {found}, expected in {expected}; {_describe_cost(calibration, stray.mark)}"
         notices.append(Notice(stray.mark.stroke, sentence, code="mark-astray", about=stray.mark.stroke))
@@ -304,12 +308,15 @@ def _describe_extent(points: np.ndarray) -> str:
 
 def _describe_cost(calibration, mark) -> str:
     if not calibration.strays_left_out:
-        return "look at the picture, and leave it out if it is not the mark of this stroke"
+        return "check the picture, and leave the mark out if another stroke painted it"
     depth = deepest_mm(mark)
     alike = sum(abs(deepest_mm(other) - depth) < 0.01 for other in calibration.painted.marks)
     at = min(depth, calibration.brush.depth_range_mm[1])
     half = float(law_band(calibration.brush, "lag", np.array([at]))[0][0])
-    return f"it is left out: {alike} other marks are {depth:.4g} mm deep, the lag is known there to +- {half:.2f} mm"
+    return (
+        f"it is left out; {plural(alike, 'other mark')} of depth {depth:.4g} mm remain, where the lag is known to +- "
+        f"{half:.2f} mm"
+    )
 
 
 def _warn_of_poor_fit(fit, moved: float) -> list[str]:
@@ -321,13 +328,13 @@ def _warn_of_poor_fit(fit, moved: float) -> list[str]:
     if fit.outlier_share > MAX_MASKED_SHARE:
         out.append(
             f"{100 * fit.outlier_share:.0f} % of the edge points are masked outliers, outside the range [0, "
-            f"{100 * MAX_MASKED_SHARE:.0f}] %: the tail and the confidence intervals may be wrong; clean the "
-            "outlines of blots, borders and slits"
+            f"{100 * MAX_MASKED_SHARE:.0f}] %: the tail and the confidence intervals may be wrong. Remove blots, "
+            "borders and slits from the outlines"
         )
     if moved <= MIN_USABLE_OVERLAP:
         out.append(
-            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{MIN_USABLE_OVERLAP:g}, 1]: look "
-            "at the picture before use"
+            f"painted and predicted marks overlap by {moved:.2f}, outside the range [{MIN_USABLE_OVERLAP:g}, 1]: check "
+            "the picture before you use the brush"
         )
     return out
 
@@ -358,7 +365,7 @@ def _describe_sheet_and_machine(calibration) -> list[str]:
     lines += machine_found.describe_numbers(machine_found.numbers(fit, calibration.covariance, calibration.expected))
     if calibration.scale:
         lines.append(
-            f"by the places of its marks the sheet is "
+            f"according to the places of its marks, the sheet is "
             f"{calibration.scale.describe(calibration.scale.both)} than the plan"
         )
     return lines
@@ -367,24 +374,26 @@ def _describe_sheet_and_machine(calibration) -> list[str]:
 def _describe_residuals(calibration) -> list[str]:
     fit = calibration.fit
     lines = [
-        f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
-        f"{fit.effective_samples:.0f} independent ones",
+        f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, which count as "
+        f"{fit.effective_samples:.0f} independent points",
     ]
     if calibration.edge_mm > 0:
         lines.append(
-            f"all edges may be {calibration.edge_mm:.2f} mm off together (standard deviation), as a picture has them: "
-            "the intervals hold that"
+            f"the picture may show all edges too far out or in by {calibration.edge_mm:.2f} mm (standard deviation); "
+            "the intervals include this"
         )
     if fit.outlier_share > 0.01:
         bound = f"residual above {MAX_RESIDUAL_SIGMAS:g} standard deviations"
-        lines.append(f"masked: {100 * fit.outlier_share:.0f} % of the points, outliers ({bound})")
+        lines.append(f"ignored as outliers: {100 * fit.outlier_share:.0f} % of the points ({bound})")
     if fit.slim > 0.01:
-        lines.append(f"masked: {100 * fit.slim:.0f} % of the points, next to ends hardly wider than the residuals")
+        lines.append(
+            f"ignored near ends that are hardly wider than the residuals: {100 * fit.slim:.0f} % of the points"
+        )
     outliers = [
         mark.stroke for mark, residual in zip(calibration.painted.marks, fit.marks, strict=True) if residual.outlier
     ]
     if outliers:
-        lines.append(f"masked marks, outliers as a whole: {', '.join(outliers)}: look at them, and paint them again")
+        lines.append(f"ignored marks, which differ as a whole: {', '.join(outliers)}. Check them and paint them again")
     return lines
 
 
@@ -424,7 +433,7 @@ def report_picture(calibration, suffix: str) -> bytes:
         title = f"{what}: {shortened(mark.stroke, 16)}, {residual.rms_mm:.2f} mm (rms)"
         axes.set_title(title, fontsize=9, color=INK)
         axes.tick_params(labelsize=7)
-    marks.suptitle("grey: painted; red: predicted; blue: the tool's way", fontsize=8)
+    marks.suptitle("grey: painted; red: predicted; blue: path of the tool", fontsize=8)
     return encoded(figure, suffix)
 
 

@@ -59,7 +59,7 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
         if abs(change) < SETTLED_SIGMAS * sigma:
             break
     else:
-        sentence = f"how marks narrow does not settle, the last change was {change:.2g} per metre"
+        sentence = f"the fit of how fast marks narrow did not converge, the last change was {change:.2g} per metre"
         raise Error(sentence, "paint", change, code="paint-undetermined")
     if abs(rate_errors[-1][0] - rate_errors[0][0]) < RATE_STEP_SIGMAS * sigma:
         other_rate = rate_errors[-1][0] + RATE_STEP_SIGMAS * sigma
@@ -69,8 +69,8 @@ def calibrate_paint(painted: Painted, name: str, *args, **kwargs) -> MarkCalibra
     deviations = _core.interval_factor_95(freedom)
     if rate < -MAX_WIDENING_PER_M and rate + deviations * sigma < 0:
         sentence = (
-            f"marks get wider by {-rate:.2g} +- {deviations * sigma:.2g} per metre along the job: was paint fetched in "
-            "between?"
+            f"marks get wider by {-rate:.2g} +- {deviations * sigma:.2g} per metre along the job: paint the chart with "
+            "one load, without dips in between"
         )
         raise Error(sentence, "paint", rate, code="paint-undetermined")
     if rate < 0:  # the marks do not narrow, so the interval must include 0
@@ -275,7 +275,7 @@ def _collect_flanks(calibration: MarkCalibration) -> Flanks:
     rows = np.vstack(blocks) if blocks else np.empty((0, 5))
     marks = len(np.unique(rows[:, 3]))
     if marks < MIN_SPARE_MARKS + 4:
-        sentence = f"{marks} marks show their flanks, at least {MIN_SPARE_MARKS + 4} are needed"
+        sentence = f"only {marks} marks show both edges clear of ends, at least {MIN_SPARE_MARKS + 4} are needed"
         raise Error(sentence, "paint", code="paint-undetermined")
     return Flanks(rows[:, 0], rows[:, 1], rows[:, 4:], rows[:, 2], rows[:, 3])
 
@@ -296,9 +296,8 @@ def _estimate_rate_error(calibration: MarkCalibration) -> tuple[float, float, fl
     explained = flanks.explained_by_depth()
     if 1 - explained < MIN_UNEXPLAINED_SHARE:
         raise Error(
-            f"{100 * explained:.0f} % of how the way since the dip grows is explained by the depth alone, so narrower "
-            "and shallower marks are alike: paint strokes of one depth early and late, as `brushsvg chart --paint` "
-            "does",
+            f"depth explains {100 * explained:.0f} % of how far each stroke is from the dip, so less paint looks like "
+            "less depth: paint strokes of each depth both early and late, as `brushsvg chart --paint` does",
             "paint",
             code="paint-undetermined",
         )

@@ -1,4 +1,4 @@
-"""Change a fitted brush so that it predicts further marks best.
+"""Change a fitted brush to the one that predicts further marks best.
 
 The best prediction has the largest overlap.
 
@@ -21,8 +21,8 @@ from ...array_values import ArrayValue
 from ...geometry.rotation import rotation
 from ..marks.from_marks import MarkCalibration, brush_of
 from .lag_by_outlines import Placed, PlacedMark
-from .overlap_choice import Predicting, best_predicting
-from .overlap_search import Begin, Target
+from .overlap_choice import BestPrediction, find_best_prediction
+from .overlap_search import SearchStart, Target
 
 # Size of a pixel in half widths of the deepest mark, and margin of a picture around path and paint.
 PIXEL_HALF_WIDTHS, MARGIN_MM = 1 / 6, 8.0
@@ -32,13 +32,13 @@ PIXEL_HALF_WIDTHS, MARGIN_MM = 1 / 6, 8.0
 class OverlapCalibration(ArrayValue):
     """The brush that predicts best, and the fit by edges from which it was made.
 
-    made: the marks with the brush that predicts best; their places are Placed. by_edges: the fit by edges, whose brush
-    has intervals. found: the changes.
+    mark_calibration: the marks with the brush that predicts best; their places are Placed. by_edges: the fit by edges,
+    whose brush has intervals. found: the changes.
     """
 
-    made: MarkCalibration
+    mark_calibration: MarkCalibration
     by_edges: MarkCalibration
-    found: Predicting
+    found: BestPrediction
 
     @property
     def brush(self) -> _core.Brush:
@@ -46,10 +46,10 @@ class OverlapCalibration(ArrayValue):
 
         It has no intervals unless it is the brush of the fit by edges, whose intervals are valid.
         """
-        return self.made.brush
+        return self.mark_calibration.brush
 
     def __repr__(self) -> str:
-        return f"<OverlapCalibration of {self.brush!r} from {len(self.made.painted.marks)} marks>"
+        return f"<OverlapCalibration of {self.brush!r} from {len(self.mark_calibration.painted.marks)} marks>"
 
 
 def by_overlap(
@@ -68,17 +68,17 @@ def by_overlap(
         if not residual.outlier
     ]
     targets = [_make_target(mark, calibration) for mark in marks]
-    best = best_predicting(
+    best = find_best_prediction(
         marks,
         targets,
-        Begin(fit.laws, fit.height_mm),
+        SearchStart(fit.laws, fit.height_mm),
         options,
-        lambda looks: progress(f"looked at {looks} sets of overlaps"),
+        lambda count: progress(f"compared {count} candidate brushes with the marks"),
     )
     return _make_calibration(calibration, best)
 
 
-def _make_calibration(calibration: MarkCalibration, found: Predicting) -> OverlapCalibration:
+def _make_calibration(calibration: MarkCalibration, found: BestPrediction) -> OverlapCalibration:
     """Make the calibration from the result of the search.
 
     If edges are chosen, it has the brush of the edges with its intervals.
@@ -93,7 +93,7 @@ def _make_calibration(calibration: MarkCalibration, found: Predicting) -> Overla
         profile = _core.Profile(
             law_of_brush.coefficients,
             calibrated_mm=(0.0, calibration.painted.deepest_mm),
-            source=f"Fitted to {count} painted marks, to the largest overlap; without intervals.",
+            source=f"Fitted to {count} painted marks for the largest overlap. It has no confidence intervals.",
             floor=law_of_brush.floor,
             floor_slope=law_of_brush.floor_slope,
         )
@@ -106,7 +106,7 @@ def _make_calibration(calibration: MarkCalibration, found: Predicting) -> Overla
         found.height_mm,
         tuple(
             PlacedMark(
-                found.offsets.way(np.array(residual.way_mm), found.height_mm),
+                found.offsets.displace_path(np.array(residual.way_mm), found.height_mm),
                 tuple((residual.displacement_mm - found.shift_mm).tolist()),
             )
             for residual in fit.marks

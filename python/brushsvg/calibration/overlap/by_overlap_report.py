@@ -1,7 +1,4 @@
-"""Report a calibration to the largest overlap, in words and as a picture.
-
-The report compares it with the fit by edges.
-"""
+"""Report a calibration to the largest overlap, and compare it with the fit by edges."""
 
 from __future__ import annotations
 
@@ -27,17 +24,18 @@ def report(calibration, of_photo: bool = False) -> Report:
     if found.kind == "edges":
         by_edges = edge_report(edges, of_photo)
         return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
-    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(calibration.made)
+    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(calibration.mark_calibration)
     lines = [
-        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(edges.painted.marks)} painted marks, to the largest "
-        "overlap",
-        f"painted and predicted marks overlap by {format_overlap(now_in_place)} as painted, by "
-        f"{format_overlap(now_moved)} without the displacements of the edges' fit; by edges "
-        f"{format_overlap(in_place)} and {format_overlap(moved)}",
+        f"{name_and_depths(brush)}: {in_short(brush)}, fitted to the largest overlap with {len(edges.painted.marks)} "
+        "painted marks",
+        f"painted and predicted marks overlap by {format_overlap(now_in_place)} as painted, and by "
+        f"{format_overlap(now_moved)} after each mark is moved to its predicted place (fit by edges: "
+        f"{format_overlap(in_place)} and {format_overlap(moved)})",
         chosen_in_words(found),
-        f"{paper_height(found.height_mm)} ({edges.fit.height_mm:+.2f} mm by edges)",
+        f"{paper_height(found.height_mm)} (fit by edges: {edges.fit.height_mm:+.2f} mm)",
         *_describe_machine(edges, found.offsets),
-        "no intervals: those of the edges' fit do not hold for these laws",
+        "no confidence intervals are known for this brush; calibrate without --aim overlap gives a brush with "
+        "intervals",
     ]
     depths = depths_shown(brush)
     columns = [
@@ -47,16 +45,16 @@ def report(calibration, of_photo: bool = False) -> Report:
         )
         for law, _ in LAWS
     ]
-    by_edges = "  in brackets: by edges, which calibrate without --aim overlap writes, with intervals"
+    by_edges = "  in brackets: the fit by edges, which calibrate writes without --aim overlap"
     details = [*law_table(depths, columns), by_edges, "", *coefficients(brush)]
     return Report(verdict(*judge_overlap(now_moved)), tuple(lines), tuple(details))
 
 
 KIND_NAMES = {
-    "edges": "what edges showed",
+    "edges": "the fit by edges, unchanged",
     "disc": "a dragged disc",
-    "laws": "laws and footprint",
-    "machine": "laws, footprint and machine",
+    "laws": "laws and footprint changed",
+    "machine": "laws, footprint and machine changed",
 }
 
 
@@ -67,14 +65,13 @@ def chosen_in_words(found) -> str:
     """
     if not found.left_out:
         return (
-            f"changed: {KIND_NAMES[found.kind]}; the marks are too few to be parted, so whether that predicts further "
-            "ones better than edges do is not known"
+            f"used: {KIND_NAMES[found.kind]}. There are too few marks to test whether this predicts other marks "
+            "better than the fit by edges"
         )
     listed = "; ".join(f"{KIND_NAMES[kind]} {sum(both) / 2:.3f}" for kind, both in found.left_out.items())
     return (
-        f"chosen: {KIND_NAMES[found.kind]}, since so marks that had no part in the fit overlap most, each of "
-        f"{found.parts} parts predicted by the others (mean of the overlaps in place and with each mark moved): "
-        f"{listed}"
+        f"used: {KIND_NAMES[found.kind]}. It has the largest overlap with marks that were left out of the fit "
+        f"(cross-validation with {found.parts} parts, mean of the overlaps as painted and moved): {listed}"
     )
 
 
@@ -84,17 +81,16 @@ def _describe_machine(edges, offsets) -> list[str]:
     if offsets.lean_mm_per_mm.any():
         x, y = offsets.lean_mm_per_mm + machine_by_edges.lean_mm_per_mm
         lines.append(
-            f"lean: {x:+.3f} and {y:+.3f} mm per mm of depth in x and y ({{:+.3f}} and {{:+.3f}} by edges)".format(
-                *machine_by_edges.lean_mm_per_mm
-            )
+            f"lean: {x:+.3f} mm in x and {y:+.3f} mm in y per mm of depth (fit by edges: {{:+.3f}} and "
+            "{:+.3f})".format(*machine_by_edges.lean_mm_per_mm)
         )
     if offsets.map.any():
         axes = np.array([[machine_by_edges.scale[0], machine_by_edges.skew], [0.0, machine_by_edges.scale[1]]])
         (a, b), (c, d) = (np.eye(2) + offsets.map) @ axes - np.eye(2)
         lines.append(
-            f"ways: {a:+.4f} and {b:+.4f} mm in x, {c:+.4f} and {d:+.4f} in y per mm in x and y (scale "
-            f"{machine_by_edges.scale[0]:.4f} and {machine_by_edges.scale[1]:.4f}, skew "
-            f"{machine_by_edges.skew:+.4f} by edges)"
+            f"paths: x is off by {a:+.4f} mm per mm in x and {b:+.4f} mm per mm in y, y by {c:+.4f} and {d:+.4f} mm "
+            f"(fit by edges: scale {machine_by_edges.scale[0]:.4f} and {machine_by_edges.scale[1]:.4f}, skew "
+            f"{machine_by_edges.skew:+.4f})"
         )
     return lines
 

@@ -33,34 +33,34 @@ MAX_LAG_CHANGE = 0.3  # largest relative change of a lag; with more, the outline
 class LagByOutlines:
     """The lag of a brush with measured outlines.
 
-    made: the marks with the new brush; their places are Placed. before: the usual fit, with drops or eggs. own: the
-    brush with the outlines and the other laws, which stay unchanged. height_mm: of the paper above the taught height.
-    noise_mm: robust standard deviation of the residuals of the edges.
+    mark_calibration: the marks with the new brush; their places are Placed. before: the usual fit, with drops or eggs.
+    outline_brush: the brush with the outlines and the other laws, which stay unchanged. height_mm: of the paper above
+    the taught height. noise_mm: robust standard deviation of the residuals of the edges.
     """
 
-    made: MarkCalibration
+    mark_calibration: MarkCalibration
     before: MarkCalibration
-    own: _core.Brush
+    outline_brush: _core.Brush
     height_mm: float
     noise_mm: float
 
     @property
     def brush(self) -> _core.Brush:
-        return self.made.brush
+        return self.mark_calibration.brush
 
 
-def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -> LagByOutlines:
+def lag_by_outlines(calibration: MarkCalibration, outline_brush: _core.Brush, name: str) -> LagByOutlines:
     """Fit the lag of a brush with measured outlines to painted marks.
 
-    calibration: the usual fit to marks of strokes. own: the brush whose outlines were measured. name: the name of the
-    result.
+    calibration: the usual fit to marks of strokes. outline_brush: the brush whose outlines were measured. name: the
+    name of the result.
 
     Raises Error if the outlines are assumed, if they do not reach the depth of the strokes, and if marks and outlines
     do not belong to one brush.
     """
-    refuse_assumed(own)
-    _refuse_shallow(own, calibration.painted.deepest_mm)
-    edges = _Edges(calibration, own)
+    refuse_assumed(outline_brush)
+    _refuse_shallow(outline_brush, calibration.painted.deepest_mm)
+    edges = _Edges(calibration, outline_brush)
     fitted_lag = np.array(calibration.fit.laws.lag)
     depths = np.linspace(0.0, calibration.painted.deepest_mm, 21)[1:]
     terms = min(LAG_TERMS, calibration.painted.depths)
@@ -83,22 +83,24 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
             break
     else:
         sentence = (
-            f"by the outlines of brush {own.name} the lag does not settle, its last change was {last_change:.2f} mm: "
-            "are strokes and dabs of one brush?"
+            f"the fit of the lag with the outlines of brush {outline_brush.name} did not converge, its last change was "
+            f"{last_change:.2f} mm: check that the same brush painted the strokes and the dabs"
         )
         raise Error(sentence, "lag", last_change, code="law-undetermined")
     # The lag has at least as many coefficients as the tip gap, because an error of the tip gap changes the lag by the
     # opposite amount.
-    lag = _add_polynomials(_add_polynomials(fitted_lag, to_law @ lag_changes), np.zeros(len(own.tip_gap.coefficients)))
-    _refuse_changed_lag(lag, fitted_lag, depths, own)
-    brush = _with_lag(own, lag, name)
+    lag = _add_polynomials(
+        _add_polynomials(fitted_lag, to_law @ lag_changes), np.zeros(len(outline_brush.tip_gap.coefficients))
+    )
+    _refuse_changed_lag(lag, fitted_lag, depths, outline_brush)
+    brush = _with_lag(outline_brush, lag, name)
     lag_covariance = _lag_covariance(calibration, to_law @ covariance[:terms, :terms] @ to_law.T)
-    brush_covariance = _join_covariance(own, brush, lag_covariance)
+    brush_covariance = _join_covariance(outline_brush, brush, lag_covariance)
     half = _core.interval_factor_95() * np.sqrt(np.diag(brush_covariance)[: len(lag)])
     brush.lag = _core.Profile(
         lag.tolist(),
         calibrated_mm=(0.0, calibration.painted.deepest_mm),
-        source=f"Fitted to {len(calibration.painted.marks)} painted marks by the outlines of brush {own.name}.",
+        source=f"Fitted to {len(calibration.painted.marks)} painted marks with outlines of brush {outline_brush.name}.",
         half_interval_95=half.tolist(),
     )
     brush.covariance = brush_covariance.tolist()
@@ -109,7 +111,9 @@ def lag_by_outlines(calibration: MarkCalibration, own: _core.Brush, name: str) -
         for residual, by in zip(fit.marks, displaced, strict=True)
     ]
     placed = Placed(fit.turn_rad, fit.shift_mm, fit.centre_mm, float(height), tuple(marks))
-    return LagByOutlines(replace(calibration, brush=brush, fit=placed), calibration, own, float(height), noise)
+    return LagByOutlines(
+        replace(calibration, brush=brush, fit=placed), calibration, outline_brush, float(height), noise
+    )
 
 
 @dataclass(frozen=True)
@@ -140,8 +144,8 @@ class _Edges:
     The points are in the frame of the plan.
     """
 
-    def __init__(self, calibration: MarkCalibration, own: _core.Brush):
-        self.made, self.own = calibration, own
+    def __init__(self, calibration: MarkCalibration, outline_brush: _core.Brush):
+        self.calibration, self.outline_brush = calibration, outline_brush
         self.points = [
             np.array(residual.point_mm) + np.array(residual.displacement_mm) for residual in calibration.fit.marks
         ]
@@ -174,7 +178,7 @@ class _Edges:
         Height and displacements have the priors of the usual fit. Neighbouring points are correlated, so they count
         less than independent points.
         """
-        expected, fit = self.made.expected, self.made.fit
+        expected, fit = self.calibration.expected, self.calibration.fit
         noise = max(MIN_NOISE_MM, 1.4826 * float(np.median(np.abs(distances))))
         # Square root of Tukey's weight.
         weight = np.clip(1 - (distances / (MAX_RESIDUAL_SIGMAS * noise)) ** 2, 0.0, 1.0)
@@ -191,15 +195,15 @@ class _Edges:
         right_side = np.append(-distances * weight / point_sigma, prior_values)
         inverse = np.linalg.inv(rows.T @ rows)
         # Common shift of all edges, both of the painted marks and of the measured dabs.
-        common_shift_mm = float(np.hypot(self.made.edge_mm, _outline_error_mm(self.own)))
+        common_shift_mm = float(np.hypot(self.calibration.edge_mm, _outline_error_mm(self.outline_brush)))
         change = inverse @ rows.T[:, : len(distances)] @ (weight / point_sigma * common_shift_mm)
         covariance = inverse + np.outer(change, change)
         return inverse @ rows.T @ right_side, covariance, noise
 
     def _predict_rings(self, lag, height: float) -> list:
-        brush = _with_lag(self.own, lag, self.own.name)
+        brush = _with_lag(self.outline_brush, lag, self.outline_brush.name)
         passes = []
-        for mark, residual in zip(self.made.painted.marks, self.made.fit.marks, strict=True):
+        for mark, residual in zip(self.calibration.painted.marks, self.calibration.fit.marks, strict=True):
             poses = np.array(residual.way_mm)
             depth = np.clip(height - poses[:, 2], 0.0, brush.depth_range_mm[1])
             passes.append(_core.Pass(mark.stroke, np.column_stack([poses[:, :2], -depth])))
@@ -257,68 +261,69 @@ def _lag_covariance(calibration: MarkCalibration, of_step: np.ndarray) -> np.nda
     return out
 
 
-def _keys_of_outlines(own: _core.Brush) -> dict:
-    """Return what a brush file says about its outlines."""
-    keys = read_extra_keys(own.extra).get("footprints")
+def _keys_of_outlines(outline_brush: _core.Brush) -> dict:
+    """Return the entries of a brush file about its outlines."""
+    keys = read_extra_keys(outline_brush.extra).get("footprints")
     return keys if isinstance(keys, dict) else {}
 
 
-def _outline_error_mm(own: _core.Brush) -> float:
+def _outline_error_mm(outline_brush: _core.Brush) -> float:
     """Return the standard error of the outlines from the brush file [mm]."""
-    error_mm = _keys_of_outlines(own).get("standard_error_mm", 0.0)
+    error_mm = _keys_of_outlines(outline_brush).get("standard_error_mm", 0.0)
     return float(error_mm) if isinstance(error_mm, (int, float)) and np.isfinite(error_mm) else 0.0
 
 
-def refuse_assumed(own: _core.Brush) -> None:
-    if _keys_of_outlines(own).get("assumed", True):
+def refuse_assumed(outline_brush: _core.Brush) -> None:
+    if _keys_of_outlines(outline_brush).get("assumed", True):
         raise Error(
-            f"the outlines of brush {own.name} are assumed, not measured: measure them first, by a photograph of dabs",
+            f"the outlines of brush {outline_brush.name} are assumed, not measured: measure them first, with a "
+            "photograph of dabs",
             "footprints",
             code="footprints-assumed",
         )
 
 
-def _refuse_shallow(own: _core.Brush, deepest_mm: float) -> None:
-    least, deepest = own.depth_range_mm
+def _refuse_shallow(outline_brush: _core.Brush, deepest_mm: float) -> None:
+    least, deepest = outline_brush.depth_range_mm
     if deepest_mm > deepest + 1e-6:
         sentence = (
-            f"the strokes were painted {deepest_mm:g} mm deep, brush {own.name} may be pressed {least:g} to "
-            f"{deepest:g} mm: its dabs must be as deep as the strokes"
+            f"the strokes were painted {deepest_mm:g} mm deep, but brush {outline_brush.name} may be pressed only "
+            f"{least:g} to {deepest:g} mm: measure dabs that are as deep as the strokes"
         )
         raise Error(sentence, "depth_range_mm", deepest_mm, code="depth-out-of-range")
 
 
-def _refuse_changed_lag(lag, fitted_lag, depths: np.ndarray, own: _core.Brush) -> None:
+def _refuse_changed_lag(lag, fitted_lag, depths: np.ndarray, outline_brush: _core.Brush) -> None:
     fitted, new = polyval(depths, fitted_lag), polyval(depths, lag)
     share = np.abs(new - fitted) / np.maximum(fitted, fitted.max() / 4)
     worst = int(share.argmax())
     if share[worst] > MAX_LAG_CHANGE or polyval(np.append(0.0, depths), lag).min() < 0:
         sentence = (
-            f"by the outlines of brush {own.name} the lag at depth {depths[worst]:.3g} mm would be {new[worst]:.1f} mm "
-            f"where it is {fitted[worst]:.1f} mm by the marks alone, more than {100 * MAX_LAG_CHANGE:g} % off: are "
-            "strokes and dabs of one brush?"
+            f"the lag at depth {depths[worst]:.3g} mm would be {new[worst]:.1f} mm with the outlines of brush "
+            f"{outline_brush.name}, but {fitted[worst]:.1f} mm without them; at most {100 * MAX_LAG_CHANGE:g} % is "
+            "allowed: check that the same brush painted the strokes and the dabs"
         )
         raise Error(sentence, "lag", float(new[worst]), code="dabs-of-another-brush")
 
 
-def _with_lag(own: _core.Brush, lag, name: str) -> _core.Brush:
-    brush = _core.read_brush(_core.write_brush(own))
+def _with_lag(outline_brush: _core.Brush, lag, name: str) -> _core.Brush:
+    brush = _core.read_brush(_core.write_brush(outline_brush))
     brush.name, brush.covariance = name, []
     brush.lag = _core.Profile(np.asarray(lag).tolist())
     return brush
 
 
-def _join_covariance(own: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
+def _join_covariance(outline_brush: _core.Brush, brush: _core.Brush, of_lag: np.ndarray) -> np.ndarray:
     """Return the covariance of all coefficients of the brush.
 
     It joins the covariances of the fitted lag and of the unchanged other laws.
 
     The lag was found from the places of tips, so an error of the tip gap changes the lag by the opposite amount.
     """
-    new_places, old_places = places(brush), places(own)
+    new_places, old_places = places(brush), places(outline_brush)
     covariance = np.zeros((new_places[LAWS[-1]].stop,) * 2)
     covariance[: len(of_lag), : len(of_lag)] = of_lag
-    old_covariance = np.array(own.covariance)
+    old_covariance = np.array(outline_brush.covariance)
     if len(old_covariance):
         others = slice(new_places["lag"].stop, None)
         covariance[others, others] = old_covariance[old_places["lag"].stop :, old_places["lag"].stop :]

@@ -12,22 +12,23 @@ def report(found) -> Report:
 
     found: a lag_by_outlines.LagByOutlines.
     """
-    brush, own, before = found.brush, found.own, found.before
-    overlap_before, overlap_now = overlaps(before)[1], overlaps(found.made)[1]
-    worse = "these outlines predict the marks worse than drops or eggs do: look at the dabs once more"
+    brush, outline_brush, before = found.brush, found.outline_brush, found.before
+    overlap_before, overlap_now = overlaps(before)[1], overlaps(found.mark_calibration)[1]
+    worse = "the measured outlines predict the marks worse than the usual drops or eggs: check the dabs again"
     reasons_against, reservations = judge_overlap(overlap_now)
     lines = [
-        f"{name_and_depths(brush)}: the lag of {len(found.made.painted.marks)} painted marks by the outlines of brush "
-        f"{own.name}; all else is that brush's",
-        f"painted and predicted marks overlap by {format_overlap(overlap_now)}, by the brush of drops or eggs "
-        f"{format_overlap(overlap_before)} (mean of intersection over union, without displacements)",
+        f"{name_and_depths(brush)}: the lag is fitted to {len(found.mark_calibration.painted.marks)} painted marks; "
+        f"the outlines and the other laws are those of brush {outline_brush.name}",
+        f"painted and predicted marks overlap by {format_overlap(overlap_now)}, and by "
+        f"{format_overlap(overlap_before)} with drops or eggs as outlines (mean of intersection over union, after each "
+        "mark is moved to its predicted place)",
         paper_height(found.height_mm),
         f"residuals of the edges: standard deviation {found.noise_mm:.2f} mm",
     ]
-    depths = depths_shown(brush, found.made.painted.deepest_mm)
-    names = (f"lag of {own.name}"[:19], "by drops or eggs", "by its outlines")
+    depths = depths_shown(brush, found.mark_calibration.painted.deepest_mm)
+    names = (f"lag of {outline_brush.name}"[:19], "with drops or eggs", "with its outlines")
     columns = zip(
-        names, (values(shown_brush, "lag", depths) for shown_brush in (own, before.brush, brush)), strict=True
+        names, (values(shown_brush, "lag", depths) for shown_brush in (outline_brush, before.brush, brush)), strict=True
     )
     details = [*law_table(depths, columns), HALF_95, "", *coefficients(brush, ["lag"])]
     return Report(

@@ -2,8 +2,8 @@
 
 The more numbers a search may change, the more its result overlaps with the marks to which it was fitted. It may not
 predict other marks better. The marks are therefore divided into parts, and each part is predicted by the others,
-including the fit by edges. The kind of search wins with which the parts that were left out overlap most. As in the
-search, half of the score is the overlap in place, and half the overlap if each mark may move.
+including the fit by edges. The kind of search with the largest overlap of the left-out parts wins. As in the search,
+half of the score is the overlap in place, and half is the overlap if each mark may move.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from ...errors import Error
 from ..marks.from_marks import ROUND_TAIL
 from ..marks.machine_found import PARTS
 from .overlap_search import (
-    Begin,
     MachineOffsets,
     Search,
+    SearchStart,
     Target,
     best_from,
-    choose_few,
+    choose_subset,
     mean_place,
     refine_with_all,
     search_each_kind,
@@ -37,7 +37,7 @@ PROGRESS_INTERVAL = 20  # evaluations between two reports of the progress
 
 
 @dataclass(frozen=True, eq=False)
-class Predicting:
+class BestPrediction:
     """The brush with the largest overlap.
 
     laws: in the form of a fit of marks. height_mm: of the paper. shift_mm: displacement of all marks. offsets:
@@ -58,69 +58,71 @@ class Predicting:
     left_out: dict[str, tuple[float, float]]
 
 
-def best_predicting(
+def find_best_prediction(
     marks: list[_core.PaintedMark],
     targets: list[Target],
-    begin: Begin,
+    begin: SearchStart,
     options: _core.MarkOptions,
-    progress: Callable[[int], object] = lambda looks: None,
-) -> Predicting:
+    progress: Callable[[int], object] = lambda evaluations: None,
+) -> BestPrediction:
     """Find the brush that predicts further marks best.
 
     marks: the marks of the targets, in the same frame. begin: the fit of all marks by edges. progress: receives the
     number of evaluated overlaps.
     """
-    looks = 0
+    evaluations = 0
 
-    def look() -> None:
-        nonlocal looks
-        looks += 1
-        if looks % PROGRESS_INTERVAL == 0:
-            progress(looks)
+    def count_evaluation() -> None:
+        nonlocal evaluations
+        evaluations += 1
+        if evaluations % PROGRESS_INTERVAL == 0:
+            progress(evaluations)
 
-    results = _search_without_parts(marks, targets, begin.laws.round_tail, options, look)
+    results = _search_without_parts(marks, targets, begin.laws.round_tail, options, count_evaluation)
     if not results:
-        return largest_overlap(targets, begin, options, look)
+        return largest_overlap(targets, begin, options, count_evaluation)
     left_out = {kind: np.vstack([result.overlaps for result in results[kind]]).mean(axis=0) for kind in results}
     kind = max(left_out, key=lambda name: left_out[name].sum())
     search = Search(begin, options, targets, mean_place(targets))
     starts = [result.x for result in results[kind] if len(result.x) == len(search.begin)]
     if starts:
-        x = best_from(search, kind, starts, choose_few(targets), look)
+        x = best_from(search, kind, starts, choose_subset(targets), count_evaluation)
     else:  # the parts have fewer marks, which determine fewer numbers of a law
-        kind, x = _search_few(search, targets, look, kind)
-    best = _finish_search(search, kind, x, targets, look)
+        kind, x = _search_subset(search, targets, count_evaluation, kind)
+    best = _finish_search(search, kind, x, targets, count_evaluation)
     means = {name: (float(in_place), float(moved)) for name, (in_place, moved) in left_out.items()}
     return replace(best, parts=len(results["edges"]), left_out=means)
 
 
 def largest_overlap(
     targets: list[Target],
-    begin: Begin,
+    begin: SearchStart,
     options: _core.MarkOptions,
-    look: Callable[[], None] = lambda: None,
-) -> Predicting:
+    count_evaluation: Callable[[], None] = lambda: None,
+) -> BestPrediction:
     """Find the largest overlap with the least restricted kind of search."""
     search = Search(begin, options, targets, mean_place(targets))
-    return _finish_search(search, *_search_few(search, targets, look), targets, look)
+    return _finish_search(search, *_search_subset(search, targets, count_evaluation), targets, count_evaluation)
 
 
-def _search_few(search: Search, targets: list[Target], look, last: str | None = None) -> tuple[str, np.ndarray]:
-    """Search with few marks, and return the last kind and its vector.
+def _search_subset(
+    search: Search, targets: list[Target], count_evaluation, last: str | None = None
+) -> tuple[str, np.ndarray]:
+    """Search with a subset of the marks, and return the last kind and its vector.
 
     last: the last kind to try; None for all possible kinds.
     """
     kind, x = "edges", search.begin
-    for kind, x in search_each_kind(search, choose_few(targets), look):  # noqa: B007
+    for kind, x in search_each_kind(search, choose_subset(targets), count_evaluation):  # noqa: B007
         if kind == last:
             break
     return kind, x
 
 
-def _finish_search(search: Search, kind: str, x, targets: list[Target], look) -> Predicting:
-    x = refine_with_all(search, kind, x, targets, look)
+def _finish_search(search: Search, kind: str, x, targets: list[Target], count_evaluation) -> BestPrediction:
+    x = refine_with_all(search, kind, x, targets, count_evaluation)
     before, now = (float(search.overlaps(vector, targets)[:, 0].mean()) for vector in (search.begin, x))
-    return Predicting(*search.read(x), before, now, search.count_changed(kind), kind, 0, {})
+    return BestPrediction(*search.read(x), before, now, search.count_changed(kind), kind, 0, {})
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +137,7 @@ class _PartResult:
 
 
 def _search_without_parts(
-    marks, targets: list[Target], round_tail: bool, options, look
+    marks, targets: list[Target], round_tail: bool, options, count_evaluation
 ) -> dict[str, list[_PartResult]]:
     """Run each kind of search without each part of the marks.
 
@@ -156,8 +158,8 @@ def _search_without_parts(
             fit = _core.fit_marks(kept_marks, None, edges)
         except Error:
             return {}
-        search = Search(Begin(fit.laws, fit.height_mm, fit.shift_mm), options, kept_targets, middle)
-        for kind, x in search_each_kind(search, choose_few(kept_targets), look):
+        search = Search(SearchStart(fit.laws, fit.height_mm, fit.shift_mm), options, kept_targets, middle)
+        for kind, x in search_each_kind(search, choose_subset(kept_targets), count_evaluation):
             by_kind.setdefault(kind, []).append(_PartResult(x, search.overlaps(x, left_out_targets)))
     return {kind: results for kind, results in by_kind.items() if len(results) == parts}
 

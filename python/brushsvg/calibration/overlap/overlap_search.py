@@ -1,8 +1,8 @@
 """Search for the brush whose marks overlap most with painted marks.
 
-The search changes few numbers of the fit by edges. They are the lag (as values at depths), the tip gap, the half width,
-the two lengths of the footprint, the height of the paper and the displacement of the sheet. On request it also changes
-lean and a map of the paths. It uses the simplex method of Nelder and Mead, at first on a part of the marks.
+The search changes a few numbers of the fit by edges. They are the lag (as values at depths), the tip gap, the half
+width, the two lengths of the footprint, the height of the paper and the displacement of the sheet. On request it also
+changes lean and a map of the paths. It uses the simplex method of Nelder and Mead, at first on a part of the marks.
 
 If marks are displaced by chance, a wider brush overlaps more than the true brush, because its mark reaches all places
 with paint. Half of the objective is therefore the overlap if each mark may move within the expected displacements.
@@ -46,7 +46,7 @@ ROW_SPACING_MM = 0.2  # spacing of the rows of a mark during the search; the are
 LAG_TERMS, HALF_TERMS, TOUCH_LAG_SHARE = 2, 2, 0.5
 # Standard deviation of scale, skew and turn of the paths, per mm. Robot and camera have different frames.
 MAP_SIGMA = 0.03
-STEPS = {
+SIMPLEX_STEPS = {  # size of the first simplex, for each group of numbers
     "lag": 0.8,
     "tip_gap": 0.4,
     "half_width": 0.4,
@@ -58,15 +58,16 @@ STEPS = {
 }
 # Evaluations: for a disc; from each start on few marks; from the better start; and on all marks.
 DISC_EVALUATIONS, START_EVALUATIONS, CONTINUED_EVALUATIONS, FINAL_EVALUATIONS = 120, 100, 160, 200
-# Registration of pictures, for the numbers of the machine: blurs, steps per blur, differences as shares of STEPS.
+# Registration of pictures, for the numbers of the machine: blurs, steps per blur, differences as shares of
+# SIMPLEX_STEPS.
 BLURS_PX, REGISTRATION_STEPS, DIFFERENCE_SHARE = (6, 2), 6, 0.1
 # Limits of the paper height, the half width, the lag and the lengths of the footprint. No brush or paper is outside.
 MAX_HEIGHT_MM, MAX_HALF_WIDTH_MM, MIN_LAG_MM, MIN_SHAPE = 6.0, 20.0, 0.02, 0.1
-MACHINE = ("lean", "map")
+MACHINE_NUMBERS = ("lean", "map")
 # Kinds of search, by what they may change: nothing; a dragged disc; laws and footprint; laws, footprint and machine.
 KINDS = ("edges", "disc", "laws", "machine")
 # Numbers that a kind of search does not change.
-FIXED_NUMBERS = {"disc": ("tip_gap", "shape", *MACHINE), "laws": MACHINE, "machine": ()}
+FIXED_NUMBERS = {"disc": ("tip_gap", "shape", *MACHINE_NUMBERS), "laws": MACHINE_NUMBERS, "machine": ()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,15 +88,15 @@ class Target:
 class MachineOffsets:
     """Errors of a machine in addition to the fit by edges.
 
-    Paths are displaced by lean_mm_per_mm (2,) times the depth, and by map (2, 2) [mm/mm] times the vector from
-    centre_mm (2,).
+    A path is displaced by the depth times lean_mm_per_mm (2,). It is also displaced by map (2, 2) [mm/mm] times the
+    vector from centre_mm (2,).
     """
 
     lean_mm_per_mm: np.ndarray
     map: np.ndarray
     centre_mm: np.ndarray
 
-    def way(self, poses_mm: np.ndarray, height_mm: float) -> np.ndarray:
+    def displace_path(self, poses_mm: np.ndarray, height_mm: float) -> np.ndarray:
         """Return the poses (n, 3) as the machine executes them over paper of this height."""
         poses = np.array(poses_mm)
         depth = np.maximum(height_mm - poses[:, 2:], 0.0)
@@ -104,7 +105,7 @@ class MachineOffsets:
 
 
 @dataclass(frozen=True, eq=False)
-class Begin:
+class SearchStart:
     """The fit by edges, at which the search starts.
 
     shift_mm: shift of the marks, if their frame does not include it.
@@ -118,11 +119,11 @@ class Begin:
 class Search:
     """The numbers that the search changes, as one vector, and the objective."""
 
-    def __init__(self, begin: Begin, options: _core.MarkOptions, targets: list[Target], centre_mm):
+    def __init__(self, begin: SearchStart, options: _core.MarkOptions, targets: list[Target], centre_mm):
         laws, height_mm = begin.laws, begin.height_mm
         self.laws, self.height_mm, self.count = laws, height_mm, len(targets)
         self.deepest_mm = deepest = options.deepest_mm
-        self.farthest_mm = MAX_MOVE_SIGMAS * options.displacement_mm
+        self.max_move_mm = MAX_MOVE_SIGMAS * options.displacement_mm
         half = min(HALF_TERMS, len(laws.half_width) - 1)
         self.lag_at = np.linspace(0, deepest, LAG_TERMS)
         self.half_at = np.linspace(0, deepest, half + 1)
@@ -144,20 +145,22 @@ class Search:
         self.at = {
             name: slice(end - len(numbers), end) for (name, numbers), end in zip(parts.items(), ends, strict=True)
         }
-        self.steps = np.concatenate([np.full(len(numbers), STEPS[name]) for name, numbers in parts.items()])
+        self.steps = np.concatenate([np.full(len(numbers), SIMPLEX_STEPS[name]) for name, numbers in parts.items()])
         self.has_machine = bool(len(parts["lean"]) + len(parts["map"]))
         self.lean_sigma = options.lean_mm_per_mm
         self.centre_mm = centre_mm
         # A round tail is as long as the tail of a disc, in half widths; a pointed tail has its usual length.
         self.usual_shape = np.array([1.0 if laws.round_tail else options.widest_per_half.value, 1.0])
 
-    def disc(self) -> np.ndarray:
-        x = self.as_disc(self.begin)
+    def make_disc_start(self) -> np.ndarray:
+        """Return the vector at which the search for a dragged disc starts."""
+        x = self.restrict_to_disc(self.begin)
         if self.one_depth:
             x[self.at["lag"]][0] = max(TOUCH_LAG_SHARE * x[self.at["lag"]][0], MIN_LAG_MM)
         return x
 
-    def as_disc(self, x) -> np.ndarray:
+    def restrict_to_disc(self, x) -> np.ndarray:
+        """Return the vector with a disc as footprint, centred on the centre of friction."""
         x = np.array(x)
         x[self.at["tip_gap"]], x[self.at["shape"]] = x[self.at["half_width"]].sum(), 1.0
         return x
@@ -189,7 +192,7 @@ class Search:
             _add_polynomials(old.front_by_depth, [front]) if old.front_by_depth else [],
         )
         height = float(x[self.at["height"]][0]) if self.has_height else self.height_mm
-        lean, by_map = (x[self.at[name]] for name in MACHINE)
+        lean, by_map = (x[self.at[name]] for name in MACHINE_NUMBERS)
         machine = MachineOffsets(
             lean if len(lean) else np.zeros(2),
             by_map.reshape(2, 2) if len(by_map) else np.zeros((2, 2)),
@@ -207,9 +210,8 @@ class Search:
     def differences(self, x, targets: list[Target], blur_px: int) -> np.ndarray | None:
         """Return the blurred differences of pixels, and the cost terms.
 
-        The differences are predicted minus painted.
-
-        The squares of the differences are shares of the paint of each mark. Return None if the brush is impossible.
+        The differences are predicted minus painted. Their squares are shares of the paint of each mark. Return None if
+        the brush is impossible.
         """
         laws, height, shift, machine = self.read(x)
         if self._is_impossible(x, laws, height):
@@ -228,7 +230,7 @@ class Search:
 
     def _overlaps(self, targets: list[Target], laws, height: float, shift, machine: MachineOffsets) -> np.ndarray:
         def compared(target: Target, picture: np.ndarray) -> tuple[float, float]:
-            moved, _ = best_shift(picture, target.paint, 1 / target.px_per_mm, self.farthest_mm)
+            moved, _ = best_shift(picture, target.paint, 1 / target.px_per_mm, self.max_move_mm)
             return soft_overlap(target.paint, picture), moved
 
         moved_targets = _move_targets(targets, machine, height)
@@ -237,9 +239,8 @@ class Search:
     def _cost_terms(self, x) -> np.ndarray:
         """Return the cost terms of the footprint and the machine.
 
-        A footprint that is not round has a cost, and a machine with errors.
-
-        The cost is the sum of their squares, for all marks together.
+        A footprint that is not round has a cost, and so has a machine with errors. The cost is the sum of the squares
+        of the terms, for all marks together.
         """
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
@@ -268,36 +269,39 @@ class Search:
 
 
 def search_each_kind(
-    search: Search, few: list[Target], look: Callable[[], None] = lambda: None
+    search: Search, subset: list[Target], count_evaluation: Callable[[], None] = lambda: None
 ) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield each possible kind of search with its best vector for few marks.
+    """Yield each possible kind of search with its best vector for a subset of the marks.
 
-    Each kind starts where the earlier kinds ended. look: called before each evaluation.
+    Each kind starts where the earlier kinds ended. count_evaluation is called before each evaluation.
     """
 
     def loss(x) -> float:
-        look()
-        return search.loss(x, few)
+        count_evaluation()
+        return search.loss(x, subset)
 
     yield "edges", search.begin
     starts, steps = [search.begin], search.steps
     free = search.free_numbers(*FIXED_NUMBERS["laws"])
     if search.laws.round_tail:
         disc = _minimise(
-            lambda x: loss(search.as_disc(x)),
-            search.disc(),
+            lambda x: loss(search.restrict_to_disc(x)),
+            search.make_disc_start(),
             steps,
             search.free_numbers(*FIXED_NUMBERS["disc"]),
             DISC_EVALUATIONS,
         )
-        starts.append(search.as_disc(disc.all_x))
+        starts.append(search.restrict_to_disc(disc.all_x))
         yield "disc", starts[-1]
     x = _search_from_starts(loss, starts, steps, free)
     yield "laws", x
     if search.has_machine:
         machine = search.free_numbers(*FIXED_NUMBERS["machine"])
         x = _search_from_starts(
-            loss, [_register_pictures(search, search.begin, machine, few, look), x], 0.4 * steps, machine
+            loss,
+            [_register_pictures(search, search.begin, machine, subset, count_evaluation), x],
+            0.4 * steps,
+            machine,
         )
         yield "machine", x
 
@@ -312,17 +316,19 @@ def _search_from_starts(loss, starts: list[np.ndarray], steps, free) -> np.ndarr
     return _minimise(loss, best.all_x, steps, free, CONTINUED_EVALUATIONS, best.final_simplex[0]).all_x
 
 
-def refine_with_all(search: Search, kind: str, x, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
-    """Continue a search that used few marks with all marks."""
+def refine_with_all(
+    search: Search, kind: str, x, targets: list[Target], count_evaluation: Callable[[], None]
+) -> np.ndarray:
+    """Continue a search that used a subset of the marks, now with all marks."""
     if kind == "edges":
         return x
 
     def loss(x) -> float:
-        look()
-        return search.loss(search.as_disc(x) if kind == "disc" else x, targets)
+        count_evaluation()
+        return search.loss(search.restrict_to_disc(x) if kind == "disc" else x, targets)
 
     refined = _minimise(loss, x, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]), FINAL_EVALUATIONS).all_x
-    return search.as_disc(refined) if kind == "disc" else refined
+    return search.restrict_to_disc(refined) if kind == "disc" else refined
 
 
 def mean_place(targets: list[Target]) -> np.ndarray:
@@ -330,37 +336,43 @@ def mean_place(targets: list[Target]) -> np.ndarray:
     return np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
 
 
-def best_from(search: Search, kind: str, starts: list[np.ndarray], few: list[Target], look: Callable[[], None]):
+def best_from(
+    search: Search,
+    kind: str,
+    starts: list[np.ndarray],
+    subset: list[Target],
+    count_evaluation: Callable[[], None],
+):
     """Return the vector of one kind that overlaps most.
 
     starts: results of searches of this kind with parts of the marks.
     """
 
     def loss(x) -> float:
-        look()
-        return search.loss(search.as_disc(x) if kind == "disc" else x, few)
+        count_evaluation()
+        return search.loss(search.restrict_to_disc(x) if kind == "disc" else x, subset)
 
     if kind == "edges":
         return search.begin
     return _search_from_starts(loss, starts, 0.4 * search.steps, search.free_numbers(*FIXED_NUMBERS[kind]))
 
 
-def choose_few(targets: list[Target]) -> list[Target]:
+def choose_subset(targets: list[Target]) -> list[Target]:
     return targets[:: max(1, len(targets) // FIRST_MARK_COUNT)]
 
 
 def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: float) -> list[Target]:
     if not (machine.lean_mm_per_mm.any() or machine.map.any()):
         return targets
-    return [replace(target, poses_mm=machine.way(target.poses_mm, height_mm)) for target in targets]
+    return [replace(target, poses_mm=machine.displace_path(target.poses_mm, height_mm)) for target in targets]
 
 
-def _register_pictures(search: Search, x, free, targets: list[Target], look: Callable[[], None]) -> np.ndarray:
+def _register_pictures(
+    search: Search, x, free, targets: list[Target], count_evaluation: Callable[[], None]
+) -> np.ndarray:
     """Register predicted and painted pictures by least squares.
 
-    The more blurred pictures come first.
-
-    Derivatives are forward differences. free: mask of the numbers that are changed.
+    The more blurred pictures come first. Derivatives are forward differences. free: mask of the numbers that change.
     """
     from scipy.optimize import least_squares
 
@@ -374,7 +386,7 @@ def _register_pictures(search: Search, x, free, targets: list[Target], look: Cal
     for blur_px in BLURS_PX:
 
         def differences(changed, blur_px=blur_px):
-            look()
+            count_evaluation()
             return search.differences(fill_free(changed), targets, blur_px)
 
         begin = differences(x[free])
@@ -404,10 +416,10 @@ def _blur(picture, blur_px: int) -> np.ndarray:
     return cv2.GaussianBlur(np.float64(picture), (0, 0), blur_px)[::blur_px, ::blur_px]
 
 
-def _minimise(loss, x, steps, free, most: int, corners=None):
+def _minimise(loss, x, steps, free, max_evaluations: int, corners=None):
     """Minimise the loss over the free numbers by Nelder and Mead.
 
-    The search starts at x, or at the corners with which an earlier search ended. most: largest number of evaluations.
+    The search starts at x, or at the corners with which an earlier search ended.
     """
     from scipy.optimize import minimize
 
@@ -418,7 +430,7 @@ def _minimise(loss, x, steps, free, most: int, corners=None):
 
     if corners is None:
         corners = np.vstack([x[free], *(x[free] + d for d in np.diag(steps[free]))])
-    simplex = {"initial_simplex": corners, "maxfev": most, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
+    simplex = {"initial_simplex": corners, "maxfev": max_evaluations, "adaptive": True, "xatol": 0.01, "fatol": 1e-5}
     result = minimize(lambda changed: loss(fill_free(changed)), x[free], method="Nelder-Mead", options=simplex)
     result.all_x = fill_free(result.x)
     return result
@@ -443,15 +455,15 @@ def _add_polynomials(law, change) -> list[float]:
 def predict_pictures(targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float) -> list[np.ndarray]:
     """Return anti-aliased pictures of the marks of a brush.
 
-    They change smoothly with its laws.
-
-    The footprints have half as many vertices.
+    They change smoothly with its laws. For speed, the footprints have half as many vertices.
     """
     return map_predicted(lambda target, picture: picture, targets, laws, height_mm, shift_mm, deepest_mm)
 
 
-def map_predicted(what: Callable, targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float) -> list:
-    """Call what(target, picture) with the predicted picture of each target.
+def map_predicted(
+    evaluate: Callable, targets: list[Target], laws, height_mm: float, shift_mm, deepest_mm: float
+) -> list:
+    """Call evaluate(target, picture) with the predicted picture of each target.
 
     Return the results. All processors are used.
     """
@@ -460,12 +472,12 @@ def map_predicted(what: Callable, targets: list[Target], laws, height_mm: float,
     outlines = [(footprint.depth_mm, np.array(footprint.outline_mm)[::2]) for footprint in brush.footprints.dragged]
     brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
 
-    def evaluate(target: Target):
+    def predict(target: Target):
         stroke_pass = _core.Pass("mark", on_paper(target.poses_mm, height_mm, shift_mm))
         marks = _core.simulate(_core.Plan("fitted", "", (1.0, 1.0), [stroke_pass]), brush, ROW_SPACING_MM)
-        return what(target, _core.coverage(marks, brush, target.window_mm, target.px_per_mm))
+        return evaluate(target, _core.coverage(marks, brush, target.window_mm, target.px_per_mm))
 
-    return list(_workers().map(evaluate, targets))
+    return list(_workers().map(predict, targets))
 
 
 @cache
@@ -490,12 +502,12 @@ def soft_overlap(paint, picture) -> float:
     return both / either if either > 0 else 1.0
 
 
-def best_shift(picture, paint, px_mm: float, farthest_mm: float) -> tuple[float, np.ndarray]:
+def best_shift(picture, paint, px_mm: float, max_move_mm: float) -> tuple[float, np.ndarray]:
     """Return the largest overlap of a moved prediction, and the move [mm].
 
     The prediction moves by whole pixels. The move has y up.
     """
-    reach = int(farthest_mm / px_mm)
+    reach = int(max_move_mm / px_mm)
     padded = cv2.copyMakeBorder(np.float32(paint), reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0)
     common = cv2.matchTemplate(padded, np.float32(picture), cv2.TM_CCORR)
     total = picture.sum() + paint.sum()
