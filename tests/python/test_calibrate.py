@@ -62,7 +62,7 @@ def test_an_outlier_is_named_and_does_not_affect_least_absolute_residuals(tmp_pa
     (tmp_path / "m.csv").write_text("kind,depth_mm,value_mm\n" + "\n".join([*lines, "lag,4,14"]))
     call = ["calibrate", str(tmp_path / "m.csv"), "-o", str(tmp_path / "b.json")]
     assert main(call) == 0
-    assert re.search(r"\b50 .*: \+", capsys.readouterr().out)
+    assert re.search(r"\b50 .*, \+", capsys.readouterr().out)
     off = find_brush(tmp_path / "b.json").lag(4) - 8
     assert main([*call, "--force", "--norm", "absolute"]) == 0
     assert abs(find_brush(tmp_path / "b.json").lag(4) - 8) < 0.02 < abs(off) / 5
@@ -473,7 +473,7 @@ def test_a_typing_error_among_ten_readings_is_named(tmp_path, capsys, norm):
     rows[4] = ("lag", 5, 70.0)
     table(tmp_path, rows + WIDTHS, "--norm", norm)
     reported = "".join(capsys.readouterr())
-    assert re.search(r"\b6 .*: \+", reported)
+    assert re.search(r"\b6 .*, \+", reported)
     assert not re.search(r"\b5 .*: [+-]", reported)
 
 

@@ -12,7 +12,7 @@ if not hasattr(core, "fit_marks"):
 from dataclasses import replace  # noqa: E402
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.calibration.chart.dabs import dab_depths, dab_poses, is_of_dabs, landing  # noqa: E402
+from brushsvg.calibration.chart.dabs import dab_depths, dab_poses, is_of_dabs, read_dab_landing  # noqa: E402
 from brushsvg.calibration.chart.file import read_chart  # noqa: E402
 from brushsvg.calibration.chart.layout import chart  # noqa: E402
 from brushsvg.calibration.dabs.dab_outlines import Dab  # noqa: E402
@@ -168,7 +168,7 @@ def test_the_patch_rests_while_a_dab_is_painted():
             plan.passes = [core.Pass("dab", dab_poses(brush, depth, 90.0) + np.array([50, 50, 0]), 20.0)]
             trace = core.simulate(plan, brush).passes[0]
             np.testing.assert_allclose(trace.contact_mm, [[50, 50]] * len(trace.contact_mm), atol=1e-6)
-            place, heading, run, deepest = landing(plan.passes[0].poses_mm)
+            place, heading, run, deepest = read_dab_landing(plan.passes[0].poses_mm)
             assert (*place, heading, deepest) == pytest.approx((50, 50, np.pi / 2, depth))
             assert run == pytest.approx(0.95 * brush.lag(depth))
 
@@ -178,7 +178,7 @@ def test_a_chart_of_dabs_is_made():
     assert [stroke.kind for stroke in made.strokes] == ["dab"] * 16
     for depth in {stroke.depth_mm for stroke in made.strokes}:
         here = [one for one, stroke in zip(made.plan.passes, made.strokes, strict=True) if stroke.depth_mm == depth]
-        headings = [round(np.degrees(landing(one.poses_mm)[1])) % 360 for one in here]
+        headings = [round(np.degrees(read_dab_landing(one.poses_mm)[1])) % 360 for one in here]
         assert sorted(headings) == [0, 90, 180, 270]
     assert dab_depths(BRUSH, 3, 6.0) == [1.2, 3.6, 6.0]
     with refused("out-of-range liner 0.8 1.2", "brush"):

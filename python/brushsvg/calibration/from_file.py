@@ -63,13 +63,13 @@ def fit_measurements(
     name = name or contents.name or default_name or stem
     if contents.marks is None:
         if machine:
-            sentence = "--machine needs painted marks: measured numbers say nothing of the machine"
+            sentence = "--machine needs painted marks: measured numbers do not show errors of the machine"
             raise Error(sentence, code="options-contradict")
         if paint:
-            sentence = "--paint needs painted marks: measured numbers say nothing of the order they were painted in"
+            sentence = "--paint needs painted marks: measured numbers do not show in which order marks were painted"
             raise Error(sentence, code="options-contradict")
         if aim == "overlap":
-            sentence = "--aim overlap needs painted marks: measured numbers have no outlines that could overlap"
+            sentence = "--aim overlap needs painted marks: measured numbers have no outlines"
             raise Error(sentence, code="options-contradict")
         _read_pictures(contents, read)
         return calibrate_measured(contents, name, bool(absolute), bool(total))
@@ -77,7 +77,7 @@ def fit_measurements(
     options = options_for(contents.expected)
     ask_for(options, machine)
     if paint and aim == "overlap":
-        sentence = "--paint is found by edges: with --aim overlap marks do not narrow along the way"
+        sentence = "--paint needs --aim edges: --aim overlap cannot estimate how marks narrow"
         raise Error(sentence, code="options-contradict")
     fit = calibrate_paint if paint else calibrate_marks
     calibration = fit(painted, name, contents.depth_range_mm, contents.max_speed_mm_s, options)
@@ -88,7 +88,7 @@ def _to_json(measured: dict) -> bytes:
     try:
         return json.dumps({"format": FORMAT, "version": 1} | measured, default=_to_plain_value).encode()
     except (TypeError, ValueError, RecursionError):
-        sentence = "measurements are numbers, texts, lists and dicts, as docs/reference/measurements.md has them"
+        sentence = "measurements must be numbers, texts, lists and dicts, see docs/reference/measurements.md"
         raise Error(sentence, code="wrong-type") from None
 
 

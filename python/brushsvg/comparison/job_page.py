@@ -12,12 +12,12 @@ import numpy as np
 
 from .. import _core
 from ..calibration.chart.layout import (
-    BETWEEN,
     EDGE_MM,
-    GROUP,
-    GROUPS,
-    MARKERS,
-    QUIET,
+    GROUP_COUNT,
+    MARKER_SIDE_RANGE_MM,
+    MARKERS_PER_CHART,
+    MIN_SIDES_FOR_MIDDLE_MARKER,
+    QUIET_ZONE_SHARE,
     Bar,
     Chart,
     Label,
@@ -54,14 +54,14 @@ def job_page(plan, title: str = "") -> JobPage:
     The markers, from the chart's dictionary, identify the plan, so that the page of another job is not mistaken for
     this one. Raises Error for a tilted brush: what is learnt from photographs of a job holds only for an upright brush.
     """
-    _core.refuse_tilted(plan.passes, "jobs are compared with photographs of a brush held upright")
+    _core.refuse_tilted(plan.passes, "the comparison with photographs needs an upright brush")
     sheet = plan.sheet_mm
-    side = min(max(min(sheet) / 14, MARKERS[0]), MARKERS[1])
-    frame = math.ceil(EDGE_MM + (1 + 2 * QUIET) * side)
+    side = min(max(min(sheet) / 14, MARKER_SIDE_RANGE_MM[0]), MARKER_SIDE_RANGE_MM[1])
+    frame = math.ceil(EDGE_MM + (1 + 2 * QUIET_ZONE_SHARE) * side)
     page = (sheet[0] + 2 * frame, sheet[1] + 2 * frame)
     passes = sorted(plan.passes, key=lambda each: each.stroke)  # the order of painting does not matter
     mark = chart_id(_core.Plan(plan.brush, plan.brush_sha256, plan.sheet_mm, passes))
-    base = GROUP * (int(mark, 16) % GROUPS)
+    base = MARKERS_PER_CHART * (int(mark, 16) % GROUP_COUNT)
     markers = tuple(
         Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
         for k, (x, y) in _marker_places(page, side)
@@ -89,18 +89,18 @@ def _marker_places(page, side: float) -> list[tuple[int, tuple[float, float]]]:
     left, right, top, bottom = EDGE_MM, page[0] - EDGE_MM - side, page[1] - EDGE_MM, EDGE_MM + side
     across, up = (page[0] - side) / 2, (page[1] + side) / 2
     places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
-    if page[0] >= BETWEEN * side:
+    if page[0] >= MIN_SIDES_FOR_MIDDLE_MARKER * side:
         places += [(4, (across, top)), (6, (across, bottom))]
-    if page[1] >= BETWEEN * side:
+    if page[1] >= MIN_SIDES_FOR_MIDDLE_MARKER * side:
         places += [(5, (right, up)), (7, (left, up))]
     return sorted(places)
 
 
 def _place_bar(page, side: float) -> Bar:
     """Place the bar in the lower part of the frame, between two markers."""
-    room = page[0] / 2 - EDGE_MM - (1.5 + 2 * QUIET) * side
+    room = page[0] / 2 - EDGE_MM - (1.5 + 2 * QUIET_ZONE_SHARE) * side
     length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
-    return Bar((EDGE_MM + (1 + QUIET) * side, EDGE_MM + side / 2), float(max(length, 5)))
+    return Bar((EDGE_MM + (1 + QUIET_ZONE_SHARE) * side, EDGE_MM + side / 2), float(max(length, 5)))
 
 
 def _tick_boxes(sheet, frame: float):

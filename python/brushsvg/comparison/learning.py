@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..calibration.chart.photograph import EDGE_PX
-from ..calibration.prior.from_prior import Updated, marks_with_prior, update_brush
+from ..calibration.prior.from_prior import UpdatedBrush, marks_with_prior, update_brush
 from ..errors import Error, Notice
 from .job_marks import MAX_MISSING_FOR_OUTLINE, PAINT_A_CHART, JobMarks, job_marks
 from .job_page import job_page
@@ -20,7 +20,9 @@ MAX_ROUNDS = 2
 
 @dataclass(frozen=True)
 class LearntBrush:
-    updated: Updated
+    """A brush that was updated from a job, and notices about strokes that were left out."""
+
+    updated: UpdatedBrush
     notices: tuple[Notice, ...]
 
 
@@ -75,17 +77,20 @@ def _painted_marks(plan, marks: JobMarks):
 def _uninformative_error(marks: JobMarks, name: str) -> Error:
     touching, dry = len(marks.touching), len(marks.dry)
     sentence = (
-        f"no stroke of this job is alone and fully painted: of {touching + dry} {touching} share their paint with "
-        f"others, and {dry} are not found or lack paint on more than {100 * MAX_MISSING_FOR_OUTLINE:g} %: nothing is "
-        "learnt from it"
+        f"the brush cannot be updated, because no stroke of this job is separate and completely painted: of "
+        f"{touching + dry} strokes, {touching} touch others, and {dry} are not found or lack more than "
+        f"{100 * MAX_MISSING_FOR_OUTLINE:g} % of their paint"
     )
     return Error(sentence, file=name, code="marks-touch", advice=PAINT_A_CHART)
 
 
 def _left_out_notices(found: Comparison, marks: JobMarks, strokes: list[TargetStroke]):
     """Yield the notices of the comparison, and why each stroke was left out."""
-    touching = "its paint is one with that of other strokes: it is left out"
-    dry = f"its mark is not found, or more than {100 * MAX_MISSING_FOR_OUTLINE:g} % of it has no paint: it is left out"
+    touching = "this stroke is left out, because its paint touches the paint of other strokes"
+    dry = (
+        "this stroke is left out, because its mark was not found or lacks more than "
+        f"{100 * MAX_MISSING_FOR_OUTLINE:g} % of its paint"
+    )
     yield from found.notices
     yield from (Notice(strokes[k].stroke, touching, code="marks-touch") for k in marks.touching)
     yield from (Notice(strokes[k].stroke, dry, code="mark-dry") for k in marks.dry)

@@ -34,8 +34,8 @@ def dab_depths(brush, count: int, deepest_mm: float) -> list[float]:
     deepest = min(brush.depth_range_mm[1], deepest_mm)
     if not brush.half_width(deepest) > 1.2 * MIN_HALF_WIDTH_MM:
         sentence = (
-            f"dabs of brush {brush.name} are {2 * brush.half_width(deepest):.2g} mm wide at depth {deepest:g} mm, "
-            f"outlines can be read of those wider than {2.4 * MIN_HALF_WIDTH_MM:g} mm"
+            f"dabs of brush {brush.name} are only {2 * brush.half_width(deepest):.2g} mm wide at depth {deepest:g} mm; "
+            f"outlines can be read of dabs wider than {2.4 * MIN_HALF_WIDTH_MM:g} mm"
         )
         raise Error(sentence, "brush", 2 * brush.half_width(deepest), code="out-of-range")
     least = max(brush.depth_range_mm[0], MIN_DEPTH_SHARE * deepest)
@@ -61,7 +61,7 @@ def dab_poses(brush, depth: float, heading_deg: float) -> np.ndarray:
     return np.column_stack([run * math.cos(along), run * math.sin(along), -depths])
 
 
-def landing(poses_mm: np.ndarray) -> tuple[np.ndarray, float, float, float]:
+def read_dab_landing(poses_mm: np.ndarray) -> tuple[np.ndarray, float, float, float]:
     """Return the place, the heading [rad], the run [mm] and the depth [mm] of a dab.
 
     Raises Error for poses that are not a dab.
@@ -71,7 +71,8 @@ def landing(poses_mm: np.ndarray) -> tuple[np.ndarray, float, float, float]:
     distances = np.hypot(*away.T)
     deepest = int(distances.argmax())
     if not distances[deepest] > 0 or distances[-1] > 1e-3 or poses[deepest, 2] > poses[:, 2].min() + 1e-6:
-        raise Error("this is no dab: it must go one way while it is pressed, and back", code="chart-strokes")
+        sentence = "this stroke is not a dab: a dab moves in one direction while it goes down, and back while it lifts"
+        raise Error(sentence, code="chart-strokes")
     return (
         poses[0, :2],
         math.atan2(away[deepest, 1], away[deepest, 0]),
@@ -92,7 +93,7 @@ def dabs_of(read) -> list[Dab]:
     dabs = []
     for dab_pass in read.chart.plan.passes:
         try:
-            place, heading, run, depth = landing(dab_pass.poses_mm)
+            place, heading, run, depth = read_dab_landing(dab_pass.poses_mm)
         except Error as refusal:
             raise Error(refusal.sentence, dab_pass.stroke, code=refusal.code) from None
         rings = read.marks.outlines_mm.get(dab_pass.stroke, [])
@@ -106,7 +107,7 @@ def dab_chart_report(chart, brush: _core.Brush) -> str:
     lines = [
         f"{len(chart.strokes)} dabs on {width:g} x {height:g} mm, {len(chart.strokes) // len(depths)} at each of the "
         f"depths {', '.join(f'{depth:g}' for depth in depths)} mm",
-        f"Landed for brush {brush.name}, which lags {brush.lag(depths[0]):.1f} to {brush.lag(depths[-1]):.1f} mm: "
-        "calibrate its lag first, dabs do not show it",
+        f"This page is for brush {brush.name} with a lag of {brush.lag(depths[0]):.1f} to "
+        f"{brush.lag(depths[-1]):.1f} mm. Calibrate the lag first, because dabs do not show it",
     ]
     return "\n".join([*lines, ""])

@@ -28,14 +28,14 @@ def chart_report(chart, brush, noise_mm: float) -> str:
         + " mm"
     ]
     if not hasattr(_core, "fit_marks"):
-        return "\n".join([*lines, "no confidence intervals: this brushsvg was built without fits", ""])
+        return "\n".join([*lines, "no confidence intervals, because this brushsvg was built without fits", ""])
     painted = expected_marks(chart.plan, brush)
     expected, remarks = expected_brush(chart.plan, brush, noise_mm, painted=painted)
     at = np.linspace(depths[0], depths[-1], TABLE_ROWS)
     bands = {name: law_band(expected, name, at)[0] for name, _ in LAWS}
     lines += [
         "",
-        f"Laws to expect of a brush like {brush.name}, edges digitized to {noise_mm:g} mm, sheet and marks displaced:",
+        f"Expected calibration of a brush like {brush.name}, if edges are read to {noise_mm:g} mm:",
         "  depth" + "".join(name.rjust(18) for name, _ in LAWS),
     ]
     for i, depth in enumerate(at):
@@ -44,22 +44,22 @@ def chart_report(chart, brush, noise_mm: float) -> str:
     lines += ["  +-: half the 95 % confidence interval of the law", *remarks]
     machine = expected_machine(chart.plan, brush, noise_mm, painted=painted)
     listed = [f"{number.name} +- {number.half:.2g}" for number in machine]
-    lines += ["Of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(listed)]
+    lines += ["Errors of the machine, with calibrate --machine " + ",".join(PARTS) + ":", "  " + ", ".join(listed)]
     return "\n".join([*lines, *_describe_paint(chart, brush, noise_mm, painted), ""])
 
 
 def _describe_paint(chart, brush, noise_mm: float, painted: list) -> list[str]:
     try:
         paint = expected_paint(chart.plan, brush, noise_mm, painted)
-    except Error as error:  # of a brush whose mark is as long as its strokes
+    except Error as error:  # the marks of the brush are as long as its strokes
         return [f"This chart cannot show whether marks narrow as paint runs out: {error}"]
     alike = f"depth explains {100 * paint.explained_by_depth:.0f} % of how far each stroke is from the dip"
     if paint.is_refused:
         return [
-            "This chart cannot show whether marks narrow as paint runs out: its strokes go from shallow to deep, so "
-            f"that less paint looks like less depth ({alike}); chart --paint has another order"
+            "This chart cannot show whether marks narrow as paint runs out. Its strokes go from shallow to deep, so "
+            f"less paint looks like less depth ({alike}). chart --paint paints them in another order"
         ]
     return [
-        "Of paint that runs out, with calibrate --paint, painted with one load:",
-        f"  narrowing per metre +- {paint.half_per_m:.2g}; {alike}; the load has to last for {paint.way_mm:.0f} mm",
+        "Narrowing of marks as paint runs out, with calibrate --paint, if the chart is painted with one load:",
+        f"  narrowing per metre +- {paint.half_per_m:.2g}; {alike}; one load must last for {paint.way_mm:.0f} mm",
     ]

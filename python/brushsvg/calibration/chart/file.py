@@ -70,11 +70,11 @@ def read_chart(data: bytes) -> Chart:
     except Error as refusal:
         if refusal.code != "format-unknown":
             raise
-        sentence = f"{refusal.sentence}: a chart file is what brushsvg chart writes with --chart FILE"
+        sentence = f"{refusal.sentence}: give the chart file that brushsvg chart wrote with --chart FILE"
         raise Error(sentence, refusal.where, code=refusal.code) from None
     dictionary = content.get("dictionary")
     if not isinstance(dictionary, str) or dictionary not in DICTIONARIES:
-        raise Error(f"the markers must be of {' or '.join(DICTIONARIES)}", "dictionary", code="chart-markers")
+        raise Error(f"the dictionary must be {' or '.join(DICTIONARIES)}", "dictionary", code="chart-markers")
     if not isinstance(content.get("plan"), dict):
         raise Error("the chart has no plan", "plan", code="key-missing")
     try:
@@ -84,7 +84,7 @@ def read_chart(data: bytes) -> Chart:
     _core.refuse_tilted(plan.passes, "charts are painted with the brush upright")
     sheet_mm = _read_lengths(content.get("sheet_mm"), "sheet_mm", 2, MAX_SHEET_SIDE_MM)
     if not np.allclose(sheet_mm, plan.sheet_mm, atol=1e-3):
-        sentence = f"{sheet_mm[0]:g} x {sheet_mm[1]:g} mm are not the sheet of the plan"
+        sentence = f"{sheet_mm[0]:g} x {sheet_mm[1]:g} mm differs from the sheet of the plan"
         raise Error(sentence, "sheet_mm", code="chart-strokes")
     rows, most_mm = json_fields.objects, max(sheet_mm)
     markers = [
@@ -95,7 +95,7 @@ def read_chart(data: bytes) -> Chart:
         _read_stroke(row, f"strokes[{i}]", most_mm) for i, row in enumerate(rows(content.get("strokes"), "strokes"))
     ]
     if [each.id for each in strokes] != [each.stroke for each in plan.passes]:
-        raise Error("the strokes are not those of the plan, in its order", "strokes", code="chart-strokes")
+        raise Error("the strokes must be the strokes of the plan, in its order", "strokes", code="chart-strokes")
     if len({each.id for each in markers}) < len(markers):
         raise Error("two markers have the same id", "markers", code="chart-markers")
     labels = [
@@ -103,7 +103,7 @@ def read_chart(data: bytes) -> Chart:
     ]
     mark = content.get("id", "")
     if mark and mark != chart_id(plan):
-        sentence = f"the plan is not that of chart {str(mark)[:20]}: it was changed since"
+        sentence = f"the plan was changed after chart {str(mark)[:20]} was written"
         raise Error(sentence, "plan", code="chart-strokes")
     bar = _read_bar(content["bar"], most_mm) if content.get("bar") else None
     return Chart(plan, tuple(strokes), tuple(markers), tuple(labels), mark, bar, dictionary)
@@ -125,7 +125,7 @@ def _read_bar(row, most_mm: float) -> Bar:
         raise Error("this must be an object", "bar", code="wrong-type")
     length_mm = json_fields.number(row.get("length_mm"), "bar.length_mm", greatest=most_mm)
     if not length_mm > 0:
-        sentence = f"the bar is {length_mm:g} mm long, it must be longer than 0"
+        sentence = f"the bar is {length_mm:g} mm long, but it must be longer than 0"
         raise Error(sentence, "bar.length_mm", length_mm, code="out-of-range")
     return Bar(_read_lengths(row.get("at_mm"), "bar.at_mm", 2, most_mm), length_mm)
 
@@ -139,7 +139,7 @@ def _read_label(row: dict, where: str, most_mm: float) -> Label:
 
 def _read_stroke(row: dict, where: str, most_mm: float) -> Stroke:
     if not isinstance(row.get("id"), str) or not isinstance(row.get("kind"), str):
-        raise Error("a stroke needs an id and a kind, in words", where, code="wrong-type")
+        raise Error("a stroke needs an id and a kind, both texts", where, code="wrong-type")
     depth_mm = json_fields.number(row.get("depth_mm"), f"{where}.depth_mm", 0, MAX_DEPTH_MM)
     return Stroke(row["id"], row["kind"], depth_mm, _read_lengths(row.get("box_mm"), f"{where}.box_mm", 4, most_mm))
 

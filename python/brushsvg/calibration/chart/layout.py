@@ -40,14 +40,14 @@ DAB_LAG_SHARES, DAB_WIDTH_FACTOR, DAB_MARGIN_MM = (0.9, 1.0, 1.1), 1.5, 0.3
 MAX_DAB_DEPTHS = 8  # number of depths; a larger sheet repeats them once
 KIND_LETTERS = {"straight": "S", "angular": "A", "arc": "C", "reversal": "V", "reference": "R", KIND: "D"}
 LETTER_WIDTH_MM = 1.4  # mean width of a letter of a label
-QUIET = 1 / 6  # width of the white zone around a marker, as a share of its side: more than a module
-MARKERS = (8.0, 20.0)  # least and greatest side of a marker [mm]
+QUIET_ZONE_SHARE = 1 / 6  # width of the white zone around a marker, as a share of its side: more than a module
+MARKER_SIDE_RANGE_MM = (8.0, 20.0)
 # Positions that are tried for the markers at the left and right, as shares of the sheet height.
 MARKER_HEIGHT_SHARES = (0.5, 0.45, 0.55, 0.4, 0.6, 0.35, 0.65)
-BETWEEN = 5.0  # an edge gets a marker in its middle if it is at least this many marker sides long
+MIN_SIDES_FOR_MIDDLE_MARKER = 5.0  # an edge gets a marker in its middle if it is at least this many marker sides long
 TICK_MM = 2.2  # height of the ends of the bar
 # A chart uses eight of a thousand markers. The group of eight depends on the chart, so that charts are not confused.
-DICTIONARY, GROUP, GROUPS = "DICT_5X5_1000", 8, 125
+DICTIONARY, MARKERS_PER_CHART, GROUP_COUNT = "DICT_5X5_1000", 8, 125
 PAINT_MM_S = 20.0
 MAX_SHEET_SIDE_MM = 10_000.0
 
@@ -124,7 +124,7 @@ def chart_id(plan: _core.Plan) -> str:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class UnplacedStroke:
     """A stroke without its place on the sheet."""
 
     kind: str
@@ -137,7 +137,7 @@ class Drawn:
 class _StrokeUnit:
     """Strokes that are placed together, with the boxes of their marks before placing."""
 
-    strokes: tuple[Drawn, ...]
+    strokes: tuple[UnplacedStroke, ...]
     boxes_mm: tuple[tuple[float, float, float, float], ...]
 
     @cached_property
@@ -176,7 +176,7 @@ def chart(
     need_truth(dabs, "dabs")
     need_truth(one_load, "one_load")
     if dabs and one_load:
-        raise Error("dabs do not show how marks narrow: one load is for strokes", code="options-contradict")
+        raise Error("dabs do not show how marks narrow: use one load only with strokes", code="options-contradict")
     sheet_mm = as_listed(sheet_mm)
     if not isinstance(sheet_mm, (list, tuple)) or len(sheet_mm) != 2:
         raise Error("a sheet is (width, height) in mm", "sheet", code="wrong-type")
@@ -189,7 +189,7 @@ def chart(
     least, most = brush.depth_range_mm
     if deepest_mm <= least:
         sentence = (
-            f"the machine reaches a depth of {deepest_mm:g} mm, and brush {brush.name} is used between {least:g} and "
+            f"the machine reaches a depth of {deepest_mm:g} mm, but brush {brush.name} is used between {least:g} and "
             f"{most:g} mm"
         )
         raise Error(
@@ -201,9 +201,9 @@ def chart(
             advice="lower heights.lowest_mm of the cell if the brush may go deeper",
         )
     side = _marker_side(sheet_mm)
-    margins = side + QUIET * side + 2 * EDGE_MM  # space of the edges and the lower markers
+    margins = side + QUIET_ZONE_SHARE * side + 2 * EDGE_MM  # space of the edges and the lower markers
     room = sheet_mm[0] - 2 * EDGE_MM, sheet_mm[1] - margins
-    if min(room) <= 2 * (side + QUIET * side):
+    if min(room) <= 2 * (side + QUIET_ZONE_SHARE * side):
         sentence = f"the sheet of {sheet_mm[0]:g} x {sheet_mm[1]:g} mm is too small for the markers in its corners"
         raise Error(sentence, "sheet", code="sheet-too-small")
     best, marker_gap = None, None
@@ -235,7 +235,7 @@ def chart(
 
 
 def _marker_side(sheet_mm: tuple[float, float]) -> float:
-    return min(max(min(sheet_mm) / 14, MARKERS[0]), MARKERS[1])
+    return min(max(min(sheet_mm) / 14, MARKER_SIDE_RANGE_MM[0]), MARKER_SIDE_RANGE_MM[1])
 
 
 def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
@@ -243,10 +243,10 @@ def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[f
 
     The ranges count down from the inner edge of the sheet.
     """
-    if sheet_mm[1] >= BETWEEN * side:
+    if sheet_mm[1] >= MIN_SIDES_FOR_MIDDLE_MARKER * side:
         for share in MARKER_HEIGHT_SHARES:
             middle = share * sheet_mm[1] - EDGE_MM
-            yield middle - (0.5 + QUIET) * side, middle + (0.5 + QUIET) * side
+            yield middle - (0.5 + QUIET_ZONE_SHARE) * side, middle + (0.5 + QUIET_ZONE_SHARE) * side
 
 
 def _depth_choices() -> Iterator[tuple[int, int]]:
@@ -272,22 +272,24 @@ def chart_depths(brush, count: int, deepest_mm: float) -> list[float]:
 def _stroke_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]:
     least, deepest = depths[0], depths[-1]
     shallow = least + 0.3 * (deepest - least)
-    groups: list[tuple[Drawn, ...]] = list(_references(brush, least + 0.4 * (deepest - least)))
+    groups: list[tuple[UnplacedStroke, ...]] = list(_references(brush, least + 0.4 * (deepest - least)))
     for _ in range(repeats):
         for number, depth in enumerate(depths):
             groups.append((straight(brush, depth),))
             groups.append((angular(brush, depth), _auxiliary(brush, depth, shallow)))
             groups.append((_arc(brush, depth, 1 if number % 2 else -1),))
             groups.append((_reversal(brush, depth),))
-    boxes = room_for(brush, [stroke for group in groups for stroke in group])
+    boxes = find_mark_boxes(brush, [stroke for group in groups for stroke in group])
     return [_StrokeUnit(group, tuple(next(boxes) for _ in group)) for group in groups]
 
 
 def _dab_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]:
     dabs = [
-        Drawn(KIND, depth, dab_poses(brush, depth, heading)) for depth in depths for heading in HEADINGS_DEG * repeats
+        UnplacedStroke(KIND, depth, dab_poses(brush, depth, heading))
+        for depth in depths
+        for heading in HEADINGS_DEG * repeats
     ]
-    boxes = room_for(brush, dabs, DAB_LAG_SHARES, DAB_WIDTH_FACTOR, DAB_MARGIN_MM)
+    boxes = find_mark_boxes(brush, dabs, DAB_LAG_SHARES, DAB_WIDTH_FACTOR, DAB_MARGIN_MM)
     return [_StrokeUnit((dab,), (next(boxes),)) for dab in dabs]
 
 
@@ -308,9 +310,9 @@ def _unit_vector(vector: np.ndarray) -> np.ndarray:
     return vector / np.hypot(*vector)
 
 
-def straight(brush, depth: float) -> Drawn:
+def straight(brush, depth: float) -> UnplacedStroke:
     length = depth / LANDING_SLOPE + brush.lag(depth) + 15.0 + depth / LIFT_SLOPE
-    return Drawn("straight", depth, _poses_along(depth, [(0, 0), (length, 0)], LANDING_SLOPE))
+    return UnplacedStroke("straight", depth, _poses_along(depth, [(0, 0), (length, 0)], LANDING_SLOPE))
 
 
 def _length_before_corner(brush, depth: float) -> float:
@@ -321,13 +323,13 @@ def _length_before_corner(brush, depth: float) -> float:
     return depth / LIFT_SLOPE + 1.5 * brush.lag(depth) + 5.0
 
 
-def angular(brush, depth: float) -> Drawn:
+def angular(brush, depth: float) -> UnplacedStroke:
     first = _length_before_corner(brush, depth)
     second = 2.0 * brush.lag(depth) + 3.0 + depth / LIFT_SLOPE
-    return Drawn("angular", depth, _poses_along(depth, [(0, 0), (first, 0), (first, -second)]))
+    return UnplacedStroke("angular", depth, _poses_along(depth, [(0, 0), (first, 0), (first, -second)]))
 
 
-def _auxiliary(brush, depth: float, shallow: float) -> Drawn:
+def _auxiliary(brush, depth: float, shallow: float) -> UnplacedStroke:
     """Draw a line parallel to the second line and beyond it.
 
     Its position on the paper shows the position of the second line.
@@ -338,10 +340,10 @@ def _auxiliary(brush, depth: float, shallow: float) -> Drawn:
         + GAP_MM
     )
     length = 2 * shallow / LIFT_SLOPE + brush.lag(shallow) + 5.0
-    return Drawn("auxiliary", shallow, _poses_along(shallow, [(x, 0), (x, -length)]))
+    return UnplacedStroke("auxiliary", shallow, _poses_along(shallow, [(x, 0), (x, -length)]))
 
 
-def _arc(brush, depth: float, direction: int) -> Drawn:
+def _arc(brush, depth: float, direction: int) -> UnplacedStroke:
     """Draw a third of a circle after a straight line.
 
     The radius keeps the brush taut.
@@ -354,10 +356,10 @@ def _arc(brush, depth: float, direction: int) -> Drawn:
     along = np.array([math.cos(turn[-1]), direction * math.sin(turn[-1])])
     end = xy[-1] + (depth / LIFT_SLOPE + 2.0) * along
     poses = _poses_along(depth, [(0, 0), *xy.tolist(), end])
-    return Drawn("arc", depth, poses, (_core.Arc(2, 1 + count, (start, direction * radius), direction),))
+    return UnplacedStroke("arc", depth, poses, (_core.Arc(2, 1 + count, (start, direction * radius), direction),))
 
 
-def _reversal(brush, depth: float) -> Drawn:
+def _reversal(brush, depth: float) -> UnplacedStroke:
     """Draw a line nearly back along the first line.
 
     The patch rests for almost two lags, then turns.
@@ -366,20 +368,20 @@ def _reversal(brush, depth: float) -> Drawn:
     first = _length_before_corner(brush, depth)
     second = 3.5 * brush.lag(depth) + 3.0 + depth / LIFT_SLOPE
     end = (first + second * math.cos(back), second * math.sin(back))
-    return Drawn("reversal", depth, _poses_along(depth, [(0, 0), (first, 0), end]))
+    return UnplacedStroke("reversal", depth, _poses_along(depth, [(0, 0), (first, 0), end]))
 
 
-def _references(brush, depth: float) -> Iterator[tuple[Drawn, ...]]:
+def _references(brush, depth: float) -> Iterator[tuple[UnplacedStroke, ...]]:
     """Draw two pairs of lines there and back, along x and along y."""
     length = 2 * depth / LIFT_SLOPE + brush.lag(depth) + 8.0
     apart = 2 * WIDTH_FACTOR * brush.half_width(depth) + GAP_MM
     for turn in (lambda x, y: (x, y), lambda x, y: (y, x)):
         there, back = [turn(0, 0), turn(length, 0)], [turn(length, apart), turn(0, apart)]
-        yield tuple(Drawn("reference", depth, _poses_along(depth, points)) for points in (there, back))
+        yield tuple(UnplacedStroke("reference", depth, _poses_along(depth, points)) for points in (there, back))
 
 
-def room_for(
-    brush, strokes: list[Drawn], lag_shares=LAG_SHARES, wider: float = WIDTH_FACTOR, beyond_mm: float = 0.0
+def find_mark_boxes(
+    brush, strokes: list[UnplacedStroke], lag_shares=LAG_SHARES, wider: float = WIDTH_FACTOR, beyond_mm: float = 0.0
 ) -> Iterator[tuple[float, float, float, float]]:
     """Yield the box of the mark of each stroke.
 
@@ -431,14 +433,16 @@ def _pack_units(
 
 def _pack_in_order(units: list[_StrokeUnit], width: float, side: float, marker_gap: tuple[float, float] | None):
     heights = np.full(int(width), BAR_MM)
-    corner = side + QUIET * side
+    corner = side + QUIET_ZONE_SHARE * side
     columns = math.ceil(corner)
     heights[:columns] = heights[-columns:] = corner  # space of the upper markers
-    if width + 2 * EDGE_MM >= BETWEEN * side:
+    if width + 2 * EDGE_MM >= MIN_SIDES_FOR_MIDDLE_MARKER * side:
         middle = len(heights) / 2
-        heights[math.floor(middle - side / 2 - QUIET * side) : math.ceil(middle + side / 2 + QUIET * side)] = (
-            _top_of_middle_marker(side) + corner
-        )
+        heights[
+            math.floor(middle - side / 2 - QUIET_ZONE_SHARE * side) : math.ceil(
+                middle + side / 2 + QUIET_ZONE_SHARE * side
+            )
+        ] = _top_of_middle_marker(side) + corner
     placed = []
     for unit in units:
         wide, tall = math.ceil(unit.size_mm[0]), unit.size_mm[1]
@@ -469,7 +473,7 @@ def _top_of_middle_marker(side: float) -> float:
 
     It counts down from the inner edge of the sheet.
     """
-    return TICK_MM + QUIET * side
+    return TICK_MM + QUIET_ZONE_SHARE * side
 
 
 def _turn_unit(unit: _StrokeUnit) -> _StrokeUnit:
@@ -516,7 +520,7 @@ def _place_strokes(
     mark = chart_id(plan)
     bar = _place_bar(sheet_mm, side)
     labels += _make_titles(brush, sheet_mm, side, mark, bar)
-    base = GROUP * (int(mark, 16) % GROUPS)
+    base = MARKERS_PER_CHART * (int(mark, 16) % GROUP_COUNT)
     markers = tuple(
         Marker(base + k, ((x, y), (x + side, y), (x + side, y - side), (x, y - side)))
         for k, (x, y) in _marker_places(sheet_mm, side, marker_gap)
@@ -535,10 +539,10 @@ def _marker_places(
     left, right, top, bottom = EDGE_MM, width - EDGE_MM - side, height - EDGE_MM, EDGE_MM + side
     across = (width - side) / 2
     places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
-    if width >= BETWEEN * side:
+    if width >= MIN_SIDES_FOR_MIDDLE_MARKER * side:
         places += [(4, (across, top - _top_of_middle_marker(side))), (6, (across, bottom))]
     if marker_gap:
-        up = height - EDGE_MM - marker_gap[0] - QUIET * side
+        up = height - EDGE_MM - marker_gap[0] - QUIET_ZONE_SHARE * side
         places += [(5, (right, up)), (7, (left, up))]
     return sorted(places)
 
@@ -548,21 +552,18 @@ def _place_bar(sheet_mm, side: float) -> Bar:
 
     Its length is in whole centimetres if it is longer than one.
     """
-    room = sheet_mm[0] - 2 * (EDGE_MM + side + QUIET * side)
+    room = sheet_mm[0] - 2 * (EDGE_MM + side + QUIET_ZONE_SHARE * side)
     length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
     return Bar(((sheet_mm[0] - length) / 2, sheet_mm[1] - EDGE_MM - TICK_MM / 2), length)
 
 
 def _make_titles(brush, sheet_mm, side: float, mark: str, bar: Bar) -> list[Label]:
-    """Write the chart's name next to the lower markers.
-
-    The length to measure is written below the bar.
-    """
+    """Write the chart's name next to the lower markers, and the length of the bar below the bar."""
     width, height = sheet_mm
     left = EDGE_MM + side + 3
-    parts = 2 if width >= BETWEEN * side else 1  # a marker is in between
+    parts = 2 if width >= MIN_SIDES_FOR_MIDDLE_MARKER * side else 1  # a marker is in between
     room = width / 2 - side / 2 - left - 3 if parts == 2 else width - 2 * left
-    below = width / 2 - (0.5 + QUIET) * side - bar.at_mm[0] if parts == 2 else bar.length_mm
+    below = width / 2 - (0.5 + QUIET_ZONE_SHARE) * side - bar.at_mm[0] if parts == 2 else bar.length_mm
     title = Label(f"brushsvg chart {mark}, brush {brush.name}", (left, EDGE_MM + LABEL_MM), room)
     size = Label(f"{width:g} x {height:g} mm: print at 100 %", (left, EDGE_MM), room)
     measure = f"bar: {bar.length_mm:g} mm"

@@ -1,8 +1,6 @@
 """Draw the page on which a chart is painted, as vectors in mm.
 
-The page has ArUco markers, a bar to measure and labels.
-
-The page is white where strokes will be painted.
+The page has ArUco markers, a bar to measure and labels. It is white where strokes will be painted.
 """
 
 from __future__ import annotations
@@ -102,10 +100,7 @@ def marker_modules(marker_id: int, dictionary: str) -> np.ndarray:
 
 
 def marker_rings(marker: Marker, dictionary: str) -> list[np.ndarray]:
-    """Return the black modules of a marker as one shape [mm].
-
-    Single modules would show seams.
-    """
+    """Return the black modules of a marker as one shape [mm], because single modules would show seams."""
     black = marker_modules(marker.id, dictionary)
     (left, top), (right, _), *_ = marker.corners_mm
     step = (right - left) / len(black)

@@ -169,9 +169,7 @@ def _read_photo(chart: Chart, page: _Page, stroke_boxes: list[StrokeBox], pixels
 
 
 def _moved_page(chart: Chart, page: _Page, size: float, stroke_boxes, pixels, view: View, refusal: Error) -> _Page:
-    """Return the page at the position of its strokes.
-
-    It is needed if the strokes are not where the page should have them.
+    """Return the page at the position of its strokes, if the strokes are displaced from the printed page.
 
     A page of a known size may have been scaled about a point other than its middle. Raises Error with the scale if the
     page seems to have been printed at another scale, and the refusal in all other cases.
@@ -205,7 +203,7 @@ def _find_view(pixels: np.ndarray, shown: Printed, mirrored: bool) -> View:
     except Error as refusal:
         if not mirrored or refusal.code != "photo-mirrored":
             raise
-        sentence = "the picture shows the page from above, not mirrored as from below through glass: no --mirrored"
+        sentence = "the picture shows the page from above, but --mirrored is for pictures from below through glass"
         raise Error(sentence, code="photo-mirrored") from None
 
 
@@ -218,8 +216,8 @@ def _refuse_compressed(data: bytes) -> None:
     quality = jpeg_quality(data)
     if quality is not None and quality < MIN_JPEG_QUALITY:
         raise Error(
-            f"the JPEG was saved at quality {quality:.0f} of 100, at least {MIN_JPEG_QUALITY:g} is needed: give the "
-            "picture as the camera wrote it, not as a messenger sent it on",
+            f"the JPEG was saved at quality {quality:.0f} of 100, at least {MIN_JPEG_QUALITY:g} is needed: use the "
+            "original file of the camera, not one that a messenger sent",
             value=quality,
             code="photo-compressed",
         )
@@ -238,8 +236,8 @@ def _refuse_another_sheet(photo_marks: Marks, mean_marks: Marks, name: str) -> N
     distance = float(np.sqrt(np.mean(np.sum(np.square(offsets), axis=1)))) if offsets else np.inf
     if distance > MAX_SHEET_DIFFERENCE_MM:
         raise Error(
-            f"its marks are {distance:.2f} mm (rms) from where all photographs have them on average, more than "
-            f"{MAX_SHEET_DIFFERENCE_MM:g}: are they of one flat sheet?",
+            f"its marks are {distance:.2f} mm (rms) from their mean places in all photographs, more than "
+            f"{MAX_SHEET_DIFFERENCE_MM:g} mm: pass only photographs of one sheet that was flat",
             file=name,
             code="photos-differ",
         )
@@ -249,14 +247,14 @@ def _page_scale(chart: Chart, bar_mm: float | None) -> float:
     if bar_mm is None:
         return 1.0
     if chart.bar is None:
-        sentence = "this chart.json has no bar to measure: print a page of today's `brushsvg chart`"
+        sentence = "this chart.json has no bar to measure: print a new page with `brushsvg chart`"
         raise Error(sentence, "bar", code="bar-missing")
     size = bar_mm / chart.bar.length_mm
     if not PAGE_SCALE_RANGE[0] <= size <= PAGE_SCALE_RANGE[1]:
         sentence = (
-            f"the bar measures {bar_mm:g} mm instead of {chart.bar.length_mm:g} mm, the range is "
+            f"the bar measures {bar_mm:g} mm instead of {chart.bar.length_mm:g} mm, outside the range "
             f"[{PAGE_SCALE_RANGE[0] * chart.bar.length_mm:g}, {PAGE_SCALE_RANGE[1] * chart.bar.length_mm:g}] mm: print "
-            "the page again, at 100 %"
+            "the page again at 100 %"
         )
         raise Error(sentence, "bar", bar_mm, code="page-scale")
     return size
@@ -313,26 +311,29 @@ def remarks(read: Read) -> list[Notice]:
     view = read.view
     if view.residual_mm > 0.5 * view.most_residual_mm:
         sentence = (
-            f"the markers are {view.residual_mm:.2f} mm (rms) off, marker {view.worst[0]} most: the paper may not be "
-            "flat, or the picture is noisy, and marks may be off by more than that"
+            f"the markers are {view.residual_mm:.2f} mm (rms) from where flat paper would have them, marker "
+            f"{view.worst[0]} most: the paper may not be flat, or the picture is noisy. Marks may be off by more"
         )
         notices.append(Notice("", sentence, code="photo-not-flat"))
     if view.white > TOO_WHITE:
         sentence = (
-            f"{100 * view.white:.0f} % of the brightest parts are as white as can be: the picture is overexposed, and "
-            "edges may be too far out"
+            f"the picture is overexposed ({100 * view.white:.0f} % of its brightest parts are pure white), so edges "
+            "may be too far out: take it with less light"
         )
         notices.append(Notice("", sentence, code="photo-overexposed"))
     if missing := read.marks.missing:
         each = "stroke" if len(missing) == 1 else "strokes"
-        sentence = f"no paint is found of {each} {', '.join(missing)}, left out{_describe_remaining(read, missing)}"
+        sentence = (
+            f"no paint of {each} {', '.join(missing)} was found. The calibration continues "
+            f"without {'it' if len(missing) == 1 else 'them'}{_describe_remaining(read, missing)}"
+        )
         notices.append(Notice("", sentence, code="mark-missing"))
     for stroke, other in read.marks.joined:
-        sentence = f"its mark touches that of {other}: they are cut apart half way between their places"
+        sentence = f"its mark touches the mark of {other}: the paint is divided half way between the two strokes"
         notices.append(Notice(stroke, sentence, code="marks-touch"))
     unseen = [marker.id for marker in read.chart.markers if marker.id not in view.seen]
     if unseen and view.seen:
-        sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen whole"
+        sentence = f"marker{'s' * (len(unseen) > 1)} {', '.join(map(str, unseen))} cannot be seen completely"
         if view.unsure_mm > MAX_PLACE_ERROR_MM:
             sentence += f": places on the sheet may be off by {view.unsure_mm:.2f} mm (standard deviation)"
         notices.append(Notice("", sentence, code="photo-markers-missing"))
@@ -348,4 +349,4 @@ def _describe_remaining(read: Read, missing: list[str]) -> str:
         f"{sum(name not in missing for name in names)} of {len(names)} at {depth:g} mm"
         for depth, names in strokes_by_depth.items()
     ]
-    return f"; strokes that are left: {', '.join(parts)} depth"
+    return f"; remaining strokes: {', '.join(parts)} depth"

@@ -116,10 +116,10 @@ class Outlines:
         return out
 
 
-def average_dabs(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
+def average_dabs(dabs: list[Dab], joined: set[str], dragged_mm: Callable[[Dab], float]) -> Outlines:
     """Average dabs to one outline for each depth.
 
-    joined: names of dabs that touch others. slid_mm: function that returns how far the patch of a dab was dragged.
+    joined: names of dabs that touch others. dragged_mm: returns how far the patch of a dab was dragged.
 
     Raises Error if a depth has too few dabs, and if the shape of the dabs does not turn with the brush.
     """
@@ -136,7 +136,7 @@ def average_dabs(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
     shapes = _group_by_depth(patch_dabs, lambda depth: 0.0)
     typical_mm = float(np.median(np.concatenate([shape.distances_mm() for shape in shapes])))
     for shape in shapes:
-        remarks += shape.remove_strangers(max(MAX_DISTANCE_RATIO * typical_mm, MIN_DISTANCE_LIMIT_MM))
+        remarks += shape.remove_unlike_dabs(max(MAX_DISTANCE_RATIO * typical_mm, MIN_DISTANCE_LIMIT_MM))
     kept_names = {patch_dab.dab.name for shape in shapes for patch_dab in shape.seen}
     patch_dabs = [patch_dab for patch_dab in patch_dabs if patch_dab.dab.name in kept_names]
     _refuse_too_few(depths, [patch_dab.dab for patch_dab in patch_dabs], remarks)
@@ -147,12 +147,12 @@ def average_dabs(dabs: list[Dab], joined: set[str], slid_mm) -> Outlines:
     turned = _heading_difference_mm(shapes)
     if turned > MAX_HEADING_DIFFERENCE_MM:
         sentence = (
-            f"dabs of different headings differ by {turned:.2f} mm (rms over their outlines), "
-            f"{MAX_HEADING_DIFFERENCE_MM:g} is the most: their shape does not turn with the brush, so no one outline "
-            "is it; is the tool upright, and do the bristles grow straight?"
+            f"dabs of different headings differ by {turned:.2f} mm (rms over their outlines), more than "
+            f"{MAX_HEADING_DIFFERENCE_MM:g} mm: the shape does not turn with the brush, so no single outline describes "
+            "it. Check that the tool is upright and the bristles are straight"
         )
         raise Error(sentence, "dabs", turned, code="dabs-turned")
-    finished = tuple(shape.finish(slid_mm(shape.seen[0].dab), is_even) for shape in shapes)
+    finished = tuple(shape.average(dragged_mm(shape.seen[0].dab), is_even) for shape in shapes)
     return Outlines(finished, sheet.shift_mm, sheet.turn_rad, sheet.middle_mm, turned, is_even, tuple(remarks))
 
 
@@ -160,18 +160,21 @@ def _find_defect(dab: Dab, joined: set[str]) -> Notice | None:
     """Return a notice if a dab is not whole, else None."""
     areas = np.array([signed_area(ring) for ring in dab.rings_mm])
     if not (areas > 0).any():
-        return Notice(dab.name, "no paint is found of it: left out", code="mark-missing")
+        return Notice(dab.name, "this dab is left out: no paint of it was found", code="mark-missing")
     if dab.name in joined:
-        return Notice(dab.name, "it runs together with another dab: left out", code="dabs-touch")
+        return Notice(dab.name, "this dab is left out: it touches another dab", code="dabs-touch")
     bare, paint = -areas[areas < 0].sum() / areas.max(), areas[areas > 0]
     if bare > MAX_HOLLOW_SHARE:
-        return Notice(dab.name, f"{100 * bare:.0f} % of it has no paint, amid the rest: left out", code="dab-hollow")
+        sentence = f"this dab is left out: it has holes without paint, {100 * bare:.0f} % of its area"
+        return Notice(dab.name, sentence, code="dab-hollow")
     if 1 - areas.max() / paint.sum() > MAX_SEPARATE_SHARE:
-        sentence = f"its paint is in {len(paint)} parts, as where paint runs dry: left out"
+        sentence = f"this dab is left out: its paint is in {len(paint)} parts, probably because the brush ran dry"
         return Notice(dab.name, sentence, code="dab-dry")
     ragged = 1 - areas.max() / cv2.contourArea(cv2.convexHull(np.float32(_outer_ring(dab))))
     if ragged > MAX_BARE_HULL_SHARE:
-        sentence = f"{100 * ragged:.0f} % of its hull has no paint, as where paint runs dry: left out"
+        sentence = (
+            f"this dab is left out: {100 * ragged:.0f} % of its hull has no paint, probably because the brush ran dry"
+        )
         return Notice(dab.name, sentence, code="dab-dry")
     return None
 
@@ -183,8 +186,9 @@ def _refuse_too_few(depths: list[float], dabs: list[Dab], remarks: list[Notice])
             continue
         listed = "; ".join(f"{remark.where}: {remark.sentence}" for remark in remarks[:4])
         sentence = (
-            f"{len(names)} dabs are left at depth {depth:g} mm, at least {MIN_DABS_PER_DEPTH} are needed: paint the "
-            f"page again with more paint on the brush, and wipe it in between ({listed}{'; ...' * (len(remarks) > 4)})"
+            f"{len(names)} usable dabs are left at depth {depth:g} mm, at least {MIN_DABS_PER_DEPTH} are needed: paint "
+            "the page again with more paint on the brush, and wipe the brush in between "
+            f"({listed}{'; ...' * (len(remarks) > 4)})"
         )
         raise Error(sentence, f"{depth:g} mm", len(names), code="dabs-too-few")
 
@@ -240,7 +244,9 @@ def _fit_sheet(dabs: list[Dab], remarks: list[Notice]) -> tuple[_Sheet, list[Dab
         worst = int(distances.argmax())
         if distances[worst] <= max(MAX_DISPLACEMENT_RATIO * float(np.median(distances)), MIN_DISPLACEMENT_LIMIT_MM):
             return _Sheet(solution[:2], float(solution[2]), place.mean(axis=0)), dabs
-        sentence = f"it is {distances[worst]:.1f} mm from where the others say it should: left out"
+        sentence = (
+            f"this dab is left out: it is {distances[worst]:.1f} mm away from the place that the other dabs predict"
+        )
         remarks.append(Notice(dabs[worst].name, sentence, code="mark-astray"))
         dabs = dabs[:worst] + dabs[worst + 1 :]
         if {dab.depth_mm for dab in dabs} != set(depths):
@@ -328,8 +334,8 @@ class _DabsOfDepth:
             out.append(float(np.sqrt(np.mean(self._to_mm(self.reach[k] - others) ** 2))))
         return np.array(out)
 
-    def remove_strangers(self, most_mm: float) -> list[Notice]:
-        """Leave out dabs that differ by more than most_mm, the worst first.
+    def remove_unlike_dabs(self, max_distance_mm: float) -> list[Notice]:
+        """Leave out dabs that differ by more than max_distance_mm, the worst first.
 
         Return notices about them.
         """
@@ -337,11 +343,11 @@ class _DabsOfDepth:
         while len(self.seen) > MIN_DABS_PER_DEPTH:
             away = self.distances_mm()
             worst = int(away.argmax())
-            if away[worst] <= most_mm:
+            if away[worst] <= max_distance_mm:
                 break
             sentence = (
-                f"its outline is {away[worst]:.2f} mm (rms) from those of the others at depth {self.depth:g} mm, "
-                f"{most_mm:.2f} is the most: left out"
+                f"this dab is left out: its outline differs by {away[worst]:.2f} mm (rms) from the other dabs at depth "
+                f"{self.depth:g} mm, more than {max_distance_mm:.2f} mm"
             )
             remarks.append(Notice(self.seen[worst].dab.name, sentence, code="dab-unlike"))
             del self.seen[worst]
@@ -363,10 +369,10 @@ class _DabsOfDepth:
         chance = np.mean(apart.var(axis=0, ddof=1)) / len(apart)
         return float(np.sqrt(np.mean(apart.mean(axis=0) ** 2) / max(chance, 1e-12)))
 
-    def finish(self, slid_mm: float, is_even: bool) -> Shape:
+    def average(self, dragged_mm: float, is_even: bool) -> Shape:
         """Return the smoothed mean of the dabs.
 
-        slid_mm: how far the patch was dragged. is_even: average both sides.
+        dragged_mm: how far the patch was dragged. is_even: average both sides.
         """
         mean = self.reach.mean(axis=0)
         if is_even:
@@ -375,7 +381,7 @@ class _DabsOfDepth:
         repeat = float(np.sqrt(np.sum(off**2) / max(1, (len(off) - 1) * VERTEX_COUNT)))
         even = _smooth_outline(mean, np.hypot(*self.rays.T), repeat / len(off) ** 0.5)
         points = self.centre + even[:, None] * self.rays
-        points = _remove_drag(points, slid_mm)
+        points = _remove_drag(points, dragged_mm)
         tip = points[0].copy()
         outline = points - tip
         outline[0] = 0.0
@@ -388,9 +394,9 @@ def _mirror(reach: np.ndarray) -> np.ndarray:
 
 
 def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
-    """Return the largest rms difference of a heading from all dabs [mm].
+    """Return the largest rms difference between the dabs of one heading and all dabs [mm].
 
-    It is taken over the outline and averaged over depths.
+    The difference is averaged over depths.
     """
     off: dict[float, list[np.ndarray]] = {}
     for shape in shapes:
@@ -402,9 +408,7 @@ def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
 def _smooth_outline(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:
     """Return the outline with the least curvature near the given one.
 
-    It stays within unsure_mm (rms) and MAX_SMOOTHING_MM.
-
-    The outline may have a corner at the tip.
+    It stays within unsure_mm (rms) and MAX_SMOOTHING_MM. The outline may have a corner at the tip.
     """
     closed = np.append(reach, reach[0])
     bends = np.diff(np.eye(len(closed)), 2, axis=0)
@@ -437,10 +441,7 @@ def widths_at(outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _remove_drag(points: np.ndarray, by_mm: float) -> np.ndarray:
-    """Remove the length that a dragged patch swept.
-
-    It is removed from the widest part of the outline.
-    """
+    """Remove the length that a dragged patch swept, from the widest part of the outline."""
     if by_mm <= 0:
         return points
     x, wide = widths_at(points)

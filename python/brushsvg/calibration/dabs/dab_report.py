@@ -16,9 +16,9 @@ from ..law_text import HALF_95, coefficients, law_table, name_and_depths, values
 from .dab_outlines import MAX_SMOOTHING_MM, Shape
 
 LIMITS_OF_DABS = (
-    "Dabs do not say how far the brush lags: that is the lag of brush {before}.",
-    "A dab shows all that was touched at its depth and above, by a brush that stands: bristles that are dragged along "
-    "are a little closer together.",
+    "Dabs do not show the lag. It was taken from brush {before}.",
+    "A dab shows everything that the standing brush touched down to its depth. The bristles of a dragged brush are a "
+    "little closer together.",
 )
 # A front that is not this much further ahead than the front of a shallower dab may have been painted at that depth.
 MIN_FRONT_ADVANCE_MM = 0.05
@@ -34,9 +34,9 @@ def report(calibration) -> Report:
     count = sum(len(shape.seen) for shape in shapes)
     shift, turn = outlines.shift_mm, math.degrees(outlines.turn_rad)
     hidden = _find_hidden_fronts(brush)
-    reservations = [f"the front is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
+    reservations = [f"the front of the footprint is uncertain at {plural(len(hidden), 'depth')}"] if hidden else []
     lines = [
-        f"{name_and_depths(brush)}: outlines of {count} dabs at {len(shapes)} depths, the lag of brush "
+        f"{name_and_depths(brush)}: outlines from {count} dabs at {len(shapes)} depths, lag from brush "
         f"{calibration.before.name}",
         f"the sheet is displaced by {shift[0]:+.2f}, {shift[1]:+.2f} mm and turned by {turn:+.2f} degrees; dabs of "
         f"different headings differ by {outlines.turned_mm:.2f} mm (rms)",
@@ -46,13 +46,13 @@ def report(calibration) -> Report:
     depths = np.array([shape.depth_mm for shape in shapes])
     counts = [str(len(shape.seen)) for shape in shapes]
     repeats = [f"{shape.repeat_mm:.3f}" for shape in shapes]
-    columns = [("dabs", counts), ("one dab from the mean, rms", repeats)]
+    columns = [("dabs", counts), ("rms distance from the mean", repeats)]
     details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _MEASURED_LAWS)])
     edges = (
-        f"; in it that all edges may be {calibration.edge_mm:.2f} mm off together" if calibration.edge_mm > 0 else ""
+        f"; it includes a common shift of all edges by {calibration.edge_mm:.2f} mm" if calibration.edge_mm > 0 else ""
     )
-    sides = "both sides alike" if outlines.is_even else "one side larger than the other, by more than chance"
-    details += [f"{HALF_95}{edges}", f"outlines: {sides}; smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
+    sides = "both sides are equal" if outlines.is_even else "one side is larger than the other, by more than chance"
+    details += [f"{HALF_95}{edges}", f"outlines: {sides}; they are smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
     return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
 
 
@@ -71,8 +71,8 @@ def _find_hidden_fronts(brush: _core.Brush) -> list[float]:
 def _describe_hidden_fronts(depths: list[float]) -> str:
     listed = ", ".join(f"{depth:g}" for depth in depths)
     return (
-        f"At depth {listed} mm the front is no further ahead than at a lesser depth, on the way to which it was "
-        "touched: the footprint there may be shorter."
+        f"At depth {listed} mm the front of the dab may have been painted at a smaller depth, while the brush went "
+        "down. The footprint may be shorter there."
     )
 
 

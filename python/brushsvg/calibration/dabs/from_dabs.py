@@ -1,8 +1,7 @@
 """Make a brush from dabs.
 
-It has the outlines of the dabs, and laws of width, widest section and tip gap that agree with them.
-
-Dabs do not show the lag. It is the lag of the brush for which the dabs were landed.
+It has the outlines of the dabs, and laws of width, widest section and tip gap that agree with them. Dabs do not show
+the lag. The brush keeps the lag of the brush for which the chart of dabs was made.
 """
 
 from __future__ import annotations
@@ -49,18 +48,18 @@ def calibrate_dabs(
 ) -> DabCalibration:
     """Fit a brush to dabs.
 
-    before: the brush with the lag for which the dabs were landed. edge_mm: standard deviation of a common outward shift
-    of all edges. joined: names of dabs that touch others.
+    before: the brush for whose lag the chart of dabs was made. edge_mm: standard deviation of a common outward shift of
+    all edges. joined: names of dabs that touch others.
 
     Raises Error if the dabs do not determine an outline, and if the brush cannot be used.
     """
     need_fits()
     _refuse_other_lag(dabs, before)
 
-    def slid_mm(dab: Dab) -> float:
+    def dragged_mm(dab: Dab) -> float:
         return dab.run_mm - before.lag.extrapolated(dab.depth_mm)
 
-    outlines = average_dabs(dabs, set(joined), slid_mm)
+    outlines = average_dabs(dabs, set(joined), dragged_mm)
     shapes = outlines.shapes
     _refuse_falling(shapes)
     values = {law: np.vstack([_values_of_law(law, shape) for shape in shapes]) for law in LAWS}
@@ -84,8 +83,8 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
     for dab in dabs:
         if not least <= dab.depth_mm <= deepest + 1e-6:
             sentence = (
-                f"the dab was pressed {dab.depth_mm:g} mm, brush {before.name} may be pressed {least:g} to "
-                f"{deepest:g} mm"
+                f"the dab was pressed {dab.depth_mm:g} mm deep, but brush {before.name} may be pressed only {least:g} "
+                f"to {deepest:g} mm"
             )
             raise Error(sentence, dab.name, dab.depth_mm, code="depth-out-of-range")
     lag_differences = {
@@ -97,9 +96,10 @@ def _refuse_other_lag(dabs: list[Dab], before: _core.Brush) -> None:
     if worst is None or abs(lag_differences[worst]) > MAX_LAG_DIFFERENCE:
         dab = next(dab for dab in dabs if worst in (None, dab.name))
         sentence = (
-            f"the tool ran {dab.run_mm:.1f} mm while it was pressed, brush {before.name} lags "
-            f"{before.lag.extrapolated(dab.depth_mm):.1f} mm there, more than {100 * MAX_LAG_DIFFERENCE:g} % off: "
-            "make the page of dabs with `brushsvg chart --dabs --brush` of this brush, and paint it"
+            f"the tool moved {dab.run_mm:.1f} mm while it was pressed, but brush {before.name} lags "
+            f"{before.lag.extrapolated(dab.depth_mm):.1f} mm at this depth; they may differ by "
+            f"{100 * MAX_LAG_DIFFERENCE:g} % at most. Make the page of dabs with `brushsvg chart --dabs --brush` and "
+            "this brush, and paint it"
         )
         raise Error(sentence, dab.name, dab.run_mm, code="dabs-of-another-brush")
 
@@ -109,9 +109,9 @@ def _refuse_falling(shapes: tuple[Shape, ...]) -> None:
     for k in range(1, len(half)):
         if half[k] < half[k - 1] - MAX_HALF_WIDTH_FALL_MM:
             sentence = (
-                f"dabs at depth {shapes[k].depth_mm:g} mm are {2 * half[k]:.2f} mm wide, those at "
-                f"{shapes[k - 1].depth_mm:g} mm {2 * half[k - 1]:.2f} mm: a brush that is pressed deeper does not get "
-                "narrower; was there paint on it all the time?"
+                f"dabs at depth {shapes[k].depth_mm:g} mm are {2 * half[k]:.2f} mm wide, narrower than dabs at "
+                f"{shapes[k - 1].depth_mm:g} mm ({2 * half[k - 1]:.2f} mm). A brush that is pressed deeper does not "
+                "get narrower: paint the page again with enough paint for all dabs"
             )
             raise Error(sentence, f"{shapes[k].depth_mm:g} mm", 2 * half[k], code="width-falls")
 
@@ -187,8 +187,8 @@ def _fit_law(law: str, values: np.ndarray, range_mm, terms: int = 0):
             break
     if abs(misfits[worst]) > MAX_MISFIT_MM:
         sentence = (
-            f"no law of {law.replace('_', ' ')} over depth runs within {MAX_MISFIT_MM:g} mm of what the dabs show: at "
-            f"depth {depths[worst]:g} mm it is {misfits[worst]:.2f} mm off; look at the outlines (--marks-picture)"
+            f"no smooth {law.replace('_', ' ')} over depth fits the dabs to {MAX_MISFIT_MM:g} mm: at depth "
+            f"{depths[worst]:g} mm it is {misfits[worst]:.2f} mm off. Check the outlines (--marks-picture)"
         )
         raise Error(sentence, law, misfits[worst], code="law-undetermined")
     return fit
@@ -206,9 +206,8 @@ def _with_outlines(before: _core.Brush, name: str, outlines: Outlines) -> _core.
     )
     count = sum(len(shape.seen) for shape in shapes)
     source = (
-        f"Measured: {count} dabs at {len(shapes)} depths, those of a depth averaged and smoothed by "
-        f"{MAX_SMOOTHING_MM:g} mm at most. How a brush that stands differs from one that is dragged along is "
-        "not in them."
+        f"Measured: {count} dabs at {len(shapes)} depths, averaged for each depth and smoothed by "
+        f"{MAX_SMOOTHING_MM:g} mm at most. A brush that is dragged may have other outlines."
     )
     unsure = max(shape.unsure_mm for shape in shapes)
     extra = read_extra_keys(before.extra) | {
@@ -222,7 +221,7 @@ def _make_profile(law: _core.Profile, shapes: tuple[Shape, ...], half_interval_9
     return _core.Profile(
         law.coefficients,
         calibrated_mm=(shapes[0].depth_mm, shapes[-1].depth_mm),
-        source=f"Of the outlines of {sum(len(shape.seen) for shape in shapes)} dabs.",
+        source=f"Fitted to the outlines of {sum(len(shape.seen) for shape in shapes)} dabs.",
         half_interval_95=half_interval_95,
         rmse_mm=law.rmse_mm,
         degrees_of_freedom=law.degrees_of_freedom,

@@ -151,7 +151,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
     reach = float(-points[:, 1].min())
     if not reach > 0.0 or points[:, 0].max() <= 0.0:
         raise Error(
-            "the points are not along the handle's second line: that line is y = 0, x counts along it from the corner",
+            "the points are not along the handle's second line: give x along that line from the corner, and y across",
             where,
             code="not-a-turn",
         )
@@ -179,14 +179,14 @@ def read_turn(points_mm, where: str = "") -> Turn:
     covariance, rmse = _covariance_and_rmse(best, freedom)
     if rmse > MAX_MISFIT_PER_LAG * lag:
         sentence = (
-            f"the points are {rmse:.2g} mm off any brush's turn, which would have a lag of {lag:.3g} mm: the corner of "
-            "the handle is (0, 0), its second line goes along x"
+            f"the points are {rmse:.2g} mm from the nearest turn of any brush, which has a lag of {lag:.3g} mm: put "
+            "the corner of the handle at (0, 0) and its second line along x"
         )
         raise Error(sentence, where, rmse, code="not-a-turn")
     if np.sqrt(covariance[0, 0]) > MAX_LAG_UNCERTAINTY * lag or lag > 15.0 * reach:
         raise Error(
-            f"the points leave the lag open, {lag:.2g} +- {np.sqrt(covariance[0, 0]):.2g} mm: follow the line farther "
-            "beyond the corner, over twice the lag",
+            f"the points do not determine the lag ({lag:.2g} +- {np.sqrt(covariance[0, 0]):.2g} mm): give points to "
+            "more than two lags beyond the corner",
             where,
             code="law-undetermined",
         )

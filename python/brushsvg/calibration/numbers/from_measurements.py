@@ -76,8 +76,8 @@ class Fitted:
     def list_outliers(self) -> list[str]:
         """Return one sentence per outlier, the largest deviation first."""
         return [
-            f"{self.points[k].where} is an outlier: {outlier.off_mm:+.2f} mm off the law of the others, studentized "
-            f"residual {outlier.size:.1f}, bound {plausibility.MIN_OUTLIER_SIGMAS:g}: measure it again"
+            f"{self.points[k].where} is an outlier, {outlier.off_mm:+.2f} mm from the fit to the other values "
+            f"(studentized residual {outlier.size:.1f}, limit {plausibility.MIN_OUTLIER_SIGMAS:g}): measure it again"
             for k, outlier in sorted(self.outliers.items(), key=lambda item: -abs(item[1].off_mm))
         ]
 
@@ -135,9 +135,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
 def _collect_points(
     measured: Measurements, total: bool, turns: dict[str, Turn]
 ) -> tuple[dict[str, list[Point]], list[str]]:
-    """Collect the values of single laws.
-
-    They include values from angle series and from the decay of turns.
+    """Collect the values of single laws, with values from angle series and from the decay of turns.
 
     Return the points of each law, and remarks about readings that were left out.
     """
@@ -155,7 +153,9 @@ def _collect_points(
         if math.isfinite(series["tip_gap_mm"]):
             points["tip_gap"].append(Point(row.where, row.depth_mm, series["tip_gap_mm"]))
         if series["left_out"]:
-            sentence = f"{series['left_out']} readings left out: their angle is not between 0 and the first one"
+            sentence = (
+                f"{series['left_out']} readings are left out because their angle is not between 0 and the first angle"
+            )
             remarks.append(f"{row.where}: {sentence}")
     return points, remarks
 
@@ -171,8 +171,8 @@ def _choose_degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
     degree = min(LAW_DEGREES[law], coefficients if law in LAWS_THROUGH_ZERO else coefficients - 1)
     if degree == LAW_DEGREES[law]:
         return degree, []
-    few = f"{different} depths" if coefficients == different else f"{len(depths_mm)} values"
-    return degree, [f"of degree {degree} instead of {LAW_DEGREES[law]}, because there are {few}"]
+    count = f"{different} depths" if coefficients == different else f"{len(depths_mm)} values"
+    return degree, [f"the law has degree {degree} instead of {LAW_DEGREES[law]}, because there are only {count}"]
 
 
 class _LawFitter:
@@ -228,8 +228,8 @@ class _LawFitter:
             rows += lines
         elif unclear := [row.where for row in lines if self.turns[row.where].other]:
             self.remarks.append(
-                f"{', '.join(unclear)} can be read in two ways; read as if the widest section of the footprint were in "
-                "front of the centre of friction. Add rows of tip_to_widest, which decide"
+                f"{', '.join(unclear)} can be read in two ways. The reading with the widest section of the footprint "
+                "in front of the centre of friction is used. Add rows of tip_to_widest to decide"
             )
         if not rows:
             return
@@ -323,7 +323,7 @@ class _LawFitter:
         depth = next(row.depth_mm for row in self.measured.rows["centre_line"] if row.where == where)
         self.remarks.append(
             f"{where} can be read in two ways (lag {turn.lag_mm:.2f} or {turn.other.lag_mm:.2f} mm), and the other "
-            f"measurements do not decide which; the confidence intervals allow for both. Measure tip_to_widest at "
+            f"measurements do not show which is right. The confidence intervals include both. Measure tip_to_widest at "
             f"depth {depth:g} mm"
         )
 
@@ -366,7 +366,7 @@ class _LawFitter:
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
         if law in ("lag", "tip_gap") and fit.held and mean < -half:
             sentence = (
-                f"the {law} is {mean:.3g} mm on the mean of {len(points)} values, the others taken away; it cannot be "
+                f"the {law} is {mean:.3g} mm, as a mean of {len(points)} values minus the other lengths; it cannot be "
                 "negative"
             )
             raise Error(sentence, points[0].where, mean, code="law-negative")
@@ -487,10 +487,10 @@ class _LawFitter:
             f"{kind.name} ({kind.count}, scatter {' and '.join(f'{mm:.2f}' for mm in kind.scatter_mm)} mm)"
             for kind in found.kinds
         )
-        self.remarks.append(f"lag, tip gap and what they are read with were fitted together: {listed}")
+        self.remarks.append(f"lag and tip gap were fitted together with other lengths, to these values: {listed}")
         if found.held:
             self.remarks.append(
-                "fitted with a constraint: without it the lag or the tip gap is not positive somewhere in the depth "
+                "the fit needed a constraint, because the lag or the tip gap would not be positive in the whole depth "
                 "range"
             )
 
@@ -511,7 +511,7 @@ class _LawFitter:
         different = plausibility.count_distinct_depths(depths)
         if different < 2:
             raise Error(
-                f"{law} was measured at depth {depths[0]:g} mm alone: measure it at two depths or more, better five",
+                f"{law} was measured only at depth {depths[0]:g} mm: measure it at two depths or more, better five",
                 points[0].where,
                 code="depths-too-few",
             )
@@ -536,8 +536,8 @@ class _LawFitter:
         if law == "half_width":
             plausibility.refuse_unexplained(law, points, fit)
         if fit.held:
-            what = "falls" if law == "half_width" else "is not positive"
-            remarks.append(f"fitted with a constraint: without it the law {what} somewhere in the depth range")
+            problem = "fall" if law == "half_width" else "not be positive"
+            remarks.append(f"the fit needed a constraint, because the law would {problem} somewhere in the depth range")
         first = int(law in LAWS_THROUGH_ZERO)
         if widest:
             outliers = plausibility.find_outliers_above_floor(depths, values, self.range_mm, degree)
@@ -602,7 +602,7 @@ class _LawFitter:
             brush.covariance = covariance.tolist()
         depths = [least + (deepest - least) * k / OUTLINE_COUNT for k in range(1, OUTLINE_COUNT + 1)]
         brush.footprints = _core.FootprintTable([_drop_footprint(brush, depth) for depth in depths])
-        brush.extra = outlines_assumed("drops whose widest section and width are those of the laws.")
+        brush.extra = outlines_assumed("drops with the width and the widest section of the laws.")
         _core.check(brush)
         return brush
 

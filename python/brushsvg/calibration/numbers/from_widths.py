@@ -89,7 +89,7 @@ def new_brush(
         [_assumed_footprint(brush, deepest * k / OUTLINE_COUNT) for k in range(1, OUTLINE_COUNT + 1)]
     )
     what = "Discs" if is_pen else "Drops"
-    brush.extra = outlines_assumed(f"{what} as wide as half_width says; the same when pressed straight down.")
+    brush.extra = outlines_assumed(f"{what} with the width of half_width, also when pressed straight down.")
     _core.check(brush)
     return brush
 
@@ -117,7 +117,7 @@ def _need_pairs(pairs, what: str, needed: str, may_touch: bool) -> list[tuple[fl
     checked = []
     for pair in pairs:
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
-            raise Error(f"{str(pair)[:40]} is no (depth, {what}) in mm", what, code="wrong-type")
+            raise Error(f"{str(pair)[:40]} is not a pair (depth, {what}) in mm", what, code="wrong-type")
         depth, value = (as_number(number, f"a depth or a {what} in mm") for number in pair)
         checked.append((depth, value))
     if not checked:
@@ -135,7 +135,7 @@ def _need_pairs(pairs, what: str, needed: str, may_touch: bool) -> list[tuple[fl
 
 
 def _constant_lag(lag_mm: float) -> _core.Profile:
-    source = f"{lag_mm:g} mm as typed in; that it is the same at every depth is assumed."
+    source = f"{lag_mm:g} mm as typed in; assumed to be equal at every depth."
     return _core.Profile([lag_mm], source=source, assumed=True)
 
 
@@ -149,7 +149,7 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
     if lags[-1][0] > deepest:
         sentence = (
             f"the depth {lags[-1][0]:g} mm of a lag is outside the range [0, {deepest:g}] mm of the widths: give the "
-            "greatest depth, or a width there"
+            "greatest depth, or a width at this depth"
         )
         raise Error(sentence, "lag", lags[-1][0], code="depth-out-of-range")
     if depth_count > 1:
@@ -165,16 +165,17 @@ def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
     fit, worst, misfit_mm = _fit_simplest_law(depths, values, shapes, GOOD_LAG_MISFIT_MM)
     if misfit_mm > MAX_LAG_MISFIT_MM:
         sentence = (
-            f"no brush fits these lags: a law over depth differs by {misfit_mm:.1f} mm from the lag "
+            f"no brush fits these lags: the best curve over depth differs by {misfit_mm:.1f} mm from the lag "
             f"{values[worst]:g} mm at depth {depths[worst]:g} mm, outside the range "
-            f"[0, {MAX_LAG_MISFIT_MM:g}] mm: are they in the right order?"
+            f"[0, {MAX_LAG_MISFIT_MM:g}] mm. Check the order of the values"
         )
         raise Error(sentence, "lag", values[worst], code="law-undetermined")
-    return _profile_of_fit(fit, f"Lags as typed in: {_list_pairs(lags)}; met to {misfit_mm:.2f} mm.", depth_count)
+    source = f"Lags as typed in: {_list_pairs(lags)}; fitted to {misfit_mm:.2f} mm."
+    return _profile_of_fit(fit, source, depth_count)
 
 
 def _constant_half_width(width: tuple[float, float]) -> _core.Profile:
-    source = f"Width as typed in: {width[1]:g} mm at depth {width[0]:g} mm; that it is the same at all is assumed."
+    source = f"Width as typed in: {width[1]:g} mm at depth {width[0]:g} mm; assumed to be equal at every depth."
     return _core.Profile([width[1] / 2], source=source, assumed=True)
 
 
@@ -199,15 +200,15 @@ def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.
     fit, worst, misfit_mm = _fit_simplest_law(depths, halves, shapes, GOOD_HALF_WIDTH_MISFIT_MM)
     if misfit_mm > MAX_HALF_WIDTH_MISFIT_MM:
         sentence = (
-            f"no brush fits these widths: a law that never falls differs by {2 * misfit_mm:.2f} mm from the width "
+            f"no brush fits these widths: the best rising curve differs by {2 * misfit_mm:.2f} mm from the width "
             f"{2 * halves[worst]:g} mm at depth {depths[worst]:g} mm, outside the range "
-            f"[0, {2 * MAX_HALF_WIDTH_MISFIT_MM:g}] mm: are they in the right order?"
+            f"[0, {2 * MAX_HALF_WIDTH_MISFIT_MM:g}] mm. Check the order of the values"
         )
         raise Error(sentence, "width", 2 * halves[worst], code="width-falls")
     if depth_count > 1:
         plausibility.refuse_falling("width", depths, [2 * half for half in halves], "width")
-    source = f"Widths as typed in: {_list_pairs(widths)}; met to {2 * misfit_mm:.2f} mm."
-    return _profile_of_fit(fit, f"{source} That the brush touches with no width at depth 0 is assumed.", depth_count)
+    source = f"Widths as typed in: {_list_pairs(widths)}; fitted to {2 * misfit_mm:.2f} mm."
+    return _profile_of_fit(fit, f"{source} The width at depth 0 is assumed to be 0.", depth_count)
 
 
 def _fit_simplest_law(depths: list[float], values: list[float], shapes, good_misfit_mm: float):

@@ -65,11 +65,11 @@ def _scattered_laws(brush) -> list[str]:
 def _describe_fit(brush, fitted) -> str:
     law = getattr(brush, fitted.name)
     if fitted.fit is None:
-        return f"{fitted.name}: assumed: {law.source}"
+        return f"{fitted.name}: not measured. {law.source}"
     depths = [point.depth_mm for point in fitted.points]
     known = f"{fitted.name}: {len(depths)} values at depths {min(depths):g} to {max(depths):g} mm"
     if law.rmse_mm is None:
-        return f"{known}, no degree of freedom left: no confidence interval"
+        return f"{known}, too few for a confidence interval"
     return f"{known}, R^2 {fitted.fit.r_squared:.3f}, RMSE {law.rmse_mm:.2f} mm"
 
 
@@ -80,15 +80,15 @@ def _suggest_next(calibration) -> list[str]:
     """
     brush = calibration.brush
     if scattered := _scattered_laws(brush):
-        return [f"next: measure {' and '.join(scattered)} again, since the values contradict each other"]
+        return [f"next: measure {' and '.join(scattered)} again, because the values contradict each other"]
     if assumed := [fitted.name for fitted in calibration.laws if fitted.fit is None]:
-        return [f"next: measure {' and '.join(assumed)}, so far assumed"]
+        return [f"next: measure {' and '.join(assumed)}, which so far {'is' if len(assumed) == 1 else 'are'} assumed"]
     depths = np.linspace(*brush.depth_range_mm, 101)[1:]
     worst = (0.0, "", 0.0, 0.0)
     for fitted in calibration.laws:
         band = law_band(brush, fitted.name, depths)
         if not band:
-            return [f"next: measure {fitted.name} at more depths, or again at the same ones"]
+            return [f"next: measure {fitted.name} at more depths, or once more at the measured depths"]
         values = np.array([getattr(brush, fitted.name)(depth) for depth in depths])
         share = band[0] / max(values.max(), 1e-9)
         i = int(np.argmax(share))

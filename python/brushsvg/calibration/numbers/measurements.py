@@ -1,8 +1,6 @@
 """Read measurements of a brush from JSON or a table.
 
-The formats are described in docs/reference/measurements.md.
-
-Lengths are in mm, angles in degrees.
+The formats are described in docs/reference/measurements.md. Lengths are in mm, angles in degrees.
 """
 
 from __future__ import annotations
@@ -86,10 +84,10 @@ def read_measurements(data: bytes, suffix: str) -> Measurements:
         return measurements
     depths = sorted({row.depth_mm for rows in measurements.rows.values() for row in rows})
     if not depths:
-        sentence = "there is no measurement in it: add rows of lag and of width, at two depths or more, better five"
+        sentence = "the file has no measurements: add rows of lag and of width, at two depths or more, better five"
         raise Error(sentence, code="measurement-missing")
     if depths[-1] <= MIN_GREATEST_DEPTH_MM:
-        sentence = f"the greatest depth is {depths[-1]:g} mm: depths and values count in millimetres"
+        sentence = f"the greatest depth is only {depths[-1]:g} mm: write depths and values in millimetres"
         raise Error(sentence, "depth_mm", code="depth-out-of-range")
     measurements.depths_mm.extend(depths)
     return measurements
@@ -117,8 +115,8 @@ def _read_table(text: str) -> Measurements:
     for where, row in _read_table_rows(text, ("kind", "depth_mm", "value_mm"), numbers=("depth_mm", "value_mm")):
         kind = row.pop("kind")
         if kind not in _TABLE_KINDS:
-            other = "; it has several numbers a row, so write a JSON file" if kind in KINDS or kind in _READERS else ""
-            sentence = f"{kind!r} is no kind of measurement for a table; known are {', '.join(_TABLE_KINDS)}{other}"
+            other = "; it has several numbers per row: write a JSON file" if kind in KINDS or kind in _READERS else ""
+            sentence = f"{kind!r} is not a kind of measurement for a table; known: {', '.join(_TABLE_KINDS)}{other}"
             raise Error(sentence, where, code="measurement-kind")
         rows.setdefault(kind, []).extend(_read_row(kind, row, where))
     return Measurements(rows)
@@ -144,7 +142,8 @@ def _read_table_rows(
                 rows.append((where, {name: (line[name] or "").strip() for name in columns}))
     except csv.Error:
         raise Error(
-            "this is not a table: a line end stands amid a value, or a value has no end", code="not-a-table"
+            "this is not a table: a value contains a line break, or its quotation mark is not closed",
+            code="not-a-table",
         ) from None
     cells = [(f"{where}, {name}", row[name]) for where, row in rows for name in numbers]
     for where, cell in cells:
@@ -154,8 +153,8 @@ def _read_table_rows(
     points, commas = ([cell for cell in cells if mark in cell[1]] for mark in ".,")
     if points and commas:
         raise Error(
-            f"{commas[0][1]!r} has a comma for its decimals and {points[0][1]!r} in {points[0][0]} a point: write all "
-            "numbers with a point",
+            f"{commas[0][1]!r} has a decimal comma, but {points[0][1]!r} in {points[0][0]} has a decimal point: write "
+            "all numbers with a point",
             commas[0][0],
             code="table-separators",
         )
@@ -180,17 +179,18 @@ def _open_table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
     fewest_missing = min(missing, key=len)
     if fewest_missing:
         raise Error(
-            f"the table needs a first line with {','.join(columns)}, or with semicolons or tabs for the commas; "
-            f"it lacks {' and '.join(fewest_missing)}",
+            f"the first line of the table lacks {' and '.join(fewest_missing)}: it must be {','.join(columns)}, "
+            "separated by commas, semicolons or tabs",
             code="table-columns",
         )
     complete = [table for table, lacks in zip(tables, missing, strict=True) if not lacks]
     if len(complete) > 1:
         both = " and by ".join(_SEPARATORS[table.reader.dialect.delimiter] for table in complete)
-        raise Error(f"its columns could be separated by {both}: write one of them", "line 1", code="table-separators")
+        sentence = f"the columns could be separated by {both}: use only one of them"
+        raise Error(sentence, "line 1", code="table-separators")
     names = complete[0].fieldnames
     if twice := [name for name in names if name and names.count(name) > 1]:
-        raise Error(f"column {twice[0][:40]!r} stands twice", "line 1", code="key-twice")
+        raise Error(f"column {twice[0][:40]!r} is given twice", "line 1", code="key-twice")
     return complete[0]
 
 
@@ -205,8 +205,8 @@ def _refuse_columns_in_other_units(names: list[str]) -> None:
     for name in names:
         if found := _LENGTH_WITH_OTHER_UNIT.fullmatch(name):
             raise Error(
-                f"the column {name[:40]!r} does not count in millimetres: write {found['what'].lower()}_mm, and "
-                "an inch as 25.4",
+                f"the column {name[:40]!r} is not in millimetres: name it {found['what'].lower()}_mm and convert its "
+                "values (1 inch is 25.4 mm)",
                 "line 1",
                 code="not-millimetres",
             )
@@ -216,7 +216,7 @@ def _refuse_row_in_other_unit(line: dict, where: str) -> None:
     """Raise Error for a row whose cell in a column of units is not mm."""
     for name, cell in line.items():
         if name and name.lower() in ("unit", "units") and (cell or "").strip() not in ("", "mm"):
-            sentence = f"the unit {cell.strip()[:20]!r} is not mm: write all lengths in mm, an inch as 25.4"
+            sentence = f"the unit {cell.strip()[:20]!r} is not mm: write all lengths in mm (1 inch is 25.4 mm)"
             raise Error(sentence, where, code="not-millimetres")
 
 
@@ -226,9 +226,9 @@ def _refuse_surplus(line: dict, where: str, separator: str) -> None:
     4,6 for 4.6 would be read as 4.
     """
     if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
-        advice = "numbers are written with a point, as in 4.6, or semicolons stand between columns"
+        advice = "write numbers with a decimal point, as in 4.6, or separate columns by semicolons"
         raise Error(
-            f"{surplus[0]!r} stands beyond the columns of the first line" + (f": {advice}" if separator == "," else ""),
+            f"{surplus[0]!r} has no column in the first line" + (f": {advice}" if separator == "," else ""),
             where,
             code="table-columns",
         )
@@ -250,7 +250,10 @@ def _read_json(text: str) -> Measurements:
     if depth_range is not None:
         depth_range = json_fields.numbers(depth_range, "depth_range_mm", 2)
         if not 0 <= depth_range[0] < depth_range[1] <= MAX_LENGTH_MM:
-            sentence = f"[{depth_range[0]:g}, {depth_range[1]:g}] mm must rise within [0, {MAX_LENGTH_MM:g}] mm"
+            sentence = (
+                f"[{depth_range[0]:g}, {depth_range[1]:g}] mm must be two rising depths within [0, "
+                f"{MAX_LENGTH_MM:g}] mm"
+            )
             raise Error(sentence, "depth_range_mm", code="depth-out-of-range")
     speed = json_fields.number(content.get("max_speed_mm_s", 25.0), "max_speed_mm_s")
     if not SPEED_RANGE_MM_S[0] <= speed <= SPEED_RANGE_MM_S[1]:
@@ -259,11 +262,13 @@ def _read_json(text: str) -> Measurements:
         raise Error(sentence, "max_speed_mm_s", speed, code="out-of-range")
     if "marks" not in content:
         if misplaced := [key for key in _MARK_KEYS if key in content]:
-            raise Error("this says something of marks, and there are none", misplaced[0], code="measurements-mixed")
+            raise Error(
+                "this key is for painted marks, but there are no marks", misplaced[0], code="measurements-mixed"
+            )
         return Measurements(rows, name, depth_range, speed)
     if rows:
         raise Error(
-            "marks contain what the other kinds measure, and are fitted alone: leave these out, or make two files",
+            "painted marks cannot be combined with other measurements: remove one of them, or make two files",
             next(iter(rows)),
             code="measurements-mixed",
         )
@@ -298,12 +303,12 @@ def _read_row(kind: str, row: dict, where: str) -> list[Row]:
             at = f"{where}.{name}[{i}]" if isinstance(value, tuple) else f"{where}.{name}"
             if abs(number) > limit:
                 sentence = (
-                    f"{number:g} {unit} is more than the {limit:g} {unit} that are taken for true: lengths count in "
-                    "millimetres, angles in degrees"
+                    f"{number:g} {unit} is more than {limit:g} {unit}: write lengths in millimetres and angles in "
+                    "degrees"
                 )
                 raise Error(sentence, at, number, code="out-of-range")
             if name == "s_mm" and number < 0:
-                sentence = f"{number:g} mm is outside the range [0, {limit:g}] mm: s counts from the first reading on"
+                sentence = f"{number:g} mm is outside the range [0, {limit:g}] mm: measure s from the first reading"
                 raise Error(sentence, at, number, code="out-of-range")
     return [Row(kind, where, depth, numbers)]
 
@@ -311,7 +316,7 @@ def _read_row(kind: str, row: dict, where: str) -> list[Row]:
 def _refuse_depth(depth_mm: float, where: str) -> None:
     if not 0 < depth_mm <= MAX_LENGTH_MM:
         sentence = (
-            f"the depth {depth_mm:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm: depths count down from first "
+            f"the depth {depth_mm:g} mm is outside the range (0, {MAX_LENGTH_MM:g}] mm: measure depths down from first "
             "contact, in millimetres"
         )
         raise Error(sentence, where, depth_mm, code="depth-out-of-range")
@@ -324,7 +329,7 @@ def _read_points(values, where: str) -> tuple[tuple[float, ...], ...]:
     points = tuple(json_fields.numbers(xy, f"{where}[{i}]", 2) for i, xy in enumerate(values))
     for i, xy in enumerate(points):
         if max(map(abs, xy)) > MAX_LENGTH_MM:
-            sentence = f"({xy[0]:g}, {xy[1]:g}) mm is further than the {MAX_LENGTH_MM:g} mm that are taken for true"
+            sentence = f"({xy[0]:g}, {xy[1]:g}) mm is outside the range [-{MAX_LENGTH_MM:g}, {MAX_LENGTH_MM:g}] mm"
             raise Error(sentence, f"{where}[{i}]", code="out-of-range")
     return points
 
@@ -346,7 +351,7 @@ def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
     _refuse_depth(depth, where)
     if "points_mm" in row:
         if "picture" in row:
-            raise Error("points_mm and picture exclude each other", where, code="options-contradict")
+            raise Error("give either points_mm or picture, not both", where, code="options-contradict")
         points = _read_points(row["points_mm"], f"{where}.points_mm")
         if len(points) < MIN_LINE_POINTS:
             sentence = f"a centre line of {len(points)} points shows no turn: give {MIN_LINE_POINTS} or more"
@@ -366,10 +371,8 @@ def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
     return [Row(kind, where, depth, picture_numbers)]
 
 
-def _video(kind: str, row: dict, where: str) -> list[Row]:
-    """Convert positions in video frames to side views (section 2.5).
-
-    The positions are those of ferrule and tip.
+def _read_video(kind: str, row: dict, where: str) -> list[Row]:
+    """Convert positions of ferrule and tip in video frames to side views (section 2.5).
 
     The depth is z_i = z_f0 - z_fi. The value is d_i = |x_fi - x_ti| minus d_i at first touch. Equation (18) prints
     z_i with x and the other sign.
@@ -381,14 +384,14 @@ def _video(kind: str, row: dict, where: str) -> list[Row]:
     ferrule, tip = (_read_points(row[name], f"{where}.{name}") for name in ("ferrule_mm", "tip_mm"))
     if len(ferrule) != len(tip) or len(ferrule) < 2:
         raise Error(
-            f"there are {len(ferrule)} places of the ferrule and {len(tip)} of the tip; each frame needs both, and two "
-            "frames are the least",
+            f"there are {len(ferrule)} places of the ferrule and {len(tip)} of the tip: give both for each frame, and "
+            "at least two frames",
             where,
             code="sizes-differ",
         )
     touch = json_fields.number(row.get("touch", 0), f"{where}.touch", 0, len(ferrule) - 2)
     if touch != int(touch):
-        raise Error("this is the number of a frame, the first being 0", f"{where}.touch", code="wrong-type")
+        raise Error("this must be the number of a frame; the first is 0", f"{where}.touch", code="wrong-type")
     touch = int(touch)
     apart = [f[0] - t[0] for f, t in zip(ferrule, tip, strict=True)]
     at_touch = apart[touch]
@@ -399,9 +402,9 @@ def _video(kind: str, row: dict, where: str) -> list[Row]:
         if depth > 0:
             rows.append(Row(kind, f"{where}, frame {i}", depth, {"value_mm": sign * (apart[i] - at_touch)}))
     if not rows:
-        sentence = "the ferrule never comes lower than at first touch: z counts upwards, in mm"
+        sentence = "the ferrule is never lower than at first touch: give z upwards, in mm"
         raise Error(sentence, f"{where}.ferrule_mm", code="measurement-missing")
     return rows
 
 
-_READERS = {"centre_line": _read_centre_line, "video": _video}
+_READERS = {"centre_line": _read_centre_line, "video": _read_video}

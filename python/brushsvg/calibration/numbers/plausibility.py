@@ -1,8 +1,6 @@
-"""Refuse measurements that no brush can have.
+"""Refuse measurements that no brush can have, and find outliers and unusual values.
 
-They have wrong units or a wrong order of rows, or determine nothing.
-
-Each message says what to do. Outliers and odd values are found here, too.
+Refused measurements have wrong units or a wrong order of rows, or they do not determine a law.
 """
 
 from __future__ import annotations
@@ -54,14 +52,14 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
     """Raise Error for angles of a drag that are in radians or in the wrong order."""
     if alpha0_deg < MIN_ALPHA0_DEG:
         sentence = (
-            f"the series starts {alpha0_deg:g} degrees from the motion, less than the {MIN_ALPHA0_DEG:g} that can be "
-            "read: turn by 90 degrees before the drag; are these radians?"
+            f"the series starts {alpha0_deg:g} degrees from the motion, but at least {MIN_ALPHA0_DEG:g} degrees are "
+            "needed: turn by 90 degrees before the drag, and write angles in degrees, not radians"
         )
         raise Error(sentence, where, alpha0_deg, code="angles-in-radians")
     if alpha_deg and max(alpha_deg) < math.pi:
         sentence = (
-            f"no angle after the first is greater than {max(alpha_deg):.3g} degrees, which nobody can read: are these "
-            "radians?"
+            f"no angle after the first is greater than {max(alpha_deg):.3g} degrees, which is too small to be read: "
+            "write angles in degrees, not radians"
         )
         raise Error(sentence, where, max(alpha_deg), code="angles-in-radians")
     if len(s_mm) == len(alpha_deg) and len(s_mm) > 1:
@@ -69,8 +67,7 @@ def refuse_series(where: str, alpha0_deg: float, s_mm, alpha_deg) -> None:
         if alpha_deg[last] > alpha_deg[first] + MAX_ANGLE_GROWTH_DEG:
             raise Error(
                 f"the angle grows from {alpha_deg[first]:g} degrees after {s_mm[first]:g} mm to {alpha_deg[last]:g} "
-                f"after {s_mm[last]:g} mm, but a dragged brush turns towards its motion: are the rows in the right "
-                "order?",
+                f"after {s_mm[last]:g} mm, but a dragged brush turns towards its motion: check the order of the rows",
                 where,
                 code="angles-grow",
             )
@@ -97,8 +94,8 @@ def refuse_displaced_start(where: str, alpha0_deg: float, s_mm, alpha_deg) -> No
     if abs(line[0]) > max(MAX_START_OFFSET_LAGS, MIN_OUTLIER_SIGMAS * error):
         raise Error(
             f"the angles fall as if the drag had begun {abs(line[0]):.2g} lags "
-            f"{'before' if line[0] < 0 else 'after'} s_mm = 0, where it was {alpha0_deg:g} degrees: count s_mm from "
-            "where that drag begins, and all angles in degrees",
+            f"{'before' if line[0] < 0 else 'after'} s_mm = 0, where the angle was {alpha0_deg:g} degrees: measure "
+            "s_mm from the place where the drag begins, and write all angles in degrees",
             where,
             code="angles-from-elsewhere",
         )
@@ -210,7 +207,7 @@ def refuse_extrapolation(law: str, deepest_mm: float, range_mm: tuple[float, flo
     """Raise Error if the brush may be pressed far deeper than the law was measured."""
     if range_mm[1] > MAX_DEPTH_PER_MEASURED * deepest_mm:
         raise Error(
-            f"{law} was measured to a depth of {deepest_mm:g} mm, the brush is to be pressed {range_mm[1]:g} mm: "
+            f"{law} was measured to a depth of {deepest_mm:g} mm, but the depth range goes to {range_mm[1]:g} mm: "
             f'measure it deeper, or give "depth_range_mm": [{range_mm[0]:g}, {deepest_mm:g}]',
             where,
             code="depth-not-measured",
@@ -220,7 +217,7 @@ def refuse_extrapolation(law: str, deepest_mm: float, range_mm: tuple[float, flo
 def refuse_no_lag(points) -> None:
     """Raise Error if all lags are 0: a pen needs no calibration."""
     if not any(point.value_mm for point in points):
-        sentence = "the lag is 0 mm at every depth: such a pen is made by brushsvg brush new -o with.json --lag 0"
+        sentence = "the lag is 0 mm at every depth: make a pen with brushsvg brush new -o pen.json --lag 0"
         raise Error(sentence, points[0].where, code="pen-without-lag")
 
 
@@ -245,8 +242,8 @@ def refuse_halves_as_widths(rows: dict) -> None:
 
     if relative_misfit(1.0) > max(MIN_CONTRADICTION, MIN_MISTAKE_RATIO * relative_misfit(0.5)):
         raise Error(
-            "these rows are twice what those of width say: half_width counts from the middle to one edge, width from "
-            "edge to edge",
+            "these half widths contradict the widths, they are about twice too large: half_width is measured from the "
+            "middle to one edge, width from edge to edge",
             halves[0].where,
             code="half-width-doubled",
         )
@@ -266,8 +263,8 @@ def refuse_falling(law: str, depths_mm: list[float], values_mm: list[float], whe
     if slope < -3 * error and drop > 0.3 * abs(middle):
         raise Error(
             f"the {law} falls by {drop:.3g} mm from depth {depths.min():g} to {depths.max():g} mm, but a brush that is "
-            "pressed deeper paints wider and trails more: are the values in the right order, and depths counted from "
-            "first contact down?",
+            "pressed deeper paints wider and trails more: check the order of the values, and that depths are measured "
+            "down from first contact",
             where,
             code="law-falls",
         )
@@ -281,15 +278,15 @@ def refuse_unexplained(law: str, points, fit) -> None:
     values = np.array([point.value_mm for point in points])
     if np.ptp(values) <= 0.05 * abs(values.mean()):
         raise Error(
-            f"the {law} is {values.mean():.3g} mm at every depth: such a pen is made by brushsvg brush new, with "
-            "--lag 0 if it does not trail",
+            f"the {law} is {values.mean():.3g} mm at every depth: make a pen with brushsvg brush new, and add --lag 0 "
+            "if it does not trail",
             points[0].where,
             code="pen-without-lag",
         )
     if len(values) > 3 and fit.r_squared < 0.5:
         raise Error(
-            f"the {law} hardly follows the depth, R^2 {fit.r_squared:.2f}: are the rows in the right order, and all of "
-            "one brush?",
+            f"the {law} hardly depends on the depth (R^2 {fit.r_squared:.2f}): check the order of the rows, and that "
+            "all are from one brush",
             points[0].where,
             code="law-scatters",
         )
@@ -299,7 +296,8 @@ def refuse_width(depth_mm: float, width_mm: float) -> None:
     """Raise Error if the width of the deepest mark is impossible for its depth."""
     if not HALF_WIDTH_PER_DEPTH[0] <= width_mm / 2 / depth_mm <= HALF_WIDTH_PER_DEPTH[1]:
         raise Error(
-            f"the width is {width_mm:.3g} mm at depth {depth_mm:g} mm: depths and widths both count in millimetres",
+            f"the width is {width_mm:.3g} mm at depth {depth_mm:g} mm, which no brush has: write depths and widths in "
+            "millimetres",
             "half_width",
             width_mm / 2,
             code="not-millimetres",
@@ -316,21 +314,21 @@ def refuse_inconsistent_laws(brush) -> None:
     refuse_width(depth, 2 * half)
     if not LAG_PER_HALF_WIDTH[0] <= lag / half <= LAG_PER_HALF_WIDTH[1]:
         sentence = (
-            f"the lag is {lag:.3g} mm and the width {2 * half:.3g} mm at depth {depth:g} mm: all lengths count in "
-            "millimetres; for a pen that does not trail take brushsvg brush new --lag 0"
+            f"the lag is {lag:.3g} mm and the width {2 * half:.3g} mm at depth {depth:g} mm, which no brush has: write "
+            "all lengths in millimetres. For a pen that does not trail, use brushsvg brush new --lag 0"
         )
         raise Error(sentence, "lag", lag, code="not-millimetres")
     if not brush.tip_to_widest.assumed and widest > lag + gap:
         sentence = (
-            f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, further than the tool, "
-            f"{lag + gap:.3g} mm: measure it from the tip of the footprint, in millimetres"
+            f"the widest section is {widest:.3g} mm from the tip at depth {depth:g} mm, but the tool is only "
+            f"{lag + gap:.3g} mm from the tip: measure both from the tip of the footprint, in millimetres"
         )
         raise Error(sentence, "tip_to_widest", widest, code="not-millimetres")
     length = float(np.max(brush.footprints.dragged[-1].outline_mm[:, 0]))
     if not brush.tip_gap.assumed and gap > 1.5 * length:
         sentence = (
-            f"the tip gap is {gap:.3g} mm at depth {depth:g} mm, the footprint {length:.3g} mm long: the centre of "
-            "friction must be in it; measure the gap from the tip of the footprint, in millimetres"
+            f"the tip gap is {gap:.3g} mm at depth {depth:g} mm, but the footprint is only {length:.3g} mm long: the "
+            "centre of friction must be inside the footprint. Measure the gap from the tip, in millimetres"
         )
         raise Error(sentence, "tip_gap", gap, code="not-millimetres")
 
@@ -348,10 +346,10 @@ def refuse_undetermined_law(brush, fitted) -> None:
     if np.mean(half > values) <= MAX_UNDETERMINED_SHARE:
         return
     worst = int(np.argmax(half / np.maximum(values, 1e-9)))
-    advice = next(iter(fitted.list_outliers()), "measure it at more depths, from shallow to the deepest")
+    advice = next(iter(fitted.list_outliers()), "measure it at more depths, from the shallowest to the deepest")
     raise Error(
-        f"these values do not determine the {fitted.name}: {values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at "
-        f"depth {depths[worst]:.3g} mm: {advice}",
+        f"these values do not determine the {fitted.name} ({values[worst]:.1f} +- {half[worst]:.1f} mm (95 %) at "
+        f"depth {depths[worst]:.3g} mm): {advice}",
         fitted.name,
         code="law-undetermined",
     )
@@ -369,7 +367,7 @@ def find_odd_values(brush, laws) -> list[Notice]:
         notices.append(
             Notice(
                 "depth_mm",
-                f"the brush is pressed {depth:.3g} mm at most: were depths and values read in millimetres?",
+                f"the greatest depth is only {depth:.3g} mm: check that depths and values are in millimetres",
                 code="not-millimetres",
             )
         )
@@ -378,8 +376,8 @@ def find_odd_values(brush, laws) -> list[Notice]:
         notices.append(
             Notice(
                 "half_width",
-                f"the width is {2 * half:.3g} mm at depth {depth:g} mm, which is odd: were {what} read in inches? All "
-                "lengths count in millimetres",
+                f"the width of {2 * half:.3g} mm at depth {depth:g} mm is unusual: check that {what} are in "
+                "millimetres, not inches",
                 code="not-millimetres",
             )
         )
@@ -387,8 +385,8 @@ def find_odd_values(brush, laws) -> list[Notice]:
         notices.append(
             Notice(
                 "lag",
-                f"the lag is {lag / half:.2g} half widths at depth {depth:g} mm, which is odd: was one of them read in "
-                "inches? All lengths count in millimetres",
+                f"the lag is {lag / half:.2g} half widths at depth {depth:g} mm, which is unusual: check that both are "
+                "in millimetres, not inches",
                 code="not-millimetres",
             )
         )
@@ -401,7 +399,7 @@ def _find_odd_lags(fitted) -> list[Notice]:
     notices = []
     mean, rmse = np.mean([point.value_mm for point in fitted.points]), fitted.fit.law.rmse_mm
     if len(fitted.points) >= 4 and not fitted.outliers and rmse is not None and rmse > 0.25 * mean:
-        sentence = f"the lag scatters by {rmse:.2g} mm round a mean of {mean:.2g} mm: are the rows in the right order?"
+        sentence = f"the lag scatters by {rmse:.2g} mm about a mean of {mean:.2g} mm: check the order of the rows"
         notices.append(Notice("lag", sentence, code="law-scatters"))
     # A median, so one bad reading hardly changes it.
     scatter_mm = 1.48 * float(np.median(np.abs(fitted.fit.residual_mm)))
@@ -411,8 +409,8 @@ def _find_odd_lags(fitted) -> list[Notice]:
         # A law follows few values badly; then the scatter is that of the law.
         if read[k] - read[k + 1] > max(VISIBLE_MM, min(2 * scatter_mm, MAX_LAG_FALL * read[k])):
             sentence = (
-                f"the lag was measured {read[k]:.3g} mm at depth {depths[k]:g} mm and {read[k + 1]:.3g} mm at "
-                f"{depths[k + 1]:g} mm, but bristles that are pressed deeper trail farther: measure both again"
+                f"the lag falls from {read[k]:.3g} mm at depth {depths[k]:g} mm to {read[k + 1]:.3g} mm at "
+                f"{depths[k + 1]:g} mm, but a brush that is pressed deeper trails more: measure both again"
             )
             notices.append(Notice("lag", sentence, code="law-falls"))
     return notices

@@ -55,7 +55,7 @@ def centre_line(data: bytes, mm_per_px: float, corner_px, towards: str = "right"
         length[-1] - TRIMMED_HALF_WIDTHS * float(line[-1, 2]),
     )
     if kept_range[1] - kept_range[0] < 6 * POINT_SPACING_MM:
-        raise Error("the mark is too short for a turn", where, code="not-a-turn")
+        raise Error("the mark is too short to show a turn", where, code="not-a-turn")
     at = np.arange(*kept_range, POINT_SPACING_MM)
     points = np.column_stack([np.interp(at, length, line[:, k]) for k in (0, 1)])
     x, y = _DIRECTIONS[towards]

@@ -54,7 +54,7 @@ UNFOLLOWED_SIGMA = 0.01
 
 
 @dataclass(frozen=True)
-class Updated:
+class UpdatedBrush:
     """A brush updated by painted marks.
 
     known: the prior. wider: for each law, the factor by which its prior intervals had to be widened. doubts_left: for
@@ -93,7 +93,7 @@ def update_brush(
     edge_mm: float = 0.0,
     machine: tuple[str, ...] = (),
     displacement_mm: float | None = None,
-) -> Updated:
+) -> UpdatedBrush:
     """Update a known brush by painted marks.
 
     edge_mm: as for calibrate_marks. machine: parts of the machine that are fitted as well. displacement_mm: standard
@@ -131,7 +131,7 @@ def update_brush(
     changed = {law for law in LAWS if interval_ratios[law][0] < MAX_LEARNED_RATIO}
     updated_brush = _merge_brush(brush, known, laws, covariance, changed, name, painted)
     _core.check(updated_brush)
-    return Updated(updated_brush, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options)
+    return UpdatedBrush(updated_brush, brush, known, wider, interval_ratios, fit, painted, covariance, astray, options)
 
 
 def _fit_wide_enough(marks: list, known: KnownLaws, options) -> tuple[object, dict[str, float]]:
@@ -319,7 +319,7 @@ def _choose_law(before, now, is_learned: bool, painted: Painted, prior: str):
     return _core.Profile(
         now.coefficients,
         calibrated_mm=(least, max(deepest, painted.deepest_mm)),
-        source=f"That of brush {prior}, updated by {len(painted.marks)} marks of a painted job.",
+        source=f"Law of brush {prior}, updated with {len(painted.marks)} marks of a painted job.",
         half_interval_95=now.half_interval_95,
     )
 
@@ -376,8 +376,8 @@ def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
     """
     if used := set(photos) & set(_read_learned(brush)["photos"]):
         raise Error(
-            f"brush {brush.name} was made from the same photograph (sha256 {sorted(used)[0][:12]}): used twice, it "
-            "would seem twice as sure",
+            f"brush {brush.name} was already updated with this photograph (sha256 {sorted(used)[0][:12]}): use each "
+            "photograph once, or the intervals become too small",
             "prior",
             code="photo-learned-twice",
         )
@@ -393,7 +393,7 @@ def other_brush(plan, brush: _core.Brush) -> list[Notice]:
         return []
     sentence = (
         f"the plan was made for another brush, {plan.brush} (sha256 {plan.brush_sha256[:12]}), not for {brush.name} "
-        f"({brush.sha256[:12]}) nor one that this was made from"
+        f"({brush.sha256[:12]}) or one of its earlier versions"
     )
     advice = f"make sure that the photograph shows paint of brush {brush.name}"
     return [Notice("brush_sha256", sentence, code="plan-of-other-brush", advice=advice)]
@@ -420,7 +420,7 @@ def _read_learned(brush) -> dict:
     }
 
 
-def found_height(updated: Updated) -> tuple[float, float]:
+def found_height(updated: UpdatedBrush) -> tuple[float, float]:
     """Return how much higher the paper is than taught [mm].
 
     Half the 95 % interval is returned as well.

@@ -115,7 +115,7 @@ def known_laws(brush: _core.Brush) -> KnownLaws:
     """
     depths = _sample_depths(brush)
     if max(brush.lag(d) for d in depths) <= 0:
-        sentence = f"brush {brush.name} does not trail: nothing of it is learnt from marks"
+        sentence = f"brush {brush.name} does not trail, so marks cannot update it"
         raise Error(sentence, "lag", code="pen-without-lag")
     fitted_laws = laws_of(brush)
     laws = _core.MarkLaws(
@@ -132,11 +132,14 @@ def known_laws(brush: _core.Brush) -> KnownLaws:
     for law, place in numbers_of().items():
         coefficients = places(brush)[law]
         if np.any(file_covariance[coefficients, coefficients]):
-            how[law] = "the covariance in its file"
+            how[law] = "covariance in the brush file"
             block = _form_covariance(brush, law, depths, laws.widest_per_half)
         elif law == "tip_to_widest":
             half = _core.interval_factor_95() * RATIO_SIGMA
-            how[law] = f"nothing it says: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip (95 %)"
+            how[law] = (
+                f"not in the brush file; assumed: {laws.widest_per_half:.2f} +- {half:.2f} half widths from the tip "
+                "(95 %)"
+            )
             block = RATIO_SIGMA**2
         else:
             block, how[law] = _covariance_without_file(
@@ -163,16 +166,14 @@ def covariance_as_measured(law: str, depths: np.ndarray, sd_mm: np.ndarray) -> n
 
 
 def _form_covariance(brush, law: str, depths: np.ndarray, ratio: float):
-    """Return the covariance of a law from its low degree alone."""
+    """Return the part of the covariance of a law that comes from its low degree."""
     if law == "tip_to_widest":
         return (FORM_SIGMA * ratio) ** 2
     return covariance_as_measured(law, depths, FORM_SIGMA * _size_of_law(getattr(brush, law), depths))
 
 
 def _size_of_law(law, depths: np.ndarray) -> np.ndarray:
-    """Return the size of a law at depths.
-
-    The size is at least the value at a quarter of the greatest depth.
+    """Return the size of a law at depths, at least its value at a quarter of the greatest depth.
 
     Near first touch the law may be 0.
     """
@@ -199,12 +200,12 @@ def _covariance_without_file(law, name: str, depths: np.ndarray, to_numbers: np.
         error = np.full_like(depths, law.rmse_mm)
         return covariance_as_measured(
             name, depths, error
-        ), f"its RMSE, {law.rmse_mm:g} mm at each of {TERMS[name]} depths"
+        ), f"RMSE of the law, {law.rmse_mm:g} mm at each of {TERMS[name]} depths"
     if not half.any():
         error = ASSUMED_SIGMA * _size_of_law(law, depths)
         return covariance_as_measured(
             name, depths, error
-        ), f"nothing it says: {100 * ASSUMED_SIGMA:g} % (standard deviation)"
+        ), f"not in the brush file; assumed: {100 * ASSUMED_SIGMA:g} % (standard deviation)"
     has_interval = half > 0
     powers = np.vander(depths, len(half), increasing=True)[:, has_interval]
     unit_covariance = np.linalg.pinv(powers.T @ powers)
@@ -213,7 +214,7 @@ def _covariance_without_file(law, name: str, depths: np.ndarray, to_numbers: np.
     form = covariance_as_measured(name, depths, FORM_SIGMA * _size_of_law(law, depths))
     return selected @ (
         unit_covariance * np.outer(sd, sd)
-    ) @ selected.T + form, "its half-intervals, as for numbers fitted to even depths"
+    ) @ selected.T + form, "intervals of the coefficients in the brush file, as if fitted to evenly spaced depths"
 
 
 def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:

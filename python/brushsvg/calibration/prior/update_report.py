@@ -1,7 +1,4 @@
-"""Report the update of a known brush by a painted job.
-
-The report has a verdict, the changes of each law, and tables.
-"""
+"""Report the update of a known brush by a painted job."""
 
 from __future__ import annotations
 
@@ -29,27 +26,29 @@ MIN_REPORTED_OFFSET_MM = 0.05  # the report mentions a different form of the pri
 def report(calibration) -> Report:
     """Return the report that `brushsvg calibrate --prior` prints.
 
-    calibration: a from_prior.Updated.
+    calibration: a from_prior.UpdatedBrush.
     """
     brush, fit, count = calibration.brush, calibration.fit, len(calibration.painted.marks)
     laws = [law for law in LAWS if calibration.is_learned(law)]
     reservations = [
         "" if fit.converged else NOT_CONVERGED,
-        "" if laws else "the marks show nothing new: the brush is as it was before",
+        "" if laws else "the marks show nothing new, so the brush is unchanged",
         f"{plural(len(calibration.strays), 'mark')} had to be left out" if calibration.strays else "",
     ]
     lines = [
-        f"{name_and_depths(brush)}: {calibration.before.name}, updated by {plural(count, 'mark')} painted at depths to "
-        f"{calibration.painted.deepest_mm:.3g} mm",
+        f"{name_and_depths(brush)}: brush {calibration.before.name}, updated with {plural(count, 'mark')} painted at "
+        f"depths up to {calibration.painted.deepest_mm:.3g} mm",
         *(f"{law}: {_describe_law(calibration, law)}" for law in LAWS),
         *_list_remarks(calibration),
     ]
     machine_numbers = numbers(fit, calibration.covariance, calibration.options)
     table = cell_table(fit, calibration.options, machine_numbers)
     details = [*_compare_laws(calibration, laws), *_describe_residuals(calibration)]
-    details += [f"{law}, the prior: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS]
     details += [
-        *(["", "of the machine:"] if machine_numbers else []),
+        f"{law}, uncertainty before: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS
+    ]
+    details += [
+        *(["", "errors of the machine:"] if machine_numbers else []),
         *describe_numbers(machine_numbers),
         *(["", *table] if table else []),
     ]
@@ -60,12 +59,13 @@ def _list_remarks(calibration) -> list[str]:
     lines = []
     if calibration.painted.deepest_mm < calibration.brush.depth_range_mm[1]:
         lines.append(
-            f"deeper than {calibration.painted.deepest_mm:.3g} mm nothing was painted: there laws rest on the prior "
-            "and on their form"
+            f"no mark is deeper than {calibration.painted.deepest_mm:.3g} mm; at greater depths, the laws depend on "
+            "the brush before and on their form"
         )
     if calibration.strays:
         lines.append(
-            f"left out, unlike the other marks: {', '.join(stray.mark.stroke for stray in calibration.strays)}"
+            "left out because they do not fit the other marks: "
+            f"{', '.join(stray.mark.stroke for stray in calibration.strays)}"
         )
     return lines
 
@@ -74,19 +74,19 @@ def _describe_law(calibration, law: str) -> str:
     share, depth = calibration.doubts_left[law]
     if not calibration.is_learned(law):
         with_width = law == "tip_to_widest" and calibration.is_learned("half_width")
-        return "the marks show nothing of it: " + (
-            "it keeps its ratio to the half width" if with_width else "left as it was"
+        return "the marks do not determine it; " + (
+            "its ratio to the half width is unchanged" if with_width else "it is unchanged"
         )
-    return f"learned from the marks: its intervals are {share:.2f} times as wide as before, at depth {depth:.3g} mm"
+    return f"updated; at depth {depth:.3g} mm its interval is {share:.2f} times as wide as before"
 
 
 def _describe_prior(calibration, law: str) -> str:
     """Describe how the prior that was used differs from the brush file."""
     words = ""
     if (off := calibration.known.off_mm[law]) > MIN_REPORTED_OFFSET_MM and calibration.is_learned(law):
-        words += f"; as the law that marks are fitted with, {off:.2f} mm off at most"
+        words += f"; the fit uses a simpler law, which differs by {off:.2f} mm at most"
     if (wider := calibration.wider.get(law, 1.0)) > 1.0:
-        words += f"; taken {wider:.1f} times as wide, since the marks are that far from it"
+        words += f"; widened {wider:.1f} times, because the marks differ that much from the brush before"
     return words
 
 
@@ -100,7 +100,7 @@ def _compare_laws(calibration, laws: list[str]) -> list[str]:
         columns.append((law, [f"{now} ({was})" for now, was in pairs]))
     return [
         *law_table(depths, columns),
-        "  now +- half the 95 % confidence interval, in brackets the prior",
+        "  +-: half the 95 % confidence interval of the law; in brackets: before the update",
         "",
     ]
 
@@ -111,6 +111,6 @@ def _describe_residuals(calibration) -> list[str]:
     return [
         paper_height(*found_height(calibration)),
         f"marks are displaced by {rms:.2f} mm (rms)",
-        f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, worth "
-        f"{fit.effective_samples:.0f} independent ones",
+        f"residuals of the edges: standard deviation {fit.noise_mm:.2f} mm; {fit.samples:.0f} points, which count as "
+        f"{fit.effective_samples:.0f} independent points",
     ]

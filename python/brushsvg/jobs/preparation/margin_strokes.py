@@ -149,7 +149,7 @@ def _place_passes(work: Work, deepest_mm: float, last_pass) -> tuple[list, tuple
     Returns the passes and the size of the sheet with their strip, or None if a pass is wider than the sheet.
     """
     # The chart layout imports OpenCV, which is not needed without margin strokes.
-    from ...calibration.chart.layout import GAP_MM, angular, chart_depths, room_for, straight
+    from ...calibration.chart.layout import GAP_MM, angular, chart_depths, find_mark_boxes, straight
 
     brush, (width, height) = work.brush, work.plan.sheet_mm
     # The shallowest mark is too thin to be visible in a photograph.
@@ -159,7 +159,9 @@ def _place_passes(work: Work, deepest_mm: float, last_pass) -> tuple[list, tuple
     names = {each.stroke for each in work.plan.passes}
     free_names = (name for k in range(1, len(names) + DEPTH_COUNT + 1) if (name := f"{MARGIN_KIND}-{k}") not in names)
     speed = min(work.options.speed_of_all_mm_s or work.options.speed_mm_s, brush.max_speed_mm_s)
-    for a_pass, (x0, y0, x1, y1) in zip(charted, room_for(brush, charted, LAG_FACTORS, WIDTH_FACTOR), strict=True):
+    for a_pass, (x0, y0, x1, y1) in zip(
+        charted, find_mark_boxes(brush, charted, LAG_FACTORS, WIDTH_FACTOR), strict=True
+    ):
         if x1 - x0 > width:
             return None
         if left + x1 - x0 > width:
