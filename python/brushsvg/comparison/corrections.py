@@ -101,8 +101,8 @@ def select_for_machine(corrections: tuple[Correction, ...], machine: Machine | N
     found = tuple(each for each in corrections if each.machine_sha256 in ("", sha256))
     if corrections and not found:
         raise Error(
-            "the corrections were made for another table [machine] than this cell's: use the cell that painted or the "
-            "corrected one, or compare the photograph again with the cell that painted",
+            "the corrections were made for a cell with another table [machine]: use the cell that painted the sheet or "
+            "the corrected cell, or compare the photograph again with the cell that painted the sheet",
             "machine_sha256",
             code="corrections-of-another-cell",
         )
@@ -119,13 +119,13 @@ def apply_corrections(plan, corrections: tuple[Correction, ...], brush):
     if not corrections:
         return plan
     plan, _ = remove_corrections(plan)
-    _core.refuse_tilted(plan.passes, "strokes are corrected for a brush held upright")
+    _core.refuse_tilted(plan.passes, "corrections of strokes need an upright brush")
     of_brush_sha256 = corrections[0].brush_sha256
     if of_brush_sha256 and brush.sha256 and of_brush_sha256 != brush.sha256:
         raise Error(
-            f"the corrections are residuals of another brush (sha256 {of_brush_sha256[:12]}), not of "
-            f"{brush.name} ({brush.sha256[:12]}), which may know part of it: compare the photograph again with this "
-            "brush, and with the plan.json that was painted",
+            f"the corrections are for another brush (sha256 {of_brush_sha256[:12]}), not for {brush.name} "
+            f"({brush.sha256[:12]}), which may already include part of them: compare the photograph again with this "
+            "brush and the plan.json that was painted",
             "brush_sha256",
             code="corrections-of-another-brush",
         )
@@ -163,12 +163,12 @@ def remove_corrections(plan) -> tuple[_core.Plan, tuple[Correction, ...]]:
         return plan, ()
     record = json.loads(plan.extra)[CORRECTIONS_KEY]
     if isinstance(record, int):
-        sentence = "its strokes were corrected by a version of brushsvg that did not keep the corrections"
+        sentence = "the strokes were corrected by an earlier version of brushsvg, which did not keep the corrections"
         raise Error(
             sentence,
             CORRECTIONS_KEY,
             code="corrections-twice",
-            advice="give the drawing or the plan without them",
+            advice="give the drawing, or the plan without corrections",
         )
     (record, before) = json_fields.objects(
         [record, record.get("plan") if isinstance(record, dict) else None], CORRECTIONS_KEY
@@ -188,7 +188,9 @@ def _correct_pass(a_pass, correction: Correction, brush):
     # A plan for a brush with no lag, or with three times the lag, begins up to two lags elsewhere.
     deepest_mm = min(max(-poses[:, 2].min(), brush.depth_range_mm[0]), brush.depth_range_mm[1])
     if away_mm > (max(OTHER_BRUSH_MM, 2 * brush.lag(deepest_mm)) if correction.replanned else SAME_PATH_MM):
-        raise _other_job_error(a_pass.stroke, f"it begins {away_mm:.2f} mm from where they say")
+        raise _other_job_error(
+            a_pass.stroke, f"the stroke begins {away_mm:.2f} mm away from its place in the corrections"
+        )
     if correction.way_mm and not correction.replanned:
         _refuse_other_way(a_pass, np.array(correction.way_mm))
     if correction.wider_mm:
@@ -211,19 +213,20 @@ def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
     displacement_mm, deeper_mm = np.hypot(*difference_mm.T[:2]).max(), np.abs(difference_mm[:, 2]).max()
     if max(displacement_mm, deeper_mm) > SAME_PATH_MM:
         how = (
-            f"{displacement_mm:.2f} mm to the side"
+            f"{displacement_mm:.2f} mm further to the side"
             if displacement_mm > deeper_mm
             else f"{deeper_mm:.2f} mm higher or lower"
         )
         raise _other_job_error(
             a_pass.stroke,
-            f"the brush is up to {how} of where it was, for example by another width or tolerance",
+            f"the path of the brush is up to {how} than on the painted sheet, for example because of another width or "
+            "tolerance",
         )
 
 
 def _other_job_error(stroke: str, why: str) -> Error:
     return Error(
-        f"the corrections are of another job, or of other flags: {why}",
+        f"the corrections are for another job, or for other flags: {why}",
         stroke,
         code="corrections-of-another-job",
     )
@@ -252,14 +255,12 @@ def _explain_no_corrections(rows: list[dict]) -> str:
     found_count = sum(row.get("found") is True for row in rows)
     if 0 < found_count < MIN_MARKS:
         return (
-            f"it corrects no stroke: {found_count} of its marks {'was' if found_count == 1 else 'were'} found, "
-            f"and at least {MIN_MARKS} are needed to separate a stroke's own place from the sheet's"
+            f"the file has no corrections: {found_count} {'mark was' if found_count == 1 else 'marks were'} found, "
+            f"but at least {MIN_MARKS} are needed to separate displaced strokes from a displaced sheet"
         )
     if found_count:
-        return (
-            f"it corrects no stroke: of {found_count} marks none is seen well enough, and near enough to its prediction"
-        )
-    return "it corrects no stroke: the photograph did not show the places of marks"
+        return f"the file has no corrections: none of {found_count} marks was seen well enough and near its prediction"
+    return "the file has no corrections: the photograph did not show the places of marks"
 
 
 def _read_corrections(content: dict, at: str, of_brush: dict) -> tuple[Correction, ...]:
@@ -272,7 +273,7 @@ def _read_corrections(content: dict, at: str, of_brush: dict) -> tuple[Correctio
     )
     names = [each.stroke for each in found]
     if twice := [name for name in names if names.count(name) > 1]:
-        raise Error(f"stroke {twice[0][:40]!r} stands twice", f"{at}strokes", code="stroke-twice")
+        raise Error(f"stroke {twice[0][:40]!r} is listed twice", f"{at}strokes", code="stroke-twice")
     return found
 
 

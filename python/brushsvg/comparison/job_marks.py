@@ -16,7 +16,7 @@ from .placing import Canvas
 MIN_COVERED_SHARE = 0.15
 MIN_INSIDE_SHARE = 0.5  # share of a piece of paint inside a mark, above which the piece belongs to the mark
 MAX_MISSING_FOR_OUTLINE = 0.3  # share of a mark without paint, above which its edges are not those of the brush
-PAINT_A_CHART = "paint a chart, whose strokes do not touch: brushsvg chart, then calibrate --chart"
+PAINT_A_CHART = "paint a chart, where strokes do not touch: brushsvg chart, then calibrate --chart"
 
 
 @dataclass(frozen=True)

@@ -52,8 +52,8 @@ def next_corrections(
             continue
         if row.like < MIN_MARK_OVERLAP:
             sentence = (
-                f"its paint overlaps with its mark, at its best place, by {row.like:.2f}, less than "
-                f"{MIN_MARK_OVERLAP:g}, which may be chance: it is not corrected"
+                f"this stroke is not corrected, because even at the best place its paint and its predicted mark "
+                f"overlap by only {row.like:.2f} (at least {MIN_MARK_OVERLAP:g} is needed)"
             )
             notices.append(Notice(row.stroke, sentence, code="mark-unlike"))
             continue
@@ -70,8 +70,9 @@ def next_corrections(
             continue
         corrections.pop(row.stroke, None)
         sentence = (
-            f"it would be moved {far_mm:.2f} mm and {far_deg:.1f} degrees, outside the ranges [0, {MAX_SHIFT_MM:g}] "
-            f"mm and [0, {MAX_TURN_DEG:g}] degrees of a correction: look for what moves it so far"
+            f"this stroke is not corrected, because it would be moved by {far_mm:.2f} mm and {far_deg:.1f} degrees, "
+            f"outside the ranges [0, {MAX_SHIFT_MM:g}] mm and [0, {MAX_TURN_DEG:g}] degrees of a correction: find the "
+            "cause of such a large displacement"
         )
         notices.append(Notice(row.stroke, sentence, code="correction-too-far"))
     return corrections, notices
@@ -97,8 +98,8 @@ def find_growing_displacements(found: Comparison, before: dict[str, float]) -> l
         now_mm = float(np.hypot(*displacement_mm(row, found)))
         if row.placed.found and row.stroke in before and now_mm > before[row.stroke] + MIN_REPORTED_INCREASE_MM:
             sentence = (
-                f"its mark is {now_mm:.2f} mm to the side, on the sheet before {before[row.stroke]:.2f} mm: the cause "
-                "of that did not repeat"
+                f"its mark is displaced by {now_mm:.2f} mm, more than on the sheet before "
+                f"({before[row.stroke]:.2f} mm): the error that was corrected did not repeat"
             )
             notices.append(Notice(row.stroke, sentence, code="stroke-farther"))
     return notices

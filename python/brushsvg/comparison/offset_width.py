@@ -1,7 +1,4 @@
-"""Move the edges of a pass outward or inward.
-
-They move only as far as the brush's laws were measured.
-"""
+"""Move the edges of a pass outward or inward, within the widths for which the brush was measured."""
 
 from __future__ import annotations
 
@@ -44,7 +41,7 @@ def offset_edges(a_pass, by_mm: float, brush):
 def refuse_width(a_pass, by_mm: float, brush) -> None:
     """Raise Error where the brush cannot paint a stroke wider by by_mm per edge."""
     if not brush.width_follows_depth():
-        sentence = f"brush {brush.name} is as wide at every depth: the width of its strokes is not corrected"
+        sentence = f"the width is not corrected, because brush {brush.name} has one width at every depth"
         raise Error(sentence, a_pass.stroke, code="width-correction-refused")
     half_mm, (least, deepest) = _mean_half_width_mm(a_pass, brush), measured_depths_mm(brush)
     if half_mm <= 0:
@@ -56,8 +53,8 @@ def refuse_width(a_pass, by_mm: float, brush) -> None:
     if low <= target_mm <= high:
         return
     sentence = (
-        f"with its width corrected by {2 * by_mm:+.2f} mm it would be {target_mm:.2f} mm wide, outside the range "
-        f"[{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured: its width is not corrected"
+        f"the width is not corrected: a correction by {2 * by_mm:+.2f} mm needs a width of {target_mm:.2f} mm, outside "
+        f"the range [{low:.2f}, {high:.2f}] mm in which brush {brush.name} was measured"
     )
     raise Error(sentence, a_pass.stroke, target_mm, (low, high), code="width-correction-refused")
 

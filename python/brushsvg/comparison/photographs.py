@@ -123,11 +123,8 @@ def compare_photos(page: JobPage, strokes: list[TargetStroke], photos: list[tupl
     return replace(compare_paint(strokes, mean, canvas, photos[0][0]), view=view, flat=flat, paint=paint)
 
 
-def of_drawing(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparison, list[TargetStroke]]:
-    """Return the comparison and the strokes without strokes in the margin.
-
-    Only strokes of the drawing remain.
-    """
+def select_drawn_strokes(found: Comparison, strokes: list[TargetStroke]) -> tuple[Comparison, list[TargetStroke]]:
+    """Return the comparison and the strokes without strokes in the margin."""
     drawn = [stroke for stroke in strokes if stroke.is_drawn]
     names = {stroke.stroke for stroke in drawn}
     return replace(found, strokes=tuple(row for row in found.strokes if row.stroke in names)), drawn
@@ -159,8 +156,8 @@ def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, byte
         overlap = overlap_of_masks(painted[0] > EDGE_LEVEL, each > EDGE_LEVEL)
         if overlap < MIN_SAME_SHEET_OVERLAP:
             sentence = (
-                f"its paint overlaps with that of {photos[0][0]} by {overlap:.2f}, less than "
-                f"{MIN_SAME_SHEET_OVERLAP:g}: photographs of one sheet are averaged; use one command for each sheet"
+                f"its paint overlaps with the paint in {photos[0][0]} by only {overlap:.2f}, less than "
+                f"{MIN_SAME_SHEET_OVERLAP:g}: pass only photographs of one sheet, and use one command for each sheet"
             )
             raise Error(sentence, file=name, value=overlap, code="photos-differ")
 
@@ -168,7 +165,7 @@ def _refuse_other_sheets(painted: list[np.ndarray], photos: list[tuple[str, byte
 def _as_job_error(refusal: Error, name: str) -> Error:
     sentence, advice = refusal.sentence, refusal.advice
     if refusal.code == "photo-of-another-chart":
-        sentence = "the picture shows the page of another job, or of another plan of this one"
+        sentence = "the picture shows the page of another job, or of another plan of this job"
         advice = "give the drawing with the flags that the page was made with, or the plan.json"
     return Error(sentence, refusal.where, refusal.value, refusal.range, name, code=refusal.code, advice=advice)
 
@@ -292,15 +289,15 @@ def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
 def _refuse_other_job(overlap: float, name: str) -> None:
     if overlap < MIN_OVERLAP:
         sentence = (
-            f"the paint overlaps with what was predicted by {overlap:.2f}, less than {MIN_OVERLAP:g}: is this the "
-            "painted page of this job?"
+            f"the paint overlaps with the prediction by only {overlap:.2f}, less than {MIN_OVERLAP:g}: check that "
+            "this is the painted page of this job"
         )
         raise Error(sentence, file=name, value=overlap, code="photo-of-another-job")
 
 
 def _missing_mark_notices(found: list[_LocatedStroke]) -> list[Notice]:
     rows = [seen.row for seen in found if not seen.row.placed.found and seen.row.missing > MISSING_MARK_SHARE]
-    sentence = "no paint is found where its mark should be"
+    sentence = "no paint was found where the mark of this stroke should be"
     return [Notice(row.stroke, sentence, code="mark-missing") for row in rows]
 
 
@@ -308,8 +305,8 @@ def _thing_notices(things: np.ndarray, canvas: Canvas) -> list[Notice]:
     if not things.any():
         return []
     sentence = (
-        f"{things.sum() / canvas.px_per_mm**2:.0f} mm^2 on the sheet are no mark, but a hand, a tool or a blot: "
-        "strokes beneath or next to it are not reported, nor are causes of errors"
+        f"a hand, a tool or a blot covers {things.sum() / canvas.px_per_mm**2:.0f} mm^2 of the sheet: strokes under "
+        "or near it are not reported, and causes of errors are not estimated. Photograph the sheet without it"
     )
     return [Notice("sheet", sentence, code="photo-covered")]
 

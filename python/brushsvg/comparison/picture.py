@@ -75,7 +75,7 @@ def comparison_png(
     _write_text(out, title[:60], (16, 34), TEXT_COLOUR)
     _write_text(
         out,
-        "paint as photographed; grey: drawn; red line: predicted; numbers: the worst places",
+        "photograph of the paint; grey: drawn; red line: predicted; numbers: the worst places",
         (16, 72),
         (30, 30, 30),
         0.75,
@@ -114,7 +114,7 @@ def _draw_gains(faults: Faults, width: int) -> np.ndarray:
     """Draw the gain from fixing each cause alone, as bars with intervals."""
     shares = sorted(faults.shares, key=lambda one: -one.gain)
     out = np.full((80 + ROW_PX * len(shares), width, 3), 255, np.uint8)
-    _write_text(out, "overlap gained by fixing this cause alone (line: 95 %)", (16, 50), TEXT_COLOUR, 0.75)
+    _write_text(out, "gain in overlap if only this cause is fixed (line: 95 %)", (16, 50), TEXT_COLOUR, 0.75)
     left = min(760, round(0.55 * width))
     most = max(0.02, *(share.high for share in shares))
     per_px = (width - left - 40) / most

@@ -84,7 +84,7 @@ class Repeats:
     once: tuple[str, ...] = ()
 
 
-def repeats(plan, files: Sequence[str], sheets: Sequence[Comparison]) -> Repeats:
+def measure_repeats(plan, files: Sequence[str], sheets: Sequence[Comparison]) -> Repeats:
     """Measure the repeatability over sheets, or over copies on one sheet.
 
     files: the photograph of each sheet, for errors. sheets: comparisons of sheets that were painted with the same plan.
@@ -125,15 +125,15 @@ def repeats(plan, files: Sequence[str], sheets: Sequence[Comparison]) -> Repeats
     # Each group costs the two coordinates of its mean, and each sheet but one costs a shift and a turn.
     freedom = 2 * (mark_count - group_count) - 3 * (len(sheets) - 1)
     if freedom < MIN_DEGREES_OF_FREEDOM:
-        where = "on these sheets" if over_sheets else "on this sheet, where copies of a stroke are looked for"
+        where = "on these sheets" if over_sheets else "as copies on this sheet"
         sentence = (
-            f"too few strokes are seen more than once {where}: {mark_count} marks of {group_count} strokes "
-            "show no spread"
+            f"too few strokes are seen more than once {where}: {mark_count} marks of {group_count} strokes do not "
+            "show how well strokes repeat"
         )
         raise Error(sentence, code="too-few-repeats")
     sigma = math.sqrt(squares / freedom)
     if sigma < MIN_SPREAD_MM:
-        sentence = "marks are alike to the last digit: photographs of two sheets are needed, not of one twice"
+        sentence = "all marks are exactly equal: give photographs of two sheets, not two photographs of one sheet"
         raise Error(sentence, code="too-few-repeats")
     low, high = (sigma * math.sqrt(freedom / _chi_square_quantile(freedom, side)) for side in (1.96, -1.96))
     approaches = tuple(_measure_hysteresis(plan, places, axis) for axis in (0, 1))
@@ -149,7 +149,7 @@ def _places_by_stroke(found: Comparison) -> dict[str, tuple[float, float, float]
     where too few marks are found to determine the pose of the sheet.
     """
     if found.spread_mm is None:
-        sentence = f"fewer than {MIN_MARKS} of its marks are found, which do not determine the pose of the sheet"
+        sentence = f"fewer than {MIN_MARKS} marks are found, too few to determine the position of the sheet"
         raise Error(sentence, code="marks-missing")
     return {
         row.stroke: (*displacement_mm(row, found).tolist(), row.placed.wider_mm)
@@ -240,18 +240,22 @@ def report(title: str, found: Repeats) -> Report:
         else "",
         f"{plural(count, 'stroke')} {'was' if count == 1 else 'were'} not seen twice" if count else "",
     ]
-    over = f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet, which their place moves, too"
+    over = f"{found.sheets} sheets" if found.over_sheets else "copies on one sheet"
     worst = sorted(found.rows, key=lambda row: -row.spread_mm)[:MAX_WORST_STROKES]
     lines = [
-        f"{title}: {plural(len(found.rows), 'stroke')} on {over}: the same stroke is displaced by "
+        f"{title}: {plural(len(found.rows), 'stroke')} on {over}. Repetitions of one stroke are displaced by "
         f"{found.displacement_mm:.3f} mm in x and in y (standard deviation, 95 % interval {found.low_mm:.3f} to "
-        f"{found.high_mm:.3f})",
-        *(f"{row.stroke} spreads by {row.spread_mm:.3f} mm, {row.farthest_mm:.2f} mm at most" for row in worst),
+        f"{found.high_mm:.3f}){'' if found.over_sheets else '. This includes errors that depend on the place'}",
+        *(
+            f"{row.stroke} repeats to {row.spread_mm:.3f} mm (standard deviation), at most {row.farthest_mm:.2f} mm "
+            "from its mean"
+            for row in worst
+        ),
         *(_describe_hysteresis(approach) for approach in found.approaches),
     ]
     if count:
-        why = f"not found, or more than {100 * MAX_MISSING_FOR_PLACE:g} % of the mark without paint"
-        lines.append(f"{plural(count, 'stroke')} not seen twice ({why}): {', '.join(found.once)}.")
+        why = f"a mark was not found or lacks more than {100 * MAX_MISSING_FOR_PLACE:g} % of its paint"
+        lines.append(f"{plural(count, 'stroke')} not seen twice, because {why}: {', '.join(found.once)}.")
     return Report(verdict([], reservations), tuple(lines), tuple(_detail_lines(found)))
 
 
@@ -269,7 +273,7 @@ def _detail_lines(found: Repeats) -> list[str]:
         )
         rows.append((row.stroke, str(row.count), *figures))
     lines = table(head, rows)
-    lines += ["", "Distance of each from its mean, mm:"]
+    lines += ["", "Number of marks by their distance from the mean of their stroke, mm:"]
     bins = histogram(found)
     most, before = max(count for _, count in bins), 0.0
     for edge, count in bins:
@@ -278,18 +282,18 @@ def _detail_lines(found: Repeats) -> list[str]:
     return [
         *lines,
         "",
-        "Mean, spread, farthest: displacement beyond the sheet's place, mm; spread in x and in y; wider: how far edges",
-        "are from their mean (standard deviation, mm).",
+        "Mean, spread, farthest: displacement relative to the sheet in mm. Spread: standard deviation in x and in y.",
+        "Wider: standard deviation of the place of an edge in mm.",
     ]
 
 
 def _describe_hysteresis(approach: Approach) -> str:
     if approach.value_mm is None:
-        return f"Too few strokes are approached from either side in {approach.axis} to show a hysteresis."
+        return f"Hysteresis in {approach.axis}: unknown, because too few strokes are approached from both sides."
     certain = "" if abs(approach.value_mm) > approach.half_mm else ", which may be chance"
     return (
-        f"Strokes that are approached towards +{approach.axis} are {approach.value_mm:+.3f} +- "
-        f"{approach.half_mm:.3f} mm further that way than those approached towards -{approach.axis}{certain}."
+        f"Hysteresis in {approach.axis}: {approach.value_mm:+.3f} +- {approach.half_mm:.3f} mm between strokes that "
+        f"are approached in the direction +{approach.axis} and -{approach.axis}{certain}."
     )
 
 

@@ -54,7 +54,7 @@ def _draw_sheets(axes, sheets: list[Comparison], strokes: list[TargetStroke]) ->
             line = np.vstack([ring, ring[:1]])
             axes.plot(*line.T, color=PREDICTED_COLOUR, linewidth=0.6, label="" if number else "predicted")
     axes.set_aspect("equal")
-    axes.set_title("paint of all sheets, the place of each corrected (mm)", fontsize=9, color=INK)
+    axes.set_title("paint of all sheets, moved to one place (mm)", fontsize=9, color=INK)
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
     axes.tick_params(labelsize=7)
 
@@ -73,7 +73,7 @@ def _draw_spread(axes, found: Repeats) -> None:
     axes.set_yticks(places, [shortened(row.stroke, 18) for row in rows], fontsize=7)
     axes.axvline(found.displacement_mm, color=PREDICTED_COLOUR, linewidth=1, label="all strokes")
     left_out = len(found.rows) - len(rows)
-    what = f"of each stroke (mm){f'; {left_out} that spread less left out' if left_out else ''}"
+    what = f"of each stroke (mm){f'; {left_out} with less spread are not shown' if left_out else ''}"
     axes.set_title(what, fontsize=9, color=INK)
     axes.legend(**LEGEND_BELOW)
     axes.tick_params(axis="x", labelsize=7)
@@ -87,10 +87,10 @@ def _draw_histogram(axes, found: Repeats) -> None:
     # Places are compared with their own mean, which is nearer to them than the true mean.
     sigma = float(np.sqrt(np.mean(found.away_mm**2) / 2))
     normal = len(found.away_mm) * (edges[1] - edges[0]) * at / sigma**2 * np.exp(-((at / sigma) ** 2) / 2)
-    axes.plot(at, normal, color=INK, linewidth=1, label="if it were normal")
+    axes.plot(at, normal, color=INK, linewidth=1, label="normal distribution")
     axes.set_yscale("log")
     axes.set_ylim(0.5, 2 * max(counts.max(), 1))
-    axes.set_xlabel("from the mean of its stroke, mm", fontsize=8, color=QUIET)
+    axes.set_xlabel("distance from the mean of the stroke, mm", fontsize=8, color=QUIET)
     axes.set_title(f"displacement, {len(found.away_mm)} marks (count)", fontsize=9, color=INK)
     axes.legend(**LEGEND_BELOW)
     axes.tick_params(labelsize=7)

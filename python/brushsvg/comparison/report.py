@@ -24,12 +24,13 @@ from .photographs import MAX_EDGE_DISTANCE_MM, MISSING_MARK_SHARE, Compared, Com
 MIN_STRAY_PAINT_MM2 = 1.0
 TABLE_HEAD = ("stroke", "drawn", "predicted", "x", "y", "off", "turn", "wider", "began", "ended", "missing")
 WORSE_PLACE_NOTE = (
-    " (less: the place comes from the middles of marks, which missing paint, the brush and the machine move, too)"
+    ". The correction of the sheet reduces the overlap here, because missing paint, the brush and the machine also "
+    "displace marks"
 )
 
 
 @dataclass(frozen=True)
-class Made:
+class SheetFingerprints:
     """Fingerprints of the parts with which a sheet was made.
 
     brush: the brush that predicted the marks; plan_brush: the brush that the plan was made for, where it is known;
@@ -85,12 +86,12 @@ def report(
         *low,
         f"{plural(missing_count, 'mark')} {'is' if missing_count == 1 else 'are'} missing" if missing_count else "",
     ]
-    reservations += ["something covers part of the sheet"] if found.has_things else []
+    reservations += ["an object or a blot covers part of the sheet"] if found.has_things else []
     rows = {row.stroke: row for row in found.strokes}
     shown_painted, shown_placed, shown_each = map(format_overlap, (as_painted, placed, each))
     lines = [
         f"{title}: {percent(as_painted)} of paint and {what.removeprefix('the ')} coincide (overlap {shown_painted}; "
-        f"{shown_placed} with the sheet's place corrected, {shown_each} with each stroke's)"
+        f"{shown_placed} if the place of the sheet were corrected, {shown_each} if the place of each stroke were)"
         f"{WORSE_PLACE_NOTE if shown_placed < shown_painted else ''}",
         _describe_sheet(found),
         *(
@@ -113,9 +114,11 @@ def report(
             (_table_row(stroke, ends.get(stroke.stroke, UNKNOWN_ENDS)) for stroke in found.strokes),
         ),
         "",
-        "Drawn, predicted: overlap of the stroke's paint with them, intersection over union. x, y, off: displacement",
-        "from the prediction in mm; turn in degrees; wider: of each edge, in mm; began, ended: how much later on its",
-        "way than drawn, in mm; missing: share of the mark without paint; -: cannot be separated from its neighbours.",
+        "Drawn, predicted: overlap of the stroke's paint with the drawing and the prediction (intersection over "
+        "union).",
+        "x, y, off: displacement from the prediction in mm. Turn: in degrees. Wider: outward shift of each edge in mm.",
+        "Began, ended: how much later than drawn the paint begins and ends along the stroke, in mm.",
+        "Missing: share of the mark without paint. -: cannot be separated from neighbouring strokes.",
         *fault_lines(faults, machine),
     ]
     return Report(verdict(against, reservations), tuple(lines), tuple(details))
@@ -123,7 +126,7 @@ def report(
 
 def _describe_sheet(found: Comparison) -> str:
     common, spread, middle = found.common, found.spread_mm, found.middle_mm
-    beyond = f"; beyond that, strokes are displaced by {spread:.2f} mm (rms)" if spread is not None else ""
+    beyond = f"; relative to the sheet, strokes are displaced by {spread:.2f} mm (rms)" if spread is not None else ""
     return (
         f"The sheet is displaced by x {common.shift_mm[0]:+.2f}, y {common.shift_mm[1]:+.2f} mm at x {middle[0]:.1f}, "
         f"y {middle[1]:.1f} mm, and turned by {math.degrees(common.turn_rad):+.2f} degrees{beyond}."
@@ -131,10 +134,7 @@ def _describe_sheet(found: Comparison) -> str:
 
 
 def _explain_area(row: Compared | None, area: WorstArea, ends: Ends) -> str:
-    """Return the best explanation of a difference.
-
-    It is missing paint of the stroke, or the largest displacement.
-    """
+    """Return the best explanation of a difference: missing paint, or the largest displacement."""
     if row is None:
         return ""
     if area.is_missing and row.missing > MIN_EXPLAINING_MISSING_SHARE:
@@ -144,10 +144,10 @@ def _explain_area(row: Compared | None, area: WorstArea, ends: Ends) -> str:
         off, wider = math.hypot(*row.placed.shift_mm), row.placed.wider_mm
         causes = [
             (off, "the stroke is displaced by"),
-            (abs(wider), f"each edge is too {'far out' if wider > 0 else 'far in'}, by"),
+            (abs(wider), f"the stroke is too {'wide' if wider > 0 else 'narrow'}, at each edge by"),
         ]
     for what, mm in ends.near(area.at_mm).items():
-        causes += [(abs(mm), f"it {what} too {'late' if mm > 0 else 'early'}, by")]
+        causes += [(abs(mm), f"the stroke {what} too {'late' if mm > 0 else 'early'}, by")]
     most, words = max(causes, default=(0.0, ""))
     return f"{words} {most:.2f} mm" if most > MIN_EXPLAINING_DISPLACEMENT_MM else ""
 
@@ -175,7 +175,7 @@ def as_json(
     corrections: dict[str, Correction],
     faults: Faults | None,
     ends: dict[str, Ends],
-    sha256: Made,
+    sha256: SheetFingerprints,
     residual: tuple[str, dict[str, Correction]] | None = None,
 ) -> str:
     """Return the comparison as the text of a JSON file.

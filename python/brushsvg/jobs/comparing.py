@@ -32,7 +32,7 @@ from ..comparison.ends import Ends, ends_of
 from ..comparison.job_marks import job_marks
 from ..comparison.job_page import JobPage, job_page
 from ..comparison.next_corrections import find_growing_displacements, next_corrections
-from ..comparison.photographs import Compared, Comparison, TargetStroke, compare_photos, of_drawing
+from ..comparison.photographs import Compared, Comparison, TargetStroke, compare_photos, select_drawn_strokes
 from ..comparison.picture import comparison_png
 from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import read_bytes
@@ -254,7 +254,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
     work, brush, strokes = sheet.work, sheet.work.brush, list(sheet.strokes)
     stage("estimating faults")
     before_selection = comparison, sheet.page, strokes
-    comparison, strokes = of_drawing(comparison, strokes)
+    comparison, strokes = select_drawn_strokes(comparison, strokes)
     learned = has_learned(brush, [hashlib.sha256(data).hexdigest() for _, data in photos])
     faults = attribute_errors(sheet.plan, brush, strokes, comparison, learned)
     before = sheet.before.corrections
@@ -271,7 +271,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
             remaining = subtract_faults(comparison, certain, sheet.plan, brush, strokes)
             residual = machine_sha256(machine), next_corrections(remaining, work.plan, before, brush)[0]
     ends = ends_of(comparison, strokes, work.strokes or ())
-    made_with = report.Made(brush.sha256, work.plan.brush_sha256, machine_sha256(_get_cell_machine(work)))
+    made_with = report.SheetFingerprints(brush.sha256, work.plan.brush_sha256, machine_sha256(_get_cell_machine(work)))
     has_isolated_marks = faults is None or faults.first != BRUSH or bool(job_marks(*before_selection).rings)
     places = report.places_of(comparison, strokes)
     return PaintedJob(

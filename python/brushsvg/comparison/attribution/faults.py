@@ -48,7 +48,7 @@ MIN_DOUBT_MM = 0.05  # uncertainty of edges: a smaller one does not matter
 
 
 @dataclass(frozen=True)
-class Found:
+class EstimatedFault:
     """The estimated value of one number, and half its 95 % interval."""
 
     number: Number
@@ -75,7 +75,7 @@ class Faults:
     fix first, None where no gain is certain.
     """
 
-    found: tuple[Found, ...]
+    found: tuple[EstimatedFault, ...]
     shares: tuple[Share, ...]
     overlap: float
     own_mm: float
@@ -116,7 +116,7 @@ def attribute_errors(
     count = len(model.numbers)
     halves = _core.interval_factor_95() * np.sqrt(np.diag(covariance)[:count])
     found = tuple(
-        Found(number, float(value), float(half))
+        EstimatedFault(number, float(value), float(half))
         for number, value, half in zip(model.numbers, fault_values, halves, strict=True)
     )
     shares, overlap = _gains_of_causes(model, names, strokes, fault_values, own, covariance, outline, slopes, seen_of)
@@ -297,7 +297,7 @@ def _missing_paint_gain(model, names, fault_values, own, found: Comparison, whol
 def _inseparable_causes(model: FaultModel, covariance, slopes) -> tuple[tuple[str, str], ...]:
     """Return pairs of causes that are hard to separate.
 
-    Knowing one cause removes most of the uncertainty of the other.
+    If one of the two causes were known, most of the uncertainty of the other would vanish.
     """
     causes = (SHEET, MACHINE, PAPER, BRUSH, OWN_PLACE)
     count = len(model.numbers)

@@ -6,18 +6,18 @@ from ...machine.cells.cell import Machine
 from ...reporting.report_text import format_overlap, table
 from ..job_marks import PAINT_A_CHART
 from .corrected_cell import as_table
-from .faults import MISSING_PAINT, OWN_PLACE, Faults, Found
+from .faults import MISSING_PAINT, OWN_PLACE, EstimatedFault, Faults
 from .model import BRUSH, MACHINE, PAPER, SHEET
 
 REMEDIES = {
-    SHEET: "teach the paper anew, or put the sheet where it was taught",
-    MACHINE: "give convert the cell of --corrected-cell, or fix the machine",
-    PAPER: "give convert the cell of --corrected-cell, or level the paper",
-    BRUSH: "update the brush: calibrate --plan --prior",
-    OWN_PLACE: "correct each stroke: convert --corrections; several sheets show which part repeats (compare --sheets)",
-    MISSING_PAINT: "let the brush fetch paint earlier: [paint] of the cell",
+    SHEET: "teach the paper again, or put the sheet where the paper was taught",
+    MACHINE: "use the cell that compare --corrected-cell writes, or fix the machine",
+    PAPER: "use the cell that compare --corrected-cell writes, or level the paper",
+    BRUSH: "update the brush with calibrate --plan --prior",
+    OWN_PLACE: "correct each stroke with convert --corrections. The command compare --sheets shows which part repeats",
+    MISSING_PAINT: "let the brush fetch paint earlier, in the table [paint] of the cell",
 }
-NONE_ALONE = f"no stroke of this sheet is separate and complete enough to learn from; {PAINT_A_CHART}"
+NONE_ALONE = f"{PAINT_A_CHART}. No stroke of this sheet is separate and complete enough to update the brush"
 
 
 def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
@@ -26,12 +26,12 @@ def fix_first(faults: Faults | None, any_alone: bool = True) -> str:
     any_alone: whether a brush could learn from a stroke of this sheet.
     """
     if faults is None:
-        return "No cause is named: too few strokes, or too few edges away from other paint."
+        return "The cause is unknown, because too few strokes have edges clear of other paint."
     if faults.first is None:
-        return "No single fix is certain to help: use the corrections."
+        return "No single fix is certain to help. Use the corrections."
     gain = next(share.gain for share in faults.shares if share.cause == faults.first)
     how = REMEDIES[faults.first] if any_alone or faults.first != BRUSH else NONE_ALONE
-    return f"Fix first: {faults.first}, which gains {gain:.3f}: {how}."
+    return f"Fix this first: {faults.first} (gain in overlap {gain:.3f}). To fix it, {how}."
 
 
 def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
@@ -45,30 +45,30 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
         (f"  {share.cause}", f"{share.gain + 0.0:+.3f}", f"({share.low:+.3f} to {share.high:+.3f})")
         for share in sorted(faults.shares, key=lambda share: -share.gain)
     ]
-    head, *rows = table(("  fixing this cause alone", "gains", "95 %"), gains)
+    head, *rows = table(("  if only this cause is fixed", "gain", "95 %"), gains)
     lines = [
         "",
-        f"Causes of the difference between paint and drawing, from {faults.edges} places on edges. Paint with these",
-        f"causes alone would overlap by {format_overlap(faults.overlap)}:",
+        f"Causes of the difference between paint and drawing, estimated at {faults.edges} places on edges. With these",
+        f"causes alone, paint and drawing would overlap by {format_overlap(faults.overlap)}:",
         head,
         *rows,
         "",
         *(f"  {_describe_number(fault)}" for fault in faults.found),
         f"  each stroke's own place: {faults.own_mm:.2f} mm (rms); one sheet does not show which part repeats",
-        f"  edges beyond all that: {faults.rest_mm:.3f} mm (rms)",
+        f"  remaining errors of edges: {faults.rest_mm:.3f} mm (rms)",
     ]
     for cause, other in faults.alike:
-        lines.append(f"Hard to separate on these marks: {cause}, and {other}; their sum is surer than either.")
+        lines.append(f"These marks hardly separate two causes: {cause}, and {other}. Their sum is more certain.")
     if machine:
         lines += [
             "",
-            "The table for the next cell: what is certain, and what it undid before:",
+            "Table for the next cell, with the certain errors and the errors that the cell already corrects:",
             *as_table(machine),
         ]
     return lines
 
 
-def _describe_number(fault: Found) -> str:
+def _describe_number(fault: EstimatedFault) -> str:
     small = fault.number.unit in ("mm per mm", "mm in x per mm in y", "")
     digits = 5 if small else 3
     value = f"{fault.value:+.{digits}f} +- {fault.half:.{digits}f} {fault.number.unit}".rstrip()

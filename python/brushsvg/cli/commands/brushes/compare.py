@@ -67,7 +67,7 @@ def _write_checked_cell(cell) -> str:
 def _report_repeats(args, sheet) -> None:
     """Report how well strokes repeat on several sheets, or as copies on one sheet."""
     from ....comparison.photographs import compare_sheets
-    from ....comparison.repeats import as_json, repeats, report
+    from ....comparison.repeats import as_json, measure_repeats, report
     from ....comparison.repeats_picture import repeats_png
     from ....jobs.comparing import read_matching_page, read_photos
 
@@ -80,7 +80,7 @@ def _report_repeats(args, sheet) -> None:
     for path, comparison in zip(args.photos, sheets, strict=True):
         warn(path, list(comparison.notices))
     with refuse_errors(args.photos[0]):
-        repeatability = repeats(sheet.plan, args.photos, sheets)
+        repeatability = measure_repeats(sheet.plan, args.photos, sheets)
     files, details, picture = {}, args.details, args.picture or ""
     if args.output:
         is_json = suffix_of(args.output) == ".json"
