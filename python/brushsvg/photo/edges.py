@@ -195,7 +195,8 @@ def _paint_weights(absorbed: np.ndarray) -> np.ndarray:
 
 
 NO_PAINT_MESSAGE = (
-    "no paint is found where the strokes should be: is this the painted page, and does its paint differ from the paper?"
+    "no paint was found where the strokes should be: check that this is the painted page, and that the colour of the "
+    "paint differs from the paper"
 )
 
 
@@ -262,10 +263,10 @@ def assign_marks(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox], l
 
 
 def _lean_boxes(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> list[StrokeBox] | None:
-    """Move the boxes in proportion to depth, so that they match the paint.
+    """Move the boxes in proportion to depth, so that their middles match most parts of the paint.
 
-    The middles of the boxes then match those of most parts of the paint. Returns None where no depth is known. Returns
-    None also where one shift of all boxes fits better, because then the sheet was out of place.
+    Returns None where no depth is known. Returns None also where one shift of all boxes fits better, because then the
+    sheet was out of place.
     """
     depths = np.array([stroke_box.depth_mm for stroke_box in stroke_boxes])
     if not depths.any():
@@ -351,9 +352,9 @@ def _assign_marks_once(paint: np.ndarray, flat: Flat, stroke_boxes: list[StrokeB
                 joined.append(pair)
     if len(missing) > MAX_MISSING_SHARE * len(stroke_boxes):
         raise Error(
-            f"no paint is found of {len(missing)} of the {len(stroke_boxes)} strokes, the range is "
-            f"[0, {int(MAX_MISSING_SHARE * len(stroke_boxes))}]: is this chart painted, at its place and the right way "
-            "round?",
+            f"no paint of {len(missing)} of the {len(stroke_boxes)} strokes was found, at most "
+            f"{int(MAX_MISSING_SHARE * len(stroke_boxes))} may be missing: check that this chart was painted, and that "
+            "the page was at its place and not turned",
             value=len(missing),
             code="mark-missing",
         )
@@ -396,10 +397,10 @@ def _refuse_displaced(areas_in_boxes, reaching: np.ndarray, stroke_boxes: list[S
     touching = np.unique(np.argsort(areas_in_boxes[reaching, 1:], axis=1)[:, -2:])
     if len(touching) > MAX_TOUCHING_SHARE * len(stroke_boxes):
         raise Error(
-            f"the marks of {len(touching)} of {len(stroke_boxes)} strokes touch each other, or reach where the next "
-            f"one should be, the range is [0, {int(MAX_TOUCHING_SHARE * len(stroke_boxes))}]: was this chart painted "
-            "on this page, once, and was the page at its stop? Or the page was not printed at 100 % (measure its bar), "
-            "or the brush is wider than the chart has room for",
+            f"{len(touching)} of {len(stroke_boxes)} marks touch each other or reach the place of another mark, at "
+            f"most {int(MAX_TOUCHING_SHARE * len(stroke_boxes))} may. Check that this chart was painted on this page, "
+            "and only once, that the page was at its stop, that it was printed at 100 % (measure its bar), and that "
+            "the chart is for a brush of this width",
             value=len(touching),
             code="photo-paint-elsewhere",
         )
@@ -421,9 +422,9 @@ def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox
         if len(large) > MAX_JOINED_STROKES and areas[number] > widest * px_per_mm**2:
             names = ", ".join(stroke_boxes[k].stroke for k in large)
             raise Error(
-                f"something dark of {areas[number] / px_per_mm**2 / 100:.0f} cm^2 covers the room of {len(large)} "
-                f"strokes ({names}): a shadow with a hard edge, a thing on the page, or paint that was smeared; take "
-                "it away, and photograph in even light",
+                f"a dark area of {areas[number] / px_per_mm**2 / 100:.0f} cm^2 covers the places of {len(large)} "
+                f"strokes ({names}). It is a shadow, an object on the page, or smeared paint: remove it, and "
+                "photograph the page in even light",
                 value=len(large),
                 code="photo-covered",
             )
@@ -442,16 +443,17 @@ def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[Stroke
     inside_share, turned_share = ((painted & mask).sum() / total for mask in (is_in_box, is_in_box[::-1, ::-1]))
     if turned_share > inside_share + MIN_TURNED_EXCESS:
         raise Error(
-            f"{100 * turned_share:.0f} % of the paint is where the strokes would be if the page were turned by 180 "
-            f"degrees, {100 * inside_share:.0f} % where they should be: turn the page round for the machine",
+            f"the page was painted upside down: {100 * turned_share:.0f} % of the paint is at the places of strokes "
+            f"on a page turned by 180 degrees, and only {100 * inside_share:.0f} % on this page. Turn the page before "
+            "you paint it",
             value=turned_share,
             code="photo-paint-elsewhere",
         )
     if inside_share < MIN_SHARE_IN_BOXES:
         raise Error(
             f"only {100 * inside_share:.0f} % of the paint is where strokes of this chart should be, at least "
-            f"{100 * MIN_SHARE_IN_BOXES:.0f} % must be: was this chart painted on this page, once, was the page at its "
-            "stop, and was it printed at 100 % (measure its bar)?",
+            f"{100 * MIN_SHARE_IN_BOXES:.0f} % are needed. Check that this chart was painted on this page, and only "
+            "once, that the page was at its stop, and that it was printed at 100 % (measure its bar)",
             value=inside_share,
             code="photo-paint-elsewhere",
         )

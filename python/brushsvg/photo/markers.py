@@ -38,7 +38,7 @@ MIN_EDGE_CONTRAST, MAX_HIDDEN_SHARE = 0.75, 0.05
 # that counts as cut off.
 LENS_MIDDLE_STEPS, MIN_CUT_SHARE = np.array([0.2, 0.08, 0.03]), 0.05
 TOO_WHITE = 0.5  # share of the brightest parts that are fully white
-ADVICE_FOR_UNPRINTED = "of a flatbed's scan of a sheet on which nothing is printed, give --dpi"
+ADVICE_FOR_UNPRINTED = "for a flatbed scan of a sheet without printed markers, add --dpi"
 # Of the picture's longer side. Where no marker is found, wider edges are the reason: they blur out whole modules.
 MAX_EDGE_SHARE = 1 / 250
 
@@ -126,7 +126,7 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     except Error as refusal:  # markers along only one edge determine the view poorly
         _refuse_cropped(found, printed, light.shape)
         if refusal.code == "photo-not-flat":
-            refuse_grainy(light, f"the markers are {view.residual_mm:.2f} mm (rms) off")
+            refuse_grainy(light, f"the markers are {view.residual_mm:.2f} mm (rms) from their places")
             _refuse_cut_off(corners, printed, pixels.shape, view)
         raise
     return view
@@ -171,7 +171,7 @@ def _find_chart_markers(pixels: np.ndarray, light: np.ndarray, printed: Printed)
     for number, corners in ours:
         if number in found:
             raise Error(
-                f"marker {number} is in the picture twice: photograph one page alone, without mirrors and other prints",
+                f"marker {number} is in the picture twice: photograph only one page, without mirrors or other prints",
                 code="photo-marker-twice",
             )
         found[number] = corners
@@ -180,11 +180,11 @@ def _find_chart_markers(pixels: np.ndarray, light: np.ndarray, printed: Printed)
     name = f" {printed.name}" if printed.name else ""
     if len(others) >= MIN_MARKERS:
         raise Error(
-            f"the picture shows another chart: its markers are {_list_numbers(others)}, those of chart{name} are "
+            f"the picture shows another chart: it has the markers {_list_numbers(others)}, but chart{name} has "
             f"{_list_numbers(printed.corners_mm)}",
             code="photo-of-another-chart",
-            advice="give the --chart that was written with this page; calibrate the page of a job (convert --page, "
-            "simulate-photo) with --plan and --prior",
+            advice="give the --chart that was written with this page; for the page of a job (convert --page, "
+            "simulate-photo), use --plan and --prior",
         )
     mirrored = [number for number, _ in detect_markers(pixels[:, ::-1], printed.dictionary)]
     if len(set(mirrored) & set(printed.corners_mm)) >= MIN_MARKERS:
@@ -223,7 +223,7 @@ def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> No
     if beyond.mean() >= 0.5:
         raise Error(
             f"the page is cropped: only {len(found)} of its {len(printed.corners_mm)} markers ({_list_numbers(found)}) "
-            "are in the picture, others are beyond its edge: photograph the whole page",
+            "are in the picture: photograph the whole page",
             value=len(found),
             code="photo-cropped",
         )
@@ -244,8 +244,8 @@ def _refuse_cut_off(corners: dict[int, np.ndarray], printed: Printed, shape, vie
     cut = 2 * np.abs(at)
     if view.residual_mm < view.most_residual_mm / 2 and cut.max() > MIN_CUT_SHARE * view.radius_px:
         raise Error(
-            f"about {cut[0]:.0f} x {cut[1]:.0f} pixels of the picture were cut off, as the lens's middle has it: give "
-            "it whole, as the camera took it",
+            f"the picture was cropped by about {cut[0]:.0f} x {cut[1]:.0f} pixels, because it is not centred on the "
+            "lens: use the original picture of the camera",
             value=float(cut.max()),
             code="photo-cropped",
         )
@@ -256,21 +256,20 @@ def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
 
     The reasons are grain, darkness, glare and blur.
     """
-    few = f"{count or 'no'} marker{'s' * (count > 1)} can be read"
-    refuse_grainy(light, few)
+    markers = f"{f'only {count}' if count else 'no'} marker{'s' * (count > 1)} can be read"
+    refuse_grainy(light, markers)
     if not count:
         refuse_dark_paper(float(np.quantile(light[::7, ::7], 0.8)))
     if (white := white_share(light)) > TOO_WHITE:
         sentence = (
-            f"{few}, and {100 * white:.0f} % of the brightest parts are as white as can be: the picture is "
-            "overexposed; take it with less light, without glare, or with the exposure turned down"
+            f"{markers}, because the picture is overexposed ({100 * white:.0f} % of its brightest parts are pure "
+            "white): take it with less light, without glare, or with a lower exposure"
         )
         raise Error(sentence, value=white, code="photo-overexposed", advice="" if count else ADVICE_FOR_UNPRINTED)
     if (edge_width_px := blur_px(light)) > MAX_EDGE_SHARE * max(light.shape):
         raise Error(
-            f"{few}, and edges go over {edge_width_px:.0f} pixels, more than "
-            f"{MAX_EDGE_SHARE * max(light.shape):.0f}: the picture is blurred; hold the camera still and let it focus "
-            "on the paper",
+            f"{markers}, because the picture is blurred (edges are {edge_width_px:.0f} pixels wide, more than "
+            f"{MAX_EDGE_SHARE * max(light.shape):.0f}): hold the camera still and let it focus on the paper",
             value=edge_width_px,
             code="photo-blurred",
         )
@@ -455,14 +454,14 @@ def _min_px_per_mm(view: View, sheet_mm) -> float:
 def _refuse_unmeasurable(view: View, printed: Printed) -> None:
     if view.px_per_mm < MIN_PX_PER_MM:
         raise Error(
-            f"the picture shows {view.px_per_mm:.1f} pixels per mm, at least {MIN_PX_PER_MM:g} are needed: let the "
-            "page fill the picture, and take it as large as the camera gives it",
+            f"the picture has only {view.px_per_mm:.1f} pixels per mm, at least {MIN_PX_PER_MM:g} are needed: let the "
+            "page fill the picture, and use the full resolution of the camera",
             value=view.px_per_mm,
             code="photo-too-coarse",
         )
     if view.blur_mm > MAX_BLUR_MM:
         raise Error(
-            f"the picture is blurred, edges over {view.blur_mm:.2f} mm where {MAX_BLUR_MM:g} is the most: hold the "
+            f"the picture is blurred (edges are {view.blur_mm:.2f} mm wide, more than {MAX_BLUR_MM:g} mm): hold the "
             "camera still and let it focus on the paper",
             value=view.blur_mm,
             code="photo-blurred",
@@ -470,8 +469,9 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
     limit = view.most_residual_mm
     if view.residual_mm > limit and view.white > TOO_WHITE:
         raise Error(
-            f"the markers are {view.residual_mm:.2f} mm (rms) off, more than {limit:.2f}, and {100 * view.white:.0f} % "
-            "of the brightest parts are as white as can be: the picture is overexposed; take it with less light",
+            f"the picture is overexposed ({100 * view.white:.0f} % of its brightest parts are pure white), and its "
+            f"markers are {view.residual_mm:.2f} mm (rms) from their places, more than {limit:.2f} mm: take it with "
+            "less light",
             value=view.white,
             code="photo-overexposed",
         )
@@ -479,8 +479,8 @@ def _refuse_unmeasurable(view: View, printed: Printed) -> None:
         number, worst_mm = view.worst
         raise Error(
             f"the markers are {view.residual_mm:.2f} mm (rms) from where flat paper would have them, more than "
-            f"{limit:.2f}; marker {number} most, {worst_mm:.2f} mm: press the page flat, and take it from straight "
-            "above",
+            f"{limit:.2f} mm; marker {number} most, by {worst_mm:.2f} mm: press the page flat, and photograph it from "
+            "straight above",
             value=view.residual_mm,
             code="photo-not-flat",
         )

@@ -69,22 +69,21 @@ def read_photo(data: bytes) -> np.ndarray:
     """
     if data[4:8] == b"ftyp" and data[8:12] in HEIF_BRANDS:
         raise Error(
-            "this is a HEIC picture, which is not read: export it as JPEG, or let the phone take JPEGs (iPhone: "
+            "HEIC pictures cannot be read: export the picture as JPEG, or set the phone to take JPEGs (iPhone: "
             "Settings, Camera, Formats, Most Compatible)",
             code="photo-format",
         )
     if not IMAGE_SIGNATURES.match(data):
-        raise Error(f"this is no picture that can be read; known are {' '.join(PHOTOS)}", code="photo-format")
+        raise Error(f"this file is not a picture that can be read; known: {' '.join(PHOTOS)}", code="photo-format")
     pixels, messages = _decode(data)
     damage = DAMAGE_MESSAGES.search(messages)
     if damage:
         raise Error(
-            f"the picture is damaged or cut short, {damage[0].strip().rstrip('.')!r}: copy it from the camera once "
-            "more",
+            f"the picture is damaged or incomplete ({damage[0].strip().rstrip('.')!r}): copy it from the camera again",
             code="photo-damaged",
         )
     if pixels is None:
-        sentence = "the picture cannot be read: it is damaged, cut short, too large or of an unusual kind"
+        sentence = "the picture cannot be read: it is damaged, incomplete, too large or of an unusual kind"
         raise Error(sentence, code="photo-damaged")
     if pixels.shape[0] * pixels.shape[1] > MAX_PIXELS:
         raise Error(
@@ -201,8 +200,8 @@ def refuse_grainy(light: np.ndarray, why: str) -> None:
     grain = float(np.median(np.abs(cv2.filter2D(light, -1, _GRAIN_FILTER)))) / 0.6745
     if grain > MAX_GRAIN:
         raise Error(
-            f"{why}, and the picture is full of noise: pixels that should be alike differ by {100 * grain:.0f} % of "
-            f"the light, more than {100 * MAX_GRAIN:g}: take it with more light, at a low ISO",
+            f"{why}, because the picture is too noisy: pixels that should be equal differ by {100 * grain:.0f} % of "
+            f"the light, more than {100 * MAX_GRAIN:g} %. Take it with more light and a low ISO",
             value=grain,
             code="photo-noisy",
         )

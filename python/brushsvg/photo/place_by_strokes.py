@@ -1,8 +1,8 @@
 """Find a sheet without markers in a flatbed's scan from its strokes alone.
 
 The scanner's resolution gives the scale, and there is no perspective, so that only a turn and a shift are unknown.
-First they are chosen so that most paint is along the strokes' paths, then so that each mark is in the middle of its
-box.
+They are chosen in two steps: first most paint must be along the strokes' paths, then each mark must be in the middle
+of its box.
 """
 
 from __future__ import annotations
@@ -53,17 +53,20 @@ def find_scan_view(
     px_per_mm = dpi / MM_PER_INCH
     if px_per_mm < MIN_PX_PER_MM:
         raise Error(
-            f"{dpi:g} dpi are {px_per_mm:.1f} pixels per mm, at least {MIN_PX_PER_MM:g} are needed: scan at 300 "
-            "or more",
+            f"{dpi:g} dpi are only {px_per_mm:.1f} pixels per mm, at least {MIN_PX_PER_MM:g} are needed: scan at 300 "
+            "dpi or more",
             value=dpi,
             code="photo-too-coarse",
         )
     if min(pixels.shape[:2]) < px_per_mm * MIN_SHEET_MM:
         height, width = (side_px / px_per_mm for side_px in pixels.shape[:2])
-        sentence = f"at {dpi:g} dpi the picture is {width:.2g} x {height:.2g} mm large: no sheet is"
+        sentence = (
+            f"at {dpi:g} dpi the picture is only {width:.2g} x {height:.2g} mm large, smaller than any sheet: check "
+            "the resolution of the scan"
+        )
         raise Error(sentence, value=dpi, code="scan-resolution")
     if len({number for number, _ in detect_markers(pixels, dictionary)}) >= MIN_MARKERS:
-        sentence = "the scan shows a chart's printed markers, which give its place better than --dpi: leave --dpi out"
+        sentence = "the scan shows printed markers, which are more exact than --dpi: remove --dpi"
         raise Error(sentence, code="scan-with-markers")
     if px_per_mm > MAX_PX_PER_MM:
         size = MAX_PX_PER_MM / px_per_mm
@@ -105,25 +108,24 @@ def _refuse_another_size(paint: np.ndarray, stroke_boxes: list[StrokeBox], dpi: 
     expected = sorted(boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0))
     rows, columns = np.flatnonzero(paint.any(axis=1)), np.flatnonzero(paint.any(axis=0))
     if not len(rows):
-        sentence = "no paint is found on the scan: is it the painted sheet, and clear of the glass's edges?"
+        sentence = (
+            "no paint was found on the scan: check that it shows the painted sheet, clear of the edges of the glass"
+        )
         raise Error(sentence, code="photo-without-paint")
     painted_mm = sorted(np.array([np.ptp(rows) + 1, np.ptp(columns) + 1]) / COARSE_PX_PER_MM)
     size = math.sqrt(painted_mm[0] * painted_mm[1] / (expected[0] * expected[1]))
     if not SIZE_RANGE[0] < size < SIZE_RANGE[1]:
         raise Error(
-            f"at {dpi:g} dpi the paint on the scan covers {painted_mm[1]:.0f} x {painted_mm[0]:.0f} mm, the strokes of "
-            f"the chart over {expected[1]:.0f} x {expected[0]:.0f} mm: was it scanned at "
-            f"{_name_resolution(dpi * size)} dpi, in one piece, and is it this chart?",
+            f"at {dpi:g} dpi the paint on the scan covers {painted_mm[1]:.0f} x {painted_mm[0]:.0f} mm, but the "
+            f"strokes of the chart cover {expected[1]:.0f} x {expected[0]:.0f} mm. Check whether it was scanned at "
+            f"{_name_resolution(dpi * size)} dpi, that it is in one piece, and that it is this chart",
             value=dpi,
             code="scan-resolution",
         )
 
 
 def _name_resolution(dpi: float) -> str:
-    """Return a resolution in words.
-
-    It is one that scanners have, where it is near, else "about" the number.
-    """
+    """Return the nearest usual resolution of scanners, or "about" and the number if none is near."""
     nearest_dpi = min(
         (150, 200, 240, 300, 400, 600, 800, 1200, 2400), key=lambda candidate: abs(math.log(candidate / dpi))
     )
@@ -217,8 +219,8 @@ def _refine_by_boxes(
         if len(numbers) < max(MIN_MARKERS, MIN_FOUND_SHARE * len(stroke_boxes)):
             raise Error(
                 f"only {len(numbers)} of the {len(stroke_boxes)} strokes of this chart are where they should be on the "
-                f"scan, at least {math.ceil(MIN_FOUND_SHARE * len(stroke_boxes))} are needed: is it this chart, "
-                f"painted once, scanned in one piece at {dpi:g} dpi?",
+                f"scan, at least {math.ceil(MIN_FOUND_SHARE * len(stroke_boxes))} are needed. Check that it is this "
+                f"chart, painted once, and scanned in one piece at {dpi:g} dpi",
                 value=len(numbers),
                 code="photo-paint-elsewhere",
             )
@@ -228,8 +230,8 @@ def _refine_by_boxes(
         unit *= change / size
     if abs(size - 1) > MAX_SCALE_ERROR:
         raise Error(
-            f"the strokes are {size:.3f} times as far from each other as on the chart: was the sheet scanned at "
-            f"{_name_resolution(dpi * size)} instead of {dpi:g} dpi?",
+            f"the strokes are {size:.3f} times as far from each other as on the chart: check whether the sheet was "
+            f"scanned at {_name_resolution(dpi * size)} dpi instead of {dpi:g} dpi",
             value=dpi,
             code="scan-resolution",
         )

@@ -21,8 +21,8 @@ def refuse_cropped(pixels: np.ndarray, view: View, stroke_boxes: list[StrokeBox]
             cropped.append(stroke_box.stroke)
     if cropped:
         raise Error(
-            f"the page is cropped: the room of {len(cropped)} stroke{'s' * (len(cropped) > 1)} runs out of the picture "
-            f"({', '.join(cropped[:4])}{', ...' * (len(cropped) > 4)}): photograph the whole page",
+            f"the page is cropped: {len(cropped)} stroke{'s' * (len(cropped) > 1)} extend{'s' * (len(cropped) == 1)} "
+            f"beyond the picture ({', '.join(cropped[:4])}{', ...' * (len(cropped) > 4)}): photograph the whole page",
             value=len(cropped),
             code="photo-cropped",
         )
@@ -39,10 +39,10 @@ def refuse_unsure(pixels: np.ndarray, view: View, corners_mm: dict[int, np.ndarr
     px = view.to_px(unseen)
     beyond = bool((px < 0).any() or (px > np.array(pixels.shape[1::-1]) - 1).any())
     raise Error(
-        f"the {len(view.seen)} markers that can be seen ({', '.join(map(str, view.seen))}) leave places on the sheet "
-        f"open by {view.unsure_mm:.2f} mm, {MAX_UNSURE_MM:g} is the most, "
-        + ("and others are beyond the picture" if beyond else "and others are covered")
-        + ": photograph the whole page, with nothing over its markers",
+        f"only {len(view.seen)} markers can be seen ({', '.join(map(str, view.seen))}), "
+        + ("others are outside the picture" if beyond else "others are covered")
+        + f", so places on the sheet are uncertain by {view.unsure_mm:.2f} mm, more than {MAX_UNSURE_MM:g} mm: "
+        "photograph the whole page, with nothing over its markers",
         value=view.unsure_mm,
         code="photo-cropped" if beyond else "photo-markers-missing",
     )
