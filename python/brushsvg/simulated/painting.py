@@ -34,7 +34,9 @@ class PaintedStroke:
     way: np.ndarray
 
 
-def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int, dips_mm=None) -> list[PaintedStroke]:
+def simulate_painted_strokes(
+    plan, brush, studio: Studio, undone: Machine | None, seed: int, dips_mm=None
+) -> list[PaintedStroke]:
     """Simulate the strokes that the studio paints for a plan.
 
     undone: the part of the machine's errors that the cell corrects; dips_mm: positions along each stroke where paint
@@ -50,12 +52,12 @@ def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int, dips
     except Error as refusal:
         if refusal.code == "depth-out-of-range" and _deepest_mm(plan.passes) <= brush.depth_range_mm[1]:
             refusal = Error(
-                f"{refusal.sentence}, at the height of the studio's paper there",
+                f"{refusal.sentence}, because the paper of the studio is too high there",
                 refusal.where,
                 refusal.value,
                 refusal.range,
                 code=refusal.code,
-                advice="give machine.height_mm a lower value",
+                advice="lower machine.height_mm in the studio file",
             )
         raise refusal from None
     if brush.paint:
@@ -84,7 +86,7 @@ def painted(plan, brush, studio: Studio, undone: Machine | None, seed: int, dips
     return out
 
 
-def low_enough(studio: Studio, plan, brush, undone: Machine | None) -> Studio:
+def lower_paper(studio: Studio, plan, brush, undone: Machine | None) -> Studio:
     """Lower the studio's paper until no stroke is pressed beyond the depth range.
 
     A plan that exceeds the range itself leaves the studio unchanged.

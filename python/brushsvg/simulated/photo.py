@@ -34,7 +34,9 @@ def simulated_photo(page: JobPage, strokes: list[PaintedStroke], studio: Studio,
     texels = min(MAX_TEXELS_PER_MM, math.sqrt(MAX_TEXELS / (width * height)))
     if texels < MIN_TEXELS_PER_MM:
         most = MAX_TEXELS / MIN_TEXELS_PER_MM**2 / 1e6
-        sentence = f"the page of {width:g} x {height:g} mm is outside the range [0, {most:.1f}] m^2 of one"
+        sentence = (
+            f"the area of the page, {width:g} x {height:g} mm, is outside the range [0, {most:.1f}] m^2 of a photograph"
+        )
         raise Error(sentence, code="out-of-range")
     sheet = Sheet(page.size_mm, seed, texels)
     _print_page(sheet, page)
@@ -59,8 +61,8 @@ def place_camera(lens: Lens, page_mm) -> Camera:
             return camera
     across, up = lens.tilt_deg
     sentence = (
-        f"tilted by {across:g} and {up:g} degrees and turned by {lens.turn_deg:g} the camera does not see the whole "
-        "page: tilt or turn it less"
+        f"the camera does not see the whole page if it is tilted by {across:g} and {up:g} degrees and turned by "
+        f"{lens.turn_deg:g} degrees: tilt or turn it less"
     )
     raise Error(sentence, "camera", code="out-of-range")
 

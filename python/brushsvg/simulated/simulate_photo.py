@@ -32,7 +32,7 @@ from ..jobs.choices import (
 from ..jobs.conversion import make_choices
 from ..jobs.preparation import preparation
 from ..machine.paint_reload import fetched_mm
-from .painting import low_enough, painted
+from .painting import lower_paper, simulate_painted_strokes
 from .photo import simulated_photo
 from .studio import random_studio, read_studio, write_studio
 
@@ -127,10 +127,10 @@ def photograph_job(
         work = preparation.prepare(chart.plan if chart else chosen.input, make_options(chosen), stage)
         warn(file, work.notices)
         brush, cell = load_brush(true_brush) or work.brush, work.options.cell
-        studio = studio or low_enough(random_studio(seed, work.plan.sheet_mm), work.plan, brush, cell.machine)
+        studio = studio or lower_paper(random_studio(seed, work.plan.sheet_mm), work.plan, brush, cell.machine)
         stage("painting")
         dips_mm = fetched_mm(work.plan, brush, cell)
-        strokes = painted(work.plan, brush, studio, cell.machine, seed, dips_mm)
+        strokes = simulate_painted_strokes(work.plan, brush, studio, cell.machine, seed, dips_mm)
         stage("photographing")
         page = JobPage(chart, 0.0, ()) if chart else job_page(work.plan, work.title)
         return SimulatedPhoto(simulated_photo(page, strokes, studio, seed), write_studio(studio), len(strokes))
