@@ -38,8 +38,8 @@ def half_interval_mm(covariance: np.ndarray, depths: np.ndarray, freedom: float 
 def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | None:
     """Return half the height [mm] of a law's band at depths, and its meaning.
 
-    It follows from the covariance, or otherwise from the RMSE. Returns None where nothing is known. The intervals
-    of single coefficients make no band, because the coefficients depend on each other.
+    It follows from the covariance, or otherwise from the RMSE. Returns None where both are unknown. The intervals of
+    single coefficients give no band, because the coefficients depend on each other.
     """
     law, place = getattr(brush, name), places(brush)[name]
     if len(brush.covariance):
@@ -54,7 +54,7 @@ def law_band(brush, name: str, depths: np.ndarray) -> tuple[np.ndarray, str] | N
 
 
 def learned_of(brush) -> dict:
-    """Return what a brush file says about its origin; {} where it says nothing."""
+    """Return the entry `learned` of a brush file, or {} if it has none."""
     learned = read_extra_keys(brush.extra).get(LEARNED)
     return learned if isinstance(learned, dict) else {}
 
@@ -62,8 +62,8 @@ def learned_of(brush) -> dict:
 def fitted_down_to_mm(brush, law: str) -> float:
     """Return the depth down to which a law was fitted to marks or measurements.
 
-    Returns 0 for a law that was typed or assumed: fits leave a covariance. A brush that learned from marks keeps
-    the depths that were typed before as its range, and states itself how deep the marks were.
+    Returns 0 for a law that was typed or assumed, because only fits have a covariance. A brush that learned from marks
+    keeps its earlier depth range. Its file has the greatest depth of the marks.
     """
     place = places(brush)[law]
     if not len(brush.covariance) or not np.any(np.array(brush.covariance)[place, place]):

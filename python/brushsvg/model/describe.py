@@ -18,15 +18,12 @@ LAWS = (
 
 
 def one_line(brush: _core.Brush) -> str:
-    """Return one line about a brush for a list.
-
-    It is what the file says about itself, or otherwise follows from the laws.
-    """
+    """Return one line about a brush for a list: the key `about` of its file, or a summary of its laws."""
     about = read_extra_keys(brush.extra).get("about")
-    return about if isinstance(about, str) and about else reach(brush)
+    return about if isinstance(about, str) and about else describe_ranges(brush)
 
 
-def reach(brush: _core.Brush) -> str:
+def describe_ranges(brush: _core.Brush) -> str:
     """Return kind, depth, line width and lag of a brush in words."""
     least, greatest = brush.depth_range_mm
     trail = "no lag" if brush.is_rigid() else f"lag {brush.lag(least):.1f} to {brush.lag(greatest):.1f} mm"
@@ -40,7 +37,7 @@ def _describe_lines(brush) -> str:
     return f"lines {least:.1f} to {greatest:.1f} mm wide"
 
 
-def page(brush: _core.Brush) -> str:
+def describe_brush(brush: _core.Brush) -> str:
     """Return a full description of a brush.
 
     It has limits, laws with their source, footprints and a table of values.
@@ -48,7 +45,7 @@ def page(brush: _core.Brush) -> str:
     least, greatest = brush.depth_range_mm
     lines = [
         f"{brush.name}: {one_line(brush)}",
-        *([] if one_line(brush) == reach(brush) else [reach(brush)]),
+        *([] if one_line(brush) == describe_ranges(brush) else [describe_ranges(brush)]),
         f"at most {brush.max_speed_mm_s:g} mm/s",
         "",
         "laws, mm against depth d in mm",
@@ -77,13 +74,13 @@ def _wrap_caption(known: list[str], source: str) -> list[str]:
     return textwrap.wrap(caption, 100, initial_indent=" " * 6, subsequent_indent=" " * 6)
 
 
-PAINT = "how much narrower the mark is, by the way s in mm painted since the last dip"
+PAINT = "width of the mark after painting a length s (mm) since the last dip"
 
 
 def _describe_paint(paint) -> list[str]:
     known = ["assumed"] if paint.assumed else []
     if paint.calibrated_mm:
-        known.append("measured at ways of {:g} to {:g} mm".format(*paint.calibrated_mm))
+        known.append("measured at lengths of {:g} to {:g} mm".format(*paint.calibrated_mm))
     if paint.covariance:
         half = paint_interval_per_m(paint)
         known.append(f"narrows by {paint.narrows_per_m:g} +- {half:.2g} per metre (95 %)")
@@ -109,7 +106,7 @@ def _describe_footprints(brush) -> list[str]:
 
     dragged, pressed = brush.footprints.dragged, brush.footprints.pressed
     count = len(dragged[0].outline_mm)
-    straight_down = f"at depths {depths(pressed)} mm" if pressed else "the same shapes"
+    straight_down = f"at depths {depths(pressed)} mm" if pressed else "equal to the dragged footprints"
     return [
         f"footprints of {count} points, dragged: at depths {depths(dragged)} mm",
         f"pressed straight down: {straight_down}",

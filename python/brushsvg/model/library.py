@@ -101,7 +101,7 @@ def _make_unknown_notice(path: str, where: str, key: str, known: tuple[str, ...]
 def mistyped_keys(brush: _core.Brush) -> list[Notice]:
     """Return notices for unknown keys that may be mistyped.
 
-    They are reported to a person who paints. Notes that somebody keeps in a file are not reported.
+    Other unknown keys may be notes that somebody keeps in the file. They are not reported.
     """
     mistyped = [notice for notice in unknown_keys(brush) if notice.about]
     return [
@@ -158,6 +158,6 @@ def save_brush(brush: _core.Brush, path: str | os.PathLike[str]) -> None:
     require_type(brush, _core.Brush, "a brush")
     require_type(path, (str, os.PathLike), "a path")
     if Path(path).suffix.lower() != ".json":
-        raise Error(f"{str(path)[:80]!r} does not end in .json, as brush files do", code="brush-format")
+        raise Error(f"{str(path)[:80]!r} must end in .json, like all brush files", code="brush-format")
     _core.check(brush)
     write_files({path: _core.write_brush(brush)})

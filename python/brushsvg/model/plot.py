@@ -84,7 +84,7 @@ def _draw_law(axes, depths, name, meaning, law, band) -> None:
         values,
         color=INK,
         linestyle=":",
-        label=None if inside.all() else "assumed, or beyond the data",
+        label=None if inside.all() else "assumed, or outside the measured depths",
     )
     if inside.any():
         axes.plot(depths, np.where(inside, values, np.nan), color=INK, label="law")
@@ -112,7 +112,7 @@ def _draw_paint(axes, paint) -> None:
         axes.axvline(paint.lasts_mm, color=QUIET, linewidth=1)
         note(axes, (paint.lasts_mm, 50.0), "hairs run dry", fontsize=8, color=QUIET)
     axes.set_title(f"paint{' (assumed)' if paint.assumed else ''}\nwidth left since the last dip", fontsize=9)
-    axes.set_xlabel("way painted, mm", fontsize=8)
+    axes.set_xlabel("painted length, mm", fontsize=8)
     axes.set_ylabel("%", fontsize=8)
     axes.set_ylim(0.0, 105.0)
     axes.grid(color="#e4e2dc", linewidth=0.6)

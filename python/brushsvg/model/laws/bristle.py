@@ -98,7 +98,7 @@ def bristle(
         tip = (slope, f + slope, loaded.deriv()(1.0) * f + loaded(1.0) * slope)
     products = whole[0] * tip[1], whole[1] * tip[0]
     if abs(products[0] - products[1]) <= MIN_DETERMINANT * (abs(products[0]) + abs(products[1])):
-        sentence = "with w'''(1) = 0 this bristle has no solution, or more than one; ask for a tip free of shear"
+        sentence = "with w'''(1) = 0 this bristle has no solution, or more than one: use sliding_end='shear_free'"
         raise Error(sentence, code="bristle-undetermined")
     root = np.linalg.solve([whole[:2], tip[:2]], [-whole[2], -tip[2]])
     moment = loaded + root[0] + root[1] * line
@@ -146,4 +146,4 @@ def _fit_series(function: Callable, what: str) -> Chebyshev:
                 domain=[0.0, 1.0],
             )
         terms = 2 * terms - 1
-    raise Error(f"{what} is not smooth enough: {MAX_TERMS} terms do not draw it", code="not-smooth")
+    raise Error(f"{what} is not smooth enough: {MAX_TERMS} Chebyshev terms do not represent it", code="not-smooth")

@@ -36,7 +36,7 @@ def fit_law(
     depth = numbers(depth_mm, "the depth [mm]", 0.0, DEEPEST_MM)
     value = numbers(value_mm, "the value [mm]", -FARTHEST_MM, FARTHEST_MM)
     if depth.ndim != 1 or value.ndim != 1:
-        raise Error("depths and values are lists of numbers", code="wrong-type")
+        raise Error("depths and values must be lists of numbers", code="wrong-type")
     require_type(degree, int, "a degree")
     need_truth(through_zero, "through_zero")
     need_truth(absolute, "absolute")

@@ -162,7 +162,7 @@ def _as_profile(law) -> _core.Profile:
         return law
     lag = numbers(law, "the lag [mm]", 0.0, FARTHEST_MM)
     if lag.ndim > 0:
-        raise Error("the lag is one number or a Profile, not an array", code="wrong-type")
+        raise Error("the lag must be one number or a Profile, not an array", code="wrong-type")
     return _core.Profile([float(lag)])
 
 

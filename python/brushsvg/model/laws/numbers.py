@@ -24,12 +24,12 @@ def numbers(given, what: str, least: float, greatest: float) -> np.ndarray:
     try:
         array = np.ma.asarray(given) if is_masked else np.asarray(given)
     except ValueError:  # rows of different lengths
-        raise Error(f"{what} is no number and no array of them", code="wrong-type") from None
+        raise Error(f"{what} is not a number or an array of numbers", code="wrong-type") from None
     if array.dtype.kind not in "iuf":
-        raise Error(f"{what} is no number and no array of them", code="wrong-type")
+        raise Error(f"{what} is not a number or an array of numbers", code="wrong-type")
     array = array.astype(float)
     if np.ma.is_masked(array):
-        sentence = f"{what} has masked entries, outside the range [{least:g}, {greatest:g}] as NaN is: leave them out"
+        sentence = f"{what} has masked entries, which are not in the range [{least:g}, {greatest:g}]: remove them"
         raise Error(sentence, value=np.nan, range=(least, greatest), code="out-of-range")
     array = np.asarray(array)
     outside = array[~((array >= least) & (array <= greatest))]
@@ -48,7 +48,7 @@ def together(*arrays: np.ndarray) -> list[np.ndarray]:
         return list(np.broadcast_arrays(*arrays))
     except ValueError:
         shapes = ", ".join(str(array.shape) for array in arrays)
-        raise Error(f"arrays of shapes {shapes} do not belong together", code="sizes-differ") from None
+        raise Error(f"arrays of shapes {shapes} cannot be broadcast together", code="sizes-differ") from None
 
 
 def frozen(array) -> np.ndarray:

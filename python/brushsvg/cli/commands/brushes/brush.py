@@ -7,7 +7,7 @@ import os
 from ...._core import remarks, write_brush
 from ....errors import Error
 from ....files import read_bytes
-from ....model.describe import LAWS, one_line, page, reach
+from ....model.describe import LAWS, describe_brush, describe_ranges, one_line
 from ....model.library import brush_like, brush_names, find_brush, unknown_keys
 from ...console import print_text, refuse_errors, warn
 from ...steps.ask_measurements import ask_measurements, warn_of_few_depths
@@ -20,7 +20,7 @@ def brush_list(_args) -> None:
 
 def brush_show(args) -> None:
     with refuse_errors(args.input):
-        print_text(page(find_brush(args.input)) + "\n")
+        print_text(describe_brush(find_brush(args.input)) + "\n")
 
 
 def brush_check(args) -> None:
@@ -55,7 +55,7 @@ def brush_new(args) -> None:
         text = write_brush(brush)
     warn(path, warn_of_few_depths(args, widths))
     write_outputs(args, {path: text}, sources=[path])
-    print_text(f"{path}: {reach(brush)}\n")
+    print_text(f"{path}: {describe_ranges(brush)}\n")
     if args.like is not None:
         print_text(f"assumed: all laws, copied from {args.like}; see brushsvg brush show {path}\n")
         return
