@@ -16,7 +16,7 @@ class Leg(NamedTuple):
     or stop (until a person starts the machine again). start and end [mm] are in the robot's frame. cut_mm is
     how far from the leg's end the tool may pass. For robots, it is how far before the end the blend begins.
     tilt_rad is the angle between the tool and its target direction at the end. takes_up: the tool stands
-    while the axes take up their play.
+    for these seconds while the axes take up their play.
     """
 
     line: int

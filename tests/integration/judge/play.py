@@ -29,9 +29,11 @@ def with_play(run: Run, backlash_mm) -> Run:
                 lag = after
                 kind = "feed" if leg.kind == "arc" else leg.kind
                 does = leg._replace(kind=kind, start=here, end=there, centre=None, turn=0)
-                does = does._replace(takes_up=here == there and bool((a != b).any()))
-                if not (does.takes_up and len(legs) > first[-1] and legs[-1] == does):
-                    legs.append(does)
+                if here == there and bool((a != b).any()):
+                    last = legs.pop() if len(legs) > first[-1] and legs[-1].takes_up and legs[-1].end == here else None
+                    seconds = float(np.linalg.norm(b - a)) / max(leg.speed_mm_s, 1e-9)
+                    does = does._replace(takes_up=True, seconds=seconds + (last.seconds if last else 0.0))
+                legs.append(does)
             start = end
     at = [*first, len(legs)]
     run.legs, run.titles = legs, [(words, at[number]) for words, number in run.titles]

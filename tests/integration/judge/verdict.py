@@ -370,7 +370,7 @@ def _jumps(way: Way, job: Job):
             heights += [leg.start[2], leg.end[2]]
             times += [now, now]
             lines += [leg.line, leg.line]
-        elif leg.kind == "wait":
+        elif leg.kind == "wait" or leg.takes_up:
             now += leg.seconds
         elif leg.kind != "stop":
             now += float(np.linalg.norm(np.subtract(leg.end, leg.start))) / max(leg.speed_mm_s, 1e-9)
