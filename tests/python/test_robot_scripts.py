@@ -25,11 +25,11 @@ from judge.table import Figures, measure
 from judge.verdict import ROBOTS
 from judge.works import make
 from judge.xarm import XArmAPI, executed
-from programs import LANGUAGES, program
+from programs import LANGUAGES, call, program
 from sampling import sample
 from test_urscript import ARC, BRUSH, STROKES, text_for
 
-from brushsvg import _core
+from brushsvg import _core, write_plan
 from brushsvg.machine.cells.cell import Blending, Contact, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.posts import POSTS
@@ -469,3 +469,34 @@ def test_settings_inside_a_dobot_function_keep_their_order():
     acts = [Act(k, "text", text) for k, text in enumerate(texts, 1)]
     assert _has_setting_in_function(acts) and not _has_setting_in_function(acts[:2])
     assert not _has_setting_in_function([acts[0], acts[2], acts[1], acts[3]])
+
+
+def test_check_accepts_the_shortest_press_onto_tilted_paper(tmp_path, capsys):
+    """Check accepts a press of 0.0025 mm, which rounding to 0.001 mm in the robot's frame turns a little sideways.
+
+    Made exactly vertical again, the press was shorter than the shortest move. Check then expected no press, and said
+    that the brush stands still in the paint.
+    """
+    cell = find_cell("jaka-zu3")
+    paper = replace(
+        cell.paper,
+        origin_mm=(-13.564577636533272, -267.45871165538415, -338.2563965127828),
+        rotation_deg=(-8.750119790561667, -6.245302228955573, 122.50639338342152),
+    )
+    tilted = replace(
+        cell,
+        paper=paper,
+        blending=replace(cell.blending, tolerance_mm=0.005),
+        workspace=replace(cell.workspace, tilt_limit_deg=20.0, box_mm=()),
+        heights=replace(cell.heights, safe_mm=20.0),
+        arm=None,
+    )
+    (tmp_path / "mine.toml").write_text(write_cell(tilted))
+    press = (29.923, 41.647, 0), (29.923, 41.647, -0.0024592), (29.893552, 41.5745426, -0.0024592)
+    a_pass = _core.Pass("a", np.array([*press, (27.936208, 36.7584574, -0.0842452)]), 20.0)
+    plan, program = tmp_path / "p.json", tmp_path / "p.jks"
+    plan.write_text(write_plan(_core.Plan("round-6", "", (100, 60), [a_pass])))
+    words = "--cell", str(tmp_path / "mine.toml")
+    assert call(capsys, "convert", str(plan), "-o", str(program), *words, "--z-offset", "1.25")[0] == 0
+    status, _, reported = call(capsys, "check", str(program), str(plan), *words)
+    assert status == 0, reported

@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import _core
 from ..errors import Error, Notice
-from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, robot_from_paper, unit_mm, value_mm
+from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, least_move_mm, robot_from_paper, unit_mm, value_mm
 from ..machine.frames import is_upright, transform_points
 from ..machine.move_extents import make_paths
 from ..machine.pen_changes import may_pause, pen
@@ -426,11 +426,12 @@ def _touch_to_pass(section: ReadSection, track: Track, on: slice, cell: Cell, le
     landed_mm_s = steps[0].speed_mm_s if steps[0].speed_mm_s <= cell.speeds.press_mm_s else 0.0
     speed = max(speeds, default=0.0)
     # After rounding, a straight move down has a small sideways part. The slower feed shows the intention. A servo is
-    # slow on every steep part of its path.
+    # slow on every steep part of its path. Without its sideways part, the shortest move would no longer be a move.
     if leans or cell.servo is None:
         sideways = np.abs(np.diff(poses[:, :2], axis=0)).max(axis=1, initial=0.0)
         slower = np.array([step.speed_mm_s for step in steps[1:]]) < speed - 1e-6
-        for k in np.flatnonzero(slower & (sideways < 2 * unit_mm(cell))):
+        rises = np.abs(np.diff(poses[:, 2])) > least_move_mm(cell)
+        for k in np.flatnonzero(slower & rises & (sideways < 2 * unit_mm(cell))):
             poses[k + 1, :2] = poses[k, :2]
     arcs = _arcs_of_touch(owner, track.centres)
     for first, last in _connected_arcs(arcs):  # connected arcs have one depth, except for rounding

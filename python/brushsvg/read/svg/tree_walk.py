@@ -265,7 +265,7 @@ class TreeWalk:
         try:
             return read(*words)
         except Error as error:
-            self.notes.add(node, context, f"{error}; it is ignored", damaged=True, code="transform-unread")
+            self.notes.add(node, context, f"{error}; it has no effect", damaged=True, code="transform-unread")
             return None
 
     def _reference_box(self, node: ET.Element, context: Context) -> ReferenceBox:

@@ -46,7 +46,7 @@ def find_problem(name: str, value: str, diagonal: float) -> Notice | None:
             if length_px(value, diagonal) < 0:
                 raise Error(f"{value[:24]!r} is negative", code="out-of-range")
         except Error as error:
-            return Notice("", f"stroke-width: {error}; it is ignored", True, code="stroke-width-invalid")
+            return Notice("", f"stroke-width: {error}; it has no effect", True, code="stroke-width-invalid")
     elif name in _OPACITY_PROPERTIES and not _SHARE.fullmatch(value):
         return Notice(
             "",
