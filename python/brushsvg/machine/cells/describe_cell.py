@@ -93,7 +93,7 @@ def _table_facts(table) -> list[str]:
 def _value_text(value) -> str:
     if not isinstance(value, tuple):
         return value if isinstance(value, str) else f"{value:g}"
-    return _point_text(value) if not isinstance(value[0], tuple) else "; ".join(map(_point_text, value))
+    return "; ".join(map(_point_text, value)) if value and isinstance(value[0], tuple) else _point_text(value)
 
 
 def _point_text(values) -> str:
