@@ -132,7 +132,7 @@ def test_brush_and_machine_are_recovered(parts):
         assert one.half < 0.6 * machine_found.PARTS[one.part][1], f"{one}: hardly more than the prior"
     assert lag_off(made, brush) < 0.03
     text = report(made).text(True)
-    table = tomllib.loads(text[text.index("[machine]") :].partition("\n\n")[0])["machine"]
+    table = tomllib.loads(text[text.index("[machine]\n") :].partition("\n\n")[0])["machine"]
     if "lean" in parts:
         assert table["lean_mm_per_mm"] == pytest.approx(made.fit.machine.lean_mm_per_mm, abs=1e-4)
         assert re.search(r"lean in x: 0\.\d+ \+- 0\.\d+ mm", text)
@@ -174,7 +174,7 @@ def test_the_fit_does_not_start_with_a_lag_that_looks_like_lean(seed):
 
 def test_strokes_of_one_direction_are_reported_to_separate_lean_poorly():
     _, painted = painted_by(5, ("lean",), one_way=True)
-    assert are_reported(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 0 0.8")
+    assert are_reported(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 99 0 80")
     assert machine_found.doubts(painted, options_for(())) == []
     _, both = painted_by(5, ("lean",))
     assert machine_found.doubts(both, options_for(("lean",))) == []

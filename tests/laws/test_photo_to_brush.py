@@ -258,7 +258,7 @@ def test_many_outlying_marks_are_refused():
     painted = SimpleNamespace(marks=[None] * 25)
     refuse_many(tuple(some[:5]), painted)
     for scale in (None, SheetScale((0.04, 0.02), (0.04, 0.02), (0.04, 0.015), 44)):
-        with refused("marks-outlying 6 25 '[0, 5]' arc-0 arc-1"):
+        with refused("marks-outlying 6 25 5 arc-0 arc-1"):
             refuse_many(tuple(some), painted, scale)
     with refused("marks-scaled 4.00 larger"):
         refuse_many(tuple(some), painted, SheetScale((0.04, 0.002), (0.04, 0.002), (0.04, 0.0015), 44))
