@@ -159,6 +159,21 @@ def test_parts_of_an_earlier_job_are_reported(tmp_path, capsys, name, parts):
         )
 
 
+@pytest.mark.parametrize(
+    "words",
+    [["setup", "height"], ["setup", "border", "small.json"], ["setup", "first-run", "ur5e"], ["chart"]],
+    ids=["height", "border", "first-run", "chart"],
+)
+def test_parts_of_an_earlier_job_are_reported_by_all_commands_that_write_programs(words, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("small.json").write_text(_core.write_plan(waves(1, 100)))
+    Path("long.json").write_text(_core.write_plan(waves(3, 1200)))
+    assert call(capsys, "convert", "long.json", "-o", "a.script", "--cell", "ur5e")[0] == 0
+    cell = [] if "first-run" in words else ["--cell", "ur5e"]
+    status, _, reported = in_json(capsys, *words, "-o", "a.script", *cell)
+    assert status == 0 and is_reported(reported, "programs-of-before a-part2.script a-part3.script"), reported
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", [*MOST, "axidraw-ebb"])
 def test_a_page_of_a_thousand_strokes_is_split(name, tmp_path, capsys, monkeypatch):

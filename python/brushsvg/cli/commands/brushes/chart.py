@@ -16,6 +16,7 @@ from ....model.library import find_brush
 from ....notice_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
+from ...steps.leftover_programs import warn_about_leftover_programs
 from ...steps.options import (
     apply_drawing_settings,
     load_brush,
@@ -64,6 +65,7 @@ def chart_file(args) -> None:
         files[args.chart] = write_chart(laid_out).encode()
     warn(args.output, writer.report_renamed(name, suffix, cell))
     warn_about_cell(args, cell)
+    warn_about_leftover_programs(args.output, files)
     write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell))
     print_text(
         dab_chart_report(laid_out, brush) if args.dabs else chart_report(laid_out, brush, args.noise or EDGE_NOISE_MM)

@@ -5,13 +5,10 @@ A picture and figures can be written as well.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection
 from pathlib import Path
 
 import numpy  # noqa: F401  # before the core: if memory is short, numpy then raises an exception instead of exiting
 
-from ....errors import Notice
 from ....jobs import conversion, outputs, prediction
 from ....jobs.choices import choose_margin_strokes
 from ....jobs.preparation.colours import list_colours, select_colour
@@ -19,9 +16,10 @@ from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.work import Work
 from ....machine.pen_changes import has_pens, may_pause, pens_changed
 from ....machine.program import Job
-from ....machine.writer import called_programs, path_next_to
+from ....machine.writer import path_next_to
 from ....show.evaluation import report
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
+from ...steps.leftover_programs import warn_about_leftover_programs
 from ...steps.options import apply_drawing_settings, make_choices, warn_about_cell
 from ...steps.output_places import check_outputs, suffix_of, write_outputs
 from ...steps.prepared import prepare
@@ -54,7 +52,7 @@ def convert_file(args) -> None:
             files[args.report] = report.as_text(suffix_of(args.report), figures)
     warn(args.input, dict.fromkeys(notice for simulated in simulations for notice in simulated.remarks()))
     warn_about_cell(args, simulations[0].cell)
-    warn(args.output, _report_leftover_programs(args.output, files, _list_called_before(args.output)))
+    warn_about_leftover_programs(args.output, files)
     strokes = sum(len(simulated.loads.loads) for simulated in simulations) - args.from_stroke + 1
     times_s = [simulated.time_s() for simulated in simulations]
     seconds = None if None in times_s else sum(times_s)
@@ -79,47 +77,6 @@ def _split_by_colour(output: str, work: Work) -> list[tuple[str, Work]]:
         (str(path.with_name(f"{path.stem}-{number}-{colour[1:]}{path.suffix}")), select_colour(work, colour))
         for number, colour in enumerate(list_colours(work), 1)
     ]
-
-
-def _make_sort_key(name: str) -> list:
-    """Return a key that sorts part2 before part10."""
-    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
-
-
-def _list_called_before(output: str) -> list[str]:
-    """List the files that the program now at the output path calls.
-
-    A program in several files calls its other files.
-    """
-    return [Path(file).name for file in called_programs(output, _read_earlier_program(output), _read_earlier_program)]
-
-
-def _read_earlier_program(path: str) -> str:
-    """Read a program of an earlier run as far as possible.
-
-    Names in it are ASCII. Devices and pipes hold no program.
-    """
-    try:
-        return Path(path).read_bytes().decode("ascii", "replace") if Path(path).is_file() else ""
-    except OSError:
-        return ""
-
-
-def _report_leftover_programs(output: str, files: Collection[str], called_before: list[str]) -> list[Notice]:
-    """Return a notice on programs that an earlier run left at the output path.
-
-    These are programs for a colour, or parts of a program, that this run does not write. Nobody should run them.
-    """
-    path = Path(output)
-    name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
-    existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
-    existing += [each for each in called_before if path.with_name(each).exists()]
-    written = set(map(Path, files))  # a path may be spelled ./out.ngc
-    leftover = sorted({each for each in existing if path.with_name(each) not in written}, key=_make_sort_key)
-    if not leftover:
-        return []
-    sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
-    return [Notice("", sentence, code="programs-of-before", advice="delete them")]
 
 
 def _simulate_or_refuse(args, path: str, work: Work) -> conversion.SimulatedWork:

@@ -6,6 +6,7 @@ from ....jobs.choices import Choices
 from ....jobs.setting_up import make_first_run
 from ....machine.writer import in_files
 from ...console import refuse_errors, warn
+from ...steps.leftover_programs import warn_about_leftover_programs
 from ...steps.output_places import check_outputs, write_outputs
 
 
@@ -13,4 +14,6 @@ def first_run_file(args) -> None:
     check_outputs(args, args.output)
     with refuse_errors(""):  # errors name their file themselves
         made = make_first_run(Choices(cell=args.input, brush=args.brush, sheet=args.sheet), args.output, warn)
-    write_outputs(args, in_files(args.output, made.text), seconds=made.time_s)
+    files = in_files(args.output, made.text)
+    warn_about_leftover_programs(args.output, files)
+    write_outputs(args, files, seconds=made.time_s)

@@ -1,0 +1,53 @@
+"""Report the programs of an earlier run that stay next to a new program."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from pathlib import Path
+
+from ...errors import Notice
+from ...machine.writer import called_programs
+from ..console import warn
+
+
+def warn_about_leftover_programs(output: str, files: Collection[str]) -> None:
+    """Warn about programs that an earlier run left at the output path, before it is written.
+
+    These are programs for a colour, or parts of a program, that this run does not write. Nobody should run them.
+
+    files: the paths that this run writes.
+    """
+    path = Path(output)
+    name = re.compile(rf"{re.escape(path.stem)}(-\d+-[0-9a-f]{{6}})?(-part\d+)?{re.escape(path.suffix)}")
+    existing = [each.name for each in path.parent.glob("*") if name.fullmatch(each.name)]
+    existing += [each for each in _list_called_before(output) if path.with_name(each).exists()]
+    written = set(map(Path, files))  # a path may be spelled ./out.ngc
+    leftover = sorted({each for each in existing if path.with_name(each) not in written}, key=_make_sort_key)
+    if leftover:
+        sentence = f"programs of an earlier run are still here and belong to another version: {', '.join(leftover)}"
+        warn(output, [Notice("", sentence, code="programs-of-before", advice="delete them")])
+
+
+def _list_called_before(output: str) -> list[str]:
+    """List the files that the program now at the output path calls.
+
+    A program in several files calls its other files.
+    """
+    return [Path(file).name for file in called_programs(output, _read_earlier_program(output), _read_earlier_program)]
+
+
+def _read_earlier_program(path: str) -> str:
+    """Read a program of an earlier run as far as possible.
+
+    Names in it are ASCII. Devices and pipes hold no program.
+    """
+    try:
+        return Path(path).read_bytes().decode("ascii", "replace") if Path(path).is_file() else ""
+    except OSError:
+        return ""
+
+
+def _make_sort_key(name: str) -> list:
+    """Return a key that sorts part2 before part10."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
