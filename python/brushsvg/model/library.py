@@ -12,10 +12,10 @@ from .. import _core
 from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import find_file, names_in, read_bytes, write_files
 from ..suggestions import nearest_name
+from .confidence import LAWS, LEARNED
 from .extra_keys import read_extra_keys
 
 SHIPPED = Path(__file__).parents[1] / "data" / "brushes"
-_LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
 # Keys of a brush file, see docs/reference/brush.md.
 _KEYS = (
     *(
@@ -24,12 +24,12 @@ _KEYS = (
         "name",
         "kind",
         "about",
-        "learned",
+        LEARNED,
         "depth_range_mm",
         "max_speed_mm_s",
         "paint_depth_mm",
     ),
-    *(*_LAWS, "covariance", "footprints", "paint"),
+    *(*LAWS, "covariance", "footprints", "paint"),
 )
 _KEYS_OF_LAW = (
     *("coefficients", "floor", "floor_slope", "calibrated_mm", "source", "assumed"),
@@ -76,7 +76,7 @@ def unknown_keys(brush: _core.Brush) -> list[Notice]:
         ("", entries, _KEYS),
         ("footprints.", read_extra_keys(json.dumps(entries.get("footprints"))), _KEYS_OF_FOOTPRINTS),
     ]
-    tables += [(f"{law}.", read_extra_keys(getattr(brush, law).extra), _KEYS_OF_LAW) for law in _LAWS]
+    tables += [(f"{law}.", read_extra_keys(getattr(brush, law).extra), _KEYS_OF_LAW) for law in LAWS]
     if brush.paint:
         tables.append(("paint.", read_extra_keys(brush.paint.extra), _KEYS_OF_PAINT))
     return [
@@ -120,7 +120,7 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
     _core.check(like)
     brush = copy.copy(like)
     brush.name, brush.sha256, brush.covariance = name, "", []
-    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+    for law in LAWS:
         known = getattr(like, law)
         assumed_law = _core.Profile(
             known.coefficients,

@@ -15,7 +15,7 @@ from ... import _core
 from ...array_values import ArrayValue
 from ...errors import Error
 from ...model import footprint_shapes
-from ...model.confidence import half_interval_mm, places
+from ...model.confidence import LAWS, half_interval_mm, places
 from ...model.laws.fitted import need_fits
 from ..numbers.from_widths import outlines_assumed
 from ..numbers.plausibility import MAX_DEPTH_PER_MEASURED
@@ -129,7 +129,7 @@ def calibrate_marks(
     brush = brush_of(fit.laws, name, (least, deepest), covariance)
     brush.max_speed_mm_s = max_speed_mm_s
     count = f"{len(painted.marks)} painted marks"
-    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+    for law in LAWS:
         law_of_brush = getattr(brush, law)
         profile = _core.Profile(
             law_of_brush.coefficients,

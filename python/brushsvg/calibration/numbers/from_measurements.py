@@ -14,7 +14,7 @@ import numpy as np
 from ... import _core
 from ...errors import Error, Notice
 from ...model import footprint_shapes
-from ...model.confidence import half_interval_mm
+from ...model.confidence import LAWS, half_interval_mm
 from ...model.laws.fitted import need_fits
 from . import plausibility
 from .angle_series import read_series, scatter_of_series
@@ -23,7 +23,6 @@ from .from_widths import GAP_PER_HALF, WIDEST_PER_HALF, outlines_assumed
 from .joint_fit import MIN_LAG_MM, ROUNDING_MM, JointFit, Reading, fit_together
 from .measurements import Measurements, Row
 
-LAWS = ("lag", "tip_gap", "tip_to_widest", "half_width")
 # Degrees of the article's laws: r is quartic, b is linear through 0, x_w is cubic with floor 0. The article prints no
 # law of the width; it is a parabola that rises from 0.
 LAW_DEGREES = {"lag": 4, "tip_gap": 1, "tip_to_widest": 3, "half_width": 2}

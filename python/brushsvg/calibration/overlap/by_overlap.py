@@ -19,6 +19,7 @@ from numpy.polynomial.polynomial import polyval
 from ... import _core
 from ...array_values import ArrayValue
 from ...geometry.rotation import rotation
+from ...model.confidence import LAWS
 from ..marks.from_marks import MarkCalibration, brush_of
 from .lag_by_outlines import Placed, PlacedMark
 from .overlap_choice import BestPrediction, find_best_prediction
@@ -88,7 +89,7 @@ def _make_calibration(calibration: MarkCalibration, found: BestPrediction) -> Ov
     fit, count = calibration.fit, sum(not residual.outlier for residual in calibration.fit.marks)
     brush = brush_of(found.laws, calibration.brush.name, calibration.brush.depth_range_mm)
     brush.max_speed_mm_s = calibration.brush.max_speed_mm_s
-    for law in ("lag", "tip_gap", "tip_to_widest", "half_width"):
+    for law in LAWS:
         law_of_brush = getattr(brush, law)
         profile = _core.Profile(
             law_of_brush.coefficients,
