@@ -273,6 +273,13 @@ def test_paint_keys_are_kept_shown_and_checked(changed, capsys, tmp_path):
     assert like.paint.assumed and not like.paint.covariance and like.paint.narrows_per_m == 0.4
 
 
+def test_a_brush_like_a_learned_one_has_learned_nothing(changed):
+    """The new brush kept the photographs of the known one, and was refused an update from them."""
+    learned = {"brushes": ["a" * 64], "photos": ["b" * 64], "deepest_mm": {"lag": 4.0}}
+    brush = find_brush(changed(_set("learned", to=learned)))
+    assert learned_of(brush) == learned and learned_of(brush_like("mine", brush)) == {}
+
+
 def test_a_brush_without_paint_has_no_paint_key():
     for name in brush_names():
         assert find_brush(name).paint is None

@@ -141,6 +141,7 @@ def brush_like(name: str, like: _core.Brush) -> _core.Brush:
             assumed=True,
         )
     entries = read_extra_keys(like.extra)
+    entries.pop(LEARNED, None)  # the new brush learned from no photograph
     outlines = entries.get("footprints") if isinstance(entries.get("footprints"), dict) else {}
     outlines = {key: value for key, value in outlines.items() if key != "standard_error_mm"}
     source = f"Taken from brush {like.name}: {outlines.get('source', '')}".strip()
