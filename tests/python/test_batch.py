@@ -306,7 +306,7 @@ def test_two_runs_do_not_write_to_one_folder(desk):
         brushsvg.batch(["in"], "out", executor=executor)
     first.close()
     Path("out/manifest.jsonl").write_text("mine\n")
-    with refused("format-unknown brushsvg/batch 1"), threads() as executor:
+    with refused("format-unknown brushsvg/batch 1 -o"), threads() as executor:
         brushsvg.batch(["in"], "out", executor=executor)
 
 

@@ -115,7 +115,8 @@ class Manifest:
             header = None
         if header != FORMAT:
             sentence = f"this is not a manifest of {FORMAT['format']}, version {FORMAT['version']}"
-            raise Error(sentence, file=str(self.path), code="format-unknown")
+            advice = "delete or rename the file, or give another folder (-o)"
+            raise Error(sentence, file=str(self.path), code="format-unknown", advice=advice)
         for row in filter(None, map(_parse_row, lines)):
             self._refuse_outside(row)
             self._by_name.setdefault(row.name, []).append(row)
