@@ -42,6 +42,8 @@ MAX_FIELD_SLOPE = 0.1
 ARM_JOINT_COUNT = 6  # with more joints, an arm reaches a place with infinitely many joint angles
 # Largest height that one value of a servo may change. Depths are off by up to half of it.
 MAX_SERVO_VALUE_MM = 0.5
+# Largest distance of the tip behind the plane of the flange without a remark: errors of teaching may be this large.
+MAX_TIP_BEHIND_MM = 0.5
 
 
 def check(cell: Cell) -> None:
@@ -594,8 +596,9 @@ def report_unusual_values(cell: Cell) -> list[Notice]:
     if cell.tool and not 10.0 <= (length_mm := float(np.linalg.norm(cell.tool.tcp_mm))) <= 500.0:
         sentence = f"the tip is {length_mm:.4g} mm from the flange, outside the usual range [10, 500] mm"
         notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm"))
-    if cell.tool and (ahead_mm := float(rotation(cell.tool.rotation_deg)[:, 2] @ cell.tool.tcp_mm)) < -0.5:
-        sentence = f"the tip is {-ahead_mm:.4g} mm behind the flange, so the brush points back past it"
+    behind_mm = -float(rotation(cell.tool.rotation_deg)[:, 2] @ cell.tool.tcp_mm) if cell.tool else 0.0
+    if behind_mm > MAX_TIP_BEHIND_MM:
+        sentence = f"the tip is {behind_mm:.4g} mm behind the flange, so the brush points back past it"
         advice = "check the signs of tcp_mm and rotation_deg: z of the tool points from the holder to the tip"
         notices.append(Notice("tool.tcp_mm", sentence, code="unusual-value", about="tool.tcp_mm", advice=advice))
     for number, station in enumerate(cell.stations, 1):
