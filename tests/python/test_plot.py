@@ -6,6 +6,7 @@ Without matplotlib, a message says how to install it.
 import sys
 import warnings
 
+import matplotlib
 import numpy as np
 import pytest
 from diagnostics import in_json
@@ -26,6 +27,13 @@ def test_svg_and_png_pictures_are_reproducible(name):
         picture = brush_picture(brush, suffix)
         assert picture.startswith(start)
         assert picture == brush_picture(brush, suffix)
+
+
+def test_a_picture_leaves_the_settings_of_matplotlib_alone():
+    """A picture of a brush once changed how the figures of the same process were saved."""
+    before = dict(matplotlib.rcParams)
+    brush_picture(find_brush("round-6"), ".svg")
+    assert dict(matplotlib.rcParams) == before
 
 
 def test_a_name_in_letters_that_the_font_lacks_gives_no_python_warning():

@@ -145,13 +145,10 @@ def new_figure(size_in: tuple[float, float]):
     Raises Error where matplotlib is missing.
     """
     try:
-        import matplotlib
-        from matplotlib.figure import Figure
+        import matplotlib.figure
     except ImportError:
         raise missing_packages_error("pictures of laws need", "matplotlib") from None
-    matplotlib.rcParams["svg.hashsalt"] = "brushsvg"  # the same input gives the same bytes
-    matplotlib.rcParams["svg.fonttype"] = "none"
-    return Figure(figsize=size_in, layout="constrained", facecolor="white")
+    return matplotlib.figure.Figure(figsize=size_in, layout="constrained", facecolor="white")
 
 
 def note(axes, at, text: str, **style) -> None:
@@ -163,9 +160,13 @@ def note(axes, at, text: str, **style) -> None:
 
 
 def encoded(figure, suffix: str) -> bytes:
+    """Return a figure as the bytes of a file: the same figure gives the same bytes."""
+    import matplotlib
+
+    settings = {"svg.hashsalt": "brushsvg", "svg.fonttype": "none"}
     buffer = io.BytesIO()
     metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
-    with allow_missing_letters():
+    with allow_missing_letters(), matplotlib.rc_context(settings):
         if notes := figure.findobj(lambda artist: artist.get_gid() == NOTE):
             _place_notes(figure, notes)
         figure.savefig(buffer, format=suffix[1:], dpi=140, metadata=metadata)
