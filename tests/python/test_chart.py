@@ -17,7 +17,7 @@ from numpy.polynomial.polynomial import polyval
 from programs import RUNNABLE
 from sampling import sample
 
-from brushsvg import _core, find_brush
+from brushsvg import _core, brush_like, find_brush, save_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
 from brushsvg.calibration.chart.page import MAX_TEXT_MM, chart_pdf, chart_svg
@@ -484,6 +484,18 @@ def test_a_chart_for_one_load_fetches_paint_once():
     made = chart(find_brush("round-6"), A5, one_load=True)
     fetched = [bool(each) for each in station_visits(split_into_loads(made.plan, find_brush("round-6"), cell), cell)]
     assert fetched[0] and not any(fetched[1:]) and len(fetched) == len(made.strokes)
+
+
+@pytest.mark.parametrize(("flags", "advice"), [([], "[reload]"), (["--dabs"], "[reload]"), (["--paint"], "--sheet")])
+def test_a_chart_that_needs_more_paint_than_a_load_is_reported(tmp_path, capsys, flags, advice):
+    """The chart command wrote programs without the notices on paint that convert gives."""
+    brush = brush_like("mine", find_brush("round-6"))
+    brush.paint = _core.Paint(0.5, lasts_mm=300, calibrated_mm=(0, 800))
+    save_brush(brush, tmp_path / "mine.json")
+    words = "chart", "-o", tmp_path / "c.ngc", "--brush", tmp_path / "mine.json", "--sheet", "a5", *flags
+    status, _, reported = in_json(capsys, *words)
+    assert status == 0
+    assert [advice in each.advice for _, each in reported if each.code == "paint-runs-out"] == [True]
 
 
 @pytest.mark.slow

@@ -32,6 +32,16 @@ def _advise_smaller_sheet(problem: Notice) -> Notice:
     return replace(problem, advice="--sheet WxH makes a smaller chart") if is_too_large else problem
 
 
+def _adapt_to_paint_chart(notices: list[Notice]) -> list[Notice]:
+    """Return the notices for a chart that is painted with one load, and measures how marks narrow."""
+    advice = "--strokes few and a smaller --sheet make a shorter chart"
+    return [
+        replace(notice, advice=advice) if notice.code == "paint-runs-out" else notice
+        for notice in notices
+        if notice.code != "paint-unknown"
+    ]
+
+
 def chart_file(args) -> None:
     from ....calibration.chart.dabs import dab_chart_report
     from ....calibration.chart.expected import chart_report
@@ -63,7 +73,8 @@ def chart_file(args) -> None:
             files[args.page] = chart_page(laid_out, suffix_of(args.page))
     if args.chart:
         files[args.chart] = write_chart(laid_out).encode()
-    warn(args.output, writer.report_renamed(name, suffix, cell))
+    notices = writer.report_program(suffix, loads, brush, cell, name)
+    warn(args.output, _adapt_to_paint_chart(notices) if args.paint else notices)
     warn_about_cell(args, cell)
     warn_about_leftover_programs(args.output, files)
     write_outputs(args, files, len(loads.loads), estimate_output_time_s(suffix, laid_out.plan, walk, brush, cell))
