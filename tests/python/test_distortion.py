@@ -188,6 +188,34 @@ def test_circles_stay_circles_only_if_the_machine_keeps_them_round(machine, are_
     assert np.linalg.norm(found[None] - poses[[0, 1, 30, 31], None], axis=2).min(axis=1).max() < 2e-3
 
 
+@pytest.mark.parametrize(
+    "machine",
+    [
+        Machine(scale=(1.06, 1.0)),
+        Machine(scale=(1.0, 1.05), skew=0.03),
+        Machine(field_mm=((1.5, -0.4, 0.3), (-0.9, 0.5, 1.2)), field_middle_mm=(60, 35), field_reach_mm=(60, 35)),
+    ],
+)
+def test_the_tip_of_a_distorted_machine_keeps_the_speed_limit(machine):
+    """The limit was compared with the commanded speed, and a tip that went too far was too fast."""
+    brush, cell = find_brush("round-6"), cell_with(machine)
+    poses = np.array([[20, 15, -3], [100, 15, -3], [100, 55, -3], [20, 55, -3], [100, 20, -3]], dtype=float)
+    plan = _core.Plan(brush.name, "", (120.0, 70.0), [_core.Pass("a", poses, brush.max_speed_mm_s)])
+    text = "".join(writer.encode(".ngc", plan, brush, "fast", (), cell))
+    done = simulate_program.simulate_program(read_program(text, ".ngc", cell), brush, cell, plan.sheet_mm)
+    assert done.problems == []
+    before, feed, after = re.search(r"(G1 .*\n)F(.*)\n((?:G1 .* Z-3\.0000\n){4,})", text).groups()
+    x, y = np.array(re.findall(r"X([-\d.]+) Y([-\d.]+)", before + after), dtype=float).T
+    (sx, sy), u, v = machine.scale, (x - 60) / 60, (y - 35) / 35
+    terms = np.stack([u * u, u * v, v * v])
+    true_x, true_y = sx * x + machine.skew * y, sy * y
+    if machine.field_mm:
+        true_x, true_y = true_x + machine.field_mm[0] @ terms, true_y + machine.field_mm[1] @ terms
+    stretch = np.hypot(np.diff(true_x), np.diff(true_y)) / np.hypot(np.diff(x), np.diff(y))
+    assert stretch.max() > 1.01
+    assert stretch.max() * float(feed) / 60 <= brush.max_speed_mm_s
+
+
 def test_limits_are_checked_at_commanded_positions(desk):
     work = preparation.prepare("two.svg")
     cell = cell_with(Machine(scale=(0.92, 1.0)))

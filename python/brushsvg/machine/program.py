@@ -27,6 +27,7 @@ from .tool_axes import axes_of, tilts_deg
 from .workspace_limits import (
     broken_limits,
     check_first_rise,
+    commanded_touching_mm_s,
     find_astray_sections,
     find_strokes_in_vessels,
     find_vessels_near_travel,
@@ -269,7 +270,7 @@ def unchecked_program(
     rises_mm = (rise_height_mm(cell, loads.sheet_mm, of) for of in (np.eye(4), frame))
     iterate_sections = (lambda: iter(make_sections_once())) if _fits_in_cache(loads, job) else sections
     tilts = any(axes_of(a_pass) is not None for _, a_pass in numbered_loads)
-    return Program((), cell, frame, iterate_sections, *rises_mm, touching_mm_s(brush, cell), tilts)
+    return Program((), cell, frame, iterate_sections, *rises_mm, commanded_touching_mm_s(brush, cell), tilts)
 
 
 def point_above(point, height_mm: float) -> np.ndarray:
@@ -378,8 +379,9 @@ def _stroke_moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ..
         turn_deg = 0.0 if axes_there is None else float(tilts_deg(axes_there)[0])
         return limit_turning_speed(speed_mm_s, heights.safe_mm - heights.clearance_mm, turn_deg, cell)
 
+    paint_mm_s = min(a_pass.speed_mm_s, commanded_touching_mm_s(brush, cell))
     # Pressing on the spot and lifting bend the bristles as much as painting does, so they are never faster.
-    press_mm_s = min(speeds.press_mm_s, a_pass.speed_mm_s)
+    press_mm_s = min(speeds.press_mm_s, paint_mm_s)
     return (
         Move("travel", safe_point_above(commanded_above(start, 0.0)[0], cell), speeds.travel_mm_s),
         Move(
@@ -389,7 +391,7 @@ def _stroke_moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ..
             axes=first,
         ),
         Move("land", poses[:1], press_mm_s, axes=first),
-        *_paint_moves(poses, written, a_pass.speed_mm_s, press_mm_s, cell),
+        *_paint_moves(poses, written, paint_mm_s, press_mm_s, cell),
         Move("lift", commanded_above(end, heights.clearance_mm), press_mm_s, axes=last),
         Move(
             "retract",

@@ -13,6 +13,7 @@ from .cells.language_limits import LEAST_SPEED_MM_S
 from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
 from .moves import Move, Section
 from .realised.backlash import half_mm
+from .realised.distortion import max_true_per_commanded
 from .realised.tilt import check_tilt_limits as tilted_too_far
 
 ROUNDING_MM = 1e-6  # slack for the rounding of numbers
@@ -22,6 +23,14 @@ MIN_SPEED_MM_S = 1e-6  # below this speed, durations would be meaningless
 def touching_mm_s(brush, cell: Cell) -> float:
     """Return the highest speed [mm/s] of the brush's tip on the paper."""
     return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
+
+
+def commanded_touching_mm_s(brush, cell: Cell) -> float:
+    """Return the highest commanded speed [mm/s] at which the tip keeps its limit.
+
+    A machine that goes too far for each mm is also faster than commanded.
+    """
+    return touching_mm_s(brush, cell) / max_true_per_commanded(cell.machine)
 
 
 def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) -> list[Notice]:

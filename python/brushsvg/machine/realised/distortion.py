@@ -13,7 +13,7 @@ import numpy as np
 from ... import _core
 from ..cells.cell import Cell, Machine
 from .retimed import on_way
-from .smooth_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field
+from .smooth_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field, max_field_slope
 
 # Error [mm] at which inverting a field stops, and largest number of rounds. Each round leaves at most a quarter of the
 # error.
@@ -214,6 +214,17 @@ def _grid_cell_and_share(grid: np.ndarray, places: np.ndarray) -> tuple[np.ndarr
 
 def _axis_matrix(machine: Machine) -> np.ndarray:
     return np.array([[machine.scale[0], machine.skew], [0.0, machine.scale[1]]])
+
+
+def max_true_per_commanded(machine: Machine | None) -> float:
+    """Return how many times faster than commanded the tool may move in x and y, at least 1.
+
+    The ratio holds for all directions and places. It leaves out the lean, which changes only with the depth.
+    """
+    if machine is None:
+        return 1.0
+    slope = max_field_slope(machine) if has_field(machine) else 0.0
+    return max(1.0, float(np.linalg.norm(_axis_matrix(machine), 2)) + 2 * slope)
 
 
 def true_pass(a_pass, cell: Cell):
