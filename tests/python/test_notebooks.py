@@ -51,7 +51,7 @@ def test_brush_notebook_runs(reported):
     off = {name: float(mm) for name, mm in re.findall(r"^(.+): lag off by (.+) mm at most", text, re.M)}
     assert set(off) == {"table", "section 4", "marks"}
     assert off["section 4"] < 0.4 and off["marks"] < 0.3
-    assert "fitted together: tip_to_widest (10" in text
+    assert "to these values: tip_to_widest (10" in text
     assert {"image/svg+xml", "image/png"} <= shown
 
 
