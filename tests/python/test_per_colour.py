@@ -78,6 +78,16 @@ def test_outdated_programs_of_removed_colours_are_reported(desk, capsys):
     ), reported
 
 
+def test_programs_for_a_kuka_have_names_that_its_controller_knows(desk, capsys):
+    """KUKA controllers allow no hyphens: each of these programs once had another name there than its file."""
+    words = "convert", "word.svg", "--cell", "kr6-r900", "-o", "out.src"
+    status, _, reported = in_json(capsys, *words, "--per-colour")
+    files = ["out_1_ffd700.src", "out_2_d32f2f.src", "out_3_1a237e.src"]
+    assert status == 0 and not is_reported(reported, "program-renamed")
+    assert sorted(path.name for path in desk.glob("out*")) == files
+    assert is_reported(in_json(capsys, *words)[2], f"programs-of-before {' '.join(files)}")
+
+
 def test_a_program_just_written_is_not_outdated(desk, capsys):
     """The program at ./out.ngc was once taken for one of an earlier run, with the advice to delete it."""
     for output in ("./out.ngc", f"{desk}//out.ngc"):

@@ -14,9 +14,10 @@ from ....jobs.choices import choose_margin_strokes
 from ....jobs.preparation.colours import list_colours, select_colour
 from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.work import Work
+from ....machine.cells.cell import Cell
 from ....machine.pen_changes import has_pens, may_pause, pens_changed
 from ....machine.program import Job
-from ....machine.writer import path_next_to
+from ....machine.writer import path_next_to, report_renamed
 from ....show.evaluation import report
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
 from ...steps.leftover_programs import warn_about_leftover_programs
@@ -72,11 +73,18 @@ def convert_file(args) -> None:
 
 def _split_by_colour(output: str, work: Work) -> list[tuple[str, Work]]:
     """Return a file name and the work for each colour, the lightest colour first."""
-    path = Path(output)
     return [
-        (str(path.with_name(f"{path.stem}-{number}-{colour[1:]}{path.suffix}")), select_colour(work, colour))
+        (_name_program(Path(output), f"{number}-{colour[1:]}", work.options.cell), select_colour(work, colour))
         for number, colour in enumerate(list_colours(work), 1)
     ]
+
+
+def _name_program(path: Path, part: str, cell: Cell) -> str:
+    """Return the path of the program for a colour, with a name that the controller can have, if possible."""
+    name = f"{path.stem}-{part}"
+    possible_name = f"{path.stem}_{part.replace('-', '_')}"  # KUKA controllers allow no "-"
+    renamed = [bool(report_renamed(each, path.suffix.lower(), cell)) for each in (name, possible_name)]
+    return str(path.with_name((possible_name if renamed == [True, False] else name) + path.suffix))
 
 
 def _simulate_or_refuse(args, path: str, work: Work) -> conversion.SimulatedWork:
