@@ -46,6 +46,8 @@ def main() -> None:
         chart_path = f"{os.path.splitext(wished)[0]}.chart.json"
         _save({wished: made, chart_path: read_by})
         show_message("\n".join([f"Saved: {wished} and {chart_path}.", *warnings]))
+    elif warnings:
+        show_message("\n".join(["The page was added. brushsvg warns:", *warnings]))
 
 
 def _save(files: dict[str, bytes]) -> None:

@@ -1,12 +1,15 @@
 """The calibration sheet in the real Inkscape has the marks of `brushsvg chart`."""
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from command import SOUND, brushsvg
 
 from brushsvg import read_drawing
+from brushsvg.machine.cells.cell import Reload, Station
+from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.read import ReadOptions
 
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
@@ -71,3 +74,15 @@ def test_an_unwritable_chart_file_is_reported(plugin, tmp_path, name, reported):
     drawing.write_text(SOUND)
     done = plugin.script("chart", drawing, f"--output={tmp_path / name}")
     assert done.returncode == 1 and reported in done.stderr.decode() and "Traceback" not in done.stderr.decode()
+
+
+def test_warnings_are_shown_if_only_the_page_is_made(plugin, tmp_path):
+    """They appeared only if somebody also chose a file for the program."""
+    drawing, cell = tmp_path / "drawing.svg", tmp_path / "mine.toml"
+    drawing.write_text(SOUND)
+    station = Station("red", (-20.0, 50.0), depth_mm=7.0)
+    reload = Reload("length", 500.0, narrower_percent=10.0)
+    cell.write_text(write_cell(replace(find_cell(), name="mine", reload=reload, stations=(station,))))
+    shown = plugin.script("chart", drawing, f"--cell_file={cell}").stderr.decode()
+    assert "narrower_percent" in shown
+    assert not plugin.script("chart", drawing).stderr
