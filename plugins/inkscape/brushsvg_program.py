@@ -19,7 +19,7 @@ from xml.etree import ElementTree
 from brushsvg_dialogs import in_dialogs, show_message
 
 NEEDED = (0, 1, 0)
-INSTALL = "pipx install brushsvg"
+INSTALL = "make demo && .venv/bin/brushsvg setup inkscape"  # in the folder of the source
 DRAWING = "drawing.svg"
 EXECUTABLE_NOTE = "brushsvg-executable.txt"  # written by `brushsvg setup inkscape`
 # bytes of an argument: systems allow 32 768 and 131 072
@@ -116,7 +116,7 @@ def executable(chosen: str) -> str:
         )
     if found is None:
         raise StopError(
-            f"The program brushsvg was not found. Install it with:  {INSTALL}\n"
+            f"The program brushsvg was not found. In the folder of its source, type:  {INSTALL}\n"
             "If it is installed already, choose its file under Program."
         )
     return found
@@ -221,7 +221,9 @@ class Run:
         # If there is no message, the program's Python failed before brushsvg could print one.
         if not any(notice or line.startswith("brushsvg: ") for line, notice in notices):
             reason = f": {lines[-1]}" if lines else f" ({status})"
-            raise StopError(f"{self.program} does not run{reason}\nInstall it anew:  {INSTALL} --force")
+            raise StopError(
+                f"{self.program} does not run{reason}\nIn the folder of its source, type:  make clean && {INSTALL}"
+            )
         raise StopError("\n".join(["brushsvg refuses:", *lines]))
 
     def _in_words(self, notice: dict) -> str:
@@ -268,7 +270,7 @@ class Run:
             needed = ".".join(map(str, NEEDED))
             raise StopError(
                 f"{found} is too old: this extension needs {needed}. "
-                f"Install it with:  {INSTALL.replace('install', 'upgrade')}"
+                f"In the folder of its source, type:  git pull && {INSTALL}"
             )
 
 

@@ -9,6 +9,7 @@ import pytest
 from command import COMMAND, SOUND
 from plugin import Plugin, sentence
 
+INSTALL = "make demo && .venv/bin/brushsvg setup inkscape"
 SCRIPTS = ["save", "preview", "check", "strokes", "chart"]
 
 
@@ -22,7 +23,7 @@ def drawing(tmp_path):
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_a_missing_program_is_reported_with_the_install_command(tmp_path, drawing, script):
     reported = sentence(Plugin(tmp_path, command=None).script(script, drawing))
-    assert reported.splitlines()[0].endswith(":  pipx install brushsvg")
+    assert reported.splitlines()[0].endswith(f":  {INSTALL}")
 
 
 def programs(tmp_path, text):
@@ -67,7 +68,7 @@ def test_the_program_is_found_in_usual_folders_without_path_variable(tmp_path, d
     alone = Plugin(tmp_path, command=None)
     alone.env.pop("PATH")
     alone.env |= {} if path is None else {"PATH": path}
-    assert "pipx install brushsvg" in sentence(alone.script("save", drawing))
+    assert INSTALL in sentence(alone.script("save", drawing))
     (tmp_path / ".local" / "bin").mkdir(parents=True)
     (tmp_path / ".local" / "bin" / "brushsvg").symlink_to(COMMAND)
     assert alone.script("save", drawing).stdout.endswith(b"M2\n")
@@ -99,7 +100,7 @@ def test_a_sandbox_is_reported_with_a_workaround(tmp_path, drawing, variable, na
     alone = Plugin(tmp_path, command=None)
     alone.env[variable] = "org.inkscape.Inkscape"
     reported = sentence(alone.script("save", drawing))
-    assert name in reported and "brushsvg convert" in reported and "pipx" not in reported
+    assert name in reported and "brushsvg convert" in reported and INSTALL not in reported
 
 
 def test_the_settings_show_which_program_is_used(plugin, tmp_path, drawing):
@@ -107,7 +108,7 @@ def test_the_settings_show_which_program_is_used(plugin, tmp_path, drawing):
     assert str(plugin.folder / "programs" / "brushsvg") in reported and "brushsvg 0." in reported
     (tmp_path / "none").mkdir()
     reported = Plugin(tmp_path / "none", command=None).script("settings", drawing).stderr.decode()
-    assert "pipx install brushsvg" in reported
+    assert INSTALL in reported
 
 
 @pytest.mark.parametrize("typed", [[COMMAND], [sys.executable, "-m", "brushsvg"]])
