@@ -48,6 +48,10 @@ REPLACEMENTS = (
         r"\1def \2(self, depth_mm: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]: ...",
     ),
 )
+SHORTER = (
+    (r" +def __(getstate|setstate|repr)__\(.*\n", ""),  # every class has them
+    (r':(\n +""")\n +(.+)\n +"""', r':\1\2"""'),
+)
 
 
 def stub_files() -> dict[str, str]:
@@ -63,9 +67,12 @@ def stub_files() -> dict[str, str]:
             text = re.sub(said, replacement, text)
         if "Notice" in text:
             text = text.replace("import typing\n", "import typing\nfrom ..errors import Notice\n", 1)
-        format_it = [sys.executable, "-m", "ruff", "format", "--stdin-filename", name, "-"]
+        format_it = [sys.executable, "-m", "ruff", "format", "--line-length=120", "--stdin-filename", name, "-"]
         done = subprocess.run(format_it, input=text, capture_output=True, text=True, check=True, cwd=PACKAGE)
-        made[name] = done.stdout
+        text = done.stdout
+        for said, replacement in SHORTER:
+            text = re.sub(said, replacement, text)
+        made[name] = text
     return made
 
 

@@ -9,28 +9,13 @@ import numpy
 import numpy.typing
 import typing
 
-__all__: list[str] = [
-    "alpha_after",
-    "drag_arc",
-    "drag_straight",
-    "exponent",
-    "follow",
-    "tip_direction",
-]
+__all__: list[str] = ["alpha_after", "drag_arc", "drag_straight", "exponent", "follow", "tip_direction"]
 
-def alpha_after(
-    alpha0_rad: numpy.typing.ArrayLike, exponent: numpy.typing.ArrayLike
-) -> typing.Any:
-    """
-    Return alpha [rad] when the integral of ds / r is `exponent`, article (7).
-    """
+def alpha_after(alpha0_rad: numpy.typing.ArrayLike, exponent: numpy.typing.ArrayLike) -> typing.Any:
+    """Return alpha [rad] when the integral of ds / r is `exponent`, article (7)."""
 
-def drag_arc(
-    psi0_rad: float, curvature_per_mm: float, lag_mm: float, length_mm: float
-) -> float:
-    """
-    Return psi [rad] of a taut brush after an arc of the TCP at constant lag.
-    """
+def drag_arc(psi0_rad: float, curvature_per_mm: float, lag_mm: float, length_mm: float) -> float:
+    """Return psi [rad] of a taut brush after an arc of the TCP at constant lag."""
 
 def drag_straight(
     contact_mm: tuple[float, float],
@@ -79,6 +64,4 @@ def tip_direction(
     lag_mm: numpy.typing.ArrayLike,
     tip_gap_mm: numpy.typing.ArrayLike,
 ) -> typing.Any:
-    """
-    Return beta [rad] by article (11) and (12).
-    """
+    """Return beta [rad] by article (11) and (12)."""
