@@ -35,10 +35,7 @@ def document(data: str | bytes, format_: str, version: int = 1) -> dict:
 
 
 def _once(pairs: list[tuple[str, object]]) -> dict:
-    """Return an object; raise Error for a key that appears twice.
-
-    One of the two values would be lost.
-    """
+    """Return an object; raise Error for a key that appears twice. One of the two values would be lost."""
     found = dict(pairs)
     if len(found) < len(pairs):
         names = [name for name, _ in pairs]

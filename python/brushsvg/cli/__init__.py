@@ -60,10 +60,7 @@ class _Interrupts:
 
 
 def _run_with_streams(argv: list[str] | None, interrupts: _Interrupts) -> int:
-    """Run the command with any terminal encoding.
-
-    The reader of the output may stop reading at any time.
-    """
+    """Run the command with any terminal encoding. The reader of the output may stop reading at any time."""
     from ..errors import Notice
     from .console import discard_output, say_notice
 

@@ -205,10 +205,7 @@ def _correct_pass(a_pass, correction: Correction, brush):
 
 
 def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:
-    """Raise Error where the brush moves differently than on the painted sheet.
-
-    It may be displaced, deeper or higher.
-    """
+    """Raise Error where the brush moves further to the side, higher or lower than on the painted sheet."""
     difference_mm = np.array(way_of(a_pass)) - known_mm
     displacement_mm, deeper_mm = np.hypot(*difference_mm.T[:2]).max(), np.abs(difference_mm[:, 2]).max()
     if max(displacement_mm, deeper_mm) > SAME_PATH_MM:

@@ -87,10 +87,7 @@ def _end_and_direction(way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _overshoot_mm(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target, others) -> float | None:
-    """Return how far along a ray the paint ends beyond the target's edge [mm].
-
-    Returns None where that is unknown.
-    """
+    """Return how far along a ray the paint ends beyond the target's edge [mm]. Returns None where that is unknown."""
     end, ahead = ray
     if not ahead.any():  # a dab has no direction
         return None
@@ -111,10 +108,7 @@ def _overshoot_mm(found: Comparison, ray: tuple[np.ndarray, np.ndarray], target,
 
 
 def _find_fall(share: np.ndarray, t: np.ndarray) -> float | None:
-    """Return the place nearest to 0 at which a profile falls below EDGE_LEVEL.
-
-    Returns None where it never does. t: (n,) places of the profile [mm].
-    """
+    """Return the place nearest to 0 of t (n,) [mm] where a profile falls below EDGE_LEVEL, or None."""
     falls = np.flatnonzero((share[:-1] >= EDGE_LEVEL) & (share[1:] < EDGE_LEVEL))
     if not len(falls):
         return None

@@ -82,10 +82,7 @@ def job_page(plan, title: str = "") -> JobPage:
 
 
 def _marker_places(page, side: float) -> list[tuple[int, tuple[float, float]]]:
-    """Return the numbers and the upper left corners [mm] of the markers.
-
-    Markers are at the corners, clockwise from the upper left, and in the middle of each long edge.
-    """
+    """Return markers and upper left corners [mm]: at the corners, clockwise, and amid the long edges."""
     left, right, top, bottom = EDGE_MM, page[0] - EDGE_MM - side, page[1] - EDGE_MM, EDGE_MM + side
     across, up = (page[0] - side) / 2, (page[1] + side) / 2
     places = [(0, (left, top)), (1, (right, top)), (2, (right, bottom)), (3, (left, bottom))]
@@ -104,10 +101,7 @@ def _place_bar(page, side: float) -> Bar:
 
 
 def _tick_boxes(sheet, frame: float):
-    """Yield boxes of lines that end at the sheet's corners.
-
-    The lower left two lines meet at the robot's origin.
-    """
+    """Yield boxes of lines that end at the sheet's corners; the lower left two meet at the origin."""
     half = TICK_WIDTH_MM / 2
     for x, out_x in ((frame, -1), (frame + sheet[0], 1)):
         for y, out_y in ((frame, -1), (frame + sheet[1], 1)):

@@ -143,10 +143,7 @@ def _next_correction(row: Compared, found: Comparison, way_mm, before: Correctio
 
 
 def _next_width_mm(row: Compared, before_mm: float) -> float:
-    """Return the new `wider_mm` of a stroke.
-
-    The correction removes the part of the excess width that is larger than edges may be misread.
-    """
+    """Return the new `wider_mm` of a stroke, for the excess width beyond what edges may be misread by."""
     off = row.placed.wider_mm
     if row.like < MIN_MARK_OVERLAP_FOR_WIDTH or abs(off) <= 2 * EDGE_READING_ERROR_MM:
         return before_mm

@@ -229,10 +229,7 @@ class _LocatedStroke:
 
 
 def _compare(strokes, painted, common, middle, canvas, name) -> Comparison:
-    """Compute the comparison.
-
-    All strokes have rows, but only strokes of the drawing count in the figures of the sheet.
-    """
+    """Compute the comparison; all strokes have rows, but only those of the drawing count for the sheet."""
     moved = [[common.moved(ring, middle) for ring in stroke.predicted] for stroke in strokes]
     is_painted = painted > EDGE_LEVEL
     located = []
@@ -331,10 +328,7 @@ def _subtract_displacement(row: Compared, done: Placed) -> Compared:
 
 
 def _find_things(astray: np.ndarray, canvas: Canvas) -> np.ndarray:
-    """Return a mask of the pieces of paint that are too large for stray paint.
-
-    Only paint outside of all marks is considered.
-    """
+    """Return a mask of pieces of paint outside of all marks that are too large for stray paint."""
     _, labels, stats, _ = cv2.connectedComponentsWithStats(np.uint8(astray), connectivity=8)
     large = stats[:, cv2.CC_STAT_AREA] > MIN_THING_AREA_MM2 * canvas.px_per_mm**2
     large[0] = False

@@ -93,10 +93,7 @@ def _canvas_from_picture(canvas, left: float, top: float, px_per_mm: float) -> n
 
 
 def _draw_numbers(image, marks: np.ndarray, places: list[np.ndarray]) -> None:
-    """Draw a ring around each place, with its number next to it.
-
-    Numbers are clear of paint and drawing.
-    """
+    """Draw a ring around each place, with its number next to it, clear of paint and drawing."""
     space = LabelSpace(marks, anchors=places, radius=RING_PX)
     height = LETTER_PX * NUMBER_SIZE
     for number, at in enumerate(places, 1):

@@ -173,20 +173,14 @@ def _group_copies(plan) -> list[list[str]]:
 
 
 def _path_from_start(poses_mm: np.ndarray) -> np.ndarray:
-    """Return places (n, 3) at equal lengths along a path.
-
-    x and y are relative to the beginning of the path.
-    """
+    """Return places (n, 3) at equal lengths along a path, with x and y relative to its beginning."""
     way = evenly(poses_mm, PATH_PLACES)
     way[:, :2] -= poses_mm[0, :2]
     return way
 
 
 def _measure_hysteresis(plan, places, axis: int) -> Approach:
-    """Return the hysteresis of an axis.
-
-    A stroke is approached from the end of the stroke before it.
-    """
+    """Return the hysteresis of an axis; strokes are approached from the end of the stroke before."""
     ways: dict[bool, list[float]] = {True: [], False: []}
     for before, a_pass in zip(plan.passes[:-1], plan.passes[1:], strict=True):
         way = a_pass.poses_mm[0][axis] - before.poses_mm[-1][axis]
@@ -204,10 +198,7 @@ def _measure_hysteresis(plan, places, axis: int) -> Approach:
 
 
 def _chi_square_quantile(freedom: int, deviate: float) -> float:
-    """Return the chi-square quantile at a normal deviate.
-
-    The approximation is that of Wilson and Hilferty.
-    """
+    """Return the chi-square quantile at a normal deviate, as Wilson and Hilferty approximate it."""
     part = 2.0 / (9.0 * freedom)
     return freedom * max(1.0 - part + deviate * math.sqrt(part), 0.05) ** 3
 

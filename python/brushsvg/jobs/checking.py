@@ -326,10 +326,7 @@ def _merge_style_differences(differences: list[Notice]) -> list[Notice]:
 def _compare_with_rewritten(
     program: _OwnProgram, simulated, work: Work | None, speeds, z_offset_mm: float
 ) -> tuple[object, list[Notice]]:
-    """Write the plan that was read as a program again, and compare both programs.
-
-    Returns the program that brushsvg would write, and notices on where the given program differs.
-    """
+    """Write the plan that was read anew; return that program, and notices on where the given one differs."""
     header, cell, brush = program.header, program.cell, program.brush
     header_notes = against_regenerated.HeaderNotes(*_make_expected_header(header, work))
     rewritten = against_regenerated.regenerate_program(
@@ -374,10 +371,7 @@ def _make_expected_header(header, work: Work | None) -> tuple[str, tuple[str, ..
 
 
 def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) -> Check:
-    """Check a program that other software wrote for a pen.
-
-    Finds what a brush would paint with it, and which limits it breaks.
-    """
+    """Check a pen's program by other software: what a brush would paint with it, and which limits it breaks."""
     if chosen.input is not None:
         sentence = "brushsvg did not write this program and does not know its drawing: check it without a drawing"
         raise Error(sentence, code="nothing-to-compare")
@@ -396,10 +390,7 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
 
 
 def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Check:
-    """Check a program that runs before the first stroke.
-
-    Such a program paints no drawing, and its header says all that it does.
-    """
+    """Check a program that runs before the first stroke; its header says all that it does."""
     header, read, text = program.header, program.read, program.text
     cell, brush = program.cell, program.brush
     with name_file_in_errors(program.path):
@@ -456,10 +447,7 @@ def _is_corrected_plan(source) -> bool:
 
 
 def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Work:
-    """Prepare the drawing or plan of a program as the header of the program says.
-
-    Notices on parts that are left out or painted differently are repeated, because this is the last check.
-    """
+    """Prepare a program's drawing or plan as its header says, and repeat notices on what is left out."""
     header, source = program.header, chosen.input
     if header.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):
         with name_file_in_errors(program.path):

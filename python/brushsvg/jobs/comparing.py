@@ -291,10 +291,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
 
 
 def _find_correctable_machine(faults: Faults, middle_mm, cell: Cell, axes) -> tuple[Machine | None, dict[str, str]]:
-    """Return the machine for the next cell, without numbers that the cell refuses.
-
-    Also returns, by key, why a number is left out.
-    """
+    """Return the next cell's machine without numbers that the cell refuses, and by key why they are left out."""
     left_out = not_undone(cell)
     if print_scale := _estimate_print_scale(faults):
         left_out["scale"] = f"the page was probably printed at {100 * print_scale:.1f} %"

@@ -291,10 +291,7 @@ def default_suffix(cell: Cell) -> str:
 
 
 def _raise_first_problem(problems: list[Notice], notices: tuple[Notice, ...]) -> None:
-    """Raise Error for the first problem, with the other problems as notes.
-
-    notices: the warnings that the error carries.
-    """
+    """Raise Error for the first problem, with the others as notes, and with the warnings `notices`."""
     if problems:
         problem, *others = problems
         error = Error(problem.sentence, problem.where, code=problem.code, advice=problem.advice)

@@ -55,10 +55,7 @@ def trace_mark_outlines(
 
 
 def _trace_each_pass(marks, brush, stage):
-    """Trace the outlines of each pass alone, on all processors.
-
-    A picture needs no outlines of all paint together.
-    """
+    """Trace each pass alone, on all processors; a picture needs no outlines of all paint together."""
     from concurrent.futures import ThreadPoolExecutor
 
     def trace_alone(trace):

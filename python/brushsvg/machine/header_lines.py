@@ -76,10 +76,7 @@ def first_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[st
 
 
 def _brush_line(brush: str, count: int) -> str:
-    """Return the line of a brush and a number of strokes.
-
-    Posts cut long lines at their end. The name is cut first, because check needs the number.
-    """
+    """Return the line of brush and stroke count; only the name is cut, because check needs the number."""
     return f"brush: {plain_text(brush, NAMED)}, {count} strokes"
 
 

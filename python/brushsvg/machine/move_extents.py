@@ -134,10 +134,7 @@ def find_place_inside(moves: Ways, low, high) -> np.ndarray | None:
 
 
 def _angles_between_planes(moves: Ways, k: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return one angle [rad] in each part of a circle between planes.
-
-    The planes are those of a box's six sides.
-    """
+    """Return one angle [rad] in each part of a circle between planes. The planes are those of a box's six sides."""
     amplitude = np.hypot(moves.spoke[k], moves.across[k])
     phase = np.arctan2(moves.across[k], moves.spoke[k])
     crossing_angles = []

@@ -44,10 +44,7 @@ def pen_visits(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int) -> t
 
 
 def _plotter_pen_visits(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int) -> tuple[tuple[Station, ...], ...]:
-    """Return for each load the pen that a plotter takes before it.
-
-    The first pen is included. Strokes without a colour are drawn with pen 1. Raises Error for a colour that no pen has.
-    """
+    """Return the plotter's pen for each load, 1 without a colour; raise Error for a colour without a pen."""
     colours = [colour.lower() for colour in cell.pen.colours]
     visits_of_loads, last_colour = [()] * (first_stroke - 1), ""
     for a_pass in passes[first_stroke - 1 :]:

@@ -122,10 +122,7 @@ def report_missing_air_run(cell: Cell, sheet_mm) -> list[Notice]:
 
 
 def _air_run_rise_mm(cell: Cell, sheet_mm) -> float:
-    """Return how far [mm] the first air run is above the safe height.
-
-    Returns 0 if the workspace has no room above the safe height.
-    """
+    """Return how far [mm] the first air run is above the safe height, 0 if the workspace has no room."""
     rises_mm = (rise_mm for rise_mm in AIR_RUN_RISES_MM if not _find_limits_of_air_run(rise_mm, cell, sheet_mm))
     return next(rises_mm, 0.0)
 
@@ -151,10 +148,7 @@ def _inner_corners(sheet_mm) -> tuple[tuple[float, float], ...]:
 
 
 def _touch_moves(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | Wait, ...]:
-    """Make the moves down to the height at which the tip should just touch.
-
-    The moves stop twice, so that a person who sees the brush bend can end the program.
-    """
+    """Make the moves down to the touch; they stop twice, so that a person can end the program."""
     press_mm_s = min(cell.speeds.press_mm_s, touching_mm_s(brush, cell))
     touching, down = (commanded_mm(point_above(place, z), cell.machine) for z in (0.0, clearance_mm))
     return (
@@ -245,10 +239,7 @@ def slow_below_mm(highest_mm: float, cell: Cell) -> float:
 
 
 def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -> tuple[Move, ...]:
-    """Make the moves of a stroke at one height.
-
-    ends: the two ends (x, y) of the stroke [mm].
-    """
+    """Make the moves of a stroke between two ends (x, y) [mm] at one height."""
     speed_mm_s = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
     path = in_lines_mm(np.vstack([point_above(end, height_mm) for end in ends]), cell.machine)
@@ -302,10 +293,7 @@ def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np
 
 
 def _stroke_starts(count: int, sheet_mm) -> list[tuple[float, float]]:
-    """Return the start (x, y) [mm] of each stroke.
-
-    Strokes go down from the sheet's top, then continue in the next column.
-    """
+    """Return each stroke's start (x, y) [mm], down from the sheet's top, then in the next column."""
     width, height = sheet_mm
     rows = int((height - 2 * LANE_SPACING_MM) // LANE_SPACING_MM) + 1
     pitch = TEST_STROKE_MM * LONG_STROKE_RATIO + LANE_SPACING_MM
@@ -320,10 +308,7 @@ def _stroke_starts(count: int, sheet_mm) -> list[tuple[float, float]]:
 def _checked_program(
     sections, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0, rise_more_mm: float = 0.0
 ) -> Program:
-    """Make a program and raise Error if it leaves the workspace or the arm's reach.
-
-    rise_more_mm: how far above the safe height the tool rises before anything else.
-    """
+    """Make a program that rises rise_more_mm first; raise Error beyond workspace or arm's reach."""
     frame = robot_from_paper(cell, z_offset_mm)
     raised_cell = replace(cell, heights=replace(cell.heights, safe_mm=cell.heights.safe_mm + rise_more_mm))
     rises_mm = (rise_height_mm(raised_cell, sheet_mm, of) for of in (np.eye(4), frame))

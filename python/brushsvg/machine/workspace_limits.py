@@ -361,10 +361,7 @@ def _check_keep_out(moves: Ways, cell: Cell, cut_mm: float) -> Iterator[Notice]:
 
 
 def _outside_text(value: float, low: float, high: float) -> str:
-    """Format a length outside of a range.
-
-    It has enough decimals to show that it is outside.
-    """
+    """Format a length outside of a range. It has enough decimals to show that it is outside."""
     for decimals in range(1, 7):
         if not low <= float(f"{value:.{decimals}f}") <= high:
             break

@@ -157,10 +157,7 @@ def _estimate_paper_light(light: np.ndarray, is_printed: np.ndarray, px_per_mm: 
 
 
 def _is_paint_lighter(coarse: np.ndarray, is_covered: np.ndarray) -> bool:
-    """Return whether paint is lighter than paper.
-
-    Pixels that are lighter than their surroundings then outnumber darker ones, at one pixel per mm.
-    """
+    """Return whether paint is lighter than paper: more pixels are lighter than around, at 1 px per mm."""
     levels = np.uint8(np.round(255 * np.sqrt(np.clip(coarse, 0, 1))))  # a median over so many pixels needs 8 bits
     surroundings = np.dstack([cv2.medianBlur(channel, MAX_PAINT_WIDTH_MM) for channel in cv2.split(levels)])
     ratio = (levels + 1.0) / (surroundings + 1.0)
@@ -390,10 +387,7 @@ def _largest_area_elsewhere(areas_in_boxes, areas, own_box, is_kept) -> np.ndarr
 
 
 def _refuse_displaced(areas_in_boxes, reaching: np.ndarray, stroke_boxes: list[StrokeBox]) -> None:
-    """Refuse a sheet on which too many marks touch or are displaced.
-
-    reaching: which parts are in the boxes of several strokes.
-    """
+    """Refuse a sheet with too many marks that touch or are displaced; reaching: parts in several boxes."""
     touching = np.unique(np.argsort(areas_in_boxes[reaching, 1:], axis=1)[:, -2:])
     if len(touching) > MAX_TOUCHING_SHARE * len(stroke_boxes):
         raise Error(
@@ -407,10 +401,7 @@ def _refuse_displaced(areas_in_boxes, reaching: np.ndarray, stroke_boxes: list[S
 
 
 def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox], px_per_mm: float) -> None:
-    """Refuse a part that covers the boxes of many strokes.
-
-    Then the part is a shadow or an object on the page. several: which parts are in the boxes of several strokes.
-    """
+    """Refuse a shadow or object that covers many strokes' boxes; several: parts in several boxes."""
     widest = max(
         (stroke_box.box_mm[2] - stroke_box.box_mm[0]) * (stroke_box.box_mm[3] - stroke_box.box_mm[1])
         for stroke_box in stroke_boxes
@@ -431,10 +422,7 @@ def _refuse_covered(areas_in_boxes, areas, several, stroke_boxes: list[StrokeBox
 
 
 def _refuse_elsewhere(painted: np.ndarray, flat: Flat, stroke_boxes: list[StrokeBox]) -> None:
-    """Refuse paint outside the strokes' boxes.
-
-    painted: (rows, columns), the pixels that count as paint.
-    """
+    """Refuse paint outside the strokes' boxes; painted: (rows, columns), pixels that count as paint."""
     is_in_box = np.zeros(painted.shape, bool)
     for stroke_box in stroke_boxes:
         c0, r0, c1, r1 = _box_pixels(flat, stroke_box.box_mm, 0.5)
@@ -512,10 +500,7 @@ def _longest_side(rings: list[np.ndarray]) -> float:
 
 
 def _smooth_ring(ring: np.ndarray) -> np.ndarray:
-    """Resample a ring evenly and smooth it.
-
-    Points are OUTLINE_STEP_MM apart, each averaged over OUTLINE_MEAN_MM of the outline.
-    """
+    """Resample a ring every OUTLINE_STEP_MM, each point averaged over OUTLINE_MEAN_MM of the outline."""
     closed = np.vstack([ring, ring[:1]])
     at = lengths(closed)
     oversampling = 4

@@ -207,10 +207,7 @@ def _find_chart_markers(pixels: np.ndarray, light: np.ndarray, printed: Printed)
 
 
 def _refuse_cropped(found: dict[int, np.ndarray], printed: Printed, shape) -> None:
-    """Refuse a page if at least half of the missing markers are outside the picture.
-
-    Their places are estimated from the corners of the markers that were found.
-    """
+    """Refuse a page if at least half of the missing markers are outside the picture, by the found corners."""
     others = [c.mean(axis=0) for number, c in printed.corners_mm.items() if number not in found]
     if not others:
         return
@@ -252,10 +249,7 @@ def _refuse_cut_off(corners: dict[int, np.ndarray], printed: Printed, shape, vie
 
 
 def _refuse_poor_picture(light: np.ndarray, count: int) -> None:
-    """Refuse a picture that is too poor for its markers to be found.
-
-    The reasons are grain, darkness, glare and blur.
-    """
+    """Refuse a picture whose markers cannot be found for grain, darkness, glare or blur."""
     markers = f"{f'only {count}' if count else 'no'} marker{'s' * (count > 1)} can be read"
     refuse_grainy(light, markers)
     if not count:
@@ -331,10 +325,7 @@ def _locate_edge(light, a, b, module_px: float) -> tuple[np.ndarray, float, np.n
 
 
 def _fit_line(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Fit a line to points without outliers.
-
-    Returns its normal and its distance from the origin.
-    """
+    """Fit a line to points without outliers. Returns its normal and its distance from the origin."""
     inliers = points
     for _ in range(3):
         middle = inliers.mean(axis=0)
@@ -350,10 +341,7 @@ def _intersect_lines(line, other_line) -> np.ndarray:
 
 
 def _fit_view(corners: dict[int, np.ndarray], printed: Printed, shape, shift_px=(0.0, 0.0)) -> View:
-    """Fit the view to all corners that are not NaN, by least squares.
-
-    shift_px: displacement of the middle of the lens from the middle of the picture.
-    """
+    """Fit the view to all corners that are not NaN; shift_px: lens middle relative to the picture's middle."""
     ids = tuple(number for number in sorted(corners) if np.isfinite(corners[number]).all())
     marker = np.repeat(sorted(corners), 4)
     mm = np.vstack([printed.corners_mm[i] for i in sorted(corners)])

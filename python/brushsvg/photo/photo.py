@@ -141,10 +141,7 @@ def _decode(data: bytes) -> tuple[np.ndarray | None, str]:
 
 
 def _composite_on_white(pixels: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """Place a transparent picture on white.
-
-    whole: the pixels of the file with their opacity (rows, columns, 4), or None.
-    """
+    """Place a transparent picture on white; whole: pixels with opacity (rows, columns, 4), or None."""
     if whole is None or whole.shape != (*pixels.shape[:2], 4):
         return pixels
     full = np.iinfo(whole.dtype).max

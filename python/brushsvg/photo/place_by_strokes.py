@@ -84,10 +84,7 @@ def find_scan_view(
 
 
 def _find_paint_mask(coarse: np.ndarray) -> np.ndarray:
-    """Return the mask (rows, columns) of the marks.
-
-    Parts at the picture's edge, such as lid and table, are left out.
-    """
+    """Return the mask (rows, columns) of marks, without parts at the edge such as lid and table."""
     rows, columns = coarse.shape[:2]
     sheet = (columns / COARSE_PX_PER_MM, rows / COARSE_PX_PER_MM)
     flat = Flat(coarse, COARSE_PX_PER_MM, sheet)
@@ -133,10 +130,7 @@ def _name_resolution(dpi: float) -> str:
 
 
 def _match_turn_and_shift(paint: np.ndarray, paths_mm: list[np.ndarray]) -> tuple[float, complex]:
-    """Return a rough turn [rad] and shift [mm, y down] of the sheet.
-
-    The place in the scan is (x - iy) e^(i turn) + shift.
-    """
+    """Return the rough turn [rad] and shift [mm]; in the scan: (x - iy) e^(i turn) + shift, y down."""
     down = [path[:, 0] - 1j * path[:, 1] for path in paths_mm]
     spectrum, shape = paint_spectrum(paint, down)
     best = {}
@@ -200,10 +194,7 @@ def match_paths(spectrum: np.ndarray, shape: tuple[int, int], paths: list[np.nda
 def _refine_by_boxes(
     paint: np.ndarray, sheet_mm, stroke_boxes: list[StrokeBox], turn: float, shift: complex, dpi: float
 ) -> tuple[complex, complex]:
-    """Refine e^(i turn) and shift by the strokes' boxes.
-
-    The middles of the marks are matched to those of the boxes by least squares.
-    """
+    """Refine e^(i turn) and shift: the marks' middles fit those of the boxes by least squares."""
     px_per_mm = COARSE_PX_PER_MM
     columns, rows = (math.ceil(side * px_per_mm) for side in sheet_mm)
     boxes = np.array([stroke_box.box_mm for stroke_box in stroke_boxes])

@@ -75,10 +75,7 @@ def pressed_deeper(
 
 
 def _are_shares_similar(before: np.ndarray, shares: np.ndarray) -> bool:
-    """Return whether two rounds leave almost the same shares of the width.
-
-    Shares at the dips may differ, because the dips move along by little.
-    """
+    """Return whether rounds leave similar shares of the width; dips move along by little and may differ."""
     off = np.interp(shares[:, 0], *before.T) / shares[:, 1] - 1
     return float(np.median(np.abs(off))) < MAX_SHARE_CHANGE
 
@@ -91,10 +88,7 @@ def _find_greatest_depth(brush) -> tuple[float, float]:
 
 
 def _measure_width_shares(trace, brush) -> np.ndarray:
-    """Return rows of a place and the share of the width that is left there.
-
-    The place is that of the widest section, as a share of its way, ascending.
-    """
+    """Return rows of place (widest section's share of its way, ascending) and share of width left there."""
     down = np.flatnonzero(np.asarray(trace.depth_mm) >= 0)
     if not len(down):
         return np.array([[0.0, 1.0]])
@@ -155,10 +149,7 @@ def _shorten_stroke(stroke, first_mm: float, last_mm: float):
 
 
 def _widen_ring(ring: np.ndarray, stroke, shares: np.ndarray) -> np.ndarray:
-    """Move a ring out across the middle line by as much as paint will take away.
-
-    Along the middle line it stays as it was.
-    """
+    """Move a ring out across, not along, the middle line by as much as paint will take away."""
     closed = np.vstack([ring, ring[:1]])
     at = lengths(closed)
     at = np.union1d(at, np.arange(0.0, at[-1], STEP_MM))[:-1]

@@ -83,10 +83,7 @@ def best_letter_size(strokes, brush, made) -> SizeAdvice:
 
 
 def _choose_factor(overlaps: dict[float, float]) -> float:
-    """Return the factor nearest to 1 that is as good as the best.
-
-    Returns 1 where the best is not noticeably better.
-    """
+    """Return the factor nearest to 1 that is as good as the best, 1 if the best is hardly better."""
     most = max(overlaps.values())
     if most <= overlaps[1.0] + MIN_OVERLAP_GAIN:
         return 1.0

@@ -151,10 +151,7 @@ def _clip_line(subpath: SubPath, region: shapely.Geometry) -> list[SubPath]:
 
 
 def _cut_subpath(subpath: SubPath, begin: float, end: float) -> SubPath:
-    """Return the part between two places, with its share of the widths.
-
-    begin, end: a place is the number of a cubic plus the parameter within this cubic.
-    """
+    """Return the part between two places (cubic's number plus parameter), with its share of the widths."""
     count = len(subpath.cubics)
     ends = [(min(int(place), count - 1), place - min(int(place), count - 1)) for place in (begin, end)]
     cubics = between(subpath.cubics, *ends)

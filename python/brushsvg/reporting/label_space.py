@@ -91,10 +91,7 @@ class LabelSpace:
         return PlacedLabel(left, top, right - left, bottom - top, choice, leader, cost == 0, on_labels > 0)
 
     def _candidates(self, anchor, size, towards, reach: float) -> np.ndarray:
-        """Return boxes (n, 4) around the anchor, in rings of growing distance.
-
-        The boxes are moved into the picture.
-        """
+        """Return boxes (n, 4) around the anchor, in rings of growing distance. The boxes are moved into the picture."""
         low, high = self.bounds[:2], self.bounds[2:]
         farthest = min(reach, float(np.hypot(*(high - low))))
         nearest = self.radius + LABEL_GAP * size[1]

@@ -55,10 +55,7 @@ def _read_page_part(name: str) -> str:
 
 
 def _encode_rows(moves: Timeline, brush) -> dict[str, list[int]]:
-    """Return the columns of the timeline as integer steps from row to row.
-
-    The brush's columns only have the rows on the paper.
-    """
+    """Return timeline columns as integer steps from row to row; the brush's only on the paper."""
     touching = ~np.isnan(moves.depth_mm)
     gap_mm = [brush.tip_gap(depth) for depth in moves.depth_mm[touching].tolist()]
     columns = {
@@ -82,10 +79,7 @@ def _encode_steps(values) -> list[int]:
 
 
 def _encode_rings(rings) -> list[list[int]]:
-    """Encode each ring as x, y, x, y, ... in 0.01 mm.
-
-    The first point is followed by the steps from point to point.
-    """
+    """Encode each ring as x, y, x, y, ... in 0.01 mm. The first point is followed by the steps from point to point."""
     encoded = []
     for ring in rings:
         points = np.round(np.asarray(ring) * COARSE_PER_UNIT).astype(np.int64)

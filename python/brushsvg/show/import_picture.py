@@ -146,10 +146,7 @@ def _draw_direction(canvas: _Canvas, line: np.ndarray, ink: str) -> None:
 
 
 def _draw_numbers(canvas: _Canvas, lines: list[np.ndarray], inks: list[str], runs: list[Run], bottom: float) -> None:
-    """Write each stroke's number near its start, where there is room.
-
-    The place behind the start is preferred. Of many dashes, only some are numbered.
-    """
+    """Write strokes' numbers near their starts, best behind, where there is room; few of many dashes."""
     space = LabelSpace(mark_cells(lines, (canvas.width, bottom)), LABEL_CELL_PX, (0, 0, canvas.width, bottom))
     for run in runs:
         last_start = None

@@ -108,10 +108,7 @@ def _is_stroke(section: Section) -> bool:
 
 
 def _timeline_rows(time_s, tcp_mm, brush=np.nan) -> np.ndarray:
-    """Return rows (n, 9) of the timeline.
-
-    Columns: time from the step's start, TCP, contact, heading, depth, pull.
-    """
+    """Return rows (n, 9): time from the step's start, TCP, contact, heading, depth, pull."""
     table = np.full((len(time_s), 9), np.nan)
     table[:, 0], table[:, 1:4], table[:, 4:] = time_s, tcp_mm, brush
     return table
@@ -130,10 +127,7 @@ def _air_rows(move: Move, start_mm: np.ndarray | None, program: Program) -> np.n
 
 
 def _brush_columns(trace, chosen: np.ndarray) -> np.ndarray:
-    """Return the brush's columns (n, 5) of the chosen rows of a trace.
-
-    Columns: contact, heading, depth, pull.
-    """
+    """Return contact, heading, depth and pull (n, 5) in the chosen rows of a trace."""
     columns = (np.asarray(trace.contact_mm), trace.heading_rad, trace.depth_mm, trace.pull)
     table = np.column_stack([np.asarray(column)[chosen] for column in columns])
     table[table[:, 3] < 0] = np.nan  # lifted
@@ -141,10 +135,7 @@ def _brush_columns(trace, chosen: np.ndarray) -> np.ndarray:
 
 
 def _landing_rows(trace, landed: np.ndarray) -> np.ndarray:
-    """Return the rows in which the brush touches the paper.
-
-    In these rows the tool is at the first pose.
-    """
+    """Return the rows in which the brush touches the paper. In these rows the tool is at the first pose."""
     brush = _brush_columns(trace, np.asarray(trace.pose) <= 0)
     return _timeline_rows(np.full(len(brush), landed[0]), landed[1:4], brush)
 

@@ -79,10 +79,7 @@ class Sheet:
             window += share * np.asarray(colour, np.float32)
 
     def _texel_coverage(self, rings):
-        """Return the share of each texel inside the rings, and the window of texels.
-
-        Overlapping rings count by the even-odd rule. The window is (r0, r1, c0, c1).
-        """
+        """Return shares of texels inside the rings (even-odd), and the texels' window (r0, r1, c0, c1)."""
         rows, columns = self.shown.shape[:2]
         rings = [np.column_stack([r[:, 0], self.size_mm[1] - r[:, 1]]) * self.texels for r in map(np.asarray, rings)]
         points = np.vstack(rings)
@@ -262,10 +259,7 @@ def _light_on_sheet(camera, size_mm, at):
 
 
 def _sample_sheet(sheet, at):
-    """Interpolate the reflected light between texels.
-
-    Points off the sheet show a brown table.
-    """
+    """Interpolate the reflected light between texels. Points off the sheet show a brown table."""
     rows, columns = sheet.shown.shape[:2]
     c = at[..., 0] * sheet.texels - 0.5
     r = (sheet.size_mm[1] - at[..., 1]) * sheet.texels - 0.5

@@ -78,10 +78,7 @@ def cut_rings(rings: list[list[np.ndarray]], half: float) -> list[Line]:
 
 
 def _offset_shape(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
-    """Return the rings of a shape moved inward, without its hairs.
-
-    Outer rings are counter-clockwise, from the upper left.
-    """
+    """Return a shape's rings moved inward, without hairs; outer ones counter-clockwise from the upper left."""
     without_hairs = shape.buffer(-by_mm - hair_mm, quad_segs=_QUARTER_EDGES).buffer(
         1.01 * hair_mm, join_style="mitre", mitre_limit=10
     )
@@ -145,10 +142,7 @@ def _find_corners(ring: np.ndarray, least_rad: float) -> np.ndarray:
 
 
 def _merge_tips(ring: np.ndarray, wide_mm: float) -> np.ndarray:
-    """Merge corners that follow each other so closely that they are one tip.
-
-    Only the first corner of a tip is kept.
-    """
+    """Merge corners that follow each other so closely that they are one tip. Only the first corner of a tip is kept."""
     corners = _find_corners(ring, _MIN_CORNER_RAD)
     following = np.roll(corners, -1)
     steps = (following - corners) % len(ring)
@@ -176,10 +170,7 @@ def _find_straightest(ring: np.ndarray, half: float) -> int:
 
 
 def _begin_amid_longest(ring: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, list[int]]:
-    """Begin a ring in the middle of its longest stretch between corners.
-
-    Returns the ring and its corners.
-    """
+    """Begin a ring in the middle of its longest stretch between corners. Returns the ring and its corners."""
     ring, corners = np.roll(ring, -corners[0], axis=0), corners - corners[0]
     at = lengths(np.vstack([ring, ring[:1]]))
     ends = np.append(at[corners], at[-1])

@@ -78,19 +78,13 @@ def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
 
 
 def _without_slits(shape):
-    """Return a shape without the slits between the parts of its strokes.
-
-    Rings would run round the slits.
-    """
+    """Return a shape without the slits between the parts of its strokes. Rings would run round the slits."""
     closed = shape.buffer(_MAX_HALF_SLIT_MM, join_style="mitre").buffer(-_MAX_HALF_SLIT_MM, join_style="mitre")
     return closed if closed.geom_type == "Polygon" else shape
 
 
 def _find_shape_of_strokes(shapes, strokes: list) -> list[int]:
-    """Return for each stroke the shape that has most of its part.
-
-    Shapes may meet where strokes begin.
-    """
+    """Return for each stroke the shape that has most of its part. Shapes may meet where strokes begin."""
     if len(shapes) == 1:
         return [0] * len(strokes)
     tree, homes = shapely.STRtree(shapes), []
@@ -102,8 +96,5 @@ def _find_shape_of_strokes(shapes, strokes: list) -> list[int]:
 
 
 def _shape_key(stroke) -> tuple[str, int]:
-    """Return the element of a stroke, and which of its repeats it belongs to.
-
-    Strokes that share a shape have both in common.
-    """
+    """Return a stroke's element and repeat, which strokes of one shape have in common."""
     return stroke.origin.element, stroke.origin.repeat

@@ -150,10 +150,7 @@ class _Shape:
 
 
 def _collect_shapes(drawn: list, painted: list, passes: list, brush) -> list[_Shape]:
-    """Return the shapes of elements with filled strokes.
-
-    For a brush of one width, these are only the shapes that it fills in passes.
-    """
+    """Return the shapes of elements with filled strokes; for a brush of one width, those filled in passes."""
     strokes_of, paint, repeats = defaultdict(list), defaultdict(list), defaultdict(set)
     for stroke in drawn:
         if stroke.origin.repeat == 1 and stroke.target_mm:

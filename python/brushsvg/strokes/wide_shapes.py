@@ -89,10 +89,7 @@ def _is_visible_change(half: float, least: float, greatest: float) -> bool:
 
 
 def _without_slivers(strokes: list, least: float, brush) -> tuple[list, list[Notice]]:
-    """Return the strokes without those of tiny shapes, and notices about these.
-
-    A shape is tiny if it is less than half of the smallest mark of the brush.
-    """
+    """Return strokes without shapes below half the smallest mark, and notices about these."""
     dab_mm2 = np.pi * least**2
     areas = [_core.area(stroke.target_mm) if stroke.target_mm and dab_mm2 else np.inf for stroke in strokes]
     notices = [
@@ -123,10 +120,7 @@ def find_wide_lines(lines: list, brush) -> list[tuple[_core.Stroke, float]]:
 
 
 def _is_within_reach(half: float, greatest: float) -> bool:
-    """Return whether half a line's width is at most the brush's greatest.
-
-    A difference that one does not see is allowed.
-    """
+    """Return whether half a line's width is at most the brush's greatest, or unnoticeably more."""
     return half <= greatest + MAX_UNSEEN_MM
 
 
@@ -149,10 +143,7 @@ def _find_out_of_reach(stroke, least: float, greatest: float) -> tuple[str, floa
 
 
 def _find_wide_strokes(strokes: list, beyond: dict, greatest: float) -> list[int]:
-    """Return the numbers of strokes of shapes that are wider than the brush.
-
-    At least one stroke of the element is wider by _MIN_PASSES_RATIO.
-    """
+    """Return strokes of shapes with a stroke wider than the brush by _MIN_PASSES_RATIO."""
     wider = {
         k: out_of_reach[1]
         for k, out_of_reach in beyond.items()
@@ -163,10 +154,7 @@ def _find_wide_strokes(strokes: list, beyond: dict, greatest: float) -> list[int
 
 
 def _fill_in_passes(strokes: list, wider: list[int], brush) -> dict[int, tuple]:
-    """Return the passes of each stroke of a shape that is filled in passes.
-
-    Each value is the passes, their targets, and how they are painted, in words.
-    """
+    """Return (passes, targets, how they are painted, in words) of each stroke filled in passes."""
     if not wider:
         return {}
     from .fillings import find_wide_shapes  # with shapely, which is slow to load
@@ -207,10 +195,7 @@ def _choose_passes(shape, strokes: list, brush) -> list:
 
 
 def _mark_overlap(strokes: list, rings: list, brush) -> float:
-    """Return how much the marks of strokes overlap with a shape.
-
-    The strokes are compensated in closed form. The overlap is 0 where they are refused.
-    """
+    """Return how much closed-form marks of strokes overlap a shape, 0 where they are refused."""
     try:
         return trial_overlap(strokes, rings, brush)
     except Error:

@@ -91,10 +91,7 @@ def _match_passes_to_loads(passes, due) -> tuple[list[int | None], Problems]:
 
 
 def _is_same_name(written: str, name: str) -> bool:
-    """Return whether a name read from a program is this stroke name.
-
-    Programs cut long names and lose blanks at their end.
-    """
+    """Return whether a read name is this stroke's: programs cut long names and lose blanks at the end."""
     return written == name.rstrip(" ") or (written.endswith("...") and name.startswith(written[:-3]))
 
 
@@ -146,11 +143,7 @@ MAX_TILT_DEVIATION_DEG = 0.5
 
 
 def _check_tool_axes(a_pass, lines: np.ndarray, planned) -> Problems:
-    """Report where the brush is tilted differently than planned.
-
-    Directions are compared pose by pose. Where the numbers of poses differ, they are compared at equal shares of the
-    path length.
-    """
+    """Report tilts that differ from the plan, by pose, or by path share where pose counts differ."""
     if not len(a_pass.tool_axes) and axes_of(planned) is None:
         return []
     found, reference = (_tool_axes(each) for each in (a_pass, planned))
@@ -221,10 +214,7 @@ def _sample_arc(a_pass, arc) -> np.ndarray:
 
 
 def _poses_outside_arcs(a_pass) -> tuple[np.ndarray, dict[int, object]]:
-    """Return the poses (n, 3) that are not inside an arc, and the arcs.
-
-    The key of an arc is the index of its first pose among the returned ones.
-    """
+    """Return the poses (n, 3) outside arcs, and the arcs by their first pose's index among these."""
     poses = np.asarray(a_pass.poses_mm)
     inner = np.zeros(len(poses), dtype=bool)
     for arc in a_pass.arcs:
@@ -234,10 +224,7 @@ def _poses_outside_arcs(a_pass) -> tuple[np.ndarray, dict[int, object]]:
 
 
 def _with_arc_points(a_pass) -> tuple[np.ndarray, np.ndarray]:
-    """Return the poses with chord points added along circles.
-
-    Also returns, for each point, the index of the pose that it leads to.
-    """
+    """Return poses with chord points along circles, and the pose that each point leads to."""
     poses = np.asarray(a_pass.poses_mm)
     centres = {k: (*arc.centre_mm, arc.direction) for arc in a_pass.arcs for k in range(arc.first, arc.last)}
     if not centres:
@@ -314,10 +301,7 @@ def find_departure(found: np.ndarray, reference: np.ndarray, limit_mm: float) ->
 
 
 def _part_within_limit(point: list, begin: list, end: list, limit_mm: float) -> tuple[float, float] | None:
-    """Return the part of a move that is within the limit of a point, or None.
-
-    The part is given as shares of the move, from 0 to 1.
-    """
+    """Return the part of a move, as shares from 0 to 1, within the limit of a point, or None."""
     ax, ay, az = begin[0] - point[0], begin[1] - point[1], begin[2] - point[2]
     bx, by, bz = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
     square, along = bx * bx + by * by + bz * bz, ax * bx + ay * by + az * bz
@@ -371,10 +355,7 @@ BOX_SIZE = 64  # points or moves; a smaller number makes more boxes, a larger on
 
 
 def _max_distance_to_all_mm(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> tuple[float, int]:
-    """Return the largest distance [mm] by comparing every point with every move.
-
-    Also returns the index of the move that is nearest to the last point.
-    """
+    """Return the largest distance [mm] of points to any move, and the last point's nearest move."""
     nearest, at_last = np.full(len(points), np.inf), 0
     for first in range(0, len(starts), 4096):  # this number only limits the memory
         steps = ends[first : first + 4096] - starts[first : first + 4096]

@@ -160,10 +160,7 @@ def _first_differing_acts(found: list[Act], reference: list[Act], rules: _ActCom
 
 
 def _acts_by_servo_value(acts: list[Act]) -> dict[float, list[Act]]:
-    """Group the acts of a lift by the servo value that holds.
-
-    Each group includes the act that sets the next value. The key is None before the first value.
-    """
+    """Group a lift's acts by the held servo value, with the act that sets the next; None at first."""
     at: dict[float, list[Act]] = {}
     value = None
     for act in acts:
@@ -229,10 +226,7 @@ _HEADER_LINE = re.compile(r"\((?!stroke \d|paint: |border of )|set_tcp|paper =|l
 
 
 def _sort_header(acts: list[Act]) -> list[Act]:
-    """Return the acts with the header sorted by first words, without repetitions.
-
-    Declarations are kept even if they are repeated, because controllers refuse to load a repeated declaration.
-    """
+    """Return the acts with the header sorted without repeats, except declarations, which controllers refuse."""
     is_header = [bool(_HEADER_LINE.match(act.text)) for act in acts]
     first = next((k for k, is_line in enumerate(is_header) if is_line), len(acts))
     last = next((k for k in range(first, len(acts)) if not is_header[k]), len(acts))
@@ -374,10 +368,7 @@ class _ActComparison:
         return bool(0 <= along <= length and off <= self.place_tolerance_mm / 2)
 
     def _are_places_close(self, found: tuple, reference: tuple) -> bool:
-        """Return whether two places are close.
-
-        Coordinates that were never named (NaN) are equal.
-        """
+        """Return whether two places are close. Coordinates that were never named (NaN) are equal."""
         return len(found) == len(reference) and all(
             abs(x - y) <= self.place_tolerance_mm or (math.isnan(x) and math.isnan(y))
             for x, y in zip(found, reference, strict=True)
@@ -397,10 +388,7 @@ class _ActComparison:
         return (1e-4,)
 
     def _is_same_statement(self, found: str, reference: str) -> bool:
-        """Return whether two texts say the same.
-
-        Times and lengths of headers and the numbers of statements may differ by rounding.
-        """
+        """Return whether texts say the same; header times, lengths and numbers may differ by rounding."""
         if (about := _ABOUT_LINE.fullmatch(found)) and (found[:6] == reference[:6]):
             value, unit = _parse_about(about)
             least, most = self.length_mm if about[4] else self.time_s

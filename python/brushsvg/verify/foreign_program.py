@@ -90,10 +90,7 @@ def _unit_warnings(ways: list[Way]) -> tuple[Notice, ...]:
 
 
 def _check_workspace_limits(ways: list[Way], cell: Cell, sheet_mm) -> list[Notice]:
-    """Report each workspace limit that a line breaks, also in the air.
-
-    sheet_mm: size of the sheet, with the margin around it, where it is known.
-    """
+    """Report each limit that a line breaks, also in the air; sheet_mm: size with margin, if known."""
     lines, paths = [], []
     for way in ways:
         points = way.points_mm
@@ -113,10 +110,7 @@ def _check_workspace_limits(ways: list[Way], cell: Cell, sheet_mm) -> list[Notic
 
 
 def _check_brush_lifted(ways: list[Way], height_mm: float) -> list[Notice]:
-    """Report a program that leaves the brush on the paper.
-
-    height_mm: height of the brush after the last line.
-    """
+    """Report a program that leaves the brush on the paper. height_mm: height of the brush after the last line."""
     if not height_mm < 0:
         return []
     sentence = f"the program ends with the brush on the paper, at z {height_mm:.4g} mm: lift it behind its last line"
@@ -124,10 +118,7 @@ def _check_brush_lifted(ways: list[Way], height_mm: float) -> list[Notice]:
 
 
 def _touches_to_passes(ways: list[Way], cell: Cell) -> tuple[list, list[Notice]]:
-    """Return a pass for each touch of the paper, and a notice for each rapid move.
-
-    A touch is a time that the brush is at or below the paper. Rapid moves are reported only there.
-    """
+    """Return a pass for each touch of the paper, and a notice for each rapid move in it."""
     passes, careless = [], []
     poses: list[np.ndarray] = []
     speeds: list[float] = []
@@ -186,10 +177,7 @@ def _part_on_paper(start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
 
 
 def _refuse_inverted(ways: list[Way]) -> None:
-    """Raise Error where Z counts downwards, unlike in any cell.
-
-    Drawing and travel would be exchanged.
-    """
+    """Raise Error where Z counts downwards: drawing and travel would be exchanged."""
     try:
         pen = read_pen(ways, "z") if ways else None
     except Error:  # nothing shows the direction of Z
@@ -200,10 +188,7 @@ def _refuse_inverted(ways: list[Way]) -> None:
 
 
 def _heights_over_paper(way: Way, lift: Lift | None, paper_z_mm: float) -> np.ndarray:
-    """Return (n, 3) the points of a way relative to the paper.
-
-    The pen of a servo is at the height of its value.
-    """
+    """Return points (n, 3) of a way relative to the paper, a servo's pen at its value's height."""
     points = way.points_mm - (0.0, 0.0, paper_z_mm)
     if lift:
         points[:, 2] = lift(way.power)
@@ -258,10 +243,7 @@ def _lift_of_program(ways: list[Way], cell: Cell) -> Lift | None:
 
 
 def _two_state_lift(ways: list[Way], cell: Cell) -> Lift:
-    """Return the heights of a lift that knows only up and down.
-
-    The program's moves show at which values the pen is down.
-    """
+    """Return heights of a lift that knows only up and down; the moves show the values that are down."""
     down = {way.power for way, is_down in zip(ways, read_pen(ways, "servo").down, strict=True) if is_down}
     return lambda power: cell.pen.down_mm if power in down else cell.heights.safe_mm
 

@@ -82,10 +82,7 @@ def _moves_by_stroke(acts: list[Act], touching_mm_s: float) -> list[tuple[str, l
 
 
 def _distances_and_times(acts: list[Act]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance along the stroke [mm] and the time [s] of each act.
-
-    Both are at the end of an act, and count from the end of the first act.
-    """
+    """Return distance along the stroke [mm] and time [s] at each act's end, from the first act's end on."""
     ways_mm = np.array([np.linalg.norm(np.subtract(b.place, a.place)) for a, b in pairwise(acts)])
     speeds = np.array([act.at_most[1] for act in acts[1:]])
     took_s = np.divide(ways_mm, speeds, out=np.zeros(len(ways_mm)), where=speeds > 0)

@@ -74,10 +74,7 @@ IN_PAINT_TEXT = "in paint"
 
 
 def _safe_value(acts: list[Act]) -> float | None:
-    """Return the servo value at which the brush is safe.
-
-    This is the value of the first lift, None without lifts.
-    """
+    """Return the servo value at which the brush is safe. This is the value of the first lift, None without lifts."""
     return next((act.same[0] for act in acts if act.kind == "lift"), None)
 
 

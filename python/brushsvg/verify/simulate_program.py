@@ -141,10 +141,7 @@ def _clamp_to_deepest(poses_mm, brush, slack: float) -> np.ndarray:
 
 
 def _servo_rests_after(step: Step, cell: Cell) -> bool:
-    """Return whether a servo rests after a step.
-
-    In a rest, a second wait follows the wait for the servo's own travel.
-    """
+    """Return whether a servo rests after a step: a second wait follows that for its travel."""
     return bool(cell.servo) and step.waits > 1 and step.wait_s >= cell.servo.settle_s
 
 
@@ -219,10 +216,7 @@ def _with_rounding_allowance(cell: Cell) -> Cell:
 def _check_workspace_limits(
     section: ReadSection, track: Track, here: np.ndarray | None, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> Problems:
-    """Report the workspace limits that a section breaks, also in the air.
-
-    The move to the section is included.
-    """
+    """Report the workspace limits that a section breaks, also in the air. The move to the section is included."""
     slack, points = slack_mm(cell), track.points
     if not len(points):
         return []
@@ -241,10 +235,7 @@ def _check_workspace_limits(
 
 
 def _visits_before_strokes(read: Readback, cell: Cell) -> tuple:
-    """Return, for each stroke, the stations that the program visits before it.
-
-    Raises Error for a station that the cell does not have.
-    """
+    """Return each stroke's stations visited before; raise Error if the cell lacks one."""
     by_title = {_comparable_title(f"paint: {name}"): station for station, name in names_of_stations(cell).items()}
     visits, pending_stations = [], []
     for section in read.sections:
@@ -296,10 +287,7 @@ def _true_track(track: Track, cell: Cell) -> Track:
 
 
 def _match_stroke_title(section: ReadSection) -> re.Match | None:
-    """Match the title of a stroke's section.
-
-    Groups 1 and 2 of the match are the stroke's number and the count of strokes.
-    """
+    """Match a stroke section's title: group 1 is the stroke's number, group 2 the strokes' count."""
     return re.match(r"stroke (\d{1,6}) of (\d{1,7}): ", section.title)
 
 
@@ -464,10 +452,7 @@ def _tool_axes_of_touch(section: ReadSection, track: Track, on: slice, frame: np
 
 
 def _connected_arcs(arcs: list) -> list[list[int]]:
-    """Return the first and last pose of each chain of arcs.
-
-    In a chain, each arc begins at the end of the previous one.
-    """
+    """Return the first and last pose of each chain of arcs that begin where the previous one ends."""
     chains: list[list[int]] = []
     for arc in arcs:
         if chains and chains[-1][1] == arc.first:
@@ -478,10 +463,7 @@ def _connected_arcs(arcs: list) -> list[list[int]]:
 
 
 def _arcs_of_touch(owner: np.ndarray, centres: list) -> list:
-    """Return the arcs among the poses of one touch.
-
-    owner: (n,) step of each pose; centres: by step.
-    """
+    """Return the arcs among the poses of one touch. owner: (n,) step of each pose; centres: by step."""
     rows = []
     for number in dict.fromkeys(owner.tolist()):
         on = np.flatnonzero(owner == number)

@@ -239,10 +239,7 @@ def _marker_side(sheet_mm: tuple[float, float]) -> float:
 
 
 def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[float, float]]:
-    """Yield ranges for the markers near the middle of the left and right side.
-
-    The ranges count down from the inner edge of the sheet.
-    """
+    """Yield ranges for the middle markers on the left and right, down from the sheet's inner edge."""
     if sheet_mm[1] >= MIN_SIDES_FOR_MIDDLE_MARKER * side:
         for share in MARKER_HEIGHT_SHARES:
             middle = share * sheet_mm[1] - EDGE_MM
@@ -250,10 +247,7 @@ def _marker_gaps(sheet_mm: tuple[float, float], side: float) -> Iterator[tuple[f
 
 
 def _depth_choices() -> Iterator[tuple[int, int]]:
-    """Yield numbers of depths and repeats, the fewest first.
-
-    The four coefficients of a law need four depths.
-    """
+    """Yield numbers of depths and repeats, the fewest first. The four coefficients of a law need four depths."""
     yield from ((depths, 1) for depths in range(DEPTH_COUNTS["few"], MAX_DEPTHS + 1))
     yield from ((MAX_DEPTHS, repeats) for repeats in range(2, MAX_REPEATS + 1))
 
@@ -294,10 +288,7 @@ def _dab_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]:
 
 
 def _poses_along(depth: float, points, ramp: float = LIFT_SLOPE) -> np.ndarray:
-    """Return poses along points (n, 2) at one depth.
-
-    They land along the first line and lift along the last.
-    """
+    """Return poses along points (n, 2) at one depth, with a landing and a lift along the ends."""
     points = np.array(points, float)
     first, last = _unit_vector(points[1] - points[0]), _unit_vector(points[-1] - points[-2])
     down, up = points[0] + depth / ramp * first, points[-1] - depth / LIFT_SLOPE * last
@@ -316,10 +307,7 @@ def straight(brush, depth: float) -> UnplacedStroke:
 
 
 def _length_before_corner(brush, depth: float) -> float:
-    """Return the length from touch-down to the corner [mm].
-
-    The brush is then taut even if its lag is longer than expected, and a part of the mark is straight.
-    """
+    """Return the length [mm] from touch-down to the corner; the brush is taut there even if its lag is longer."""
     return depth / LIFT_SLOPE + 1.5 * brush.lag(depth) + 5.0
 
 
@@ -330,10 +318,7 @@ def angular(brush, depth: float) -> UnplacedStroke:
 
 
 def _auxiliary(brush, depth: float, shallow: float) -> UnplacedStroke:
-    """Draw a line parallel to the second line and beyond it.
-
-    Its position on the paper shows the position of the second line.
-    """
+    """Draw a line beyond the second line and parallel to it, which shows that line's position on the paper."""
     x = (
         _length_before_corner(brush, depth)
         + WIDTH_FACTOR * (brush.half_width(depth) + brush.half_width(shallow))
@@ -344,10 +329,7 @@ def _auxiliary(brush, depth: float, shallow: float) -> UnplacedStroke:
 
 
 def _arc(brush, depth: float, direction: int) -> UnplacedStroke:
-    """Draw a third of a circle after a straight line.
-
-    The radius keeps the brush taut.
-    """
+    """Draw a third of a circle after a straight line. The radius keeps the brush taut."""
     radius = 1.6 * max(brush.lag(depth), 2.0)
     start = depth / LIFT_SLOPE + 0.7 * brush.lag(depth) + 2.0
     count = 49  # chords stay within 0.01 mm of the arc, so programs may ignore the arc
@@ -360,10 +342,7 @@ def _arc(brush, depth: float, direction: int) -> UnplacedStroke:
 
 
 def _reversal(brush, depth: float) -> UnplacedStroke:
-    """Draw a line nearly back along the first line.
-
-    The patch rests for almost two lags, then turns.
-    """
+    """Draw a line nearly back along the first one: the patch rests for almost two lags, then turns."""
     back = math.radians(155.0)
     first = _length_before_corner(brush, depth)
     second = 3.5 * brush.lag(depth) + 3.0 + depth / LIFT_SLOPE
@@ -469,18 +448,12 @@ def _running_maximum(taken: np.ndarray, wide: int) -> np.ndarray:
 
 
 def _top_of_middle_marker(side: float) -> float:
-    """Return the top of the marker below the bar.
-
-    It counts down from the inner edge of the sheet.
-    """
+    """Return the top of the marker below the bar. It counts down from the inner edge of the sheet."""
     return TICK_MM + QUIET_ZONE_SHARE * side
 
 
 def _turn_unit(unit: _StrokeUnit) -> _StrokeUnit:
-    """Turn a unit by 90 degrees counter-clockwise.
-
-    Reference strokes and dabs keep their directions.
-    """
+    """Turn a unit by 90 degrees counter-clockwise; reference strokes and dabs keep their directions."""
     if unit.strokes[0].kind in ("reference", KIND):
         return unit
     strokes = []
@@ -531,10 +504,7 @@ def _place_strokes(
 def _marker_places(
     sheet_mm, side: float, marker_gap: tuple[float, float] | None
 ) -> list[tuple[int, tuple[float, float]]]:
-    """Return numbers and upper left corners of the markers.
-
-    Markers 0 to 3 are in the corners, clockwise. Markers 4 to 7 are in the middle of the edges.
-    """
+    """Return numbers and upper left corners of the markers: 0 to 3 in the corners, clockwise, 4 to 7 on the edges."""
     width, height = sheet_mm
     left, right, top, bottom = EDGE_MM, width - EDGE_MM - side, height - EDGE_MM, EDGE_MM + side
     across = (width - side) / 2
@@ -548,10 +518,7 @@ def _marker_places(
 
 
 def _place_bar(sheet_mm, side: float) -> Bar:
-    """Place a bar that fills the space between the upper markers.
-
-    Its length is in whole centimetres if it is longer than one.
-    """
+    """Place a bar between the upper markers, in whole centimetres if it is longer than one."""
     room = sheet_mm[0] - 2 * (EDGE_MM + side + QUIET_ZONE_SHARE * side)
     length = 10.0 * math.floor(room / 10) if room >= 10 else math.floor(room)
     return Bar(((sheet_mm[0] - length) / 2, sheet_mm[1] - EDGE_MM - TICK_MM / 2), length)
@@ -571,10 +538,7 @@ def _make_titles(brush, sheet_mm, side: float, mark: str, bar: Bar) -> list[Labe
 
 
 def _make_label(stroke: Stroke, number: int, at_mm: tuple[float, float], width_mm: float) -> Label:
-    """Label a stroke with the longest text that fits.
-
-    The texts are its id and depth, its id, or a letter and its number.
-    """
+    """Label a stroke with the longest text that fits: its id and depth, its id, or a letter and its number."""
     texts = (f"{stroke.id}: {stroke.depth_mm:g} mm", stroke.id, f"{KIND_LETTERS[stroke.kind]}{number}")
     fitting = (text for text in texts if len(text) * LETTER_WIDTH_MM <= width_mm)
     return Label(next(fitting, texts[-1]), at_mm, width_mm)

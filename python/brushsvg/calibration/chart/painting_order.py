@@ -39,10 +39,7 @@ def early_and_late(strokes: list[tuple[str, float]]) -> list[int]:
 
 
 def _by_kind(strokes: list[tuple[str, float]], alike: list[int], first: int) -> list[int]:
-    """Order the strokes of one depth: one of each kind, then the repeats.
-
-    first: the number of the kind that is painted first.
-    """
+    """Order the strokes of one depth: one of each kind, from the kind with number `first` on, then the repeats."""
     of_kind = {kind: [k for k in alike if strokes[k][0] == kind] for kind in KINDS}
     kinds = KINDS[first % len(KINDS) :] + KINDS[: first % len(KINDS)]
     repeats = max(map(len, of_kind.values()))

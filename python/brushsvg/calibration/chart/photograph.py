@@ -224,10 +224,7 @@ def _refuse_compressed(data: bytes) -> None:
 
 
 def _refuse_another_sheet(photo_marks: Marks, mean_marks: Marks, name: str) -> None:
-    """Raise Error if a photograph differs from the mean of all photographs.
-
-    The positions of its marks are compared.
-    """
+    """Raise Error if the positions of marks in one photograph differ from the mean of all photographs."""
     both = [stroke for stroke in photo_marks.outlines_mm if stroke in mean_marks.outlines_mm]
     offsets = [
         np.vstack(photo_marks.outlines_mm[stroke]).mean(axis=0) - np.vstack(mean_marks.outlines_mm[stroke]).mean(axis=0)

@@ -198,11 +198,7 @@ def _outer_ring(dab: Dab) -> np.ndarray:
 
 
 def _close_densely(ring: np.ndarray) -> np.ndarray:
-    """Close a ring and add points every POINT_SPACING_MM.
-
-    The distance along a ray is interpolated between points, and the result is not on a straight line. Dense points
-    make the error small.
-    """
+    """Close a ring and add points, because distances along a ray are interpolated between them."""
     closed = np.vstack([ring, ring[:1]])
     at = lengths(closed)
     places = np.union1d(np.arange(0.0, at[-1], POINT_SPACING_MM), at[:-1])
@@ -394,10 +390,7 @@ def _mirror(reach: np.ndarray) -> np.ndarray:
 
 
 def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
-    """Return the largest rms difference between the dabs of one heading and all dabs [mm].
-
-    The difference is averaged over depths.
-    """
+    """Return the largest rms difference [mm], averaged over depths, between one heading's dabs and all dabs."""
     off: dict[float, list[np.ndarray]] = {}
     for shape in shapes:
         for heading, distance in shape.by_heading_mm().items():
@@ -406,10 +399,7 @@ def _heading_difference_mm(shapes: list[_DabsOfDepth]) -> float:
 
 
 def _smooth_outline(reach: np.ndarray, size_mm: np.ndarray, unsure_mm: float) -> np.ndarray:
-    """Return the outline with the least curvature near the given one.
-
-    It stays within unsure_mm (rms) and MAX_SMOOTHING_MM. The outline may have a corner at the tip.
-    """
+    """Return the smoothest outline within unsure_mm (rms) and MAX_SMOOTHING_MM; it may have a corner at the tip."""
     closed = np.append(reach, reach[0])
     bends = np.diff(np.eye(len(closed)), 2, axis=0)
     penalty = bends.T @ bends

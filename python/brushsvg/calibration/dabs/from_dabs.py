@@ -134,10 +134,7 @@ def _values_of_law(law: str, shape: Shape) -> np.ndarray:
 
 
 def _breadth(outline: np.ndarray) -> float:
-    """Return the width between the means of the outermost points.
-
-    Noise does not increase a distance of means.
-    """
+    """Return the width between means of the outermost points; noise does not increase a distance of means."""
     y = np.sort(outline[:, 1])
     count = max(1, len(y) // 10)
     return float(y[-count:].mean() - y[:count].mean())
@@ -151,10 +148,7 @@ def _widest_place(outline: np.ndarray) -> float:
 
 
 def _broad_middle(outline: np.ndarray) -> float:
-    """Return the middle of the broad part of an outline.
-
-    It comes from a parabola through all of the part, because the single broadest point is chance.
-    """
+    """Return the middle of an outline's broad part, by a parabola: the single broadest point is chance."""
     x, wide = widths_at(np.roll(outline, -int(outline[:, 0].argmin()), axis=0))
     broad = wide >= BROAD_WIDTH_SHARE * wide.max()
     bend, slope, _ = np.polyfit(x[broad], wide[broad], 2)
@@ -162,10 +156,7 @@ def _broad_middle(outline: np.ndarray) -> float:
 
 
 def _fit_law(law: str, values: np.ndarray, range_mm, terms: int = 0):
-    """Fit the law with the fewest terms that is close to the mean of each depth.
-
-    terms: a fixed number of terms, or 0.
-    """
+    """Fit the law with `terms` terms, or with the fewest that come close to the mean of each depth."""
     depths, counts = np.unique(values[:, 0], return_counts=True)
     means = np.array([values[values[:, 0] == depth, 1].mean() for depth in depths])
     spread = values[:, 1] - means[np.searchsorted(depths, values[:, 0])]
@@ -229,10 +220,7 @@ def _make_profile(law: _core.Profile, shapes: tuple[Shape, ...], half_interval_9
 
 
 def _covariance(before, brush, fits, values, edge_mm: float) -> np.ndarray | None:
-    """Return the covariance of the unchanged lag and the new laws.
-
-    It includes a common shift of all edges.
-    """
+    """Return the covariance of the unchanged lag and the new laws, with a common shift of all edges."""
     if any(not np.size(fit.covariance) for fit in fits.values()):
         return None
     at = places(brush)

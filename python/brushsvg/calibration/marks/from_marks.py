@@ -213,10 +213,7 @@ def change_by_wetter_marks(fit, deepest_mm: float, edge_mm: float) -> np.ndarray
 
 
 def _all_numbers(fit, like, deepest_mm: float) -> np.ndarray:
-    """Return all fitted numbers in the order of the covariance of `like`.
-
-    Each law gets as many coefficients as in `like`.
-    """
+    """Return all fitted numbers in the order of `like`'s covariance, with as many coefficients of each law."""
     laws, other = fit.laws, like.laws
     numbers = [
         _reduce_law(laws.lag, len(other.lag), 0, deepest_mm),
@@ -244,10 +241,7 @@ def _all_numbers(fit, like, deepest_mm: float) -> np.ndarray:
 
 
 def _reduce_law(coefficients, terms: int, first: int, deepest_mm: float) -> np.ndarray:
-    """Reduce a law to fewer terms, nearest over the depths.
-
-    Return its coefficients from the power `first` on.
-    """
+    """Return the coefficients, from power `first` on, of the nearest law with fewer terms over the depths."""
     if len(coefficients) <= terms:
         return np.pad(coefficients, (0, terms - len(coefficients)))[first:]
     share = np.linspace(0.0, 1.0, 41)[1:]
@@ -516,10 +510,7 @@ def front_ratio(laws) -> np.ndarray:
 
 
 def _widest_floor(laws, deepest: float) -> dict[str, float]:
-    """Return the floor of the widest section, if it needs one.
-
-    It needs one if its ratio would fall below the least ratio of a footprint.
-    """
+    """Return the floor of the widest section if its ratio would fall below the least ratio of a footprint."""
     depths = np.linspace(0.0, deepest, 41)
     if polyval(depths, widest_ratio(laws)).min() >= MIN_RATIO_TO_HALF_WIDTH:
         return {}

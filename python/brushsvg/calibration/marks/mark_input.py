@@ -186,10 +186,7 @@ def _read_ring(points, where: str) -> np.ndarray:
 
 
 def _orient_rings(rings: list[np.ndarray]) -> list[np.ndarray]:
-    """Return the shape that the rings fill.
-
-    Outer rings are counter-clockwise, holes clockwise.
-    """
+    """Return the shape that the rings fill. Outer rings are counter-clockwise, holes clockwise."""
     return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
 
 
@@ -293,10 +290,7 @@ def _refuse_moved_sheet(planned: np.ndarray, seen: np.ndarray) -> None:
 
 
 def _refuse_foreign_outlines(found: list) -> None:
-    """Raise Error for outlines that are not paint, such as the border of the page.
-
-    The fit would need minutes to reject them.
-    """
+    """Raise Error for outlines that are no paint, such as the page's border; the fit would need minutes for it."""
     for i, (stroke, poses, rings) in enumerate(found):
         if (area := _core.area(_orient_rings(rings))) < MIN_AREA_MM2:
             raise Error(

@@ -204,10 +204,7 @@ def _list_departing_laws(calibration) -> list[str]:
 
 
 def _unexpected(calibration, of_photo: bool = False) -> list[str]:
-    """Return a sentence for each value that is too large for the fit.
-
-    A value that is too large for its sigma biases the laws.
-    """
+    """Return a sentence for each value that is too large for its sigma, and so biases the laws."""
     fit, expected = calibration.fit, calibration.expected
     astray = {stray.mark.stroke for stray in calibration.strays}
     displaced = [
@@ -320,10 +317,7 @@ def _describe_cost(calibration, mark) -> str:
 
 
 def _warn_of_poor_fit(fit, moved: float) -> list[str]:
-    """Return warnings about many masked points and a small overlap.
-
-    moved: the overlap without displacements.
-    """
+    """Return warnings about many masked points and a small overlap; moved: the overlap without displacements."""
     out = []
     if fit.outlier_share > MAX_MASKED_SHARE:
         out.append(
@@ -350,10 +344,7 @@ def _round_up(size: float) -> float:
 
 
 def _describe_sheet_and_machine(calibration) -> list[str]:
-    """Describe the position of the sheet and the errors of the machine.
-
-    Both are fitted together with the laws.
-    """
+    """Describe the sheet's position and the machine's errors, which are fitted together with the laws."""
     fit = calibration.fit
     half_intervals = _core.interval_factor_95() * np.sqrt(np.diag(calibration.covariance))
     first = height_at(fit)
@@ -438,10 +429,7 @@ def report_picture(calibration, suffix: str) -> bytes:
 
 
 def _to_plan_frame(calibration, rings, displacement) -> list[np.ndarray]:
-    """Transform rings of the sheet to the frame of the plan.
-
-    The transformation is the fitted pose of the sheet, and the displacement of the mark.
-    """
+    """Transform rings of the sheet to the plan's frame, by the sheet's fitted pose and the mark's displacement."""
     fit = calibration.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     return [(ring - fit.shift_mm - centre) @ back + centre - displacement for ring in rings]

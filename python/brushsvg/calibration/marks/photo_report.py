@@ -48,10 +48,7 @@ def dabs_picture(read, calibration) -> bytes:
 
 
 def _draw_picture(read, compared) -> bytes:
-    """Draw the found outlines, the comparison and the labels.
-
-    compared: draws on (picture, flat) and returns the labels of each stroke, the longest first.
-    """
+    """Draw outlines, comparison and labels; compared: draws on (picture, flat), returns labels by stroke."""
     flat = _enlarge(read.flat)
     picture, outlines = flat.pixels, read.marks.outlines_mm
     space = _label_space(flat, outlines)
@@ -84,10 +81,7 @@ def _enlarge(flat: Flat) -> Flat:
 
 
 def _draw_predictions(picture, flat, read, calibration) -> dict[str, list[str]]:
-    """Draw the predictions on their marks, and return the labels.
-
-    The labels of each stroke are ordered by length, the longest first.
-    """
+    """Draw the predictions on their marks, and return the labels of each stroke, the longest first."""
     if calibration is None:
         return {stroke: [stroke] for stroke in read.marks.outlines_mm}
     words = {}

@@ -56,10 +56,7 @@ def middle_of_turn(lag_mm: float, turning_mm: float, s_mm: np.ndarray) -> np.nda
 
 
 def _find_nearest_segment(line: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the nearest segment of a polyline (k, 2) for each point (n, 2).
-
-    The position of the nearest place is returned as a share of the segment.
-    """
+    """Return the nearest segment of a polyline (k, 2) for each point (n, 2), and the share of it."""
     start, along = line[:-1], np.diff(line, axis=0)
     to_points = points[:, None] - start
     share = np.clip((to_points * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-30), 0.0, 1.0)
@@ -73,10 +70,7 @@ def _interpolate(values: np.ndarray, piece: np.ndarray, share: np.ndarray) -> np
 
 
 def _place_below_second_line(points_mm) -> np.ndarray:
-    """Return at most MAX_LINE_POINTS points, below the handle's second line.
-
-    Points above the line are mirrored.
-    """
+    """Return at most MAX_LINE_POINTS points, below the handle's second line. Points above the line are mirrored."""
     points = np.array(points_mm, float)
     points = points[:: -(-len(points) // MAX_LINE_POINTS)]
     return points * [1.0, -1.0] if points[:, 1].sum() > 0 else points
@@ -85,10 +79,7 @@ def _place_below_second_line(points_mm) -> np.ndarray:
 def _vectors_to_points(
     points: np.ndarray, lag_mm: float, turning_mm: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the vectors from the middle of a turn to the points (n, 2).
-
-    The index of the nearest segment and the share of it are returned as well.
-    """
+    """Return vectors from a turn's middle to points (n, 2), the nearest segments, and the shares of them."""
     line = middle_of_turn(lag_mm, turning_mm, lag_mm * LINE_PLACES_LAGS)
     start = [0.0, min(float(points[:, 1].min()), -turning_mm) - 1.0]
     end = [max(float(points[:, 0].max()), line[-1, 0]) + 1.0, 0.0]
@@ -119,12 +110,7 @@ def read_turn_near(points_mm, lag_mm: float, turning_mm: float) -> Turn:
 
 
 def _normal_equations(points: np.ndarray, lag_mm: float, turning_mm: float):
-    """Return the vectors to the points (n, 2) and the normal equations.
-
-    The equations are J d and J J^T.
-
-    J holds the derivatives of the distances d with respect to the lag and r - e.
-    """
+    """Return the vectors to the points (n, 2), J d and J J^T; J = derivatives of distances d by lag and r - e."""
     off, piece, share = _vectors_to_points(points, lag_mm, turning_mm)
     zero, decay = np.zeros_like(LINE_PLACES_LAGS), 1.0 / np.cosh(LINE_PLACES_LAGS)
     fixed = np.zeros((1, 2))  # the straight parts before and beyond the turn do not move sideways
@@ -199,10 +185,7 @@ def read_turn(points_mm, where: str = "") -> Turn:
 
 
 def _covariance_and_rmse(fit, freedom: int) -> tuple[np.ndarray, float]:
-    """Return the covariance of lag and r - e, and the residual of the points.
-
-    fit: a fit of lag and (r - e) / r.
-    """
+    """Return the covariance of lag and r - e, and the residual of the points. fit: a fit of lag and (r - e) / r."""
     lag, share = fit.x
     variance = 2.0 * fit.cost / freedom
     to_lengths = np.array([[1.0, 0.0], [share, lag]])

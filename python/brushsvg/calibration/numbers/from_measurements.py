@@ -134,10 +134,7 @@ def calibrate(measured: Measurements, name: str, absolute: bool = False, total: 
 def _collect_points(
     measured: Measurements, total: bool, turns: dict[str, Turn]
 ) -> tuple[dict[str, list[Point]], list[str]]:
-    """Collect the values of single laws, with values from angle series and from the decay of turns.
-
-    Return the points of each law, and remarks about readings that were left out.
-    """
+    """Return the points of each law, also from angle series and turns, and remarks on readings left out."""
     points: dict[str, list[Point]] = {law: [] for law in LAWS}
     remarks = []
     for law in LAWS:
@@ -160,10 +157,7 @@ def _collect_points(
 
 
 def _choose_degree(law: str, depths_mm: list[float]) -> tuple[int, list[str]]:
-    """Return the degree that values at these depths allow.
-
-    A remark is returned as well if the degree is lower than usual.
-    """
+    """Return the degree that values at these depths allow, and a remark if it is lower than usual."""
     different = plausibility.count_distinct_depths(depths_mm)
     # Each coefficient needs two values; with fewer, the law would follow their noise.
     coefficients = min(different, max(2, math.ceil(len(depths_mm) / 2)))
@@ -267,10 +261,7 @@ class _LawFitter:
         self._store_joint_fit(readings, shown="tip_gap" if points["lag"] else "lag")
 
     def _read_turns_near(self, lines: list[Row], fit) -> None:
-        """Read all centre lines again until the laws stop moving.
-
-        The first reading starts from the joint laws.
-        """
+        """Read all centre lines again, first from the joint laws, until the laws stop moving."""
         for _ in range(MAX_GAUSS_NEWTON_STEPS):
             moved = 0.0
             for row in lines:
@@ -311,10 +302,7 @@ class _LawFitter:
         return other_probabilities
 
     def _allow_other_sign(self, where: str, share: float, fit) -> None:
-        """Widen the intervals of all laws to allow for the other reading of a centre line.
-
-        share: the probability of the other reading.
-        """
+        """Widen all laws' intervals for the other reading of a centre line, which has the probability `share`."""
         turn = self.turns[where]
         self.turns[where] = turn.other
         self.joint = self.joint.widened(fit(), share)
@@ -327,10 +315,7 @@ class _LawFitter:
         )
 
     def _misfit(self, row: Row, turn: Turn, others: JointFit) -> float:
-        """Return -2 ln of the likelihood of a reading of a centre line.
-
-        The likelihood is given by its points and by the laws of the others.
-        """
+        """Return -2 ln of the likelihood of a centre line's reading, by its points and the others' laws."""
         predicted, covariance = others.predict(row.depth_mm, TURN_SUMS)
         own_covariance = np.array(turn.covariance_mm2)
         for kind in others.kinds:  # lines scatter more than their points predict
@@ -343,10 +328,7 @@ class _LawFitter:
         return float(by_others) + turn.freedom * 2.0 * math.log(max(turn.rmse_mm, ROUNDING_MM))
 
     def _starting_law(self, law: str, readings: list[Reading]) -> _core.Profile:
-        """Return the law that was fitted alone, as the start of the joint fit.
-
-        Its degree is raised to the degree that all readings of it allow.
-        """
+        """Return the law fitted alone, raised to the degree that all its readings allow, to start the joint fit."""
         single_fit = self.fitted[law]
         depths = [reading.depth_mm for reading in readings if any(law in law_signs for law_signs in reading.sums)]
         degree, remarks = _choose_degree(law, depths)
@@ -356,10 +338,7 @@ class _LawFitter:
         return _core.Profile([*profile.coefficients, *added], floor=profile.floor)
 
     def _refuse_negative(self, law: str, points: tuple[Point, ...], fit: _core.LawFit) -> None:
-        """Raise Error if the mean of the values is clearly below 0.
-
-        It must be below 0 by more than half the interval of the law.
-        """
+        """Raise Error if the mean of the values is below 0 by more than half the law's interval."""
         mean = float(np.mean([point.value_mm for point in points]))
         depths = np.array([point.depth_mm for point in points])
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]

@@ -140,10 +140,7 @@ def _constant_lag(lag_mm: float) -> _core.Profile:
 
 
 def _fit_lag(lags: list[tuple[float, float]], deepest: float) -> _core.Profile:
-    """Fit the simplest law of lag that comes close enough.
-
-    It has the lowest degree and is never negative.
-    """
+    """Fit the law of lag of the lowest degree that comes close enough and is never negative."""
     depths, values = [depth for depth, _ in lags], [lag for _, lag in lags]
     depth_count = len(set(depths))
     if lags[-1][0] > deepest:
@@ -180,10 +177,7 @@ def _constant_half_width(width: tuple[float, float]) -> _core.Profile:
 
 
 def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.Profile:
-    """Fit the simplest law of half width that comes close enough.
-
-    It is 0 at depth 0 and never falls.
-    """
+    """Fit the simplest law of half width that comes close enough, is 0 at depth 0 and never falls."""
     depths, halves = [depth for depth, _ in widths], [width / 2 for _, width in widths]
     depth_count = len(set(depths))
     shapes = [
@@ -212,10 +206,7 @@ def _fit_half_width(widths: list[tuple[float, float]], deepest: float) -> _core.
 
 
 def _fit_simplest_law(depths: list[float], values: list[float], shapes, good_misfit_mm: float):
-    """Fit the first of the shapes whose misfit is good, or the last one.
-
-    Return the fit, the index of the worst value, and its misfit [mm].
-    """
+    """Return the first fit of the shapes with a good misfit, or the last, its worst value and misfit [mm]."""
     for shape in shapes:
         fit = _core.fit_law(depths, values, shape)
         misfits_mm = [abs(residual) for residual in fit.residual_mm]

@@ -275,10 +275,7 @@ class _Unknowns:
         return control_to_power @ solution.x
 
     def _control_to_power(self, name: str) -> np.ndarray:
-        """Return the matrix from Bernstein control points to power coefficients.
-
-        The range starts at depth 0 for a law that passes through 0.
-        """
+        """Return the matrix from Bernstein to power coefficients; laws through 0 have a range from depth 0."""
         lo = 0.0 if self.first[name] else self.range_mm[0]
         degree = self.first[name] + self.sizes[name] - 1
         at = np.linspace(lo, self.range_mm[1], degree + 2)[1:]

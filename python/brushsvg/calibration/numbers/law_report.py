@@ -54,10 +54,7 @@ def report(calibration) -> Report:
 
 
 def _scattered_laws(brush) -> list[str]:
-    """Return the names of the laws whose values contradict each other.
-
-    A plan depends only on lag and width. The positions inside the footprint may scatter without visible effect.
-    """
+    """Name the laws with contradicting values; only lag and width matter, the others may scatter unseen."""
     scattered = {notice.where for notice in remarks(brush) if notice.code == "law-scatters"}
     return [name for name in ("lag", "half_width") if name in scattered]
 
@@ -74,10 +71,7 @@ def _describe_fit(brush, fitted) -> str:
 
 
 def _suggest_next(calibration) -> list[str]:
-    """Suggest the most useful next measurement.
-
-    It is the law with the largest interval for its size, at the depth where the interval is widest.
-    """
+    """Suggest to measure the law with the largest relative interval, at the depth where it is widest."""
     brush = calibration.brush
     if scattered := _scattered_laws(brush):
         return [f"next: measure {' and '.join(scattered)} again, because the values contradict each other"]

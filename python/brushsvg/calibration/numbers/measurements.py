@@ -167,10 +167,7 @@ _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
 def _open_table(text: str, columns: tuple[str, ...]) -> csv.DictReader:
-    """Return a reader of the table.
-
-    It uses the separator that finds these columns in the first line.
-    """
+    """Return a reader of the table with the separator that finds these columns in the first line."""
     tables = [csv.DictReader(io.StringIO(text), delimiter=separator) for separator in _SEPARATORS]
     for table in tables:
         table.fieldnames = [name.strip() for name in table.fieldnames or ()]
@@ -221,10 +218,7 @@ def _refuse_row_in_other_unit(line: dict, where: str) -> None:
 
 
 def _refuse_surplus(line: dict, where: str, separator: str) -> None:
-    """Raise Error for a row with more cells than the first line names.
-
-    4,6 for 4.6 would be read as 4.
-    """
+    """Raise Error for a row with more cells than the first line names: 4,6 for 4.6 would be read as 4."""
     if surplus := [cell for cell in line.get(None, []) if cell.strip()]:
         advice = "write numbers with a decimal point, as in 4.6, or separate columns by semicolons"
         raise Error(
@@ -335,10 +329,7 @@ def _read_points(values, where: str) -> tuple[tuple[float, ...], ...]:
 
 
 def _read_centre_line(kind: str, row: dict, where: str) -> list[Row]:
-    """Read the middle line of an angular stroke's mark.
-
-    It is given as points, or as a picture of the mark.
-    """
+    """Read the middle line of an angular stroke's mark, from points or from a picture of the mark."""
     json_fields.refuse_unknown(row, ("depth_mm", *_CENTRE_LINE_KEYS, "note"), where)
     missing = [name for name in ("depth_mm",) if name not in row]
     if "points_mm" not in row:

@@ -80,10 +80,7 @@ def by_overlap(
 
 
 def _make_calibration(calibration: MarkCalibration, found: BestPrediction) -> OverlapCalibration:
-    """Make the calibration from the result of the search.
-
-    If edges are chosen, it has the brush of the edges with its intervals.
-    """
+    """Make the calibration from the search; if edges are chosen, with their brush and its intervals."""
     if found.kind == "edges":
         return OverlapCalibration(calibration, calibration, found)
     fit, count = calibration.fit, sum(not residual.outlier for residual in calibration.fit.marks)
@@ -117,10 +114,7 @@ def _make_calibration(calibration: MarkCalibration, found: BestPrediction) -> Ov
 
 
 def _to_plan_frame(mark, residual, calibration: MarkCalibration) -> _core.PaintedMark:
-    """Return a painted mark in the frame of the plan.
-
-    Its path is the path that the machine executed.
-    """
+    """Return a painted mark in the frame of the plan, with the path that the machine executed."""
     fit = calibration.fit
     centre, back = np.array(fit.centre_mm), rotation(-fit.turn_rad)
     rings = [(np.array(ring) - fit.shift_mm - centre) @ back + centre for ring in mark.outline_mm]

@@ -108,10 +108,7 @@ def largest_overlap(
 def _search_subset(
     search: Search, targets: list[Target], count_evaluation, last: str | None = None
 ) -> tuple[str, np.ndarray]:
-    """Search with a subset of the marks, and return the last kind and its vector.
-
-    last: the last kind to try; None for all possible kinds.
-    """
+    """Search with a subset of the marks up to the kind `last`, and return the last kind and its vector."""
     kind, x = "edges", search.begin
     for kind, x in search_each_kind(search, choose_subset(targets), count_evaluation):  # noqa: B007
         if kind == last:
@@ -139,10 +136,7 @@ class _PartResult:
 def _search_without_parts(
     marks, targets: list[Target], round_tail: bool, options, count_evaluation
 ) -> dict[str, list[_PartResult]]:
-    """Run each kind of search without each part of the marks.
-
-    Return an empty dict if there are too few marks.
-    """
+    """Run each kind of search without each part of the marks, {} if there are too few marks."""
     parts = 2 if len(marks) >= MIN_MARKS_FOR_TWO_PARTS else 3
     if len(marks) < MIN_MARKS:
         return {}

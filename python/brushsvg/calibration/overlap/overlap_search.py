@@ -237,11 +237,7 @@ class Search:
         return np.array(map_predicted(compared, moved_targets, laws, height, shift, self.deepest_mm))
 
     def _cost_terms(self, x) -> np.ndarray:
-        """Return the cost terms of the footprint and the machine.
-
-        A footprint that is not round has a cost, and so has a machine with errors. The cost is the sum of the squares
-        of the terms, for all marks together.
-        """
+        """Return the terms whose squares are the cost of an unusual footprint and of machine errors, for all marks."""
         behind, front = x[self.at["shape"]]
         friction = x[self.at["tip_gap"]][0] / max(0.1, x[self.at["half_width"]].sum()) - behind
         if not self.laws.round_tail:
@@ -307,10 +303,7 @@ def search_each_kind(
 
 
 def _search_from_starts(loss, starts: list[np.ndarray], steps, free) -> np.ndarray:
-    """Search from several starts, and continue only the best search.
-
-    Return its vector.
-    """
+    """Search from several starts, and continue only the best search. Return its vector."""
     searches = [_minimise(loss, start, steps, free, START_EVALUATIONS) for start in starts]
     best = min(searches, key=lambda search_result: search_result.fun)
     return _minimise(loss, best.all_x, steps, free, CONTINUED_EVALUATIONS, best.final_simplex[0]).all_x
@@ -370,10 +363,7 @@ def _move_targets(targets: list[Target], machine: MachineOffsets, height_mm: flo
 def _register_pictures(
     search: Search, x, free, targets: list[Target], count_evaluation: Callable[[], None]
 ) -> np.ndarray:
-    """Register predicted and painted pictures by least squares.
-
-    The more blurred pictures come first. Derivatives are forward differences. free: mask of the numbers that change.
-    """
+    """Register predicted and painted pictures, blurred ones first, by least squares; free: numbers that change."""
     from scipy.optimize import least_squares
 
     steps, x = search.steps[free], np.array(x)
@@ -417,10 +407,7 @@ def _blur(picture, blur_px: int) -> np.ndarray:
 
 
 def _minimise(loss, x, steps, free, max_evaluations: int, corners=None):
-    """Minimise the loss over the free numbers by Nelder and Mead.
-
-    The search starts at x, or at the corners with which an earlier search ended.
-    """
+    """Minimise the loss over the free numbers by Nelder and Mead, from x or an earlier search's corners."""
     from scipy.optimize import minimize
 
     def fill_free(changed) -> np.ndarray:
@@ -437,10 +424,7 @@ def _minimise(loss, x, steps, free, max_evaluations: int, corners=None):
 
 
 def _interpolate_law(depths, values, first: int) -> list[float]:
-    """Return the coefficients of the law with these values at as many depths.
-
-    They start at the power `first`.
-    """
+    """Return the coefficients, from power `first` on, of the law with these values at as many depths."""
     powers = np.arange(first, first + len(values))
     return np.linalg.solve(np.asarray(depths)[:, None] ** powers, values).tolist()
 

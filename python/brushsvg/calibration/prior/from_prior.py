@@ -278,10 +278,7 @@ def _interval_ratios(before: np.ndarray, after: np.ndarray, laws, brush) -> dict
 
 
 def _merge_brush(brush, known: KnownLaws, laws, covariance, learned: set[str], name: str, painted: Painted):
-    """Return the brush with the laws that the marks determine.
-
-    The other laws stay as they are.
-    """
+    """Return the brush with the laws that the marks determine; the other laws stay as they are."""
     if learned & {"half_width", "tip_to_widest"}:
         learned = learned | {"tip_to_widest"}  # it is stored in half widths
     updated_brush = brush_of(laws, name, brush.depth_range_mm, covariance)
@@ -327,10 +324,7 @@ def _choose_law(before, now, is_learned: bool, painted: Painted, prior: str):
 def _join_covariance(
     brush, updated_brush, learned: set[str], whole: np.ndarray, fitted: dict[str, slice]
 ) -> np.ndarray:
-    """Return the covariance of all coefficients.
-
-    It is new for updated laws and unchanged for the others.
-    """
+    """Return the covariance of all coefficients: new for updated laws, unchanged for the others."""
     new_places, old_places = places(updated_brush), places(brush)
     out = np.zeros((new_places[LAWS[-1]].stop,) * 2)
     old_covariance = np.array(brush.covariance)
@@ -343,10 +337,7 @@ def _join_covariance(
 
 
 def _reshape_outlines(brush, updated_brush, longer: float) -> _core.FootprintTable:
-    """Return the outlines scaled to the half width and widest section of the new laws.
-
-    longer: factor of the part in front of the widest section.
-    """
+    """Scale outlines to the new half width and widest section; longer: factor in front of that section."""
 
     def reshape(shape):
         d = shape.depth_mm

@@ -181,10 +181,7 @@ def _size_of_law(law, depths: np.ndarray) -> np.ndarray:
 
 
 def _covariance_in_file(brush) -> np.ndarray:
-    """Return the covariance of the coefficients of a brush.
-
-    It is 0 if the file has none.
-    """
+    """Return the covariance of the coefficients of a brush. It is 0 if the file has none."""
     size = places(brush)[LAWS[-1]].stop
     return np.array(brush.covariance) if len(brush.covariance) else np.zeros((size, size))
 
@@ -218,10 +215,7 @@ def _covariance_without_file(law, name: str, depths: np.ndarray, to_numbers: np.
 
 
 def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:
-    """Return the matrix from the coefficients of a brush to those of a fit.
-
-    The laws of the fit are nearest over the depths of the brush.
-    """
+    """Return the matrix from a brush's coefficients to a fit's, whose laws are nearest over the depths."""
     at, to = places(brush), numbers_of()
     out = np.zeros((to["tip_to_widest"].stop, at[LAWS[-1]].stop))
     for law, terms in TERMS.items():
@@ -239,10 +233,7 @@ def _to_numbers(brush, depths: np.ndarray, ratio: float) -> np.ndarray:
 
 
 def _has_round_tail(brush) -> bool:
-    """Return whether the tail of the footprint is round.
-
-    The width half way between the tip and the widest section decides.
-    """
+    """Return whether the footprint's tail is round, by the width half way from tip to widest section."""
     shares = []
     for shape in brush.footprints.dragged:
         x, y = np.array(shape.outline_mm).T

@@ -79,10 +79,7 @@ def _writes_plan(args) -> bool:
 
 
 def _find_start_path(args) -> str:
-    """Return the path near which the project file is searched.
-
-    This is the first drawing, the program to check, or the current folder.
-    """
+    """Return where the project file is searched: at the first drawing, the program, or the current folder."""
     given = getattr(args, args.project_near or "", None)
     if isinstance(given, list):
         given = given[0] if given else getattr(args, "words", None)
@@ -98,10 +95,7 @@ def _list_settable_options(parser: argparse.ArgumentParser) -> dict[str, argpars
 
 
 def _find_typed_options(args, argv: Iterable[str]) -> set[str]:
-    """Return the dests of the options that were typed.
-
-    Flags are never abbreviated, and no value of an option equals a flag.
-    """
+    """Return the dests of typed options; flags are never abbreviated, and no option's value equals one."""
     arguments = list(argv)
     arguments = arguments[: arguments.index("--")] if "--" in arguments else arguments
     flags = {word.partition("=")[0] for word in arguments}
@@ -131,10 +125,7 @@ def _get_flag(action: argparse.Action) -> str:
 
 
 def _make_final_choices(args):
-    """Return the choices as the command will make them.
-
-    Raises RefusedError for a drawing that cannot be read.
-    """
+    """Return the choices as the command makes them; raise RefusedError if the drawing cannot be read."""
     from ...jobs.choices import drop_overruled
     from ...read import settings_in
     from . import options

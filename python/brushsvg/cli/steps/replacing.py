@@ -76,10 +76,7 @@ def _find_record_path() -> Path:
 
 
 def _explain_unwritable() -> str:
-    """Return why nothing can be recorded, or "" if the record can be written.
-
-    The home folder of a container, for example, may not be writable.
-    """
+    """Return why nothing can be recorded, or ""; a container's home folder may not be writable."""
     with suppress(RuntimeError):
         record_path = _find_record_path()
         existing_folder = next(folder for folder in record_path.parents if folder.exists())
@@ -89,10 +86,7 @@ def _explain_unwritable() -> str:
 
 
 def _read_record() -> dict[str, str]:
-    """Return the recorded hash of the content of each file, by the hash of its path.
-
-    The last record of a path counts.
-    """
+    """Return the last recorded content hash of each file, by the hash of its path."""
     with suppress(OSError, ValueError, RuntimeError):
         lines = [line.split() for line in _find_record_path().read_text("ascii").splitlines()]
         return dict(line for line in lines if len(line) == 2)

@@ -249,10 +249,7 @@ def _gains_of_causes(model, names, strokes, fault_values, own, covariance, outli
 
 
 def _gain_interval(outline, slopes, numbers, of_cause, samples) -> tuple[float, float]:
-    """Return the 95 % interval of the gain, relative to the gain itself.
-
-    Its ends are the 2.5 and 97.5 % quantiles of the samples. Gains follow from the area between edges.
-    """
+    """Return the 95 % interval, relative to the gain, of gains that follow from the areas between edges."""
 
     def gain(sample):
         edges, corrected = slopes[:, :-1] @ sample[:-1], slopes[:, :-1] @ np.where(of_cause, 0.0, sample)[:-1]

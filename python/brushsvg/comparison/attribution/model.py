@@ -56,10 +56,7 @@ class FaultModel:
 
     @cached_property
     def _depths_mm(self) -> tuple[float, float]:
-        """Return the usual depth, and the distance at which a law's bend counts fully.
-
-        The distance is to the deepest pose or to the paper, the larger of the two [mm].
-        """
+        """Return the usual depth, and the distance at which a law's bend counts fully: to the deepest pose or paper."""
         depths = -np.concatenate([np.array(a_pass.poses_mm)[:, 2] for a_pass in self.plan.passes])
         usual = float(np.median(depths[depths > 0.1])) if (depths > 0.1).any() else 1.0
         return usual, max(float(depths.max()) - usual, usual)
@@ -154,10 +151,7 @@ class FaultModel:
 
 
 def _trace_outline(mark, brush):
-    """Return the rings of one stroke.
-
-    The area that all paint covers together is not computed.
-    """
+    """Return the rings of one stroke, without the area that all paint covers together."""
     alone = _core.Marks()
     alone.passes = [mark]
     _core.trace_outlines(alone, brush)

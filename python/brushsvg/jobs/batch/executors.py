@@ -70,10 +70,7 @@ def end_repeated_script() -> None:
 
 
 def _end_with_parent(pipe) -> None:
-    """Report that this worker process is ready, and end it when its parent closes the pipe or dies.
-
-    Ctrl-C is ignored here, because the parent handles it.
-    """
+    """Report that this worker is ready, ignore Ctrl-C, and end when the parent closes the pipe or dies."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -59,10 +59,7 @@ def format_row(row: Row) -> str:
 
 
 def _parse_row(line: bytes) -> Row | None:
-    """Return the row in a line, or None if the line is incomplete or is no row.
-
-    A killed run may leave an incomplete line.
-    """
+    """Return the row in a line, or None if a killed run left it incomplete or it is no row."""
     try:
         values = json.loads(line)
         figures = values.pop("figures")
@@ -126,10 +123,7 @@ class Manifest:
             self._add("\n")  # an incomplete line stays a line of its own
 
     def _refuse_outside(self, row: Row) -> None:
-        """Raise Error for a file outside of the folder.
-
-        Outdated files are deleted, and the manifest may come from another person.
-        """
+        """Raise Error for a file outside of the folder: a manifest may be another person's, and files get deleted."""
         for name in row.files:
             path = os.path.normpath(os.path.join(self._place, name))
             real_folder = os.path.realpath(os.path.dirname(path))

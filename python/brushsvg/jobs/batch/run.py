@@ -230,10 +230,7 @@ def _read_brush_to_send(brush) -> SentBrush:
 def _convert_remaining(
     executor, is_ours: bool, remaining: list[int], items: list[Item], settings: _BatchSettings, is_cancelled
 ):
-    """Yield the number and the TaskResult of each remaining drawing as it finishes.
-
-    is_ours: the executor belongs to this batch and ends with it, so pending futures need no cancelling.
-    """
+    """Yield number and TaskResult of each drawing as it finishes; is_ours: the executor ends with the batch."""
     finished: queue.SimpleQueue = queue.SimpleQueue()
     pending: dict[Future, tuple[int, int]] = {}
     numbers = iter(remaining)
@@ -353,10 +350,7 @@ def _make_reporter(count: int, resumed: int, progress):
 
 
 def _write_summary(folder: Path, rows: list[Row], parquet: bool) -> list[str]:
-    """Write the tables and contact sheets of all rows, and return their paths.
-
-    Contact sheets of an earlier, larger batch are deleted.
-    """
+    """Write tables and contact sheets of all rows, delete those of a larger batch, and return their paths."""
     files = {folder / "table.csv": tables.format_csv(rows)}
     if parquet:
         files[folder / "table.parquet"] = tables.format_parquet(rows)

@@ -36,10 +36,7 @@ def advise_on_size(work: Work) -> str:
 
 
 def _make_trial(brush, options: Options):
-    """Return a function that plans and simulates strokes as a drawing is planned.
-
-    The function takes strokes and returns their marks and their targets. It uses no sheet and no machine.
-    """
+    """Return a function from strokes to their marks and targets, planned without a sheet and a machine."""
     compensated = make_compensation(brush, None, options)
 
     def run_trial(strokes):

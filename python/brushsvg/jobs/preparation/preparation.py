@@ -90,10 +90,7 @@ def _prepare_source(source: Source, options: Options, stage: Callable[[str], obj
 
 
 def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
-    """Plan the strokes of a drawing that was read.
-
-    notices: the warnings of the drawing; further warnings are added to this list.
-    """
+    """Plan the strokes of a drawing that was read; notices: the drawing's warnings, extended here."""
     stage("finding strokes")
     on_cell = limit_depth(brush, options)
     found_strokes, stroke_notices = _find_strokes(design, on_cell, options)
@@ -208,10 +205,7 @@ class _PlannedStrokes:
 
 
 def _find_strokes(design: Design, brush, options: Options) -> tuple[list, list[Notice]]:
-    """Return the strokes of a design and warnings.
-
-    The strokes are joined, and lifted at their corners, as requested.
-    """
+    """Return a design's strokes, joined and lifted at their corners as requested, and warnings."""
     outline_notices: list[Notice] = []
     if options.paths_as is None:
         design, outline_notices = remove_thin_outlines(design, brush)
@@ -358,10 +352,7 @@ def _refuse_wide_strokes(strokes: list, brush, options: Options) -> None:
 
 
 def _refuse_wide_lines(strokes: list, brush) -> None:
-    """Raise Error for the first line that is wider than the brush.
-
-    Lines are checked before filled shapes, which need much more time.
-    """
+    """Raise Error for the first line wider than the brush, before filled shapes, which need more time."""
     for stroke, half_mm in find_wide_lines([stroke for stroke in strokes if not stroke.target_mm], brush):
         brush.depth_for_half_width(half_mm, stroke.id)
 
@@ -376,10 +367,7 @@ def _read_design(source, reading: read.ReadOptions) -> Design:
 
 
 def _make_limit_check(brush, options: Options):
-    """Return a function that lists why the cell cannot run a plan.
-
-    The function returns a notice for each problem. It is None without a cell.
-    """
+    """Return a function from a plan to notices on why the cell cannot run it, or None without a cell."""
     if options.cell is None:
         return None
     cell, job = options.cell, Job(options.z_offset_mm)

@@ -46,10 +46,7 @@ def add_width_advice(painted, compensation, brush, compensated, line_elements: s
 
 
 def _make_width_advice(lines: list, brush, measured: tuple[float, float], compensated) -> str:
-    """Return advice on the widths that keep a line within the measured depths.
-
-    Returns "" if the middle one of these widths does not.
-    """
+    """Return advice on widths that keep a line in the measured depths, "" if their middle one does not."""
     halves = [brush.half_width(depth) for depth in measured]
     equal_width = [stroke.replaced(half_width=[(0.0, sum(halves) / 2)]) for stroke in lines]
     try:

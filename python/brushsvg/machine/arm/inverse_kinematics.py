@@ -103,10 +103,7 @@ def flange_rates_at(joint_frames: np.ndarray, tip_mm: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=64)
 def _fixed_frames(arm: Arm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the constant transforms of an arm: the base, the links and the flange.
-
-    The transform of a link moves along z by d and along x by a, and turns about x by alpha.
-    """
+    """Return base, link and flange transforms: a link moves along z by d and x by a, and turns about x by alpha."""
     links = np.array([frame_of_pose((a, 0.0, d), (alpha, 0.0, 0.0)) for a, alpha, d, _ in arm.dh])
     nowhere = (0.0, 0.0, 0.0)
     return (
@@ -147,10 +144,7 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _refine_on_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
-    """Refine angles of differently rounded links for the links of the cell.
-
-    Two Newton steps are enough, except near a singularity.
-    """
+    """Refine angles of differently rounded links by two Newton steps, enough unless near a singularity."""
     return refine_angles(arm, angles, flange, 5, MAX_NEWTON_STEP_RAD)[0]
 
 

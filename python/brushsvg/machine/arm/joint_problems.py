@@ -417,10 +417,7 @@ def _near_singularity_notice(place: Place, arm: Arm, most: float, joints_rad: np
 
 
 def _may_have_flipped(posture: _Posture, robot_mm: np.ndarray) -> bool:
-    """Return whether a place behind a singularity can show a wrist flip.
-
-    It must be within FLIP_SEARCH_MM of the place where the posture failed.
-    """
+    """Return whether a place within FLIP_SEARCH_MM behind the singularity can show a wrist flip."""
     failure = posture.failure
     if failure is None or failure.code != "singularity":
         return False

@@ -268,10 +268,7 @@ def _sheet_out_of_reach(cell: Cell, height_mm: float) -> list[Notice]:
 
 
 def _clip_polygon(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
-    """Clip a flat polygon (n, 3) to the side where `inside` is not negative.
-
-    inside: (n,) values of a linear function at the corners.
-    """
+    """Clip a flat polygon (n, 3) to the side where `inside` (n,), linear at the corners, is not negative."""
     kept = []
     for k in range(len(corners)):
         a, b = inside[k - 1], inside[k]
@@ -283,10 +280,7 @@ def _clip_polygon(corners: np.ndarray, inside: np.ndarray) -> np.ndarray:
 
 
 def _distances_from_origin_mm(corners: np.ndarray) -> tuple[float, float]:
-    """Return the range of distances [mm] of a flat convex polygon from the origin.
-
-    corners: (n, 3) corners of the polygon [mm].
-    """
+    """Return the range of distances [mm] of a flat convex polygon, corners (n, 3), from the origin."""
     nearest, farthest = distances_from_origin(make_paths([[*corners, corners[0]]]))
     sides = np.roll(corners, -1, axis=0) - corners
     normal = np.cross(sides[0], sides[1]) if len(corners) > 2 else np.zeros(3)
@@ -504,10 +498,7 @@ def _check_station_heights(station: Station, cell: Cell, where: str) -> None:
 
 
 def _check_other_vessels(station: Station, cell: Cell, where: str) -> None:
-    """Refuse a visit that dips, stirs or wipes inside another vessel, below its rim.
-
-    Two stations at one place are one vessel.
-    """
+    """Refuse a visit that dips below another vessel's rim; stations at one place are one vessel."""
     if station.by_hand:
         return
     dip = (*station.place_mm, station.surface_mm - station.depth_mm)
@@ -533,10 +524,7 @@ def _check_other_vessels(station: Station, cell: Cell, where: str) -> None:
 
 
 def _find_distance_below_rim(path: list, vessel: Station) -> float:
-    """Return the distance [mm] of the middle of a vessel from a path, where the path is below the rim.
-
-    path: points [mm] that straight lines connect. Returns inf if the path is nowhere below the rim.
-    """
+    """Return how far [mm] a vessel's middle is from a path of lines below the rim, inf if it is nowhere below."""
     nearest_mm = math.inf
     for start, end in pairwise(np.array(path, dtype=float)):
         above_mm = np.array([start[2], end[2]]) - vessel.rim_mm
@@ -615,10 +603,7 @@ def report_unusual_values(cell: Cell) -> list[Notice]:
 
 
 def _check_facing(cell: Cell) -> list[Notice]:
-    """Report paper on a wall that faces away from the robot.
-
-    The points were probably taught the other way round.
-    """
+    """Report paper on a wall that faces away from the robot: its points were probably exchanged."""
     frame = robot_from_paper(cell)
     tilt_deg, ahead_mm = normal_tilt_deg(frame), float(frame[:2, 2] @ frame[:2, 3])
     if not cell.tool or tilt_deg < MIN_WALL_TILT_DEG or ahead_mm <= 0:
@@ -643,10 +628,7 @@ def _check_dip_tilt(cell: Cell) -> list[Notice]:
 
 
 def _check_sheet_corner(cell: Cell) -> list[Notice]:
-    """Report a sheet corner that the tool cannot reach.
-
-    Such a cell is not refused: perhaps nothing is painted near the corner.
-    """
+    """Report a sheet corner that the tool cannot reach; perhaps nothing is painted near it."""
     corner = make_paths([[(0.0, 0.0, 0.0), (0.0, 0.0, cell.heights.safe_mm)]])
     return [
         replace(notice, where="workspace", sentence=f"over the sheet's lower left corner {notice.sentence}")

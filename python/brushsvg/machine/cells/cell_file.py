@@ -152,10 +152,7 @@ def _read_rows(entry: Entry, shape: tuple, value, where: str) -> tuple:
 
 
 def _shape_in_words(shape: tuple) -> str:
-    """Describe the shape of a value in words.
-
-    For example, (None, 2, 3) is a list of rows of 2 rows of 3 numbers.
-    """
+    """Describe a shape in words; for example, (None, 2, 3) is a list of rows of 2 rows of 3 numbers."""
     if len(shape) == 1:
         return "a list of numbers" if shape[0] is None else f"{shape[0]} numbers"
     inner = _shape_in_words(shape[1:])
@@ -163,10 +160,7 @@ def _shape_in_words(shape: tuple) -> str:
 
 
 def _table_lines(table) -> list[str]:
-    """Return the keys of a table as TOML lines.
-
-    Keys with their default value are left out.
-    """
+    """Return the keys of a table as TOML lines. Keys with their default value are left out."""
     lines = []
     for item in fields(table):
         entry = item.metadata.get("entry")

@@ -108,10 +108,7 @@ class _EbbWriter:
         return self._feed_line(feed_of_speed_mm_min(move.speed_mm_s)) + set_lifts + _wait_command(servo.settle_s)
 
     def _feed_line(self, feed: float) -> str:
-        """Return the line with the highest feed of the next moves.
-
-        It is "" if the feed is unchanged.
-        """
+        """Return the line with the highest feed of the next moves. It is "" if the feed is unchanged."""
         before, self.feed = self.feed, feed
         return "" if feed == before else f"# feed {feed:.1f} mm/min\n"
 
@@ -119,10 +116,7 @@ class _EbbWriter:
         return f"S2,{value},{self.cell.motors.servo_pin},0,{wait_ms}\n"
 
     def _line_commands(self, path: np.ndarray, feeds: np.ndarray, blends_mm: np.ndarray | None, run: np.ndarray) -> str:
-        """Return the commands of straight lines, each in parts and in slices of time.
-
-        The height of a part is the height at its middle.
-        """
+        """Return commands of straight lines in parts and time slices, each part at the height of its middle."""
         cell, ways = self.cell, np.diff(path, axis=0)
         lengths = np.hypot(ways[:, 0], ways[:, 1])
         caps = joint_speed_limits(blends_mm, run + 1, ways[:, :2], lengths, cell.speeds.acceleration_mm_s2)
@@ -143,10 +137,7 @@ class _EbbWriter:
         return self._slice_commands(part, when_s, places, values, feeds[line_numbers])
 
     def _time_parts(self, parts_mm: list[float], caps: list[float], tops: list[float]) -> tuple[np.ndarray, ...]:
-        """Return the part, the time [s] and the path length [mm] of each row.
-
-        No slice is shorter than the shortest part of a move.
-        """
+        """Return part, time [s] and path length [mm] of each row; slices are no shorter than a shortest part."""
         least_mm, last_mm = min_part_mm(self.cell), 0.0
         parts, times, lengths_done = [], [], []
         for k, when_s, done_mm in time_lines(parts_mm, caps, tops, self.cell.speeds.acceleration_mm_s2):

@@ -148,10 +148,7 @@ class _ProgramPoints:
 
 
 def _wpr_angles(turned: np.ndarray) -> tuple[str, str, str]:
-    """Return W, P and R of a rotation (3, 3).
-
-    They are the tool's angles about the fixed axes x, y and z.
-    """
+    """Return W, P and R of a rotation (3, 3). They are the tool's angles about the fixed axes x, y and z."""
     w, p, r = (format_number(angle, POINT_DECIMALS) for angle in rotation_deg(turned))
     return w, p, r
 
@@ -164,10 +161,7 @@ def _write_program(name: str, lines: str, points: _ProgramPoints) -> str:
 
 
 def _setup_lines(program: Program) -> str:
-    """Return the lines that set the user frame and the tool.
-
-    The register first gets a place of the arm, so that it has all six values.
-    """
+    """Return the lines that set frame and tool; a place of the arm first fills all six register values."""
     cell = program.cell
     paper, tool = program.robot_from_frame, cell.tool
     frames = (

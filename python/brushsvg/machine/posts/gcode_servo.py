@@ -84,13 +84,7 @@ def _table_by_value(table: tuple) -> tuple[np.ndarray, np.ndarray]:
 def _move_lines(
     move: Move, here: np.ndarray, value: int, cell: Cell, fastest_mm_s: float, feed: float
 ) -> Generator[str, None, tuple[int, float]]:
-    """Yield the lines of a move, and return the value and the feed after it.
-
-    They are the servo's value and the feed [mm/min].
-
-    value, feed: value and feed before the move.
-    fastest_mm_s: highest speed of the tip.
-    """
+    """Yield a move's lines and return value and feed [mm/min] after it; fastest_mm_s: limit of the tip."""
     servo = cell.servo
     path = np.concatenate([here[None], move.points_mm])
     steps = path[1:] - path[:-1]

@@ -64,10 +64,7 @@ def comment(text: str) -> str:
 
 
 def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals: int) -> str:
-    """Return a rise to a height along the base's z axis.
-
-    The tool's orientation does not change.
-    """
+    """Return a rise to a height along the base's z axis. The tool's orientation does not change."""
     height = format_number(height_mm, decimals)
     return (
         "here = get_atl_tcp_pose()\n"

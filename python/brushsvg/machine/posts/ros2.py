@@ -126,10 +126,7 @@ def _header_lines(program: Program) -> tuple[str, ...]:
 
 
 def _flange_poses(table: np.ndarray, cell: Cell) -> tuple[np.ndarray, np.ndarray]:
-    """Return the flange's places (n, 3) [m] and its quaternion x, y, z, w.
-
-    The quaternion is (4,) for a brush that is upright on the paper, and (n, 4) for a program that tilts the brush.
-    """
+    """Return places (n, 3) [m] and quaternion x, y, z, w of the flange: (4,) if upright, else (n, 4)."""
     tip_rotations = rotation(upright_deg(cell))
     flange = flange_from_tip(cell)
     if table.shape[1] > AXIS_COLUMN:

@@ -95,10 +95,7 @@ def _rise_lines(height_mm: float, speed_mm_s: float, acceleration: str, decimals
 
 
 def _watch_thread(force_n: float) -> str:
-    """Return a thread that ends the whole program on hard contact.
-
-    The limit is force_n.
-    """
+    """Return a thread that ends the whole program on hard contact. The limit is force_n."""
     newtons = format_number(force_n, 1)
     return (
         "  thread watch():\n"

@@ -77,10 +77,7 @@ def commanded_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def _solve_place(target_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """Return the commands (n, 2) that take the tool to targets (n, 2).
-
-    They invert the machine's axes and its field.
-    """
+    """Return the commands (n, 2) that take the tool to targets (n, 2). They invert the machine's axes and its field."""
     inverse_axes = np.linalg.inv(_axis_matrix(machine)).T
     place = target_mm @ inverse_axes
     for _ in range(MAX_SOLVER_ROUNDS if has_field(machine) else 0):
@@ -131,19 +128,13 @@ def in_lines_mm(points_mm: np.ndarray, machine: Machine | None) -> np.ndarray:
 
 
 def _split_at_shares(points: np.ndarray, cuts) -> np.ndarray:
-    """Split each line between points (n, k) at its shares.
-
-    The last share of each line is 1.
-    """
+    """Split each line between points (n, k) at its shares. The last share of each line is 1."""
     lines = zip(pairwise(points), cuts, strict=True)
     return np.vstack([points[:1], *(a + at[:, None] * (b - a) for (a, b), at in lines)])
 
 
 def _split_evenly(points: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Split each line between points (n, k) into equal parts.
-
-    counts: (n - 1,) number of parts of each line.
-    """
+    """Split each line between points (n, k) into equal parts; counts: (n - 1,) number of parts of each line."""
     line = np.repeat(np.arange(len(counts)), counts)
     share = (np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts) + 1) / counts[line]
     return np.vstack([points[:1], points[line] + share[:, None] * (points[line + 1] - points[line])])
@@ -174,10 +165,7 @@ def _map_cuts(a: np.ndarray, b: np.ndarray, machine: Machine) -> np.ndarray:
 
 
 def _paper_height_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
-    """Return how much higher [mm] the paper is than it was taught, (n,).
-
-    places_mm: (n, 2) commanded places.
-    """
+    """Return how much higher [mm] the paper is than taught at commanded places (n, 2), (n,)."""
     plane_mm = machine.height_mm + places_mm @ machine.tilt_mm_per_mm
     if not machine.map_mm:
         return plane_mm
@@ -190,10 +178,7 @@ def _paper_height_mm(places_mm: np.ndarray, machine: Machine) -> np.ndarray:
 
 @lru_cache
 def _map_grid(map_mm: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return x (k,), y (m,) and heights (m, k) of a map.
-
-    x and y are ascending.
-    """
+    """Return x (k,), y (m,) and heights (m, k) of a map. x and y are ascending."""
     rows = np.array(sorted(map_mm, key=lambda row: (row[1], row[0])))
     xs, ys = np.unique(rows[:, 0]), np.unique(rows[:, 1])
     return xs, ys, rows[:, 2].reshape(len(ys), len(xs))

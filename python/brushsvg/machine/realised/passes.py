@@ -94,10 +94,7 @@ def split_long_moves(poses: np.ndarray) -> np.ndarray:
 
 
 def _clip_to_paper(poses: np.ndarray) -> np.ndarray | None:
-    """Return the part of a path between its first and last touch of the paper.
-
-    Returns None if the path does not touch the paper. Between the two, the tip stays on the paper or below.
-    """
+    """Return a path from its first to its last touch, with the tip on the paper or below, or None."""
     down = np.flatnonzero(poses[:, 2] < 0)
     if not len(down):
         return None

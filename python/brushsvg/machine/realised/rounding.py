@@ -96,10 +96,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
 
 
 def _at_servo_values(poses: np.ndarray, servo: Servo) -> np.ndarray:
-    """Return the poses at the heights of the servo's whole values.
-
-    A reader of the program knows no other heights.
-    """
+    """Return poses at the heights of whole servo values; a program's reader knows no other heights."""
     heights, values = np.array(sorted(servo.table), dtype=float).T
     rounded_values = np.rint(np.interp(poses[:, 2], heights, values))
     rising = np.argsort(values)
@@ -150,11 +147,7 @@ def _servo_rows(places: np.ndarray, least_mm: float) -> np.ndarray:
 
 
 def _split_arcs(arcs, poses: np.ndarray, circle_definition: str, cell: Cell) -> tuple[list, list]:
-    """Return the arcs that are written as circles, and the other arcs.
-
-    Arcs that come back to their beginning or beyond are written in parts. An arc with only a tiny move before or after
-    it is not written as a circle.
-    """
+    """Return arcs written as circles, split where they come back to their beginning, and the other arcs."""
     unit, least_mm = unit_mm(cell), least_move_mm(cell)
 
     def is_tiny(first: int, last: int) -> bool:
@@ -206,10 +199,7 @@ TARGET_PART_RAD, MAX_PART_RAD = 3.5, 5.0
 
 
 def _keeps_radius(spokes: np.ndarray, cell: Cell) -> bool:
-    """Return whether the firmware accepts a circle and stays close to it.
-
-    spokes: (2, 2) from the centre to both ends of the circle.
-    """
+    """Return whether the firmware accepts a circle and stays close to it; spokes (2, 2): centre to ends."""
     first, last = (hypot(*spoke) for spoke in spokes.tolist())
     # The centre of the circle is rounded, too.
     max_difference_mm = MAX_RADIUS_DIFFERENCE_MM.get(cell.language, inf) - 1.5 * unit_mm(cell)
@@ -234,10 +224,7 @@ def _defines_circle(points: np.ndarray, circle_definition: str, least_mm: float)
 
 
 def _select_distinct_poses(poses: np.ndarray, ends: set[int], least_mm: float) -> np.ndarray:
-    """Return the rows of poses that are at least least_mm from the pose before.
-
-    The first and the last pose and the ends of circles are always kept. Other poses near them are dropped.
-    """
+    """Return rows at least least_mm from the row before; first, last and circles' ends stay."""
     if (np.linalg.norm(np.diff(poses, axis=0), axis=1) >= least_mm).all():
         return np.arange(len(poses))
     places, kept_ends = poses.tolist(), ends | {0, len(poses) - 1}

@@ -165,10 +165,7 @@ def _polyline_2d(
 
 
 def _bulge_to_cubics(p: complex, q: complex, bulge: float, tolerance: float) -> np.ndarray:
-    """Return the arc from p to q as cubics (n, 4), in complex numbers.
-
-    bulge: tangent of a quarter of the angle of the arc, positive for a left turn.
-    """
+    """Return the arc from p to q as cubics (n, 4), complex; bulge: tangent of a quarter angle, > 0 to the left."""
     turn = 4 * math.atan(bulge)
     chord = 2 * math.sin(turn / 2)
     count = arc_count(abs(turn), abs((q - p) / chord), tolerance)

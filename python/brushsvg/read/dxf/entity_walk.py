@@ -208,11 +208,7 @@ class EntityWalk:
         self._walk(parts, _Placement(place.mm_from_block, pen, name, (*place.blocks, name)))
 
     def _cached_curves(self, entity, stretch: float) -> list[Curve] | None:
-        """Return the curves of an entity from a cache.
-
-        A block can be inserted many times. Its entities are converted once for each size, rounded up to a power
-        of 2.
-        """
+        """Return cached curves of a block's entity, one conversion per size rounded up to a power of 2."""
         stretch = 2.0 ** math.ceil(math.log2(stretch))
         key = entity.dxf.handle, stretch
         if key not in self._curve_cache or key[0] is None:
@@ -257,10 +253,7 @@ class EntityWalk:
             self._walk(block, _Placement(inner, pen, name + suffix, (*place.blocks, key)))
 
     def _insert_cells(self, insert, name: str):
-        """Return (name suffix, shift) for each cell of an insert with rows and columns.
-
-        The shift is in the world of the insert.
-        """
+        """Return (name suffix, shift in the insert's world) for each cell of its rows and columns."""
         dxf = insert.dxf
         rows = dxf.get("row_count", 1) if dxf.get("row_spacing", 0.0) else 1
         columns = dxf.get("column_count", 1) if dxf.get("column_spacing", 0.0) else 1

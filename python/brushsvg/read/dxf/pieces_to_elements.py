@@ -91,10 +91,7 @@ def find_pattern_restarts(piece: Piece) -> list[np.ndarray]:
 
 
 def _closed_cubics(curve: Curve) -> tuple[np.ndarray, float]:
-    """Return the cubics of a curve (n, 4, 2) and the distance of its ends as drawn.
-
-    If the curve is closed and its ends do not meet, a last cubic connects them.
-    """
+    """Return cubics (n, 4, 2), with a last one that closes a closed curve, and the gap as drawn."""
     cubics = curve.cubics[..., :2]
     gap = math.dist(cubics[0, 0], cubics[-1, 3])
     if curve.closed and gap > _MAX_GAP_MM:
@@ -125,10 +122,7 @@ def _subpath(curve: Curve, default_mm: float) -> SubPath:
 
 
 def _widths_along_length(cubics: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """Return rows (k, 2) of a fraction of the arc length and the width there.
-
-    Where the width jumps, two rows have the same fraction.
-    """
+    """Return rows (k, 2) of length fraction and width; two rows share the fraction at a jump."""
     fractions = np.cumsum([0.0, *knots(cubics)[:, -1]])
     fractions = fractions / fractions[-1]
     rows = np.column_stack((np.column_stack((fractions[:-1], fractions[1:])).ravel(), widths.ravel()))

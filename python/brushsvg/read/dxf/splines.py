@@ -75,10 +75,7 @@ def b_spline_to_cubics(degree: int, knots, points, weights, tolerance: float) ->
 
 
 def _split_into_beziers(points: np.ndarray, knots: np.ndarray, degree: int) -> np.ndarray:
-    """Split a B-spline into the Bezier curves of its non-empty spans.
-
-    The control points, (spans, degree + 1, 4), are polar forms, evaluated by de Boor's scheme.
-    """
+    """Split a B-spline into Beziers of non-empty spans: polar forms (spans, degree + 1, 4) by de Boor."""
     tiny = 1e-10 * (knots[-1] - knots[0])
     spans = np.array([k for k in range(degree, len(points)) if knots[k + 1] - knots[k] > tiny], dtype=int)
     if not len(spans):
@@ -106,10 +103,7 @@ def _elevate_to_cubics(pieces: np.ndarray) -> np.ndarray:
 
 
 def _fit_cubics(pieces: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return cubics in place of rational Bezier curves (n, degree + 1, 4).
-
-    Curves that a cubic does not fit are halved until it fits.
-    """
+    """Return cubics for rational Beziers (n, degree + 1, 4), which are halved until cubics fit."""
     begin, length = np.arange(len(pieces), dtype=float), 1.0
     begins, fitted = [], []
     for halvings in range(_MAX_HALVINGS + 1):
@@ -129,10 +123,7 @@ def _fit_cubics(pieces: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def _hermite_cubics(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return cubics with the ends and end tangents of rational curves.
-
-    Also returns their errors: the error (n,) is the greatest deviation at three parameters.
-    """
+    """Return cubics with the ends and tangents of the curves, and their deviation (n,) at three parameters."""
     degree = pieces.shape[1] - 1
     weights = pieces[..., 3:]
     p = pieces[..., :3] / weights

@@ -269,10 +269,7 @@ class _MTextExploder(ezdxf.addons.mtxpl.MTextExplode):
 
 
 def _align_baselines(line) -> None:
-    """Put letters of several heights in one word on one baseline.
-
-    ezdxf aligns their tops, unless it can break the line between them.
-    """
+    """Put a word's letters of several heights on one baseline; ezdxf aligns tops of unbreakable lines."""
     for group in line.cells():
         if isinstance(group, _boxes.RigidConnection):
             for cell in group:

@@ -83,10 +83,7 @@ def _suggest_readings(all_ways: list[Way], kind: str) -> str:
 
 
 def _group_into_lines(all_ways: list[Way], down: Sequence[bool]) -> list[list[Way]]:
-    """Return the drawn ways, grouped into lines.
-
-    A pen that comes down again where it went up continues its line.
-    """
+    """Return drawn ways as lines; a pen that comes down where it went up continues its line."""
     chains: list[list[Way]] = []
     is_drawn = False
     for way, is_down in zip(all_ways, down, strict=True):

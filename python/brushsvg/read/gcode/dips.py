@@ -71,10 +71,7 @@ def _find_commented_dips(strokes: list[tuple[int, np.ndarray]], comment_by_line:
 
 
 def _find_outside_others(strokes: list[np.ndarray], chosen: list[bool]) -> list[bool]:
-    """Find the chosen strokes that have no point in the box of the other strokes.
-
-    Returns a flag for each stroke. Without other strokes, all flags are False.
-    """
+    """Return a flag for each chosen stroke: whether it has no point in the box of the others, if there are any."""
     others = [points for points, is_chosen in zip(strokes, chosen, strict=True) if not is_chosen]
     if not others:
         return [False] * len(strokes)

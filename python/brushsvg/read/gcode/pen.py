@@ -95,10 +95,7 @@ def _pen_unknown_error(levels: list[float | None]) -> Error:
 
 
 def _sideways_heights(all_ways: list[Way], is_sideways: list[bool]) -> list[float | None]:
-    """Return the greatest height [mm] of each sideways way, rounded.
-
-    The entry is None if the height is unknown, and for ways that are not sideways.
-    """
+    """Return each sideways way's greatest height [mm], rounded, None for unknown and other ways."""
     heights = [float(way.points_mm[:, 2].max()) for way in all_ways]
     return [
         round(height / SAME_HEIGHT_MM) * SAME_HEIGHT_MM if moves_sideways and math.isfinite(height) else None
@@ -107,10 +104,7 @@ def _sideways_heights(all_ways: list[Way], is_sideways: list[bool]) -> list[floa
 
 
 def _servo_values(all_ways: list[Way], is_sideways: list[bool]) -> list[float | None]:
-    """Return the servo value of each sideways way.
-
-    The entry is -inf if the servo is off, and None for ways that are not sideways.
-    """
+    """Return each sideways way's servo value: -inf if the servo is off, None for other ways."""
     return [
         (-math.inf if way.power is None else way.power) if moves_sideways else None
         for way, moves_sideways in zip(all_ways, is_sideways, strict=True)
@@ -126,10 +120,7 @@ def _count_changes(levels: list[float | None]) -> int:
 def _decide_by_height(
     all_ways: list[Way], is_sideways: list[bool], levels: list[float | None], paper_z_mm: float | None
 ) -> tuple[list[bool], str, bool]:
-    """Decide by height which ways are drawn.
-
-    Returns a flag for each way, a sentence about the reading, and whether Z counts downwards.
-    """
+    """Decide by height which ways are drawn: a flag each, a sentence about it, whether Z counts downwards."""
     if paper_z_mm is None and len(_distinct_heights(all_ways, levels)) < 2:
         raise _pen_unknown_error(levels)
     inverted = [replace(way, points_mm=way.points_mm * (1.0, 1.0, -1.0)) for way in all_ways]

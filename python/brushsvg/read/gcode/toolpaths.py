@@ -285,10 +285,7 @@ class _Interpreter:
 
 
 def _is_servo_angle(code: float, values: dict) -> bool:
-    """Whether M300 moves a servo to an angle, as on the MakerBot Unicorn.
-
-    Otherwise M300 plays a tone: it lasts P ms and is higher than 180 Hz.
-    """
+    """Whether M300 turns a servo (MakerBot Unicorn) and is no tone, which lasts P ms above 180 Hz."""
     return code == 300 and values["S"] <= MAX_SERVO_ANGLE_DEG and "P" not in values
 
 

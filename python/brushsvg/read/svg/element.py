@@ -183,10 +183,7 @@ class PaintedElements:
         return x, y, width, height
 
     def _name_element(self, node: ET.Element, context: Context, first: int) -> str:
-        """Return the name of a painted element.
-
-        An element without an id gets a name, which its notices, from index first on, use as well.
-        """
+        """Return a painted element's name; one without id gets a name, used by notices from `first` on too."""
         if name := context.name(node):
             return name
         self.unnamed += 1

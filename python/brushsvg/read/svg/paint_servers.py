@@ -108,10 +108,7 @@ class PaintServers:
         return colour[:7] if alpha >= 254.5 else f"{colour[:7]}{round(alpha):02x}"
 
     def _paints_something(self, pattern: ET.Element) -> bool:
-        """Whether a pattern has a size and content.
-
-        A size that cannot be read counts as present.
-        """
+        """Whether a pattern has a size and content. A size that cannot be read counts as present."""
         for name in ("width", "height"):
             declared = next((server.get(name) for server in self._chain(pattern) if name in server.attrib), "0")
             try:
@@ -122,10 +119,7 @@ class PaintServers:
         return bool(self._content(pattern))
 
     def _content(self, server: ET.Element) -> list[ET.Element]:
-        """Return the children of a gradient or pattern.
-
-        Without children, the first server in the chain of references that has children counts.
-        """
+        """Return the children of a gradient or pattern, or of the first server in its chain that has some."""
         return next((list(node) for node in self._chain(server) if len(node)), [])
 
     def _chain(self, server: ET.Element):

@@ -174,10 +174,7 @@ class TreeWalk:
         self.left_out[why] = self.left_out.get(why, 0) + 1
 
     def _inner_context(self, node: ET.Element, context: Context, style: Style, problems) -> Context | None:
-        """Return the context for the content of a node.
-
-        The result is None if nothing of the node can be painted.
-        """
+        """Return the context for the content of a node. The result is None if nothing of the node can be painted."""
         settings, invalid = own_settings(node.attrib, node is self.root)
         context = context._replace(style=style, settings={**context.settings, **settings}, size=None)
         if float(style.own["opacity"]) < INVISIBLE_OPACITY:
@@ -337,10 +334,7 @@ class TreeWalk:
 
 
 def _matrix_of_use(attributes: dict[str, str], context: Context) -> Matrix:
-    """Return the context's matrix, moved by x and y of a use.
-
-    A clip path of the use moves along.
-    """
+    """Return the context's matrix, moved by x and y of a use. A clip path of the use moves along."""
     x, y = (
         context.length(attributes.get(name, "").strip() or "0", context.viewport[axis])
         for axis, name in enumerate(("x", "y"))

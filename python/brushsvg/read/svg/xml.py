@@ -139,10 +139,7 @@ _DECLARED = re.compile(rb"""\s*<\?xml\s[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+
 
 
 def _decode(data: bytes) -> tuple[bytes, str | None]:
-    """Convert a document from an encoding with several bytes per character to UTF-8.
-
-    Returns the data and "utf-8", or the unchanged data and None for other encodings.
-    """
+    """Convert encodings with several bytes per character to UTF-8 ("utf-8"), or return the data and None."""
     declared = _DECLARED.match(data[:200])
     codec = _MULTI_BYTE_CODECS.get(declared[1].decode().lower()) if declared else None
     if codec is None:

@@ -254,10 +254,7 @@ def contours_to_lines(contours: tuple[SubPath, ...]) -> tuple[SubPath, ...]:
 
 
 def _refuse_undefined_sizes(face: hb.Face) -> None:
-    """Raise Error if a font does not define its em or the widths of its glyphs.
-
-    HarfBuzz would use its own numbers for such a font.
-    """
+    """Raise Error if a font lacks its em or glyph widths, for which HarfBuzz uses its own."""
     head, hhea, hmtx = (face.reference_table(tag).data or b"" for tag in ("head", "hhea", "hmtx"))
     units = int.from_bytes(head[18:20], "big") if len(head) >= 20 else None
     if units is None or not _UNITS_PER_EM_RANGE[0] <= units <= _UNITS_PER_EM_RANGE[1]:
@@ -324,10 +321,7 @@ def _unpack(data: bytes) -> bytes:
 
 
 def _inflated_length(packed: bytes, limit: int) -> int:
-    """Return the length of a decompressed table of a WOFF font.
-
-    A table beyond the limit is refused here, before fontTools fills the memory with it.
-    """
+    """Return a WOFF table's inflated length; refuse it before fontTools fills the memory."""
     try:
         length = len(zlib.decompressobj().decompress(packed, limit + 1))
     except zlib.error:

@@ -129,8 +129,5 @@ def _format_number(value: float) -> str:
 
 
 def _id_label(characters: str) -> str:
-    """Return the last part of an id.
-
-    ASCII letters and digits stay as they are. Other characters become their numbers.
-    """
+    """Return an id's last part: ASCII letters and digits stay, other characters become numbers."""
     return "".join(letter if letter.isascii() and letter.isalnum() else f"u{ord(letter):04X}" for letter in characters)

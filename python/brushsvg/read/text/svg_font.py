@@ -202,10 +202,7 @@ def _keys(characters: str, node: ET.Element) -> list[str]:
 
 
 def _parse_side(node: ET.Element, side: str) -> tuple[frozenset[str], list[tuple[int, int]]]:
-    """Return the keys and the ranges of code points on one side of a kern.
-
-    A key is "u" with characters, or "g" with the name of a glyph.
-    """
+    """Return keys ("u" characters, "g" glyph) and code point ranges on one side of a kern."""
     keys, ranges = {"g" + name.strip() for name in node.get("g" + side, "").split(",") if name.strip()}, []
     listed = node.get("u" + side, "")
     for token in [listed] if listed == "," else listed.split(","):

@@ -66,10 +66,7 @@ def sort_from_the_left(runs: list[TextRun]) -> list[TextRun]:
 
 
 def _find_scripts(line: str) -> list[str]:
-    """Return the script of each character.
-
-    Characters of no script have the script of the character before them.
-    """
+    """Return each character's script, that of the character before it if it has none."""
     tags = list(map(find_script_tag, line))
     current = next((tag for tag in tags if tag not in _COMMON_SCRIPTS), "Zyyy")
     scripts = []
@@ -95,10 +92,7 @@ def _find_levels(line: str) -> list[int]:
 
 
 def _resolve(characters: list[str], kinds: list[str], edge: str) -> list[str]:
-    """Return "L", "R", "EN" or "AN" for each character (rules W1 to W7 and N0 to N2).
-
-    kinds: the bidirectional classes; edge: the direction of the line, "L" or "R".
-    """
+    """Return "L", "R", "EN" or "AN" by bidirectional class (W1 to W7, N0 to N2); edge: "L" or "R" of the line."""
     previous = strong = edge
     for k, kind in enumerate(kinds):
         kind = previous if kind == "NSM" else kind

@@ -130,10 +130,7 @@ def _direction_notices(text: str, is_outline_font: bool) -> list[Notice]:
 
 
 def _is_control(character: str) -> bool:
-    """Whether a character is a control character, or is not allowed in XML.
-
-    XML does not allow halves of surrogate pairs, and two numbers that are not characters.
-    """
+    """Whether XML does not allow a character: control characters, surrogate halves and two others."""
     return unicodedata.category(character) in ("Cc", "Cs") or character in "\ufffe\uffff"
 
 

@@ -96,19 +96,12 @@ def find_cause(painted, stroke, line, place, size_mm, tracking_error) -> Cause:
 
 
 def _is_near_rings(place_mm, rings, reach_mm: float) -> bool:
-    """Return whether rings enclose enough of a square around a place.
-
-    The limit is _MIN_BARE_SHARE of the square.
-    """
+    """Return whether rings enclose enough of a square around a place. The limit is _MIN_BARE_SHARE of the square."""
     return area(intersect([_square_ring(place_mm, reach_mm)], rings)) > _MIN_BARE_SHARE * (2 * reach_mm) ** 2
 
 
 def _outside_discs_mm2(stroke, place_mm, size_mm: float) -> float:
-    """Return the area of a shape near a place that discs do not cover.
-
-    The discs have the widths of the stroke. A round brush cannot paint there. The square is around place_mm, with side
-    size_mm.
-    """
+    """Return the area of a shape, in a square at place_mm, that no disc of the stroke covers."""
     if not stroke.target_mm:
         return 0.0
     within = intersect([_square_ring(place_mm, size_mm / 2)], stroke.target_mm)
@@ -309,10 +302,7 @@ def _turning_angles(steps: np.ndarray) -> np.ndarray:
 
 
 def _turning_radius_mm(line: np.ndarray, s: float, window_mm: float) -> float:
-    """Return the radius of the line near arc length s.
-
-    It follows from the turn of the line within a window of window_mm.
-    """
+    """Return the line's radius near arc length s, from its turn within window_mm."""
     length = line[-1, 2]
     window_mm = min(max(window_mm, 1.0), length)
     first = min(max(s - window_mm / 2, 0.0), length - window_mm)

@@ -172,19 +172,13 @@ def _summary_line(report: Report) -> str:
 
 
 def _first_notice(notices: Iterable[Notice]) -> str:
-    """Return the first notice as text.
-
-    "..." stands for others, which are all in the details.
-    """
+    """Return the first notice, with "..." for others, which are all in the details."""
     first, *others = summarize_notices(notices)
     return ": ".join(filter(None, (first.where, first.text))) + (" ..." if others else "")
 
 
 def _details(report: Report) -> list[str]:
-    """Return the lines of the details.
-
-    The details are tables of all strokes, all strokes left out and all warnings.
-    """
+    """Return the lines of the details. The details are tables of all strokes, all strokes left out and all warnings."""
     rows = [*report.strokes, report.total]
     columns = [
         ("stroke", [_shorten(row.stroke) for row in rows]),

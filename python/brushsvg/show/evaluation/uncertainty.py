@@ -176,10 +176,7 @@ def _all_effects(plan, brush, marks):
 
 
 def _covariance_factor(covariance: np.ndarray) -> np.ndarray:
-    """Return L (n, K) with covariance = L L^T.
-
-    Directions without variance are left out.
-    """
+    """Return L (n, K) with covariance = L L^T. Directions without variance are left out."""
     values, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
     is_kept = values > 1e-12 * max(values.max(initial=0.0), 1e-300)
     return vectors[:, is_kept] * np.sqrt(values[is_kept])
@@ -202,10 +199,7 @@ def _lag_steps(brush, step: np.ndarray):
 
 
 def _moved_by_steps(brush, passes, traces, sides) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return how much each step changes contact and heading.
-
-    The changes are (n, 2, K) each, at the rows of each pass.
-    """
+    """Return the changes of contact and heading by each step, (n, 2, K), at each pass's rows."""
     if not sides:
         return [(np.zeros((len(trace.pose), 2, 0)),) * 2 for trace in traces]
     up, down, part = zip(*sides, strict=True)
@@ -286,10 +280,7 @@ def _largest(strokes: tuple[Confidence, ...]) -> Confidence:
 
 
 def _swept_triangles(ring: np.ndarray, effects: _Effects) -> list[np.ndarray]:
-    """Return the area in which the edge of an outline may be.
-
-    The area is given by counter-clockwise triangles.
-    """
+    """Return the area in which the edge of an outline may be. The area is given by counter-clockwise triangles."""
     if len(ring) < 3 or not len(effects.half):
         return []
     edge = np.roll(ring, -1, axis=0) - ring

@@ -127,10 +127,7 @@ def find_bridges(crossings: list[Crossing], rings: list[np.ndarray]) -> None:
 
 
 def _join_touching_lines(crossing: Crossing, rings: list[np.ndarray]) -> None:
-    """Join the four arms of two touching lines along the edges of both.
-
-    An example is the ring of a Q and its tail. Straight on, either line would turn into the other.
-    """
+    """Join four arms of touching lines along both edges, not straight on; as in a Q's ring and tail."""
     if len(crossing.arms) != 4 or any(arm.mate is None for arm in crossing.arms):
         return
     first, mate = crossing.arms[0], crossing.arms[0].mate
@@ -370,10 +367,7 @@ def _choose_bent_ways(crossing: Crossing, around: np.ndarray, most_bare: float) 
 
 
 def _measure_bare_share(crossing: Crossing, stubs: list[np.ndarray], around: np.ndarray) -> float:
-    """Return the share of places that the arms of a crossing leave bare.
-
-    stubs: rows of the arms inside the crossing; around: the places (n, 2).
-    """
+    """Return the share of places around (n, 2) that a crossing's arms, rows of stubs, leave bare."""
     discs = np.vstack([*stubs, *(arm.line[arm.out :][:STRAIGHT_ROWS] for arm in crossing.arms)])
     distances = np.hypot(*(around[:, None] - discs[None, :, :2]).transpose(2, 0, 1))
     return float((distances > discs[:, 2]).all(axis=1).mean()) if len(around) else 0.0

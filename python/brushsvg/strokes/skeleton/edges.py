@@ -254,10 +254,7 @@ def _refine_rows(rows: np.ndarray) -> np.ndarray:
 
 
 def _find_covered_row(places: np.ndarray, half: float, discs: np.ndarray) -> int:
-    """Return the first place at which discs cover a line.
-
-    If no place is covered, return the place that is nearest to the middle of a disc.
-    """
+    """Return where discs first cover a line, or the place nearest to the middle of a disc."""
     if not len(discs):
         return 0
     distances = np.hypot(*(places[:, None] - discs[None, :, :2]).transpose(2, 0, 1))

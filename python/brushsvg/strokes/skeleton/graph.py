@@ -86,10 +86,7 @@ def build_skeleton(rings: list[np.ndarray], nodes: np.ndarray, branches: list) -
 
 
 def _assign_inner_branches(crossings: list[Crossing], pieces: list[Piece], lines: list[np.ndarray]) -> None:
-    """Assign the branches inside crossings that no line runs through.
-
-    They become part of a line that ends there. If there is none, the longest branch inside becomes a line.
-    """
+    """Assign branches inside crossings without a line to one that ends there, or make the longest a line."""
     passed = {number for piece in pieces for number in piece.through}
     ending = {number: piece for piece in reversed(pieces) for number in piece.ends if number is not None}
     for number, crossing in enumerate(crossings):
@@ -104,10 +101,7 @@ def _assign_inner_branches(crossings: list[Crossing], pieces: list[Piece], lines
 
 
 def _add_bare_branches(crossings: list[Crossing], pieces: list[Piece], lines: list[np.ndarray]) -> None:
-    """Make lines of the branches inside crossings whose middle no line paints.
-
-    An example is the stem of a k between its arms and its foot.
-    """
+    """Make lines of inner branches whose middle no line paints, as a k's stem between arms and foot."""
     at_crossing: dict[int | None, list[Piece]] = {}
     for piece in pieces:
         for number in {*piece.ends, *piece.through}:
@@ -130,10 +124,7 @@ def _add_bare_branches(crossings: list[Crossing], pieces: list[Piece], lines: li
 
 
 def _follow_line(arm: Arm, used: set[int], crossings, from_free_end: bool = False) -> Piece:
-    """Follow a line from an arm through crossings to its other end.
-
-    The line begins at an unmated arm, or at the free end of a branch.
-    """
+    """Follow a line through crossings, from an unmated arm or a branch's free end to its other end."""
     used.add(arm.branch)
     if from_free_end:
         first, here, inside = None, arm, []
@@ -171,10 +162,7 @@ def _follow_ring(arm: Arm, used: set[int], crossings: list[Crossing]) -> Piece:
 
 
 def _trim_to_crossings(arm: Arm) -> np.ndarray:
-    """Return the arm's line outside of the crossings at its ends.
-
-    Where the crossings leave nothing of it, return a point.
-    """
+    """Return an arm's line outside of the crossings at its ends; where nothing is left, return a point."""
     last = len(arm.line) - (arm.other.out if arm.other else 0)
     if last > arm.out:
         return arm.line[arm.out : last]

@@ -142,10 +142,7 @@ def find_crossings(nodes, lines, ends, degree) -> tuple[list[Crossing], list[Arm
 
 
 def _drop_tip(crossing: Crossing) -> None:
-    """Drop the blunt tip in which two legs meet, as in an A.
-
-    The tip is not a line: both legs run on into it.
-    """
+    """Drop the blunt tip in which two legs meet, as in an A. The tip is not a line: both legs run on into it."""
     if len(crossing.arms) != 3 or len(crossing.discs) > 1:
         return
     x, y, radius = crossing.discs[0]
@@ -233,10 +230,7 @@ def _share_branch(a: Arm, b: Arm) -> None:
 
 
 def _mate_arms(crossing: Crossing) -> None:
-    """Mate pairs of arms, the straightest first.
-
-    No arms are mated at a corner that is the end of a stem.
-    """
+    """Mate pairs of arms, the straightest first. No arms are mated at a corner that is the end of a stem."""
     if crossing.is_corner and crossing.dropped > MIN_STEM_END:
         return
     narrow = MAX_NECK_RATIO * crossing.discs[:, 2].max()

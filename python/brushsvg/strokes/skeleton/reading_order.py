@@ -54,10 +54,7 @@ def group_areas(boxes: np.ndarray, script: str = "auto") -> list[list[int]]:
 
 
 def _is_one_character(boxes: np.ndarray) -> bool:
-    """Return whether areas are one character.
-
-    One character is roughly as high as wide and has few areas; a page of text has many.
-    """
+    """Return whether areas are one character: few, and as high as wide, unlike a page of text."""
     if not 0 < len(boxes) <= MAX_PARTS:
         return False
     width, height = boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)
@@ -83,10 +80,7 @@ def _group_rows(boxes: np.ndarray) -> list[list[int]]:
 
 
 def _merge_low_rows(rows: list[list[int]], boxes: np.ndarray) -> list[list[int]]:
-    """Merge rows of dots and accents with the nearer row.
-
-    Rows of dots above each other, as in a sheen, leave rows that can be merged again.
-    """
+    """Merge rows of dots and accents with the nearer row, repeatedly where dots are above each other."""
     sides = [(boxes[row, 2:] - boxes[row, :2]).max(axis=0) for row in rows]  # of the widest and the highest area
     bottoms = np.array([boxes[row, 1].min() for row in rows])
     tops = np.array([boxes[row, 3].max() for row in rows])
@@ -196,10 +190,7 @@ def _is_stacked(box: np.ndarray, others: np.ndarray) -> bool:
 
 
 def _move_headline_last(order: list[int], lines: list[np.ndarray]) -> list[int]:
-    """Return the order with the headline of a word last.
-
-    The headline consists of the flat lines on the level of the longest flat line on top.
-    """
+    """Return the order with a word's headline, the flat lines level with the longest one on top, last."""
     points = np.vstack(lines)
     middle = points[:, 1].min() + MIN_HEADLINE_HEIGHT * np.ptp(points[:, 1])
     extents = np.array([np.ptp(line[:, :2], axis=0) for line in lines])

@@ -115,10 +115,7 @@ def _are_alike(heights: np.ndarray) -> bool:
 
 
 def _is_right_angled(rings: list[np.ndarray]) -> bool:
-    """Return whether all edges run in two directions at right angles.
-
-    Four times their angles are then the same.
-    """
+    """Return whether all edges run in two directions at right angles. Four times their angles are then the same."""
     step = np.vstack([np.roll(ring, -1, axis=0) - ring for ring in rings])
     lengths_mm = np.hypot(*step.T)
     fourfold = np.exp(4j * np.arctan2(step[:, 1], step[:, 0]))

@@ -114,10 +114,7 @@ def pair_features(lines: list[np.ndarray], script_flag: float) -> np.ndarray:
 
 
 def _find_contacts(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where strokes touch, (n, n, 4), and which are connected, (n, n).
-
-    Connected strokes are joined by a chain of strokes that touch.
-    """
+    """Return where strokes touch, (n, n, 4), and which are connected by a chain of touches, (n, n)."""
     count = len(places)
     distances = np.hypot(*np.moveaxis(places[:, None, :, None] - places[None, :, None], 4, 0))
     distances = distances.reshape(count, count, -1)

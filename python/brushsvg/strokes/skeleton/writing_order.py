@@ -47,10 +47,7 @@ def direct_piece(piece: Piece, script: str = "auto") -> Piece:
 
 
 def _direct_arch_outwards(chain: list[Piece]) -> list[Piece]:
-    """Return the pieces of an arm that leaves its stem in an arch from the stem on.
-
-    Other chains are returned as they are.
-    """
+    """Return an arm's pieces from the stem on if they leave it in an arch; other chains stay."""
     if chain[0].ends[0] is not None or chain[-1].ends[1] is None:
         return chain
     turned = [reverse_piece(piece) for piece in reversed(chain)]
@@ -58,10 +55,7 @@ def _direct_arch_outwards(chain: list[Piece]) -> list[Piece]:
 
 
 def _is_arch(line: np.ndarray) -> bool:
-    """Return whether a line rises to the right and bends down all along.
-
-    An arm leaves its stem in this way, for example in an r.
-    """
+    """Return whether a line rises to the right and bends down all along, as an r's arm leaves its stem."""
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
     # The end of an axis may hook into a corner of the shape.
     at = np.array([np.interp([0.0, 0.3, 0.5, 0.8], along / along[-1], column) for column in line[:, :2].T]).T
@@ -132,10 +126,7 @@ def join_pieces(pieces: list[Piece], skeleton: Skeleton, script: str = "auto") -
 
 
 def _measure_length(piece: Piece, skeleton: Skeleton) -> float:
-    """Return the length [mm] of a piece as if it ran straight to its corners.
-
-    How far it runs along an edge into another line does not count.
-    """
+    """Return a piece's length [mm] to its corners, without its run along an edge into another line."""
     length_mm = length(piece.line[:, :2])
     for number, row in zip(piece.ends, (piece.line[0], piece.line[-1]), strict=True):
         for arm in skeleton.crossings[number].arms if number is not None else ():
@@ -168,10 +159,7 @@ def _find_end_crossing(chain: list[Piece], side: int) -> int | None:
 
 
 def _find_flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j: int) -> int | None:
-    """Return which of two pieces at a corner is only the flick of the other, or None.
-
-    A flick is short and has a free end. i, j: numbers of the pieces.
-    """
+    """Return which of pieces i, j at a corner is the other's flick (short, with a free end), or None."""
     short, other = sorted((i, j), key=lambda k: (lengths[k], k))
     if len(chains[short]) > 1 or None not in chains[short][0].ends:
         return None
@@ -182,10 +170,7 @@ def _find_flick(chains: dict[int, list[Piece]], lengths: list[float], i: int, j:
 
 
 def _reverse_hairlines(pieces: list[Piece]) -> list[Piece]:
-    """Return the pieces, with hairlines reversed so that they rise to the right.
-
-    Such a hairline rises from one stem to a second one, as in an n or a u.
-    """
+    """Return pieces with hairlines that rise to the right between two stems, as in an n or a u."""
     steep = [piece for piece in pieces if _is_steep(piece.line)]
     passing, beginning, ending = defaultdict(list), defaultdict(list), defaultdict(list)
     for piece in steep:

@@ -107,10 +107,7 @@ def _sort_settings(acts: list[Act]) -> list[Act]:
 
 
 def _has_setting_in_function(head: list[Act]) -> bool:
-    """Return whether a setting is inside a function.
-
-    A function runs only when it is called.
-    """
+    """Return whether a setting is inside a function. A function runs only when it is called."""
     lines = [act.text for act in head if not act.text.startswith("(")]
     first = next((k for k, line in enumerate(lines) if line.startswith("function")), len(lines))
     last = next((k for k, line in enumerate(lines) if k > first and line == "end"), len(lines))

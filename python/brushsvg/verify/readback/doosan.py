@@ -60,10 +60,7 @@ _QUERY_MINUS_ZERO = re.compile(r"(?m)^((?:tip|here) = get_current_posx\(\w+\))\[
 
 
 def _rotation_from_zyz_deg(abc: list[float]) -> np.ndarray:
-    """Return the rotation (3, 3) for angles about z, the new y and the newest z.
-
-    abc: the three angles [degrees], in this order.
-    """
+    """Return the rotation (3, 3) for angles [degrees] about z, the new y and the newest z."""
     a, b, c = abc
     return rotation((0, 0, a)) @ rotation((0, b, 0)) @ rotation((0, 0, c))
 
@@ -103,10 +100,7 @@ def read_doosan(text: str, cell: Cell) -> Readback:
 
 
 def _move_function_first(acts: list[Act]) -> list[Act]:
-    """Move a function definition before the settings.
-
-    Their order has no effect until something moves.
-    """
+    """Move a function definition before the settings. Their order has no effect until something moves."""
     name = next((k for k, act in enumerate(acts) if act.text.startswith("def ")), None)
     if name is None or any(act.kind != "text" for act in acts[:name]):
         return acts
@@ -115,10 +109,7 @@ def _move_function_first(acts: list[Act]) -> list[Act]:
 
 
 def _move_tip_query_first(acts: list[Act]) -> list[Act]:
-    """Put the query of the tip before the query of the flange.
-
-    Their order has no effect.
-    """
+    """Put the query of the tip before the query of the flange. Their order has no effect."""
     for k, act in enumerate(acts[1:], 1):
         if act.text.startswith("tip =") and acts[k - 1].text.startswith("flange ="):
             return [*acts[: k - 1], act, acts[k - 1], *acts[k + 1 :]]

@@ -205,10 +205,7 @@ def _parse_points(lines: NumberedLines, cell: Cell) -> dict[int, tuple[str, str]
 
 
 def _with_setup_as_frames(lines: NumberedLines) -> NumberedLines:
-    """Replace the lines that set frame and tool by one line per frame.
-
-    These lines set a register first. Continued remarks are joined.
-    """
+    """Replace the lines that set frame and tool in a register by one each; join continued remarks."""
     out: NumberedLines = []
     held: dict[int, str] | None = None
     choices: NumberedLines = []

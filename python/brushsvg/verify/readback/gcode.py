@@ -113,10 +113,7 @@ class _Reader:
             raise Error(sentence, code="line-unread")
 
     def _read_printer_line(self, number: int, line: str) -> None:
-        """Read a line for the firmware of a printer.
-
-        Such firmware obeys only the first G or M code of a line, and does not remember it.
-        """
+        """Read a printer's line: it obeys only the first G or M code, and does not remember it."""
         words = () if line[1:2] == "-" else _words(line)  # other controllers read G-0 as G0, this firmware does not
         first = f"{words[0][0]}{words[0][1]:g}" if words else ""
         stop = self.dialect.stops[-1]
@@ -143,10 +140,7 @@ class _Reader:
         self.seen |= {first} - {"M400"}  # M400 sets no mode
 
     def _move_pen(self, number: int, line: str, values: dict[str, float]) -> None:
-        """Move the pen up or down at once.
-
-        The firmware would run moves that it still holds after the pen.
-        """
+        """Move the pen up or down at once. The firmware would run moves that it still holds after the pen."""
         ups = [float(round(value)) for value in self.pen.servo_values]
         if values.get("P") != self.pen.servo_number or values.get("S") not in ups:
             sentence = f"line {number}: {line[:40]!r} is neither up nor down of the cell's pen"
@@ -215,10 +209,7 @@ class _Reader:
         self.seen |= set(codes)
 
     def _check_servo_held(self, number: int, line: str, first: str, codes: list[str]) -> None:
-        """Raise Error for codes that end G1.
-
-        Without G1, grbl switches the servo off, and the brush falls.
-        """
+        """Raise Error for codes that end G1. Without G1, grbl switches the servo off, and the brush falls."""
         if first == "G0" or ("G80" in codes and "G1" in self.seen):
             sentence = f"line {number}: {line[:40]!r} leaves the servo without a G1 that holds: the brush would fall"
             raise Error(sentence, code="line-unread")
@@ -316,10 +307,7 @@ class _Reader:
         self.out.acts.append(Act(number, "lift", same=(self.value,)))
 
     def _find_unused_motion(self, codes: list[str]) -> str:
-        """Return the motion code that a line of modes sets without using it.
-
-        The result is empty where there is none. For LinuxCNC the result is always "", because it stops at such a line.
-        """
+        """Return a mode line's unused motion code, "" for none and LinuxCNC, which stops at such a line."""
         if self.dialect.comment is comment:
             return ""
         motions = [code for code in codes if code == "G1" or (code == "G0" and not self.servo)]

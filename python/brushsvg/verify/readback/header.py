@@ -101,10 +101,7 @@ def read_header(text: str) -> ProgramHeader:
 
 
 def _numbers_in(header: dict[str, str], word: str, pattern: str, bounds: tuple[float, float]) -> list[float] | None:
-    """Return the numbers of a line of the header; None where the line is missing.
-
-    Raises Error where the line is damaged or a number is out of bounds.
-    """
+    """Return a header line's numbers, None without it; raise Error if damaged or out of bounds."""
     if word not in header:
         return None
     found = re.fullmatch(pattern, header[word])
@@ -127,10 +124,7 @@ def _damaged_error(word: str, text: str) -> Error:
 
 
 def _header_lines(text: str) -> dict[str, str]:
-    """Return the lines at the top of a program by their first word.
-
-    These are title, brush, sheet, cell and others.
-    """
+    """Return the lines at the top of a program by their first word. These are title, brush, sheet, cell and others."""
     text = re.sub(r" *; *\r?\n *\d*: *!\+", "", text)  # join continued remarks of TP
     line_pattern = re.compile(
         r"\((\w+): (.*)\)| *(?:[#!;]|--) (\w+):(?: (.*))?| *\d*: *!(\w+):(?: (.*?))? *;|CO \"(\w+): (.*)\";"

@@ -114,10 +114,7 @@ class _BacklashAxes:
         return np.round(np.clip(slide, commanded[:2] - self.half, commanded[:2] + self.half), 9) + 0.0
 
     def _along_circle(self, step: Step) -> Iterator[Step]:
-        """Yield a circle, or straight moves close to it.
-
-        It stays a circle where both axes push in one direction all along it.
-        """
+        """Yield a circle while both axes push in one direction along it, else straight moves close to it."""
         begin, end = self.commanded, np.array([step.x, step.y, step.z])
         x, y, turn = step.centre
         first, last = (math.atan2(place[1] - y, place[0] - x) for place in (begin, end))
@@ -161,10 +158,7 @@ def _run_section(section: ReadSection, axes: _BacklashAxes) -> None:
 
 
 def _acts_at_true_places(acts: list[Act], axes: _BacklashAxes) -> list[Act]:
-    """Return the acts with the places of their steps.
-
-    Acts on which the tool stands are left out.
-    """
+    """Return the acts with the places of their steps. Acts on which the tool stands are left out."""
     out = []
     for act in reversed(acts):
         run_steps = axes.run_steps.get(act.line)

@@ -49,10 +49,7 @@ def as_table(text: str) -> str:
 
 
 def _table_line(line: str) -> str:
-    """Return the table line for a line of JSON.
-
-    A line without a counterpart is returned unchanged.
-    """
+    """Return the table line for a line of JSON. A line without a counterpart is returned unchanged."""
     try:
         row = json.loads(line.removesuffix(",") if line.endswith(",") else line.removesuffix("]}"))
     except ValueError:
@@ -191,10 +188,7 @@ class _RowReader:
     def _is_same_rotation(
         self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = TILT_TOLERANCE_DEG
     ) -> bool:
-        """Return whether no brush shows a difference of two rotations.
-
-        None is upright.
-        """
+        """Return whether no brush shows a difference of two rotations. None is upright."""
         a, b = (self.upright if each is None else each for each in (a, b))
         return bool(apart_deg(a, b) <= most_deg)
 

@@ -116,10 +116,7 @@ class _Reader:
         return line.lower() if self.script.any_case else line
 
     def _values(self, number: int, kind: str, line: str, found: re.Match) -> dict[str, float]:
-        """Return the numbers of a line by their names, in mm and s.
-
-        The tool's rotation goes to `self.turned`.
-        """
+        """Return a line's numbers by names in mm and s; the tool's rotation goes to `self.turned`."""
         texts = {name: text for name, text in found.groupdict().items() if text is not None}
         if kind != "move" or "x" in texts:
             self.turned = ()

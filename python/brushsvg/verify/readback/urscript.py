@@ -141,10 +141,7 @@ def _setup_lines(part: NumberedLines) -> list[str]:
 
 
 def _rise_lines(part: NumberedLines) -> list[str]:
-    """Return the lines that move straight up before the first move.
-
-    Settings among these lines are included.
-    """
+    """Return the lines that move straight up before the first move. Settings among these lines are included."""
     lines = [line for _, line in part]
     first = next((k for k, line in enumerate(lines) if line.startswith("here = ")), len(lines))
     last = first + 4

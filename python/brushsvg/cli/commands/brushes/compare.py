@@ -46,19 +46,13 @@ def compare_files(args) -> None:
 
 
 def _list_source_files(args) -> list[str]:
-    """List the outputs that later commands read.
-
-    These are corrections, the repeatability of a studio, and a cell.
-    """
+    """List the outputs that later commands read: corrections, a studio's repeatability, and a cell."""
     outputs = [args.output] if suffix_of(args.output) == ".json" else []
     return [*outputs, *([args.corrected_cell] if args.corrected_cell else [])]
 
 
 def _write_checked_cell(cell) -> str:
-    """Return the text of a cell file.
-
-    Raises Error if a number of its machine is outside the range of a cell.
-    """
+    """Return a cell file's text; raise Error if a number of its machine is outside the range of a cell."""
     text = write_cell(cell)
     parse_cell(text)
     return text

@@ -58,10 +58,7 @@ def _list_program() -> Iterator[tuple[str, str]]:
 
 
 def _read_requirements() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Return packages with their minimum versions.
-
-    The first dict has the packages that are always needed, the second one those of each extra in PURPOSE.
-    """
+    """Return packages with their minimum versions: those always needed, and those of each extra in PURPOSE."""
     needed: dict[str, str] = {}
     extras: dict[str, dict[str, str]] = {name: {} for name in PURPOSE}
     for line in metadata.requires("brushsvg") or []:

@@ -74,10 +74,7 @@ def _list_machines() -> list[str]:
 
 
 def _ask(question: str, default: str, folder: str, read: Callable[[str, str], object]):
-    """Ask until the answer can be read. An empty answer is the default.
-
-    Raises RefusedError if the answers end too early.
-    """
+    """Ask until the answer, or the default, can be read; raise RefusedError if the answers end too early."""
     while True:
         sys.stderr.write(question)
         sys.stderr.flush()
@@ -114,10 +111,7 @@ def _read_speed(text: str) -> float | None:
 
 
 def _check_speed(speed_mm_s: float | None, brush: str | None, cell: str | None, folder: str) -> float | None:
-    """Return the speed; raise Error if it is outside the limits of the brush or cell.
-
-    brush, cell: as in the project file; None and "" stand for the defaults.
-    """
+    """Return the speed; raise Error beyond the limits of brush or cell, which are as in the project file."""
     if speed_mm_s is not None:
         from ....machine.workspace_limits import check_painting_speed
 

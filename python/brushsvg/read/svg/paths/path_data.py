@@ -83,10 +83,7 @@ def parse_points(text: str) -> tuple[list[Command], int | None]:
 
 
 def _read_numbers(text: str, at: int) -> tuple[list[int], list[float], int]:
-    """Read the numbers from a position on.
-
-    Returns the positions of the numbers, their values, and the end of the last number.
-    """
+    """Read numbers from a position on; return their positions, values and the end of the last one."""
     first = NUMBER.match(text, at)
     if not first:
         return [], [], at

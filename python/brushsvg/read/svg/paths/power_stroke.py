@@ -168,10 +168,7 @@ def _interpolate_linearly(points: np.ndarray, place: np.ndarray, _beta: float) -
 
 
 def _interpolate_by_cubics(points: np.ndarray, place: np.ndarray, handles: np.ndarray) -> np.ndarray:
-    """Interpolate by cubic Bezier pieces in the plane of place and half width.
-
-    points: (k, 2); handles: (k - 1, 2, 2), the inner control points of each piece.
-    """
+    """Interpolate points (k, 2) by cubics of place and half width; handles (k - 1, 2, 2): inner controls."""
     t = np.linspace(0.0, 1.0, 65)[:, None]
     curve = [cubics.at(t, p, h[0], h[1], q) for p, q, h in zip(points[:-1], points[1:], handles, strict=True)]
     curve = np.concatenate(curve)
