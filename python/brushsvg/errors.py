@@ -174,10 +174,7 @@ def need_numbers(values, what: str, count: int, least: float, greatest: float) -
 
 
 def need_truth(value, what: str) -> None:
-    """Raise Error if a value is neither True nor False.
-
-    Without this check, the text "no" would count as True.
-    """
+    """Raise Error if a value is neither True nor False. Without this check, the text "no" would count as True."""
     is_numpy_bool = getattr(getattr(value, "dtype", None), "kind", "") == "b" and value.ndim == 0
     if not (isinstance(value, bool) or is_numpy_bool):
         sentence = f"{what} must be True or False, not {type(value).__name__} {str(value)[:40]!r}"

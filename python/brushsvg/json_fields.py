@@ -45,10 +45,7 @@ def _once(pairs: list[tuple[str, object]]) -> dict:
 
 
 def refuse_unknown(content: dict, known, where: str = "", listed=None) -> None:
-    """Raise Error for the first unknown key.
-
-    listed: the keys that the message lists, None for all known keys.
-    """
+    """Raise Error for the first unknown key. listed: the keys that the message lists, None for all known keys."""
     for key in content:
         if key not in known:
             names = ", ".join(listed or known)

@@ -22,10 +22,7 @@ ROOM_MM = 5.0  # margin above and right of the marks, which do not know their sh
 
 
 def brush_svg(brush: _core.Brush) -> str | None:
-    """Draw the laws and footprints of a brush.
-
-    Returns None without matplotlib, and for a brush that cannot be used.
-    """
+    """Draw the laws and footprints of a brush. Returns None without matplotlib, and for a brush that cannot be used."""
     try:
         _core.check(brush)
         return brush_picture(brush, ".svg").decode()

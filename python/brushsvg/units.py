@@ -109,10 +109,7 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
 
 
 def paper_mm(text: str) -> tuple[float, float]:
-    """Read a paper's name or size as width and height in mm.
-
-    Raises Error if the text is neither.
-    """
+    """Read a paper's name or size as width and height in mm. Raises Error if the text is neither."""
     return PAPERS_MM.get(text.strip().lower()) or size_mm(text)
 
 

@@ -36,10 +36,7 @@ def values(brush, law: str, depths: np.ndarray) -> list[str]:
 
 
 def law_table(depths: np.ndarray, columns: Iterable[tuple[str, Sequence[str]]]) -> list[str]:
-    """Return the lines of a table of laws over depths.
-
-    columns: (name, cells) of each column.
-    """
+    """Return the lines of a table of laws over depths. columns: (name, cells) of each column."""
     names, cells = zip(*columns, strict=True)
     head = ("depth", *names)
     return table(head, zip((f"{depth:5.2f}" for depth in depths), *cells, strict=True))

@@ -83,10 +83,7 @@ def way_of(a_pass) -> tuple[tuple[float, ...], ...]:
 
 
 def machine_sha256(machine: Machine | None) -> str:
-    """Return a fingerprint of the machine errors that a cell compensates.
-
-    A machine of None has no errors.
-    """
+    """Return a fingerprint of the machine errors that a cell compensates. A machine of None has no errors."""
     table = asdict(machine or Machine())
     known = {key: value for key, value in table.items() if value or not key.startswith("field")}
     return hashlib.sha256(json.dumps(known).encode()).hexdigest()

@@ -41,10 +41,7 @@ class Outline:
 
 
 def polygon_of(rings: list[np.ndarray]):
-    """Return the polygon of rings.
-
-    Outer rings are counter-clockwise, holes clockwise.
-    """
+    """Return the polygon of rings. Outer rings are counter-clockwise, holes clockwise."""
     outer = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) > 0]
     holes = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) <= 0]
     return unary_union(outer).difference(unary_union(holes))

@@ -131,10 +131,7 @@ def select_drawn_strokes(found: Comparison, strokes: list[TargetStroke]) -> tupl
 
 
 def compare_sheets(page: JobPage, strokes: list[TargetStroke], photos: list[tuple[str, bytes]]) -> list[Comparison]:
-    """Compare photographs that each show another sheet.
-
-    Raises the errors of `compare_photos`.
-    """
+    """Compare photographs that each show another sheet. Raises the errors of `compare_photos`."""
     refuse_twice(photos)
     return [compare_photos(page, strokes, [photo]) for photo in photos]
 

@@ -63,10 +63,7 @@ class Canvas:
         return round((top - bottom) * self.px_per_mm), round((right - left) * self.px_per_mm)
 
     def filled(self, rings: list[np.ndarray]) -> np.ndarray:
-        """Return the share of each pixel that the rings cover together.
-
-        Clockwise rings are holes.
-        """
+        """Return the share of each pixel that the rings cover together. Clockwise rings are holes."""
         rows, columns = self.shape
         left, _, _, top = self.window_mm
         window = (left, top - rows / self.px_per_mm, columns / self.px_per_mm, rows / self.px_per_mm)
@@ -81,10 +78,7 @@ class Canvas:
 
 
 def grow_rings(rings: list[np.ndarray], by_mm: float) -> list[np.ndarray]:
-    """Return rings with their edges moved outward by by_mm.
-
-    The list is empty where nothing remains.
-    """
+    """Return rings with their edges moved outward by by_mm. The list is empty where nothing remains."""
     if abs(by_mm) < 1e-6:
         return rings
     outer = [Polygon(ring).buffer(0) for ring in rings if signed_area(ring) > 0]

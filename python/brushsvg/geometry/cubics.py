@@ -12,10 +12,7 @@ def at(t, p0, p1, p2, p3):
 
 
 def extremes(cubics: np.ndarray) -> np.ndarray:
-    """Return points that bound cubics (n, 4, 2).
-
-    These are their ends, and the places where x or y turns back.
-    """
+    """Return points that bound cubics (n, 4, 2). These are their ends, and the places where x or y turns back."""
     p = np.moveaxis(cubics, 1, 0)
     a, b, c = p[3] - p[0] + 3 * (p[1] - p[2]), 2 * (p[0] - 2 * p[1] + p[2]), p[1] - p[0]
     # The roots of a t^2 + b t + c = 0, in the form that is exact even where a is small.

@@ -21,10 +21,7 @@ def length(points: np.ndarray) -> float:
 
 
 def evenly(points: np.ndarray, count: int) -> np.ndarray:
-    """Return places (count, d) that part a polyline into equal lengths.
-
-    points: (n, d), the polyline.
-    """
+    """Return places (count, d) that part a polyline into equal lengths. points: (n, d), the polyline."""
     at = lengths(points)
     places = np.linspace(0.0, at[-1], count)
     return np.column_stack([np.interp(places, at, column) for column in points.T])

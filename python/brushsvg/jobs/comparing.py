@@ -174,10 +174,7 @@ def compare(
 
 
 def prepare_painted_sheet(chosen: Choices, stage: Callable[[str], object], warn: Warn) -> Sheet:
-    """Return the contents of the painted page.
-
-    Notices are reported with their file.
-    """
+    """Return the contents of the painted page. Notices are reported with their file."""
     before = load_sheet_before(chosen.corrections)
     return _prepare_sheet(replace(chosen, corrections=None), before, stage, warn)
 
@@ -216,10 +213,7 @@ def ignore_notices(file: str, notices: Iterable[Notice]) -> None:
 
 
 def read_matching_page(sheet: Sheet, read: Callable[[Sheet], Read]) -> tuple[Sheet, Read]:
-    """Read photographs with the sheet whose page they show.
-
-    Returns that sheet, and what `read` returned for it.
-    """
+    """Read photographs with the sheet whose page they show. Returns that sheet, and what `read` returned for it."""
     try:
         return sheet, read(sheet)
     except Error as refusal:

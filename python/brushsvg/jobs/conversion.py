@@ -329,10 +329,7 @@ class SimulatedWork:
         return self.suffix != ".json"
 
     def encoded(self) -> dict[str, bytes | str | Iterator[str]]:
-        """Return the files of the program, see writer.in_parts.
-
-        Raises Error if something forbids writing it.
-        """
+        """Return the files of the program, see writer.in_parts. Raises Error if something forbids writing it."""
         work = self.work
         encoded_program = writer.encode_checked(
             self.suffix, work.plan, self.walk, work.brush, work.title, self.notes, self.name

@@ -88,10 +88,7 @@ def make_picture(
 
 
 def make_job_page(suffix: str, work: Work) -> bytes:
-    """Return the page to print for a job (.pdf, .svg).
-
-    The strokes are in the order in which they were drawn.
-    """
+    """Return the page to print for a job (.pdf, .svg). The strokes are in the order in which they were drawn."""
     from ..calibration.chart.page import chart_page
     from ..comparison.job_page import job_page
 

@@ -182,10 +182,7 @@ def apart_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def rotation_vector(turned: np.ndarray) -> np.ndarray:
-    """Return the rotation vector (3,) of a rotation (3, 3).
-
-    It is axis times angle [rad], with the angle in [0, pi].
-    """
+    """Return the rotation vector (3,) of a rotation (3, 3). It is axis times angle [rad], with the angle in [0, pi]."""
     turn = quaternion(turned)
     sine = np.linalg.norm(turn[1:])
     angle = 2 * np.arctan2(sine, turn[0])

@@ -13,10 +13,7 @@ TILT_LINE = "tilt: the brush is held as each move says"
 
 
 def header_of(title: str, brush: str, loads: PlanInLoads, notes, program: Program, job: Job) -> tuple[str, ...]:
-    """Return the header of a program.
-
-    Loads before the job's first stroke are only counted.
-    """
+    """Return the header of a program. Loads before the job's first stroke are only counted."""
     return (
         f"title: {title}",
         _brush_line(brush, len(loads.loads)),
@@ -62,10 +59,7 @@ def height_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[s
 
 
 def first_header(brush: str, sheet_mm, heights_mm, program: Program) -> tuple[str, ...]:
-    """Return the header of a first run.
-
-    heights_mm: highest height, lowest height and step of its strokes [mm].
-    """
+    """Return the header of a first run. heights_mm: highest height, lowest height and step of its strokes [mm]."""
     return (
         "title: first run",
         _brush_line(brush, sum(section.title.startswith("stroke ") for section in program.sections())),

@@ -53,10 +53,7 @@ def make_paths(paths, circles=()) -> Ways:
 
 
 def paths_in_frame(frame: np.ndarray, moves: Ways) -> Ways:
-    """Transform moves into the frame in which their own frame is given.
-
-    frame: (4, 4) pose of the moves' frame.
-    """
+    """Transform moves into the frame in which their own frame is given. frame: (4, 4) pose of the moves' frame."""
     turned, shift = frame[:3, :3].T, frame[:3, 3]
     places = (points @ turned + shift for points in (moves.starts, moves.ends, moves.centre))
     return Ways(*places, moves.spoke @ turned, moves.across @ turned, moves.rise @ turned, moves.sweep_rad)

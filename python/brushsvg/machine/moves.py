@@ -81,10 +81,7 @@ class Section:
 
     @property
     def drawn_mm_s(self) -> float:
-        """Highest speed [mm/s] at which a stroke is drawn.
-
-        For a dab, it is the speed of the landing.
-        """
+        """Highest speed [mm/s] at which a stroke is drawn. For a dab, it is the speed of the landing."""
         speeds = [[move.speed_mm_s for move in self.moves if move.meaning == kind] for kind in ("paint", "land")]
         return max(speeds[0] or speeds[1])
 
@@ -133,10 +130,7 @@ def rise_height_mm(cell: Cell, sheet_mm, frame: np.ndarray) -> float:
 
 
 def program_in_robot_frame(program: Program) -> Program:
-    """Return a program with its points in the robot's own frame.
-
-    Programs for leaning paper have no arcs.
-    """
+    """Return a program with its points in the robot's own frame. Programs for leaning paper have no arcs."""
     frame = program.robot_from_frame
     if np.array_equal(frame, np.eye(4)):
         return program
@@ -160,10 +154,7 @@ def _move_step_to_frame(step: Move | Wait, frame: np.ndarray) -> Move | Wait:
 
 
 def set_programmed_speeds(section: Section, cell: Cell) -> Section:
-    """Round speeds down for a language of whole speeds.
-
-    No speed becomes lower than the language's lowest speed.
-    """
+    """Round speeds down for a language of whole speeds. No speed becomes lower than the language's lowest speed."""
     unit = LEAST_SPEED_MM_S.get(cell.language)
     if unit is None:
         return section
@@ -185,10 +176,7 @@ def via_point(points_mm: np.ndarray) -> np.ndarray:
 
 
 def duration_s(program: Program) -> float:
-    """Return the duration [s] of a program.
-
-    Each move starts and ends at rest, with the cell's acceleration.
-    """
+    """Return the duration [s] of a program. Each move starts and ends at rest, with the cell's acceleration."""
     return program.duration_s
 
 
@@ -205,10 +193,7 @@ def _duration_s(program: Program) -> float:
 
 
 def settling_s(move: Move, here_mm: np.ndarray | None, cell: Cell) -> float:
-    """Return how long [s] a move waits for its servo or pen to settle.
-
-    It waits after each move of the lift alone.
-    """
+    """Return how long [s] a move waits for its servo or pen to settle. It waits after each move of the lift alone."""
     if cell.pen and cell.language == "marlin-servo":
         return cell.pen.settle_s if move.meaning in ("land", "lift") else 0.0
     if not cell.servo or not cell.servo.settle_s:

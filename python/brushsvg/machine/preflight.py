@@ -163,10 +163,7 @@ _MAX_EDGE_SHIFT_RATIO = 5.0
 
 
 def bounds_mm(marks: _core.Marks, brush: _core.Brush) -> tuple[float, float, float, float]:
-    """Return left, bottom, right and top of all paint [mm].
-
-    Raises Error if nothing touches the paper.
-    """
+    """Return left, bottom, right and top of all paint [mm]. Raises Error if nothing touches the paper."""
     bounds = np.array([_core.painted_bounds(trace, brush) for trace in marks.passes]).reshape(-1, 4)
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     if not len(bounds):

@@ -231,10 +231,7 @@ def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: floa
 
 
 def slow_below_mm(highest_mm: float, cell: Cell) -> float:
-    """Return the height [mm] below which all moves are slow.
-
-    The paper may be as high as highest_mm.
-    """
+    """Return the height [mm] below which all moves are slow. The paper may be as high as highest_mm."""
     return max(cell.heights.clearance_mm, highest_mm + 0.5)
 
 
@@ -278,10 +275,7 @@ def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program
 
 
 def stroke_heights_mm(highest_mm: float, lowest_mm: float, step_mm: float) -> np.ndarray:
-    """Return the heights [mm] of the strokes, highest first.
-
-    Raises Error for less than 2 or more than 100 strokes.
-    """
+    """Return the heights [mm] of the strokes, highest first. Raises Error for less than 2 or more than 100 strokes."""
     count = int(np.floor((highest_mm - lowest_mm) / step_mm + 1e-9)) + 1
     if not 2 <= count <= 100:
         sentence = (

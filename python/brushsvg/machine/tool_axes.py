@@ -57,18 +57,12 @@ def turned_to(axes: np.ndarray, upright: np.ndarray) -> np.ndarray:
 
 
 def between_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the angles [degrees] between unit vectors (..., 3).
-
-    Small angles are exact, too.
-    """
+    """Return the angles [degrees] between unit vectors (..., 3). Small angles are exact, too."""
     return np.degrees(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
 
 
 def rotation_axes(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the axes (..., 3) of the shortest turns between unit vectors (..., 3).
-
-    The axis is 0 for equal vectors.
-    """
+    """Return the axes (..., 3) of the shortest turns between unit vectors (..., 3). The axis is 0 for equal vectors."""
     normals = np.cross(a, b)
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
     return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)

@@ -196,10 +196,7 @@ def called_programs(path: str | os.PathLike[str], text: str, read: Callable[[str
 
 
 def text_of(post: Post, program: Program, suffix: str = "") -> Iterator[str]:
-    """Return the pieces of a program in a robot's language.
-
-    suffix: extension of the file.
-    """
+    """Return the pieces of a program in a robot's language. suffix: extension of the file."""
     program = compensate_backlash(program_in_robot_frame(program)) if post.in_robot_frame else program
     pieces = post.write(program, suffix)
     return pieces if post.line_end == "\n" else (piece.replace("\n", post.line_end) for piece in pieces)

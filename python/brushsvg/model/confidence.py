@@ -75,10 +75,7 @@ def fitted_down_to_mm(brush, law: str) -> float:
 
 
 def paint_interval_per_m(paint) -> float:
-    """Return half of the 95 % interval of how a mark narrows from dip to dip.
-
-    paint: has a covariance.
-    """
+    """Return half of the 95 % interval of how a mark narrows from dip to dip. paint: has a covariance."""
     return _core.interval_factor_95(paint.degrees_of_freedom) * float(np.sqrt(paint.covariance[0][0]))
 
 

@@ -9,10 +9,7 @@ from .confidence import LAWS
 
 
 def changed_lag(brush, change: np.ndarray):
-    """Return a brush's lag with other coefficients.
-
-    change: (n,), added to the coefficients.
-    """
+    """Return a brush's lag with other coefficients. change: (n,), added to the coefficients."""
     law = brush.lag
     return _core.Profile((np.array(law.coefficients) + change).tolist(), floor=law.floor, floor_slope=law.floor_slope)
 

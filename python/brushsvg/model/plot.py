@@ -140,10 +140,7 @@ def _draw_footprints(axes, brush) -> None:
 
 
 def new_figure(size_in: tuple[float, float]):
-    """Return a figure without a window or global state.
-
-    Raises Error where matplotlib is missing.
-    """
+    """Return a figure without a window or global state. Raises Error where matplotlib is missing."""
     try:
         import matplotlib.figure
     except ImportError:
@@ -152,10 +149,7 @@ def new_figure(size_in: tuple[float, float]):
 
 
 def note(axes, at, text: str, **style) -> None:
-    """Add a text for a place of the data.
-
-    `encoded` moves it to where it covers nothing.
-    """
+    """Add a text for a place of the data. `encoded` moves it to where it covers nothing."""
     axes.text(*at, text, gid=NOTE, ha="left", va="bottom", **style)
 
 

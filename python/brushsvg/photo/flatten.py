@@ -27,10 +27,7 @@ class Flat:
     sheet_mm: tuple[float, float]
 
     def to_px(self, mm: np.ndarray) -> np.ndarray:
-        """Map points (n, 2) of the sheet to pixels.
-
-        (0, 0) is the middle of the upper left pixel.
-        """
+        """Map points (n, 2) of the sheet to pixels. (0, 0) is the middle of the upper left pixel."""
         return (np.asarray(mm) * [1, -1] + [0, self.sheet_mm[1]]) * self.px_per_mm - 0.5
 
 

@@ -88,10 +88,7 @@ class View:
         ) + MAX_RESIDUAL_PX / self.px_per_mm
 
     def to_px(self, mm: np.ndarray) -> np.ndarray:
-        """Map points (n, 2) of the sheet to pixels.
-
-        (0, 0) is the middle of the upper left pixel.
-        """
+        """Map points (n, 2) of the sheet to pixels. (0, 0) is the middle of the upper left pixel."""
         x, y = mm.T
         h = self.homography
         w = h[2, 0] * x + h[2, 1] * y + h[2, 2]

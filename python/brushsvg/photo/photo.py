@@ -94,10 +94,7 @@ def read_photo(data: bytes) -> np.ndarray:
 
 
 def refuse_dark_paper(light: float) -> None:
-    """Raise Error for paper that is too dark.
-
-    Such paper reflects so little light that noise is as strong as paint.
-    """
+    """Raise Error for paper that is too dark. Such paper reflects so little light that noise is as strong as paint."""
     if light < MIN_PAPER_LIGHT:
         raise Error(
             f"the paper in the picture shows {100 * light:.1f} % of the full light, at least "
@@ -169,10 +166,7 @@ def jpeg_quality(data: bytes) -> float | None:
 
 
 def white_share(light: np.ndarray) -> float:
-    """Return the share of a picture's brightest fifth that is fully white.
-
-    The share is large in a clipped picture.
-    """
+    """Return the share of a picture's brightest fifth that is fully white. The share is large in a clipped picture."""
     levels = np.sort(light[::7, ::7].ravel())
     return float(np.mean(levels[-max(1, len(levels) // 5) :] >= MIN_WHITE_LIGHT))
 
@@ -190,10 +184,7 @@ def blur_px(light: np.ndarray) -> float:
 
 
 def refuse_grainy(light: np.ndarray, why: str) -> None:
-    """Raise Error where grain may be the reason for another refusal.
-
-    why: the other refusal, for the message.
-    """
+    """Raise Error where grain may be the reason for another refusal. why: the other refusal, for the message."""
     grain = float(np.median(np.abs(cv2.filter2D(light, -1, _GRAIN_FILTER)))) / 0.6745
     if grain > MAX_GRAIN:
         raise Error(

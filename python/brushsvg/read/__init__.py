@@ -84,10 +84,7 @@ def need_regions(regions, what: str) -> tuple[tuple[float, ...], ...]:
 
 
 def need_texts(texts, what: str) -> None:
-    """Raise Error unless texts are a list or tuple of texts.
-
-    One text would be read as a list of its letters.
-    """
+    """Raise Error unless texts are a list or tuple of texts. One text would be read as a list of its letters."""
     require_type(texts, (tuple, list), "a list of texts", what)
     for text in texts:
         require_type(text, str, "a text", f"each of {what}")

@@ -27,10 +27,7 @@ class Report:
     details: tuple[str, ...] = ()
 
     def text(self, details: bool = False, picture: str = "") -> str:
-        """Return at most ten lines, or all lines and the details.
-
-        picture: name of a picture of the results.
-        """
+        """Return at most ten lines, or all lines and the details. picture: name of a picture of the results."""
         lines, last = [self.verdict, *self.lines], [f"Picture: {picture}"] if picture else []
         most = MAX_LINES - len(last)
         if len(lines) > most and not details:
@@ -69,10 +66,7 @@ def overlap_reasons(
 
 
 def percent(share: float) -> str:
-    """Format a share as a percentage, rounded down.
-
-    95 % is never less than 0.95, and 100 % is everything.
-    """
+    """Format a share as a percentage, rounded down. 95 % is never less than 0.95, and 100 % is everything."""
     return f"{int(100 * share + 1e-9)} %"
 
 

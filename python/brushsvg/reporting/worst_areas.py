@@ -38,10 +38,7 @@ class WorstArea:
 
     @property
     def words(self) -> str:
-        """The size of the area in words.
-
-        For example, "1.2 mm^2 unpainted, 0.3 mm^2 painted outside".
-        """
+        """The size of the area in words. For example, "1.2 mm^2 unpainted, 0.3 mm^2 painted outside"."""
         parts = (self.missing_mm2, "unpainted"), (self.outside_mm2, "painted outside")
         named = [f"{mm2:.{1 if mm2 < 10 else 0}f} mm^2 {what}" for mm2, what in parts if mm2 >= MIN_AREA_MM2 / 2]
         return ", ".join(named if self.is_missing else named[::-1])

@@ -186,8 +186,5 @@ def _error_attributes(error, is_astray: bool) -> str:
 
 
 def known_colour(colour: str) -> str:
-    """Return the colour, or black where it is not #rrggbb.
-
-    Plans from other programs may have other colours.
-    """
+    """Return the colour, or black where it is not #rrggbb. Plans from other programs may have other colours."""
     return colour if re.fullmatch("#[0-9a-fA-F]{6}", colour) else "#000000"

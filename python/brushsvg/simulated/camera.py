@@ -117,10 +117,7 @@ def box(left, bottom, right, top):
 
 
 def corners_seen(camera, sheet_mm, points_mm):
-    """Return the pixels (n, 2) that show points (n, 2) of the sheet.
-
-    (0, 0) is the middle of the first pixel.
-    """
+    """Return the pixels (n, 2) that show points (n, 2) of the sheet. (0, 0) is the middle of the first pixel."""
     rotation, place, focal_px, middle = _camera_pose(camera, sheet_mm)
     world = np.column_stack(
         [np.asarray(points_mm, float), _paper_height_mm(camera, sheet_mm, np.asarray(points_mm, float))]

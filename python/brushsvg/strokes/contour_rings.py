@@ -51,10 +51,7 @@ def offset_along(shape, half: float) -> list[np.ndarray]:
 
 
 def offset_inward(shape, half: float) -> list[list[np.ndarray]] | None:
-    """Return rings along the outline, and then rings further inside.
-
-    Returns None if there are too many rings.
-    """
+    """Return rings along the outline, and then rings further inside. Returns None if there are too many rings."""
     radius = shapely.maximum_inscribed_circle(shape, 0.01 * half).length
     across = radius - half - _MAX_TO_MIDDLE * half
     steps = max(int(np.ceil(across / (_MAX_RING_STEP * half) - 0.4)), 0)
@@ -65,10 +62,7 @@ def offset_inward(shape, half: float) -> list[list[np.ndarray]] | None:
 
 
 def cut_rings(rings: list[list[np.ndarray]], half: float) -> list[Line]:
-    """Return rings as lines, the outermost ones cut.
-
-    They are cut where a brush would turn too sharply.
-    """
+    """Return rings as lines, the outermost ones cut. They are cut where a brush would turn too sharply."""
     return [
         line
         for k, of_depth in enumerate(rings)

@@ -31,10 +31,7 @@ class WideShape:
     part: list[np.ndarray]
 
     def first_share(self, first: list, lines: list) -> list[np.ndarray]:
-        """Return the target of the first line.
-
-        It is the line's own discs, and the area that all lines leave.
-        """
+        """Return the target of the first line. It is the line's own discs, and the area that all lines leave."""
         whole = region(self.part)
         share = shapely.union(shapely.intersection(painted_area(first), whole), unpainted_area(whole, lines))
         return rings_of(share)

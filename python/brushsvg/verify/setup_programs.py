@@ -33,10 +33,7 @@ class SetupCheck:
 def look_at_border(
     text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> SetupCheck:
-    """Check an air run around the border that its header names.
-
-    Raises Error when a corner is outside the workspace.
-    """
+    """Check an air run around the border that its header names. Raises Error when a corner is outside the workspace."""
     expected = border(origin.border_mm, brush, cell, sheet_mm, z_offset_mm)
     job, notes = Job(z_offset_mm), origin.notes
     header = border_header(origin.title, brush.name, origin.strokes, sheet_mm, notes, origin.border_mm, expected, job)
@@ -60,10 +57,7 @@ def look_at_heights(text: str, read: Readback, origin: ProgramHeader, brush, cel
 
 
 def look_at_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
-    """Check all steps of a first run.
-
-    Raises Error when it leaves the workspace or does not fit on the sheet.
-    """
+    """Check all steps of a first run. Raises Error when it leaves the workspace or does not fit on the sheet."""
     sheet_mm = origin.sheet_mm
     highest_mm, lowest_mm, step_mm = origin.first_mm
     expected = first_run(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)

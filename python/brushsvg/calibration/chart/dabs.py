@@ -86,10 +86,7 @@ def is_of_dabs(chart) -> bool:
 
 
 def dabs_of(read) -> list[Dab]:
-    """Return the dabs of a photograph; dabs without paint have no rings.
-
-    read: a photograph.Read.
-    """
+    """Return the dabs of a photograph; dabs without paint have no rings. read: a photograph.Read."""
     dabs = []
     for dab_pass in read.chart.plan.passes:
         try:

@@ -172,10 +172,7 @@ def _change_of_fit_with_tail(fit, marks: list, options: _core.MarkOptions) -> np
 
 
 def change_of_fit(fit, marks: list, options: _core.MarkOptions) -> np.ndarray:
-    """Return the change of all fitted numbers for other marks.
-
-    The order is the order of the covariance.
-    """
+    """Return the change of all fitted numbers for other marks. The order is the order of the covariance."""
     fit_with_marks = _core.fit_marks(marks, fit.laws, options)
     return _all_numbers(fit_with_marks, fit, options.deepest_mm) - _all_numbers(fit, fit, options.deepest_mm)
 
@@ -251,10 +248,7 @@ def _reduce_law(coefficients, terms: int, first: int, deepest_mm: float) -> np.n
 
 
 def height_at(fit) -> int:
-    """Return the index of the paper height in the covariance of a fit.
-
-    Shift x, shift y and turn follow.
-    """
+    """Return the index of the paper height in the covariance of a fit. Shift x, shift y and turn follow."""
     laws = fit.laws
     ratios = len(widest_ratio(laws)) + len(front_ratio(laws))
     return len(laws.lag) + len(laws.tip_gap) - 1 + len(laws.half_width) - 1 + ratios

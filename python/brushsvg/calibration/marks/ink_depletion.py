@@ -29,10 +29,7 @@ class InkDepletion:
 
     @property
     def variance_mm2(self) -> float:
-        """Return the variance of whole_mm.
-
-        The load may have run out anywhere between the two lengths.
-        """
+        """Return the variance of whole_mm. The load may have run out anywhere between the two lengths."""
         return (self.dry_mm - self.whole_mm) ** 2 / 3
 
     def describe(self) -> str:

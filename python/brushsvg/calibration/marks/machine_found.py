@@ -161,10 +161,7 @@ def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str
 
 
 def field_lines(machine) -> list[str]:
-    """Return the lines of the field in a cell's table [machine].
-
-    machine: a fitted machine or the machine of a cell.
-    """
+    """Return the lines of the field in a cell's table [machine]. machine: a fitted machine or the machine of a cell."""
     rows = ", ".join("[" + ", ".join(f"{mm:.4f}" for mm in row) + "]" for row in machine.field_mm)
     places = (machine.field_middle_mm, machine.field_reach_mm)
     middle, reach = ("[{:.2f}, {:.2f}]".format(*pair) for pair in places)

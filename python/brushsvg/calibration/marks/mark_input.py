@@ -54,10 +54,7 @@ class Painted:
     way_mm: float = 0.0
 
     def without(self, strokes: set[str]) -> Painted:
-        """Return the marks without some strokes.
-
-        Raises Error if the remaining marks are not informative.
-        """
+        """Return the marks without some strokes. Raises Error if the remaining marks are not informative."""
         remaining = to_painted([mark for mark in self.marks if mark.stroke not in strokes])
         return replace(remaining, before_mm=self.before_mm, way_mm=self.way_mm)
 
@@ -109,10 +106,7 @@ def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], flo
 
 
 def to_painted(marks: list) -> Painted:
-    """Return the marks as Painted.
-
-    Raises Error if they are not informative about a brush.
-    """
+    """Return the marks as Painted. Raises Error if they are not informative about a brush."""
     ways = [np.array(mark.poses_mm) for mark in marks]
     _refuse_uninformative(ways)
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))

@@ -436,10 +436,7 @@ def _to_plan_frame(calibration, rings, displacement) -> list[np.ndarray]:
 
 
 def to_sheet_frame(calibration, rings) -> list[np.ndarray]:
-    """Transform rings of the plan to the frame of the sheet.
-
-    The transformation is the fitted pose of the sheet.
-    """
+    """Transform rings of the plan to the frame of the sheet. The transformation is the fitted pose of the sheet."""
     fit = calibration.fit
     centre, turned = np.array(fit.centre_mm), rotation(fit.turn_rad)
     return [(ring - centre) @ turned + centre + fit.shift_mm for ring in rings]

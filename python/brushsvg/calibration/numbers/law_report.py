@@ -93,10 +93,7 @@ def _suggest_next(calibration) -> list[str]:
 
 
 def report_picture(calibration, suffix: str) -> bytes:
-    """Draw the laws with bands, the footprints and the data.
-
-    suffix: .svg or .png. Needs the extra plot.
-    """
+    """Draw the laws with bands, the footprints and the data. suffix: .svg or .png. Needs the extra plot."""
     data = {
         fitted.name: np.array([(p.depth_mm, p.value_mm) for p in fitted.points]).reshape(-1, 2)
         for fitted in calibration.laws

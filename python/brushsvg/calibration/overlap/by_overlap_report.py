@@ -59,10 +59,7 @@ KIND_NAMES = {
 
 
 def chosen_in_words(found) -> str:
-    """Describe which numbers the search changed, and why.
-
-    found: an overlap_choice.Predicting.
-    """
+    """Describe which numbers the search changed, and why. found: an overlap_choice.Predicting."""
     if not found.left_out:
         return (
             f"used: {KIND_NAMES[found.kind]}. There are too few marks to test whether this predicts other marks "

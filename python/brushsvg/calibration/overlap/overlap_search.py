@@ -470,10 +470,7 @@ def _workers() -> ThreadPoolExecutor:
 
 
 def on_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
-    """Return the poses of the TCP relative to the fitted paper.
-
-    The paper has the given height and shift.
-    """
+    """Return the poses of the TCP relative to the fitted paper. The paper has the given height and shift."""
     poses = np.array(poses_mm)
     poses[:, :2] += shift_mm
     poses[:, 2] = np.minimum(poses[:, 2] - height_mm, 0.0)

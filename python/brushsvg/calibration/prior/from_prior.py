@@ -78,10 +78,7 @@ class UpdatedBrush:
 
 
 def marks_with_prior(marks: list) -> Painted:
-    """Return marks as Painted without checks.
-
-    The prior supplies what the marks do not determine.
-    """
+    """Return marks as Painted without checks. The prior supplies what the marks do not determine."""
     ways = [np.array(mark.poses_mm) for mark in marks]
     return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
 
@@ -244,10 +241,7 @@ def _numbers_of_laws(laws) -> np.ndarray:
 
 
 def bands_mm(covariance: np.ndarray, laws, depths: np.ndarray) -> dict[str, np.ndarray]:
-    """Return for each law half the 95 % interval at depths.
-
-    covariance: of the numbers of a fit.
-    """
+    """Return for each law half the 95 % interval at depths. covariance: of the numbers of a fit."""
     at, out = numbers_of(), {}
     for law in ("lag", "tip_gap", "half_width"):
         block = covariance[at[law], at[law]]
@@ -353,18 +347,12 @@ def _reshape_outlines(brush, updated_brush, longer: float) -> _core.FootprintTab
 
 
 def has_learned(brush: _core.Brush, photos: list[str]) -> bool:
-    """Return whether the brush was already updated by one of the photographs.
-
-    photos: sha256 of each.
-    """
+    """Return whether the brush was already updated by one of the photographs. photos: sha256 of each."""
     return bool(set(photos) & set(_read_learned(brush)["photos"]))
 
 
 def refuse_learned(brush: _core.Brush, photos: list[str]) -> None:
-    """Raise Error if the brush was already updated by one of the photographs.
-
-    photos: sha256 of each.
-    """
+    """Raise Error if the brush was already updated by one of the photographs. photos: sha256 of each."""
     if used := set(photos) & set(_read_learned(brush)["photos"]):
         raise Error(
             f"brush {brush.name} was already updated with this photograph (sha256 {sorted(used)[0][:12]}): use each "
@@ -412,9 +400,6 @@ def _read_learned(brush) -> dict:
 
 
 def found_height(updated: UpdatedBrush) -> tuple[float, float]:
-    """Return how much higher the paper is than taught [mm].
-
-    Half the 95 % interval is returned as well.
-    """
+    """Return how much higher the paper is than taught [mm]. Half the 95 % interval is returned as well."""
     at = height_at(updated.fit)
     return updated.fit.height_mm, float(_core.interval_factor_95() * np.sqrt(updated.covariance[at, at]))

@@ -65,10 +65,7 @@ class KnownLaws:
         return out
 
     def unfollowed(self, share: float, deepest_mm: float) -> np.ndarray:
-        """Return the covariance of laws with a relative error of `share`.
-
-        The laws are measured down to deepest_mm.
-        """
+        """Return the covariance of laws with a relative error of `share`. The laws are measured down to deepest_mm."""
         at, own, depths = numbers_of(), self.laws, np.linspace(0.0, deepest_mm, DEPTH_COUNT)[1:]
         out = np.diag(np.full(len(self.covariance), (share * own.widest_per_half) ** 2))
         for law in TERMS:
@@ -85,10 +82,7 @@ class KnownLaws:
 
 
 def numbers_of() -> dict[str, slice]:
-    """Return the slice of each law in the numbers of a fit.
-
-    tip_to_widest is its ratio to the half width.
-    """
+    """Return the slice of each law in the numbers of a fit. tip_to_widest is its ratio to the half width."""
     lag, gap, half = LAG_TERMS, LAG_TERMS + GAP_TERMS, LAG_TERMS + GAP_TERMS + HALF_TERMS
     return {
         "lag": slice(0, lag),
@@ -99,10 +93,7 @@ def numbers_of() -> dict[str, slice]:
 
 
 def root_of_inverse(covariance: np.ndarray) -> np.ndarray:
-    """Return the matrix (n, n) from numbers to standard normal numbers.
-
-    covariance (n, n): of the numbers.
-    """
+    """Return the matrix (n, n) from numbers to standard normal numbers. covariance (n, n): of the numbers."""
     unit = np.sqrt(np.diag(covariance))
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     return (vectors / np.sqrt(np.maximum(values, 1e-12))).T / unit

@@ -18,10 +18,7 @@ KIND_BY_DEST = {"brush": "brush", "true_brush": "brush", "prior": "brush", "cell
 
 
 def complete(parser: argparse.ArgumentParser) -> None:
-    """Print the completions for the shell, and exit.
-
-    Exit silently if argcomplete is not installed.
-    """
+    """Print the completions for the shell, and exit. Exit silently if argcomplete is not installed."""
     try:
         import argcomplete
     except ImportError:

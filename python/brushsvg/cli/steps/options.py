@@ -40,10 +40,7 @@ def load_cell(name: str | None) -> Cell:
 
 
 def load_exact_cell(name: str | None) -> Cell:
-    """Return the cell for work without Options, with the default tolerance.
-
-    Options would set how exact the cell is.
-    """
+    """Return the cell for work without Options, with the default tolerance. Options would set how exact the cell is."""
     return as_exact_as(load_cell(name), DEFAULT_TOLERANCE_MM)
 
 

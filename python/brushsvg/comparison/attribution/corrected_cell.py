@@ -34,10 +34,7 @@ def key_of(name: str) -> str:
 
 
 def certain_of(faults: Faults) -> dict[str, float]:
-    """Return the value of each number of machine and paper by its name.
-
-    A value that is not certain is 0.
-    """
+    """Return the value of each number of machine and paper by its name. A value that is not certain is 0."""
     return {
         fault.number.name: fault.value if abs(fault.value) > MIN_CERTAINTY * fault.half else 0.0
         for fault in faults.found

@@ -155,20 +155,14 @@ class Manifest:
         return None
 
     def make_relative_path(self, item: Item) -> str:
-        """Return the path of a drawing from this folder.
-
-        The path does not depend on the current folder.
-        """
+        """Return the path of a drawing from this folder. The path does not depend on the current folder."""
         try:
             return Path(os.path.relpath(item.path, self._place)).as_posix() if item.path else ""
         except ValueError:  # on Windows, the drawing is on another drive
             return item.path
 
     def refuse_other_drawing(self, item: Item) -> None:
-        """Raise Error where files with this name belong to another drawing.
-
-        Only drawings that still exist count.
-        """
+        """Raise Error where files with this name belong to another drawing. Only drawings that still exist count."""
         path = self.make_relative_path(item)
         for row in self._by_name.get(item.name, []):
             unchanged = [file for file in row.files.items() if self._has_file(file)]

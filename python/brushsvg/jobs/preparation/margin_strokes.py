@@ -31,18 +31,12 @@ MIN_STROKE_WIDTH_MM = 0.02
 
 
 def is_margin(stroke) -> bool:
-    """Return whether a stroke or pass is in the margin.
-
-    None, which stands for a part of a stroke, is not.
-    """
+    """Return whether a stroke or pass is in the margin. None, which stands for a part of a stroke, is not."""
     return stroke is not None and stroke.settings.kind == MARGIN_KIND
 
 
 def is_calibrated(brush, deepest_mm: float) -> bool:
-    """Return whether lag and width were fitted to data down to this depth.
-
-    The data are marks or measurements.
-    """
+    """Return whether lag and width were fitted to data down to this depth. The data are marks or measurements."""
     if brush.is_rigid() or not brush.width_follows_depth():
         return True  # there is no law to fit
     return all(deepest_mm <= fitted_down_to_mm(brush, law) for law in ("lag", "half_width"))

@@ -413,10 +413,7 @@ def round_points(points_mm: np.ndarray, cell: Cell) -> np.ndarray:
 
 
 def steps_from_mm(points_mm: np.ndarray, motors: Motors) -> np.ndarray:
-    """Return motor positions (n, 2) in whole steps from the origin.
-
-    points_mm: (n, 2 or 3) points [mm].
-    """
+    """Return motor positions (n, 2) in whole steps from the origin. points_mm: (n, 2 or 3) points [mm]."""
     return np.rint(np.asarray(points_mm)[:, :2] @ _steps_from_mm(motors)).astype(int)
 
 
@@ -448,10 +445,7 @@ def value_mm(cell: Cell) -> float:
 
 
 def servo_stands(steps_mm: np.ndarray, cell: Cell) -> np.ndarray:
-    """Return which steps (n, 3) [mm] only lift or lower the servo, (n,).
-
-    Their sideways part may vanish in rounding.
-    """
+    """Return which steps (n, 3) [mm] only lift or lower the servo, (n,). Their sideways part may vanish in rounding."""
     return np.hypot(steps_mm[:, 0], steps_mm[:, 1]) < 0.5 * unit_mm(cell)
 
 

@@ -73,28 +73,19 @@ def name_in(text: str) -> str:
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs, keyed by program name.
-
-    The main program has the name "".
-    """
+    """Return the texts of a stream of programs, keyed by program name. The main program has the name ""."""
     main, *others = re.split(r"^(?=/PROG)", text, flags=re.MULTILINE)[1:]
     return {"": main} | {re.match(r"/PROG +(\S*)", program_text)[1]: program_text for program_text in others}
 
 
 def called(text: str) -> list[str]:
-    """Return the names of the programs that a program calls.
-
-    They are in order and without repetition.
-    """
+    """Return the names of the programs that a program calls. They are in order and without repetition."""
     calls = re.finditer(r"^ *\d*: *CALL +(\w+) *;", text, re.MULTILINE)
     return list(dict.fromkeys(call[1] for call in calls))
 
 
 def comment(text: str) -> str:
-    """Return a comment as remarks of at most REMARK_LETTERS letters.
-
-    Each continuation begins with a plus.
-    """
+    """Return a comment as remarks of at most REMARK_LETTERS letters. Each continuation begins with a plus."""
     rest, lines = plain_text(text, LINE_LIMIT).translate(STATEMENT_ENDS), []
     while rest or not lines:
         begin = "+" if lines else ""

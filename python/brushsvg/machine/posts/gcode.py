@@ -23,10 +23,7 @@ HELD_UP = "end: the brush is held up"
 
 
 def linuxcnc(program: Program) -> Iterator[str]:
-    """Write a program for LinuxCNC.
-
-    It has a header, one commented section per stroke, and M2.
-    """
+    """Write a program for LinuxCNC. It has a header, one commented section per stroke, and M2."""
     # G64 P instead of G61: the exact path mode stops the machine between any two moves, and a brush that stands still
     # bleeds. Rounding the joints by a fraction of the plan's tolerance keeps the speed even.
     tolerance = format_number(program.cell.blending.tolerance_mm, program.cell.decimals)

@@ -98,19 +98,13 @@ def name_in(text: str) -> str:
 
 
 def programs(text: str) -> dict[str, str]:
-    """Return the texts of a stream of programs, keyed by program name.
-
-    The main program has the name "".
-    """
+    """Return the texts of a stream of programs, keyed by program name. The main program has the name ""."""
     main, *others = re.split(r"^(?=DEF )", text, flags=re.MULTILINE)[1:]
     return {"": main} | {re.match(r"DEF (\w+)", program_text)[1]: program_text for program_text in others}
 
 
 def called(text: str) -> list[str]:
-    """Return the names of the programs that a program calls.
-
-    They are in order and without repetition.
-    """
+    """Return the names of the programs that a program calls. They are in order and without repetition."""
     calls = re.finditer(r"^ *(B[0-9A-Z]{4}\d{3,})\(\) *\r?$", text, re.MULTILINE | re.IGNORECASE)
     return list(dict.fromkeys(call[1].upper() for call in calls))
 

@@ -34,10 +34,7 @@ AXIS_COLUMN = 6  # first column with the brush's axis
 
 
 def csv(program: Program) -> Iterator[str]:
-    """Write the poses as a table.
-
-    Remarks begin with #, and readers of tables can be set to skip them.
-    """
+    """Write the poses as a table. Remarks begin with #, and readers of tables can be set to skip them."""
     yield "".join(map(comment, _header_lines(program))) + COLUMNS + "\n"
     for title, table in make_timed_sections(program):
         yield comment(title)
@@ -46,10 +43,7 @@ def csv(program: Program) -> Iterator[str]:
 
 
 def traj(program: Program) -> Iterator[str]:
-    """Write the poses as a JSON list of lists, one per line.
-
-    Remarks have one text, and rows have ten values.
-    """
+    """Write the poses as a JSON list of lists, one per line. Remarks have one text, and rows have ten values."""
     yield '{"format": "brushsvg/trajectory", "version": 1, "rows": [\n'
     yield "".join(json.dumps([comment(line)[:-1]]) + ",\n" for line in _header_lines(program))
     yield json.dumps(COLUMNS.split(","), separators=(",", ":")) + ",\n"

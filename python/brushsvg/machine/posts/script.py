@@ -42,10 +42,7 @@ def write_sections(program: Program, words: LanguageWords) -> Iterator[str]:
 
 
 def write_section(section: Section, words: LanguageWords, risen: bool) -> Iterator[str]:
-    """Yield the text of a section.
-
-    risen: whether the tool has already gone straight up.
-    """
+    """Yield the text of a section. risen: whether the tool has already gone straight up."""
     yield words.title(section.title)
     for step in section.steps:
         if isinstance(step, Wait):
@@ -58,10 +55,7 @@ def write_section(section: Section, words: LanguageWords, risen: bool) -> Iterat
 
 
 def format_rounded_down(value: float, decimals: int) -> str:
-    """Format a number rounded down, but not to 0.
-
-    Rounding down keeps limits, and a machine would stand still at 0.
-    """
+    """Format a number rounded down, but not to 0. Rounding down keeps limits, and a machine would stand still at 0."""
     unit = 10.0**decimals
     return format_number(max(np.floor(value * unit + 1e-6), 1) / unit, decimals)
 
@@ -148,10 +142,7 @@ def write_points(
 
 
 def upright_tool_rotation(spin_deg: float) -> np.ndarray:
-    """Return the rotation (3, 3) of an upright tool in the paper's frame.
-
-    The tool's z axis points into the paper.
-    """
+    """Return the rotation (3, 3) of an upright tool in the paper's frame. The tool's z axis points into the paper."""
     return np.diag([1.0, -1.0, -1.0]) @ rotation((0, 0, spin_deg))
 
 

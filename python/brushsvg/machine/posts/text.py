@@ -53,10 +53,7 @@ def make_unique_names(names: Sequence[str]) -> list[str]:
 
 
 def format_number(value: float, decimals: int) -> str:
-    """Format a number with fixed decimals.
-
-    It has a point in any locale, and a zero has no minus sign.
-    """
+    """Format a number with fixed decimals. It has a point in any locale, and a zero has no minus sign."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 

@@ -18,19 +18,13 @@ from ..moves import Move, Program, Section, Wait
 
 
 def half_mm(cell: Cell) -> np.ndarray:
-    """Return half of the backlash of x and y (2,) [mm].
-
-    It is rounded to whole units of the language.
-    """
+    """Return half of the backlash of x and y (2,) [mm]. It is rounded to whole units of the language."""
     unit = unit_mm(cell)
     return np.rint(np.array(cell.machine.backlash_mm if cell.machine else (0.0, 0.0)) / 2 / unit) * unit
 
 
 def compensate_backlash(program: Program) -> Program:
-    """Return a program with the backlash of its axes compensated.
-
-    The program must be in the robot's frame.
-    """
+    """Return a program with the backlash of its axes compensated. The program must be in the robot's frame."""
     half = half_mm(program.cell)
     if not half.any():
         return program
@@ -90,10 +84,7 @@ def from_air_mm(commanded_mm: np.ndarray, backlash_mm) -> np.ndarray:
 
 
 def first_side(ways_mm: np.ndarray) -> np.ndarray:
-    """Return the side to which each axis goes first on steps (n, 2), (2,).
-
-    It is 0 for an axis that stands still.
-    """
+    """Return the side to which each axis goes first on steps (n, 2), (2,). It is 0 for an axis that stands still."""
     signs = np.sign(ways_mm)
     return np.array([next(iter(axis_signs[axis_signs != 0]), 0.0) for axis_signs in signs.T])
 

@@ -50,10 +50,7 @@ def _move_geometry(poses_mm: np.ndarray, arcs) -> _MoveGeometry:
 
 
 def corner_angles_rad(poses_mm: np.ndarray, arcs=()) -> np.ndarray:
-    """Return the angles [rad] between the moves that meet at each pose, (n,).
-
-    They are 0 at the ends.
-    """
+    """Return the angles [rad] between the moves that meet at each pose, (n,). They are 0 at the ends."""
     return _corner_angles(_move_geometry(poses_mm, arcs))
 
 

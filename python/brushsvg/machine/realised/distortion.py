@@ -213,10 +213,7 @@ def max_true_per_commanded(machine: Machine | None) -> float:
 
 
 def true_pass(a_pass, cell: Cell):
-    """Return a commanded pass as the machine runs it.
-
-    Circles that the machine distorts are replaced by their poses.
-    """
+    """Return a commanded pass as the machine runs it. Circles that the machine distorts are replaced by their poses."""
     return _transform_pass(a_pass, cell.machine, true_mm)
 
 

@@ -69,10 +69,7 @@ def cuts_at_field_edge(commanded_mm: np.ndarray, machine: Machine) -> list[np.nd
 
 
 def distance_beyond_field_mm(commanded_mm: np.ndarray, machine: Machine) -> float:
-    """Return the largest distance [mm] of places beyond the field.
-
-    commanded_mm: (n, 2) commanded places.
-    """
+    """Return the largest distance [mm] of places beyond the field. commanded_mm: (n, 2) commanded places."""
     beyond = np.abs(commanded_mm - machine.field_middle_mm) - machine.field_reach_mm
     return float(np.max(beyond, initial=0.0))
 

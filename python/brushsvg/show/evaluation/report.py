@@ -254,10 +254,7 @@ def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> lis
 
 
 def comparison_text(rows: list[tuple[str, Figures]]) -> str:
-    """Return a table of several ways to paint the same drawing.
-
-    rows: (compensation, total figures).
-    """
+    """Return a table of several ways to paint the same drawing. rows: (compensation, total figures)."""
     lines = _ruled_table(
         [
             ("compensation", [how for how, _ in rows]),
@@ -271,10 +268,7 @@ def comparison_text(rows: list[tuple[str, Figures]]) -> str:
 
 
 def brushes_json(title: str, suits) -> str:
-    """Return several other_brushes.BrushRating as JSON, in their order.
-
-    Overlaps are rounded to 1e-6.
-    """
+    """Return several other_brushes.BrushRating as JSON, in their order. Overlaps are rounded to 1e-6."""
     rows = [_round_floats(asdict(suit)) for suit in suits]
     document = {"format": "brushsvg/brushes", "version": 1, "title": title, "brushes": rows}
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"

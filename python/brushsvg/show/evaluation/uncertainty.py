@@ -120,10 +120,7 @@ def uncertainty(plan, brush, marks) -> PlanConfidence | None:
 
 
 def band(plan, brush, marks) -> Band:
-    """Return the band of every pass.
-
-    It has no rings where nothing is known. marks: with outlines.
-    """
+    """Return the band of every pass. It has no rings where nothing is known. marks: with outlines."""
     if known_from(brush) is None:
         return Band(tuple([] for _ in marks.passes), in_words(brush))
     rings = []

@@ -32,10 +32,7 @@ SPEED_TOLERANCE_SHARE, SPEED_TOLERANCE_MM_S = 1e-3, 0.01  # change of a speed by
 
 
 def as_table(text: str) -> str:
-    """Convert JSON to the lines of a table, with the same line numbers.
-
-    Raises Error for invalid JSON.
-    """
+    """Convert JSON to the lines of a table, with the same line numbers. Raises Error for invalid JSON."""
     try:
         json.loads(text)
     except ValueError as mistake:
