@@ -18,7 +18,7 @@ from brushsvg.calibration.numbers.from_measurements import calibrate
 from brushsvg.calibration.numbers.measurements import Row, read_measurements
 from brushsvg.cli import main
 from brushsvg.errors import Error
-from brushsvg.jobs.correctable_errors import select_correctable_parts
+from brushsvg.jobs.calibrating import select_correctable_parts
 from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.model.confidence import law_band

@@ -37,16 +37,21 @@ from ..comparison.learning import learn
 from ..comparison.repeats import read_displacement_mm
 from ..errors import Error, Notice, name_file_in_errors, need_number, need_one_of, need_truth, require_type
 from ..files import read_bytes
-from ..machine.cells.cell import Cell
+from ..machine.cells.cell import Cell, not_undone
 from ..model.plot import brush_picture
 from ..reporting.report_text import Report
 from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
 from .choices import load_brush, load_cell
-from .correctable_errors import select_correctable_parts
 from .json_files import read_plan
 
 Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about the file
-
+CELL_KEY_BY_PART = {  # keys in the table machine of a cell, by the part of `calibrate --machine` that estimates them
+    "lean": "lean_mm_per_mm",
+    "axes": "scale",
+    "tilt": "tilt_mm_per_mm",
+    "backlash": "backlash_mm",
+    "field": "field_mm",
+}
 
 Fit = TypeVar("Fit")
 Rows = Sequence[Mapping[str, object]]
@@ -451,3 +456,15 @@ def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
     with_lineage(learned.updated.brush, prior_brush, digests)
     warn(photos[0], list(learned.notices))
     return BrushCalibration(learned.updated.brush, "job", learned.updated, update_report.report(learned.updated))
+
+
+def select_correctable_parts(parts: tuple[str, ...], cell: Cell) -> tuple[tuple[str, ...], list[Notice]]:
+    """Return the parts that this cell can undo, and a notice on the other parts."""
+    left_out = not_undone(cell)
+    uncorrectable = [part for part in parts if CELL_KEY_BY_PART[part] in left_out]
+    if not uncorrectable:
+        return parts, []
+    why = "; ".join(dict.fromkeys(left_out[CELL_KEY_BY_PART[part]] for part in uncorrectable))
+    sentence = f"cell {cell.name} cannot undo {', '.join(uncorrectable)}, so it is not estimated: {why}"
+    kept = tuple(part for part in parts if part not in uncorrectable)
+    return kept, [Notice("machine", sentence, code="machine-not-undone")]

@@ -15,10 +15,15 @@ from typing import TYPE_CHECKING, TypeVar, Unpack
 from .. import _core
 from ..calibration.prior.from_prior import has_learned
 from ..comparison import report
-from ..comparison.attribution.corrected_cell import certain_of, corrected_machine, key_of, significant_part
+from ..comparison.attribution.corrected_cell import (
+    certain_of,
+    corrected_machine,
+    key_of,
+    significant_part,
+    subtract_faults,
+)
 from ..comparison.attribution.faults import Faults, attribute_errors
 from ..comparison.attribution.model import BRUSH
-from ..comparison.attribution.residual import subtract_faults
 from ..comparison.corrections import (
     Correction,
     SheetBefore,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.arc_to_cubics import arc_count
+from ...geometry.cubics import arc_count
 from .ezdxf_import import ezdxf
 from .splines import b_spline_to_cubics, fit_points_to_cubics, make_continuous
 

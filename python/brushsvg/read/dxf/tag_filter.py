@@ -10,18 +10,35 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import BinaryIO
 
 from .ezdxf_import import ezdxf
-from .subclass_markers import FIRST_MARKED_VERSION, SUBCLASS_BY_TYPE, Tag, add_markers, is_marked
 
+# Subclass markers (group code 100) that ezdxf needs in newer entities. Minimal exporters leave them out.
+_SUBCLASS_BY_TYPE = {
+    b"HATCH": b"AcDbHatch",
+    b"LEADER": b"AcDbLeader",
+    b"LWPOLYLINE": b"AcDbPolyline",
+    b"MLINE": b"AcDbMline",
+    b"MPOLYGON": b"AcDbMPolygon",
+    b"MTEXT": b"AcDbMText",
+    b"SPLINE": b"AcDbSpline",
+}
+_ENTITY_SUBCLASS = b"AcDbEntity"
+_FIRST_MARKED_VERSION = b"AC1012"  # the first version with markers
+_MARKER_CODE = 100
+_HEAD_CODES = frozenset((0, 5, 102, 330, 360))  # group codes of type and handles
+# Group codes of layer, line type, colour and other properties that all graphic entities have.
+_GRAPHIC_CODES = frozenset((6, 8, 48, 60, 62, 67, 370, 410, 420, 430, 440))
+Tag = ezdxf.lldxf.types.DXFTag
 _R12_NAMES = "ARC ATTDEF ATTRIB BLOCK CIRCLE DIMENSION ENDBLK INSERT LINE POINT POLYLINE SEQEND SOLID TEXT TRACE VERTEX"
 _R12_TYPES = frozenset([*_R12_NAMES.encode().split(), b"3DFACE"])
 _UNMARKED_TYPES = frozenset((b"ELLIPSE", b"RAY", b"XLINE"))  # ezdxf also reads these without markers
 _MARKED_ONLY_TYPES = frozenset(
     b"ACAD_PROXY_ENTITY ARC_DIMENSION HELIX LARGE_RADIAL_DIMENSION MLEADER MULTILEADER".split()
 )
-_NEWER_TYPES = _UNMARKED_TYPES | _MARKED_ONLY_TYPES | SUBCLASS_BY_TYPE.keys()
+_NEWER_TYPES = _UNMARKED_TYPES | _MARKED_ONLY_TYPES | _SUBCLASS_BY_TYPE.keys()
 _PART_TYPES = frozenset((b"ATTRIB", b"SEQEND", b"VERTEX"))  # these belong to the entity before them
 _SILENT_TYPES = frozenset((b"VIEWPORT",))
 _FLOAT_CODES = frozenset((*range(10, 60), *range(140, 150), *range(210, 240)))
@@ -63,14 +80,14 @@ class EntityFilter:
             if not drawn:
                 yield [part]
             elif whole or self._is_read(kind, part):
-                whole.append(add_markers(part, SUBCLASS_BY_TYPE[kind]) if kind in SUBCLASS_BY_TYPE else part)
+                whole.append(_add_markers(part, _SUBCLASS_BY_TYPE[kind]) if kind in _SUBCLASS_BY_TYPE else part)
         if whole:
             yield from self._undamaged(whole)
 
     def _is_read(self, kind: bytes, part: list[Tag]) -> bool:
-        if kind in _R12_TYPES or kind in _UNMARKED_TYPES or kind in SUBCLASS_BY_TYPE:
+        if kind in _R12_TYPES or kind in _UNMARKED_TYPES or kind in _SUBCLASS_BY_TYPE:
             return True
-        if kind in _MARKED_ONLY_TYPES and is_marked(part):
+        if kind in _MARKED_ONLY_TYPES and _is_marked(part):
             return True
         if kind not in _SILENT_TYPES:
             self.left_out[kind.decode(errors="replace")] += 1
@@ -95,7 +112,7 @@ def _with_newer_version(before: list[Tag], parts: list[list[Tag]]) -> Iterator[T
     tags = [*before, *_flatten(parts)]
     versions = [k + 1 for k, tag in enumerate(tags[:-1]) if tag == (9, b"$ACADVER")]
     for k in versions:
-        if tags[k].value.strip() < FIRST_MARKED_VERSION:
+        if tags[k].value.strip() < _FIRST_MARKED_VERSION:
             tags[k] = Tag(1, b"AC1015")
     if not versions:
         header = (0, b"SECTION"), (2, b"HEADER"), (9, b"$ACADVER"), (1, b"AC1015"), (0, b"ENDSEC")
@@ -123,3 +140,20 @@ def _is_number(value: bytes) -> bool:
     except ValueError:
         return False
     return True
+
+
+def _is_marked(entity: list[Tag]) -> bool:
+    return any(tag.code == _MARKER_CODE and tag.value.strip() == _ENTITY_SUBCLASS for tag in entity)
+
+
+def _add_markers(entity: list[Tag], subclass: bytes) -> list[Tag]:
+    """Return an entity with its subclass markers. A marked entity stays as it is."""
+    markers = [tag.value.strip() for tag in entity if tag.code == _MARKER_CODE]
+    if markers[:2] == [_ENTITY_SUBCLASS, subclass]:
+        return entity
+    entity = [tag for tag in entity if tag.code != _MARKER_CODE]
+    head = list(takewhile(lambda tag: tag.code in _HEAD_CODES, entity))
+    rest = entity[len(head) :]
+    graphic = [tag for tag in rest if tag.code in _GRAPHIC_CODES]
+    own = [tag for tag in rest if tag.code not in _GRAPHIC_CODES]
+    return [*head, Tag(_MARKER_CODE, _ENTITY_SUBCLASS), *graphic, Tag(_MARKER_CODE, subclass), *own]

@@ -7,23 +7,25 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from contextlib import suppress
 
-from ...errors import Error
+from ...errors import Error, list_first
 from ...units import MM_PER
 from .. import AS_DRAWN, ReadOptions
 from ..background import remove_background
-from ..design import Design, Notice
+from ..design import Design, Element, Notice
 from ..empty_drawing import empty_drawing_error
-from ..off_page import keep_on_page
+from ..layout import bounds_mm
 from .context import local_name, printable_line
 from .css.cascade import INITIAL, cascade
-from .selection import select_elements
+from .css.selectors import select_elements
 from .settings import PREFIX, document_settings
 from .tree_walk import SVG, TreeWalk
 from .viewport import Page, read_page
 from .xml import Document, parse_xml
 
+_MAX_NAMED_ELEMENTS = 5  # elements off the page that a sentence names
 _INKSCAPE_VERSION = "{http://www.inkscape.org/namespaces/inkscape}version"
 
 
@@ -125,3 +127,28 @@ def _probable_size_notice(program: str, per_inch: int, read_mm: tuple[float, flo
     if not has_box:
         advice += f' viewBox="0 0 {read_mm[0] / MM_PER["px"]:.6g} {read_mm[1] / MM_PER["px"]:.6g}"'
     return Notice("svg", f"{sentence}{w:.4g} x {h:.4g} mm", code="other-pixels", advice=advice)
+
+
+def keep_on_page(
+    elements: Sequence[Element], page_mm: tuple[float, float], top_mm: float
+) -> tuple[tuple[Element, ...], list[Notice]]:
+    """Return the elements that touch the page, and a notice about the others.
+
+    If no element touches the page, all are kept: --fit or --origin can still move them onto it.
+
+    page_mm: (width, height) of the drawing's own page; top_mm: y of its upper left corner, which is the sheet's.
+    """
+    is_on = [_touches_page(element, page_mm, top_mm) for element in elements]
+    if all(is_on) or not any(is_on):
+        return tuple(elements), []
+    kept = [element for element, inside in zip(elements, is_on, strict=True) if inside]
+    removed = [element.id for element, inside in zip(elements, is_on, strict=True) if not inside]
+    count = "1 element is" if len(removed) == 1 else f"{len(removed)} elements are"
+    sentence = f"{count} off the page and left out: {list_first(removed, _MAX_NAMED_ELEMENTS)}"
+    advice = "move them onto the page to paint them, or make the page larger"
+    return tuple(kept), [Notice("svg", sentence, code="off-page", advice=advice)]
+
+
+def _touches_page(element: Element, page_mm: tuple[float, float], top_mm: float) -> bool:
+    x0, y0, x1, y1 = bounds_mm([element])
+    return not (x1 < 0 or y1 < top_mm - page_mm[1] or x0 > page_mm[0] or y0 > top_mm)

@@ -1,4 +1,4 @@
-"""brushsvg calibrate: calibrate a brush from measurements or photographs."""
+"""brushsvg calibrate: calibrate a brush from measurements or photographs, or read the outlines of a chart."""
 
 from __future__ import annotations
 
@@ -25,3 +25,17 @@ def calibrate_file(args) -> None:
     warn(args.output, remarks(calibration.brush))
     write_outputs(args, files, more=calibration.reading, sources=[args.output])
     print_text(calibration.report.text(args.details, args.marks_picture or args.picture or ""))
+
+
+def scan_file(args) -> None:
+    from ....calibration.chart.photograph import describe_reading, write_marks
+    from ....calibration.marks.photo_report import read_picture
+    from ....jobs.calibrating import read_chart_photographs
+
+    check_outputs(args, args.output, args.marks_picture)
+    with refuse_errors(""):  # errors name their file themselves
+        read = read_chart_photographs([args.input], args.options, stage, warn)
+    files = {args.output: write_marks(read)}
+    if args.marks_picture:
+        files[args.marks_picture] = read_picture(read)
+    write_outputs(args, files, more=describe_reading(read))

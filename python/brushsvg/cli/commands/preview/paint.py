@@ -1,4 +1,4 @@
-"""brushsvg preview: draw the paint of a drawing or plan."""
+"""brushsvg preview: draw the paint of a drawing or plan, or write a page that plays the job in a browser."""
 
 from __future__ import annotations
 
@@ -31,3 +31,14 @@ def preview_paint(args) -> None:
                 say(work.brush.name, band.words)
         picture = outputs.make_picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")
     write_outputs(args, {args.output: picture}, len(work.plan.passes), prepared.seconds())
+
+
+def preview_animation(args) -> None:
+    check_outputs(args, args.output)
+    prepared = prepare_and_simulate(
+        apply_drawing_settings(make_choices(args), args.input), outlines=True, at_loads=True
+    )
+    work, loads, cell = prepared.work, prepared.loads, prepared.work.options.cell
+    with refuse_errors(args.input):
+        page = outputs.make_animation(work, loads, prepared.marks, cell, args.playback or 1.0)
+    write_outputs(args, {args.output: page}, len(loads.loads), prepared.seconds())

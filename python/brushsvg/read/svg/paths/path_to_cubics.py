@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....geometry.arc_to_cubics import arc_count
+from ....geometry.cubics import arc_count
 from ...design import SubPath
 from .path_data import Command
 
