@@ -24,7 +24,7 @@ import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments import values
 from brushsvg.cli.arguments.parser import command_parser
-from brushsvg.jobs.choices import CHOICE_RANGES, CHOICE_VALUES, CHOICES, ChoiceKeywords
+from brushsvg.jobs.choices.choices import CHOICE_RANGES, CHOICE_VALUES, CHOICES, ChoiceKeywords
 from brushsvg.jobs.conversion import simulate_and_check
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare

@@ -17,15 +17,8 @@ from diagnostics import agrees, gives, in_json, is_reported, refused
 import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import command_parser, parse
-from brushsvg.jobs.choices import CHOICE_VALUES, CHOICES
-from brushsvg.jobs.project import (
-    CHOICE_BY_TOP_KEY,
-    MAX_BYTES,
-    NAME,
-    find_project_file,
-    options,
-    write_project,
-)
+from brushsvg.jobs.choices.choices import CHOICE_VALUES, CHOICES
+from brushsvg.jobs.project import CHOICE_BY_TOP_KEY, MAX_BYTES, NAME, find_project_file, options, write_project
 
 BEGIN = 'format = "brushsvg/project"\nversion = 1\n'
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"

@@ -41,8 +41,8 @@ from ..machine.cells.cell import Cell, not_undone
 from ..model.plot import brush_picture
 from ..reporting.report_text import Report
 from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
-from .choices import load_brush, load_cell
 from .json_files import read_plan
+from .options import load_brush, load_cell
 
 Warn = Callable[[str, Iterable[Notice]], object]  # called with a file and the warnings about the file
 CELL_KEY_BY_PART = {  # keys in the table machine of a cell, by the part of `calibrate --machine` that estimates them

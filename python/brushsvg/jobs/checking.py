@@ -38,29 +38,19 @@ from ..verify.readback.ros2 import as_table
 from ..verify.time_as_run import time_as_run_s
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
-from .choices import (
-    CHOICE_BY_FLAG,
-    CHOICES,
+from .choices.choices import CHOICE_BY_FLAG, CHOICES, ChoiceKeywords, Choices, path_of, suffix_of
+from .choices.ineffective_flags import (
     LAYOUT_FLAGS,
     PLANNING_FLAGS,
-    ChoiceKeywords,
-    Choices,
-    drop_from_project,
-    drop_overruled,
-    find_overruled_names,
-    load_brush,
-    load_cell,
-    make_options,
-    path_of,
     report_flags_without_effect,
     report_ineffective_flags,
-    suffix_of,
 )
 from .conversion import make_choices
 from .json_files import read_plan
-from .options import DEFAULT_BRUSH, Options
+from .options import DEFAULT_BRUSH, Options, load_brush, load_cell, make_options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
+from .project.ignored_settings import drop_from_project, drop_overruled, find_overruled_names
 from .work import Work, list_strokes_from, match_whole_strokes, order_nearest_first
 
 if TYPE_CHECKING:

@@ -48,17 +48,11 @@ from ..show.evaluation.figures import target_rings
 from . import cancelling, prediction
 from .cancelling import Cancel
 from .checking import Warn
-from .choices import (
-    ChoiceKeywords,
-    Choices,
-    choose_margin_strokes,
-    fill_from_drawing,
-    load_sheet_before,
-    make_options,
-    path_of,
-    report_ineffective_flags,
-)
+from .choices.choices import ChoiceKeywords, Choices, choose_margin_strokes, path_of
+from .choices.drawing_settings import fill_from_drawing
+from .choices.ineffective_flags import report_ineffective_flags
 from .conversion import make_choices
+from .options import load_sheet_before, make_options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
 from .work import Work

@@ -14,15 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from .. import _core
-from ..errors import (
-    Error,
-    Notice,
-    name_file_in_errors,
-    need_number,
-    need_one_of,
-    need_truth,
-    require_type,
-)
+from ..errors import Error, Notice, name_file_in_errors, need_number, need_one_of, need_truth, require_type
 from ..files import write_files
 from ..machine import preflight, writer
 from ..machine.cells.cell import Cell
@@ -34,21 +26,13 @@ from ..notice_summary import summarize_notices
 from ..show.evaluation import report as reports
 from . import cancelling, outputs, prediction
 from .cancelling import Cancel
-from .choices import (
-    ChoiceKeywords,
-    Choices,
-    check_choices,
-    choose_margin_strokes,
-    drop_from_project,
-    fill_from_drawing,
-    make_options,
-    path_of,
-    refuse_ends_without_effect,
-    refuse_file_used_twice,
-    report_ineffective_flags,
-    suffix_of,
-)
+from .choices.choice_checks import check_choices, refuse_ends_without_effect, refuse_file_used_twice
+from .choices.choices import ChoiceKeywords, Choices, choose_margin_strokes, path_of, suffix_of
+from .choices.drawing_settings import fill_from_drawing
+from .choices.ineffective_flags import report_ineffective_flags
+from .options import make_options
 from .preparation import preparation
+from .project.ignored_settings import drop_from_project
 from .work import Work, order_nearest_first
 
 if TYPE_CHECKING:

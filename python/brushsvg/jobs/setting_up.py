@@ -22,21 +22,12 @@ from ..machine.posts import Post
 from ..machine.program import Job
 from ..model.library import find_brush
 from . import outputs, prediction
-from .choices import (
-    ChoiceKeywords,
-    Choices,
-    check_choices,
-    fill_from_drawing,
-    load_brush,
-    load_cell,
-    make_options,
-    path_of,
-    refuse_file_used_twice,
-    report_ineffective_flags,
-    suffix_of,
-)
+from .choices.choice_checks import check_choices, refuse_file_used_twice
+from .choices.choices import ChoiceKeywords, Choices, path_of, suffix_of
+from .choices.drawing_settings import fill_from_drawing
+from .choices.ineffective_flags import report_ineffective_flags
 from .conversion import default_suffix, make_choices
-from .options import DEFAULT_BRUSH
+from .options import DEFAULT_BRUSH, load_brush, load_cell, make_options
 from .preparation import preparation
 
 if TYPE_CHECKING:

@@ -17,19 +17,12 @@ from ..calibration.chart.layout import Chart
 from ..comparison.job_page import JobPage, job_page
 from ..errors import Error, Notice, name_file_in_errors, need_number, require_type
 from ..files import read_bytes, write_files
-from ..jobs.choices import (
-    ChoiceKeywords,
-    Choices,
-    choose_margin_strokes,
-    fill_from_drawing,
-    load_brush,
-    make_options,
-    path_of,
-    refuse_file_used_twice,
-    report_ineffective_flags,
-    suffix_of,
-)
+from ..jobs.choices.choice_checks import refuse_file_used_twice
+from ..jobs.choices.choices import ChoiceKeywords, Choices, choose_margin_strokes, path_of, suffix_of
+from ..jobs.choices.drawing_settings import fill_from_drawing
+from ..jobs.choices.ineffective_flags import report_ineffective_flags
 from ..jobs.conversion import make_choices
+from ..jobs.options import load_brush, make_options
 from ..jobs.preparation import preparation
 from ..machine.paint_reload import fetched_mm
 from .painting import lower_paper, simulate_painted_strokes

@@ -16,7 +16,8 @@ from brushsvg.cli.arguments.parser import parse
 from brushsvg.cli.commands import convert_file
 from brushsvg.cli.commands.drawings import check as command
 from brushsvg.cli.console import RefusedError
-from brushsvg.jobs import checking, choices, outputs
+from brushsvg.jobs import checking, outputs
+from brushsvg.jobs.options import load_cell
 from brushsvg.jobs.preparation import preparation
 from brushsvg.jobs.work import Work
 
@@ -65,7 +66,7 @@ def quick_check():
 
     def cell_of(name):
         if name not in cells:
-            cells[name] = choices.load_cell(name)
+            cells[name] = load_cell(name)
         return cells[name]
 
     def refusals(*words) -> list[str]:

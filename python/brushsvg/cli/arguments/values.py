@@ -165,6 +165,6 @@ def _split_at_depth(text: str, quantity: str, example: str) -> tuple[str, str]:
 
 
 def colour(text: str) -> str:
-    from ...jobs.choices import read_colour
+    from ...jobs.choices.choice_checks import read_colour
 
     return _parse(read_colour, text)

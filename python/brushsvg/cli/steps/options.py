@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from ...jobs import choices
-from ...jobs.choices import CHOICES, Choices
+from ...jobs import options
+from ...jobs.choices import drawing_settings
+from ...jobs.choices.choices import CHOICES, Choices
 from ...jobs.options import Options
+from ...jobs.project.ignored_settings import drop_overruled
 from ...machine.cells.cell import Cell
 from ...machine.preflight import DEFAULT_TOLERANCE_MM, as_exact_as
 from ...machine.writer import list_cell_notices
@@ -21,22 +23,22 @@ def make_choices(args, **instead) -> Choices:
     if isinstance(given["brush"], list):  # an option that may be given more than once
         given["brush"] = given["brush"][0] if given["brush"] else None
     with refuse_errors(""):  # errors name the brush or cell of the project themselves
-        return choices.drop_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
+        return drop_overruled(Choices(**given, from_project=getattr(args, "from_project", ())))
 
 
 def apply_drawing_settings(chosen: Choices, drawing: str, alone: bool = False) -> Choices:
     with refuse_errors(drawing):
-        return choices.fill_from_drawing(chosen, drawing, alone)
+        return drawing_settings.fill_from_drawing(chosen, drawing, alone)
 
 
 def load_brush(name: str | None):
     with refuse_errors(name or ""):
-        return choices.load_brush(name)
+        return options.load_brush(name)
 
 
 def load_cell(name: str | None) -> Cell:
     with refuse_errors(name or ""):
-        return choices.load_cell(name)
+        return options.load_cell(name)
 
 
 def load_exact_cell(name: str | None) -> Cell:
@@ -46,7 +48,7 @@ def load_exact_cell(name: str | None) -> Cell:
 
 def make_options(chosen: Choices, cell: Cell | None = None, brush=None) -> Options:
     with refuse_errors(""):  # errors name the brush, cell or file themselves
-        return choices.make_options(chosen, cell, brush)
+        return options.make_options(chosen, cell, brush)
 
 
 def warn_about_cell(args, cell: Cell) -> None:

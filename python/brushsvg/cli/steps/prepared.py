@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from ...errors import Error, Notice
 from ...jobs import prediction
-from ...jobs.choices import Choices, report_ineffective_flags
+from ...jobs.choices.choices import Choices
+from ...jobs.choices.ineffective_flags import report_ineffective_flags
 from ...jobs.preparation import preparation
 from ...jobs.work import Work
 from ...machine import preflight

@@ -25,7 +25,7 @@ def use_project(args, argv: list[str] | None) -> None:
     """Fill options that were not typed from the project file.
 
     This concerns commands with --explain. The filled options are in `args.from_project`: settings in the drawing
-    still take precedence, see jobs.choices.
+    still take precedence, see jobs.project.ignored_settings.
     """
     if "explain" not in args:
         return
@@ -88,7 +88,7 @@ def _find_start_path(args) -> str:
 
 def _list_settable_options(parser: argparse.ArgumentParser) -> dict[str, argparse.Action]:
     """Return the options that a project file can set, by the names of their choices."""
-    from ...jobs.choices import CHOICES
+    from ...jobs.choices.choices import CHOICES
 
     actions = {action.dest: action for action in parser._actions if action.option_strings}
     return {name: actions[name] for name in CHOICES if name in actions}
@@ -126,7 +126,7 @@ def _get_flag(action: argparse.Action) -> str:
 
 def _make_final_choices(args):
     """Return the choices as the command makes them; raise RefusedError if the drawing cannot be read."""
-    from ...jobs.choices import drop_overruled
+    from ...jobs.project.ignored_settings import drop_overruled
     from ...read import settings_in
     from . import options
 

@@ -17,7 +17,11 @@ from ...model.library import parse_brush
 from ...read import InMemory
 from ...show.evaluation.figures import PaintedPlan, measure
 from .. import conversion, outputs
-from ..choices import Choices, check_choices, fill_from_drawing, make_options, report_ineffective_flags
+from ..choices.choice_checks import check_choices
+from ..choices.choices import Choices
+from ..choices.drawing_settings import fill_from_drawing
+from ..choices.ineffective_flags import report_ineffective_flags
+from ..options import make_options
 from ..preparation import preparation
 
 PICTURE_LONG_SIDE_PX = 480

@@ -28,8 +28,10 @@ from ...reporting.report_text import format_overlap
 from ...show.contact_sheet import Card, contact_sheets
 from ...units import clock
 from ..cancelling import Cancel
-from ..choices import ChoiceKeywords, Choices, drop_from_project, load_cell
+from ..choices.choices import ChoiceKeywords, Choices
 from ..conversion import ORDERS, make_choices, refuse_job_of_plan
+from ..options import load_cell
+from ..project.ignored_settings import drop_from_project
 from . import executors, one, tables
 from .items import Item, file_name_key, make_items
 from .manifest import Manifest, Row, make_path_below

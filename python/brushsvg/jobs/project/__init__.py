@@ -110,7 +110,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
 
 def options() -> dict[str, str]:
     """Return the keys of [defaults], each with the name of its choice."""
-    from ..choices import CHOICE_BY_FLAG, CHOICES
+    from ..choices.choices import CHOICE_BY_FLAG, CHOICES
 
     flags = {choice: flag for flag, choice in CHOICE_BY_FLAG.items()}
     top = {*CHOICE_BY_TOP_KEY.values(), *OF_ONE_DRAWING}
@@ -157,7 +157,8 @@ def write_project(
 
 
 def _read_settings(document: dict, folder: str) -> dict[str, object]:
-    from ..choices import Choices, check_choices
+    from ..choices.choice_checks import check_choices
+    from ..choices.choices import Choices
 
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):

@@ -16,7 +16,7 @@ def read_value(choice: str, value: object, key: str) -> object:
 
     Raises Error with the key.
     """
-    from ..choices import CHOICE_VALUES
+    from ..choices.choices import CHOICE_VALUES
 
     try:
         if choice == "join":
@@ -45,7 +45,8 @@ def _format_as_typed(value: object, key: str) -> str:
 
 
 def _read_typed(choice: str, text: str, key: str) -> object:
-    from ..choices import CHOICE_RANGES, read_colour
+    from ..choices.choice_checks import read_colour
+    from ..choices.choices import CHOICE_RANGES
 
     readers: dict[str, Callable[[str], object]] = {
         "sheet": paper_mm,

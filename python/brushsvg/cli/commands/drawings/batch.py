@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ....errors import Notice
-from ....jobs.choices import CHOICES
+from ....jobs.choices.choices import CHOICES
 from ....notice_summary import summarize_notices
 from ....reporting.report_text import format_overlap
 from ....units import clock

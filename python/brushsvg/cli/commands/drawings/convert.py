@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy  # noqa: F401  # before the core: if memory is short, numpy then raises an exception instead of exiting
 
 from ....jobs import conversion, outputs, prediction
-from ....jobs.choices import choose_margin_strokes
+from ....jobs.choices.choices import choose_margin_strokes
 from ....jobs.preparation.colours import list_colours, select_colour
 from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.work import Work

@@ -7,19 +7,12 @@ import os
 from dataclasses import replace
 
 from ....errors import Error, Notice
-from ....jobs.choices import LAYOUT_FLAGS, report_flags_without_effect
+from ....jobs.choices.ineffective_flags import LAYOUT_FLAGS, report_flags_without_effect
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine.arm.inverse_kinematics import is_installed, joints_of
 from ....machine.cells import cell_check as cell_checks
 from ....machine.cells.cell import robot_from_paper
-from ....machine.cells.cell_file import (
-    DEFAULT_CELL,
-    cell_names,
-    find_cell,
-    own_name,
-    parse_cell,
-    write_cell,
-)
+from ....machine.cells.cell_file import DEFAULT_CELL, cell_names, find_cell, own_name, parse_cell, write_cell
 from ....machine.cells.describe_cell import cell_page
 from ....machine.paint_reload import split_into_loads
 from ....machine.posts import POSTS

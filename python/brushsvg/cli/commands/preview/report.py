@@ -6,8 +6,8 @@ The report says how close the paint comes to the drawing.
 from __future__ import annotations
 
 from ....jobs import outputs
-from ....jobs.choices import make_layout, make_read_options, report_ineffective_flags
-from ....jobs.options import DEFAULT_BRUSH
+from ....jobs.choices.ineffective_flags import report_ineffective_flags
+from ....jobs.options import DEFAULT_BRUSH, make_layout, make_read_options
 from ....jobs.preparation import other_brushes, other_sizes
 from ....model.library import brush_names, find_brush
 from ....notice_summary import summarize_notices

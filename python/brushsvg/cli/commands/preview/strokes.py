@@ -3,14 +3,8 @@
 from __future__ import annotations
 
 from ....errors import Error, Notice
-from ....jobs.choices import (
-    PLANNING_FLAGS,
-    make_layout,
-    make_read_options,
-    report_flags_without_effect,
-    report_ineffective_flags,
-)
-from ....jobs.options import DEFAULT_BRUSH
+from ....jobs.choices.ineffective_flags import PLANNING_FLAGS, report_flags_without_effect, report_ineffective_flags
+from ....jobs.options import DEFAULT_BRUSH, make_layout, make_read_options
 from ....jobs.preparation.preparation import limit_depth
 from ....model.library import find_brush
 from ....read import read_drawing, settings_in

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ....jobs.choices import Choices
+from ....jobs.choices.choices import Choices
 from ....jobs.setting_up import make_border, make_first_run, make_height
 from ....machine.writer import in_files
 from ...console import refuse_errors, stage, warn

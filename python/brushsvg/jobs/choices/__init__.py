@@ -1,0 +1,1 @@
+"""The choices that a user makes for a drawing, and their checks."""
