@@ -15,7 +15,7 @@ from brushsvg.jobs import outputs, prediction
 from brushsvg.jobs.comparison_picture import comparison_png
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation import preparation
-from brushsvg.jobs.work import Work
+from brushsvg.jobs.prepared_drawing import PreparedDrawing
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.paint_reload import split_into_loads
@@ -67,7 +67,7 @@ def main(drawing: Path, directory: Path) -> None:
     print(compared, *paths, sep="\n")
 
 
-def best_constant(work: Work) -> Work:
+def best_constant(work: PreparedDrawing) -> PreparedDrawing:
     """Return the work compensated with the constant lag of largest overlap.
 
     Lags from 0 to the greatest lag of the brush are tried and compared by pixels. The best lag is in options.lag_mm.

@@ -25,7 +25,7 @@ from brushsvg.cli import main
 from brushsvg.comparison.job_page import job_page
 from brushsvg.errors import Error
 from brushsvg.jobs.preparation.preparation import prepare
-from brushsvg.jobs.work import order_nearest_first
+from brushsvg.jobs.prepared_drawing import order_nearest_first
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="110mm" height="70mm" viewBox="0 0 110 70">
 <title>four</title><g fill="none" stroke="#000" stroke-linecap="round">

@@ -10,7 +10,7 @@ from diagnostics import refused
 from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.jobs.preparation import preparation
-from brushsvg.jobs.work import order_nearest_first
+from brushsvg.jobs.prepared_drawing import order_nearest_first
 from brushsvg.machine import moves, program, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.planning import shortest_travel

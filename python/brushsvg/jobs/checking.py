@@ -50,8 +50,8 @@ from .json_files import read_plan
 from .options import DEFAULT_BRUSH, Options, load_brush, load_cell, make_options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
+from .prepared_drawing import PreparedDrawing, list_strokes_from, match_whole_strokes, order_nearest_first
 from .project.ignored_settings import drop_from_project, drop_overruled, find_overruled_names
-from .work import Work, list_strokes_from, match_whole_strokes, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
@@ -85,7 +85,7 @@ class Check:
     is_foreign: bool = False
     is_compared: bool = False
     notices: tuple[Notice, ...] = ()
-    work: Work | None = field(default=None, repr=False)
+    work: PreparedDrawing | None = field(default=None, repr=False)
     marks: _core.Marks | None = field(default=None, repr=False)
     figures: Report | None = field(default=None, repr=False)
     border_mm: tuple[float, ...] | None = None
@@ -260,7 +260,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         problems = problems + rewrite_notices
         if rewritten and not problems:
             problems = out_of_arm(rewritten, sheet_mm)
-        painted_work = Work(header.title, brush, simulated.plan, strokes, (), Options(), ())
+        painted_work = PreparedDrawing(header.title, brush, simulated.plan, strokes, (), Options(), ())
         seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered in the program
             seconds = as_run_s
@@ -314,7 +314,7 @@ def _merge_style_differences(differences: list[Notice]) -> list[Notice]:
 
 
 def _compare_with_rewritten(
-    program: _OwnProgram, simulated, work: Work | None, speeds, z_offset_mm: float
+    program: _OwnProgram, simulated, work: PreparedDrawing | None, speeds, z_offset_mm: float
 ) -> tuple[object, list[Notice]]:
     """Write the plan that was read anew; return that program, and notices on where the given one differs."""
     header, cell, brush = program.header, program.cell, program.brush
@@ -348,7 +348,7 @@ def _compare_with_rewritten(
     return rewritten, notices
 
 
-def _make_expected_header(header, work: Work | None) -> tuple[str, tuple[str, ...]]:
+def _make_expected_header(header, work: PreparedDrawing | None) -> tuple[str, tuple[str, ...]]:
     """Return the title and notes that the header of a program should have.
 
     They come from the drawing, or from the header itself where nothing else is known, as for a program that was
@@ -374,7 +374,7 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
     cell, brush = load_cell(chosen.cell), load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
     foreign = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     warn(path, foreign.warnings)
-    painted_work = Work("", brush, foreign.plan, None, (), Options(cell=cell), ())
+    painted_work = PreparedDrawing("", brush, foreign.plan, None, (), Options(cell=cell), ())
     figures = outputs.make_report(painted_work, foreign.marks, cell, forbidden=foreign.problems)
     return Check("painting", foreign.problems, is_foreign=True, work=painted_work, marks=foreign.marks, figures=figures)
 
@@ -412,7 +412,7 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
         return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.heights_mm))
 
 
-def _compare_border(header, work: Work, stage) -> list[Notice]:
+def _compare_border(header, work: PreparedDrawing, stage) -> list[Notice]:
     """Return a notice if a run in the air does not go around the paint."""
     marks = prediction.predict(work, outlines=False, stage=stage)
     needed_mm, commanded_mm = round_outwards(preflight.job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
@@ -436,7 +436,7 @@ def _is_corrected_plan(source) -> bool:
     return isinstance(source, _core.Plan) and is_corrected(source)
 
 
-def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> Work:
+def _prepare_as_made(program: _OwnProgram, chosen: Choices, stage, warn: Warn) -> PreparedDrawing:
     """Prepare a program's drawing or plan as its header says, and repeat notices on what is left out."""
     header, source = program.header, chosen.input
     if header.is_corrected and chosen.corrections is None and not _is_corrected_plan(source):

@@ -55,7 +55,7 @@ from .conversion import make_choices
 from .options import load_sheet_before, make_options
 from .preparation import preparation
 from .preparation.margin_strokes import is_margin
-from .work import Work
+from .prepared_drawing import PreparedDrawing
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
@@ -76,7 +76,7 @@ class Sheet:
     alternative: makes the sheet of the other page that this drawing may have been painted on, without margin strokes.
     """
 
-    work: Work
+    work: PreparedDrawing
     plan: _core.Plan
     before: SheetBefore
     page: JobPage
@@ -333,5 +333,5 @@ def _estimate_print_scale(faults: Faults) -> float | None:
     return 1.0 / (1.0 + (x + y) / 2)
 
 
-def _get_cell_machine(work: Work):
+def _get_cell_machine(work: PreparedDrawing):
     return work.options.cell.machine if work.options.cell else None

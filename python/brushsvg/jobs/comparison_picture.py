@@ -11,13 +11,13 @@ from ..machine.realised.arc_chords import with_chords
 from ..model.describe import one_line
 from ..show.evaluation import figures
 from ..show.panels_png import MIDDLE_LINE, Panel, panels_png
-from .work import Work
+from .prepared_drawing import PreparedDrawing
 
 TITLES = {"none": "Tool follows the drawing", "closed": "With compensation"}
 
 
 def comparison_png(
-    works: Mapping[str, Work], marks: Mapping[str, _core.Marks], totals: Mapping[str, figures.Figures]
+    works: Mapping[str, PreparedDrawing], marks: Mapping[str, _core.Marks], totals: Mapping[str, figures.Figures]
 ) -> bytes:
     """Draw a drawing, its paint without compensation and with it, as a PNG.
 

@@ -32,8 +32,8 @@ from .choices.drawing_settings import fill_from_drawing
 from .choices.ineffective_flags import report_ineffective_flags
 from .options import make_options
 from .preparation import preparation
+from .prepared_drawing import PreparedDrawing, order_nearest_first
 from .project.ignored_settings import drop_from_project
-from .work import Work, order_nearest_first
 
 if TYPE_CHECKING:
     from .preparation.preparation import Source
@@ -298,7 +298,7 @@ class SimulatedWork:
     """
 
     suffix: str
-    work: Work
+    work: PreparedDrawing
     cell: Cell
     notes: tuple[str, ...]
     marks: object
@@ -346,7 +346,7 @@ def _check_lowering(z_offset_mm: float) -> list[Notice]:
     return [Notice("z_offset", sentence, code="unusual-value", about="z_offset")]
 
 
-def _check_stroke_order(work: Work, order: str, first_stroke: int) -> list[Notice]:
+def _check_stroke_order(work: PreparedDrawing, order: str, first_stroke: int) -> list[Notice]:
     """Return a notice if strokes are painted with less or more paint than planned.
 
     Strokes are pressed as deep as the remaining paint requires. In another order, other strokes are painted before
@@ -368,7 +368,7 @@ def _check_stroke_order(work: Work, order: str, first_stroke: int) -> list[Notic
 
 
 def simulate_and_check(
-    work: Work,
+    work: PreparedDrawing,
     suffix: str,
     job: Job = WHOLE_JOB,
     order: str = "drawn",

@@ -22,13 +22,13 @@ from ..show.overlap_svg import overlap_svg
 from ..show.timeline import timeline
 from .options import Options
 from .preparation.margin_strokes import MARGIN_KIND, is_margin, remove_margin_strokes
-from .work import Work
+from .prepared_drawing import PreparedDrawing
 
 TARGET_TOLERANCE_MM = 0.02  # how exactly an HTML page shows the target; smaller errors are not visible
 _NAMES_BY_LAW = {"lag": "lag", "half_width": "width"}  # the laws that a plan depends on, as users call them
 
 
-def header_lines(work: Work) -> tuple[str, ...]:
+def header_lines(work: PreparedDrawing) -> tuple[str, ...]:
     """Return lines for the header of a program.
 
     They say how the program was made, and how many warnings there were.
@@ -52,7 +52,7 @@ def header_lines(work: Work) -> tuple[str, ...]:
 
 
 def make_picture(
-    suffix: str, work: Work, marks: _core.Marks, band: Band | None = None, with_toolpath: bool = False
+    suffix: str, work: PreparedDrawing, marks: _core.Marks, band: Band | None = None, with_toolpath: bool = False
 ) -> bytes:
     """Return a picture of the marks as the bytes of a .png or .svg, or a marks.json.
 
@@ -87,7 +87,7 @@ def make_picture(
     return marks_png.marks_png(marks, work.brush, work.plan.sheet_mm, colours, band, unpainted, toolpath_mm)
 
 
-def make_job_page(suffix: str, work: Work) -> bytes:
+def make_job_page(suffix: str, work: PreparedDrawing) -> bytes:
     """Return the page to print for a job (.pdf, .svg). The strokes are in the order in which they were drawn."""
     from ..calibration.chart.page import chart_page
     from ..comparison.job_page import job_page
@@ -98,7 +98,7 @@ def make_job_page(suffix: str, work: Work) -> bytes:
 
 def overlap_picture(
     suffix: str,
-    work: Work,
+    work: PreparedDrawing,
     marks: _core.Marks,
     long_side_px: int | None = None,
     places: Iterable[report.Place] = (),
@@ -132,7 +132,9 @@ def overlap_picture(
     return overlap_png(target, painted, long_side_px is None, at_px)
 
 
-def make_animation(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0) -> bytes:
+def make_animation(
+    work: PreparedDrawing, loads: PlanInLoads, marks: _core.Marks, cell: Cell, speed: float = 1.0
+) -> bytes:
     """Return an HTML page that plays tool and paint over time.
 
     loads: the plan of the work in loads.
@@ -148,7 +150,7 @@ def make_animation(work: Work, loads: PlanInLoads, marks: _core.Marks, cell: Cel
 
 
 def make_report(
-    work: Work,
+    work: PreparedDrawing,
     marks: _core.Marks,
     cell: Cell,
     warnings: Iterable[Notice] | None = None,

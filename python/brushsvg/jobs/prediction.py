@@ -8,11 +8,11 @@ from collections.abc import Callable
 from .. import _core
 from ..machine.cells.cell import Cell
 from ..machine.paint_reload import fetched_mm
-from .work import Work
+from .prepared_drawing import PreparedDrawing
 
 
 def predict(
-    work: Work, outlines: bool = True, stage: Callable[[str], object] = lambda text: None, whole: bool = True
+    work: PreparedDrawing, outlines: bool = True, stage: Callable[[str], object] = lambda text: None, whole: bool = True
 ) -> _core.Marks:
     """Return the marks that the plan of a work will paint.
 

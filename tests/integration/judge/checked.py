@@ -19,7 +19,7 @@ from brushsvg.cli.console import RefusedError
 from brushsvg.jobs import checking, outputs
 from brushsvg.jobs.options import load_cell
 from brushsvg.jobs.preparation import preparation
-from brushsvg.jobs.work import Work
+from brushsvg.jobs.prepared_drawing import PreparedDrawing
 
 CRASHED = "this should not happen"
 
@@ -40,7 +40,7 @@ def quick_check():
     The result holds CRASHED after any other error. The function keeps prepared drawings and writes no
     figures. Neither changes what check refuses.
     """
-    known: dict[tuple, Work] = {}
+    known: dict[tuple, PreparedDrawing] = {}
     cells: dict[str, object] = {}
     requested: dict[tuple, object] = {}
     before = {

@@ -10,7 +10,7 @@ from ...jobs import prediction
 from ...jobs.choices.choices import Choices
 from ...jobs.choices.ineffective_flags import report_ineffective_flags
 from ...jobs.preparation import preparation
-from ...jobs.work import Work
+from ...jobs.prepared_drawing import PreparedDrawing
 from ...machine import preflight
 from ...machine.cells.cell import Cell
 from ...machine.moves import duration_s
@@ -20,7 +20,7 @@ from ..console import refuse_errors, stage, warn
 from .options import make_options
 
 
-def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> Work:
+def prepare(chosen: Choices, cell: Cell | None = None, brush=None, partly: bool = False) -> PreparedDrawing:
     """Prepare a drawing or plan, and print warnings about flags without effect."""
     warn(chosen.input, report_ineffective_flags(chosen))
     options = make_options(chosen, cell, brush)
@@ -37,7 +37,7 @@ class PreparedPaint:
     forbidden: the warnings that forbid running a program. For a preview they are only warnings.
     """
 
-    work: Work
+    work: PreparedDrawing
     loads: PlanInLoads
     marks: object
     walk: CheckedProgram | None

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...errors import Error
-from ..work import Work, select_rows
+from ..prepared_drawing import PreparedDrawing, select_passes
 
 
-def list_colours(work: Work) -> list[str]:
+def list_colours(work: PreparedDrawing) -> list[str]:
     """Return the colours of the strokes as "#rrggbb" in lower case, the lightest first.
 
     Dark paint covers light paint, and rests of dark paint in the brush spoil light paint.
@@ -20,7 +20,7 @@ def list_colours(work: Work) -> list[str]:
     return sorted(distinct, key=lightness, reverse=True)
 
 
-def select_colour(work: Work, colour: str) -> Work:
+def select_colour(work: PreparedDrawing, colour: str) -> PreparedDrawing:
     """Return the work with the strokes of one colour.
 
     Strokes without a colour are painted with the first colour. Error if no stroke has the colour.
@@ -31,4 +31,4 @@ def select_colour(work: Work, colour: str) -> Work:
         sentence = f"nothing is painted in {colour}; colours of this drawing: {known_colours}"
         raise Error(sentence, "colour", code="nothing-to-paint")
     painted_colours = {"", colour} if colour == all_colours[0] else {colour}
-    return select_rows(work, [k for k, each in enumerate(work.plan.passes) if each.colour.lower() in painted_colours])
+    return select_passes(work, [k for k, each in enumerate(work.plan.passes) if each.colour.lower() in painted_colours])

@@ -9,7 +9,7 @@ from ...machine.paint_reload import split_into_loads
 from ...machine.preflight import within_limits
 from ...machine.program import POSES_KEPT, Job
 from ..options import Options
-from ..work import KnownSimulation
+from ..prepared_drawing import KnownSimulation
 
 
 def make_compensation(brush, sheet_mm, options: Options, stage=lambda text: None):

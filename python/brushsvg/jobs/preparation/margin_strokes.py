@@ -18,7 +18,7 @@ from ...machine.preflight import check_job
 from ...machine.program import Job
 from ...model.confidence import fitted_down_to_mm, law_band
 from ...model.describe import LAWS
-from ..work import Work
+from ..prepared_drawing import PreparedDrawing
 from .colours import select_colour
 
 MARGIN_KIND = "margin"
@@ -42,7 +42,7 @@ def is_calibrated(brush, deepest_mm: float) -> bool:
     return all(deepest_mm <= fitted_down_to_mm(brush, law) for law in ("lag", "half_width"))
 
 
-def add_margin_strokes(work: Work) -> Work:
+def add_margin_strokes(work: PreparedDrawing) -> PreparedDrawing:
     """Add margin strokes where they are requested or the brush is not calibrated.
 
     The work stays as it is, with a notice, where the sheet is too narrow or the cell cannot paint the strokes.
@@ -78,7 +78,9 @@ def add_margin_strokes(work: Work) -> Work:
     )
 
 
-def remove_margin_strokes(work: Work, marks, as_run=None) -> tuple[Work, _core.Marks, _core.Plan | None]:
+def remove_margin_strokes(
+    work: PreparedDrawing, marks, as_run=None
+) -> tuple[PreparedDrawing, _core.Marks, _core.Plan | None]:
     """Return work, marks and plan without the strokes of the margin.
 
     as_run: the plan that the marks belong to, where it differs from the plan of the work.
@@ -94,7 +96,7 @@ def remove_margin_strokes(work: Work, marks, as_run=None) -> tuple[Work, _core.M
     return replace(work, plan=plans[0], strokes=strokes, tracking_errors=errors), drawn_marks, plans[1]
 
 
-def describe_expected_accuracy(work: Work) -> str:
+def describe_expected_accuracy(work: PreparedDrawing) -> str:
     """Describe how well the margin strokes will determine lag and width.
 
     Returns "" if the work has no margin strokes.
@@ -128,14 +130,14 @@ def _find_deepest_mm(plan) -> float:
     return max((-float(np.min(each.poses_mm[:, 2])) for each in plan.passes), default=0.0)
 
 
-def _warn_left_out(work: Work, why: str) -> Work:
+def _warn_left_out(work: PreparedDrawing, why: str) -> PreparedDrawing:
     sentence = f"no strokes are added in the margin: {why}"
     advice = "--margin-strokes off leaves them out without this warning"
     notice = Notice("margin", sentence, code="margin-strokes-left-out", advice=advice)
     return replace(work, notices=(*work.notices, notice))
 
 
-def _place_passes(work: Work, deepest_mm: float, last_pass) -> tuple[list, tuple[float, float]] | None:
+def _place_passes(work: PreparedDrawing, deepest_mm: float, last_pass) -> tuple[list, tuple[float, float]] | None:
     """Place the passes in rows above the sheet.
 
     last_pass: the pass of the job before them, which gives them its layer and colour.
@@ -167,7 +169,7 @@ def _place_passes(work: Work, deepest_mm: float, last_pass) -> tuple[list, tuple
     return passes, (width, float(np.ceil(top)))
 
 
-def _find_problems(plan, work: Work) -> list[Notice]:
+def _find_problems(plan, work: PreparedDrawing) -> list[Notice]:
     if not (cell := work.options.cell):
         return []
     loads, marks = split_into_loads(plan, work.brush, cell), _core.simulate(plan, work.brush)

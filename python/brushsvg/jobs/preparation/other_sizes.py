@@ -10,12 +10,12 @@ from ...planning.refinement import refine_where_better
 from ...strokes.stroke_search import Searched, search_strokes
 from ...strokes.wide_shapes import within_reach
 from ..options import Options
-from ..work import Work
+from ..prepared_drawing import PreparedDrawing
 from .compensated import make_compensation
 from .preparation import limit_depth
 
 
-def advise_on_size(work: Work) -> str:
+def advise_on_size(work: PreparedDrawing) -> str:
     """Return a sentence on a better size of the drawing; "" for a plan."""
     options = work.options
     if not work.drawn or options.layout.width_mm is not None:

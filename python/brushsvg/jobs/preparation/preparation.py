@@ -31,7 +31,7 @@ from ...strokes.wide_shapes import find_wide_lines, within_reach
 from ...suggestions import did_you_mean
 from ..json_files import read_plan
 from ..options import DEFAULT_BRUSH, DEFAULTS, Options
-from ..work import KnownSimulation, Work
+from ..prepared_drawing import KnownSimulation, PreparedDrawing
 from .colours import select_colour
 from .compensated import fit_ends_to_machine, make_compensation
 from .margin_strokes import add_margin_strokes
@@ -48,7 +48,7 @@ def prepare(
     options: Options = DEFAULTS,
     stage: Callable[[str], object] = lambda text: None,
     partly: bool = False,
-) -> Work:
+) -> PreparedDrawing:
     """Read a drawing or plan.json and plan the path of the TCP.
 
     source: a path, a Plan, a Design, or an open drawing as read_drawing accepts it.
@@ -71,7 +71,7 @@ def _refuse_invalid_colours(plan) -> None:
             )
 
 
-def _prepare_source(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> Work:
+def _prepare_source(source: Source, options: Options, stage: Callable[[str], object], partly: bool) -> PreparedDrawing:
     if isinstance(source, _core.Plan):
         _core.write_plan(source)  # raises Error for a plan that is not valid as a file
         return _prepare_plan(source, options)
@@ -89,7 +89,7 @@ def _prepare_source(source: Source, options: Options, stage: Callable[[str], obj
         raise
 
 
-def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> Work:
+def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> PreparedDrawing:
     """Plan the strokes of a drawing that was read; notices: the drawing's warnings, extended here."""
     stage("finding strokes")
     on_cell = limit_depth(brush, options)
@@ -119,7 +119,7 @@ def _plan_design(design: Design, brush, options: Options, stage, partly: bool, n
         *notices_of_areas(missed),
         *(outside if _leads_paint(options) else []),
     )
-    work = Work(
+    work = PreparedDrawing(
         design.title,
         brush,
         planned.plan,
@@ -456,7 +456,7 @@ def _find_paint_outside(planned: _PlannedStrokes, brush, options: Options) -> li
     ]
 
 
-def _prepare_plan(plan, options: Options) -> Work:
+def _prepare_plan(plan, options: Options) -> PreparedDrawing:
     if not options.brush and plan.brush not in brush_names() and not plan.brush.endswith(".json"):
         names = brush_names()
         sentence = (
@@ -468,4 +468,6 @@ def _prepare_plan(plan, options: Options) -> Work:
     notices = mistyped_keys(brush) + report_other_brush(plan, brush)
     _check_speed(brush, options)
     plan = _set_requested_speed(copy(plan), options)  # a Plan that was made in Python belongs to its caller
-    return Work("", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices))
+    return PreparedDrawing(
+        "", brush, apply_corrections(plan, options.corrections, brush), None, (), options, tuple(notices)
+    )

@@ -13,7 +13,7 @@ from ....jobs import conversion, outputs, prediction
 from ....jobs.choices.choices import choose_margin_strokes
 from ....jobs.preparation.colours import list_colours, select_colour
 from ....jobs.preparation.margin_strokes import describe_expected_accuracy
-from ....jobs.work import Work
+from ....jobs.prepared_drawing import PreparedDrawing
 from ....machine.cells.cell import Cell
 from ....machine.pen_changes import has_pens, may_pause, pens_changed
 from ....machine.program import Job
@@ -71,7 +71,7 @@ def convert_file(args) -> None:
         print_text(f"{words}\n")
 
 
-def _split_by_colour(output: str, work: Work) -> list[tuple[str, Work]]:
+def _split_by_colour(output: str, work: PreparedDrawing) -> list[tuple[str, PreparedDrawing]]:
     """Return a file name and the work for each colour, the lightest colour first."""
     return [
         (_name_program(Path(output), f"{number}-{colour[1:]}", work.options.cell), select_colour(work, colour))
@@ -87,7 +87,7 @@ def _name_program(path: Path, part: str, cell: Cell) -> str:
     return str(path.with_name((possible_name if renamed == [True, False] else name) + path.suffix))
 
 
-def _simulate_or_refuse(args, path: str, work: Work) -> conversion.SimulatedWork:
+def _simulate_or_refuse(args, path: str, work: PreparedDrawing) -> conversion.SimulatedWork:
     """Return a program that may be written.
 
     Raises RefusedError with all problems that forbid writing it.

@@ -28,7 +28,7 @@ class KnownSimulation:
 
 
 @dataclass(frozen=True)
-class Work:
+class PreparedDrawing:
     """A prepared drawing or plan.
 
     plan: the plan, with corrections.
@@ -72,7 +72,7 @@ class Work:
         return self.known is not None and not self.brush.paint and self.known.plan == self.plan
 
 
-def match_whole_strokes(work: Work, loads: PlanInLoads) -> list:
+def match_whole_strokes(work: PreparedDrawing, loads: PlanInLoads) -> list:
     """Return the stroke that each load paints whole, None for a part of a stroke."""
     matched, remaining = [], iter(work.strokes)
     for a_pass in loads.loads:
@@ -83,7 +83,7 @@ def match_whole_strokes(work: Work, loads: PlanInLoads) -> list:
     return matched
 
 
-def list_strokes_from(work: Work, loads: PlanInLoads, first_load: int) -> list | None:
+def list_strokes_from(work: PreparedDrawing, loads: PlanInLoads, first_load: int) -> list | None:
     """Return the strokes that the loads from number first_load on paint, counted from 1.
 
     None if that load continues a stroke: nothing says where in the stroke it begins.
@@ -94,7 +94,7 @@ def list_strokes_from(work: Work, loads: PlanInLoads, first_load: int) -> list |
     return work.strokes[sum(not is_later_part(a_pass) for a_pass in painted) :]
 
 
-def select_rows(work: Work, rows: list[int]) -> Work:
+def select_passes(work: PreparedDrawing, rows: list[int]) -> PreparedDrawing:
     """Return the work with only these passes of its plan, in this order."""
     old_plan = work.plan
     plan = _core.Plan(
@@ -109,10 +109,10 @@ def select_rows(work: Work, rows: list[int]) -> Work:
     return replace(work, plan=plan, strokes=strokes, tracking_errors=tracking_errors)
 
 
-def order_nearest_first(work: Work) -> Work:
+def order_nearest_first(work: PreparedDrawing) -> PreparedDrawing:
     """Return the work with its strokes in the order of the shortest travel.
 
     Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
     places, and no stroke is painted backwards.
     """
-    return select_rows(work, shortest_travel.nearest_first(work.plan.passes))
+    return select_passes(work, shortest_travel.nearest_first(work.plan.passes))
