@@ -25,4 +25,4 @@ def pytest_collection_finish():
 def arms_reach_all(request, monkeypatch):
     """Place the paper of shipped cells where their arms do not reach in tests: only those marked arm check arms."""
     if request.node.get_closest_marker("arm") is None:
-        monkeypatch.setattr("brushsvg.machine.program.find_unreachable", lambda *_: [])
+        monkeypatch.setattr("brushsvg.machine.job_program.find_unreachable", lambda *_: [])

@@ -19,9 +19,9 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Heights, Machine, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.cells.language_limits import ARCS_IN_SEGMENTS
+from brushsvg.machine.job_program import Job
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import Job
 from brushsvg.verify import against_plan, simulate_program
 from brushsvg.verify.readback import read_program
 

@@ -7,9 +7,9 @@ from diagnostics import in_json, is_reported
 
 from brushsvg.cli import main
 from brushsvg.cli.commands.drawings import check
+from brushsvg.machine.job_program import WHOLE_JOB, make_checked_program
 from brushsvg.machine.paint_reload import PlanInLoads
 from brushsvg.machine.preflight import check_job
-from brushsvg.machine.program import WHOLE_JOB, make_checked_program
 
 LANGUAGES = {
     "linuxcnc-3axis": ".ngc",

@@ -22,8 +22,8 @@ from brushsvg.machine.arm.joint_problems import flange_at, follow, joint_rates, 
 from brushsvg.machine.cells.cell import Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import transform_points
+from brushsvg.machine.job_program import unchecked_program
 from brushsvg.machine.paint_reload import split_into_loads
-from brushsvg.machine.program import unchecked_program
 from brushsvg.machine.setup_programs import over_sheet
 from brushsvg.model.library import find_brush
 

@@ -29,7 +29,7 @@ from brushsvg.jobs.conversion import simulate_and_check
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.program import Job
+from brushsvg.machine.job_program import Job
 from brushsvg.reporting.report_text import format_overlap
 
 PAGE = '<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="60mm" viewBox="0 0 120 60"{}>{}</svg>'

@@ -11,7 +11,7 @@ from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.jobs.preparation import preparation
 from brushsvg.jobs.prepared_drawing import order_nearest_first
-from brushsvg.machine import moves, program, writer
+from brushsvg.machine import job_program, moves, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
 from brushsvg.planning import shortest_travel
 
@@ -132,8 +132,8 @@ def test_a_program_from_a_saved_plan_equals_the_program_from_the_drawing(tmp_pat
 
 def test_each_stroke_and_its_time_are_computed_once(drawing, tmp_path, monkeypatch):
     requested, timed = [], []
-    as_written, duration_s = program.as_written, moves._duration_s
-    monkeypatch.setattr(program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args))
+    as_written, duration_s = job_program.as_written, moves._duration_s
+    monkeypatch.setattr(job_program, "as_written", lambda *args: requested.append(args[0].stroke) or as_written(*args))
     monkeypatch.setattr(moves, "_duration_s", lambda made: timed.append(made) or duration_s(made))
     assert main(["convert", str(drawing), "-o", str(tmp_path / "a.ngc"), "--quiet"]) == 0
     assert requested

@@ -14,9 +14,9 @@ from brushsvg import _core
 from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Machine, Paper, Pen, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.job_program import Job
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
 from brushsvg.model.library import find_brush
 from brushsvg.verify import against_plan, simulate_program

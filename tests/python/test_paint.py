@@ -18,6 +18,7 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_check import report_unusual_values
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.job_program import make_checked_program
 from brushsvg.machine.moves import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
@@ -30,7 +31,7 @@ from brushsvg.machine.paint_reload import (
     station_visits,
 )
 from brushsvg.machine.preflight import check_job
-from brushsvg.machine.program import make_checked_program, make_visit
+from brushsvg.machine.station_moves import make_visit
 from brushsvg.model.library import find_brush
 from brushsvg.show.evaluation.figures import PaintedPlan, measure
 from brushsvg.verify.readback import read_program

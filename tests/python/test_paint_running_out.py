@@ -22,8 +22,8 @@ from brushsvg.jobs.prediction import predict_plan_marks
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.machine.job_program import Job
 from brushsvg.machine.paint_reload import split_into_loads, station_visits
-from brushsvg.machine.program import Job
 from brushsvg.model.library import find_brush
 
 COUNT = 60

@@ -8,8 +8,8 @@ from diagnostics import are_reported, refused
 from programs import forbidden, program, whole
 
 from brushsvg.machine.cells.cell_file import find_cell
+from brushsvg.machine.job_program import Job, unchecked_program
 from brushsvg.machine.moves import MEANINGS_AT_SAFE_HEIGHT, duration_s
-from brushsvg.machine.program import Job, unchecked_program
 
 
 def plan_of(*poses, speed=20.0, sheet=(100.0, 60.0)):

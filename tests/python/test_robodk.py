@@ -18,9 +18,9 @@ from test_urscript import ARC, STROKES, text_for
 from brushsvg import _core, find_brush
 from brushsvg.machine.cells.cell import Reload, RoboDK, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.job_program import make_checked_program
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import make_checked_program
 from brushsvg.machine.writer import text_of
 
 POST = Path(__file__).with_name("robodk_post.py")

@@ -25,7 +25,7 @@ from brushsvg.machine.cells.cell import Machine, Paper, Reload, Station, robot_f
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.moves import program_in_robot_frame
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.trajectory import POSE_ROW, SLICE_S, make_timed_sections, time_lines
+from brushsvg.machine.timed_moves import POSE_ROW, SLICE_S, make_timed_sections, time_lines
 from brushsvg.machine.writer import text_of
 from brushsvg.verify.readback import read_program
 

@@ -14,9 +14,9 @@ from sampling import sample
 from brushsvg import _core
 from brushsvg.machine.cells.cell import Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
+from brushsvg.machine.job_program import unchecked_program
 from brushsvg.machine.moves import duration_s
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.program import unchecked_program
 from brushsvg.machine.realised.rounding import as_written
 from brushsvg.machine.writer import text_of
 from brushsvg.model.library import find_brush

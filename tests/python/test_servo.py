@@ -17,8 +17,8 @@ from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
+from brushsvg.machine.job_program import Job
 from brushsvg.machine.posts.gcode_servo import grbl_servo, servo_values_at
-from brushsvg.machine.program import Job
 from brushsvg.machine.setup_programs import border
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program

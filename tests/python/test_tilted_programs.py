@@ -25,11 +25,11 @@ from brushsvg import _core
 from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
+from brushsvg.machine.job_program import make_checked_program, out_of_arm
 from brushsvg.machine.moves import program_in_robot_frame
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS, ros2
 from brushsvg.machine.preflight import check_job
-from brushsvg.machine.program import make_checked_program, out_of_arm
 from brushsvg.machine.realised.tilt import check_tilt_limits, limit_turning_speed, split_turning_moves
 from brushsvg.machine.tool_axes import turned_to
 from brushsvg.machine.writer import text_of

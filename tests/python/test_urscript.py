@@ -17,10 +17,10 @@ from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell import Contact, Paper, Reload, Station, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.frames import transform_points
+from brushsvg.machine.job_program import Job
 from brushsvg.machine.moves import Move
 from brushsvg.machine.posts import POSTS
 from brushsvg.machine.posts.urscript import _move_lines
-from brushsvg.machine.program import Job
 from brushsvg.machine.writer import text_of
 from brushsvg.model.library import find_brush
 

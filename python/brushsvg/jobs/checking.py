@@ -20,10 +20,10 @@ from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
+from ..machine.job_program import out_of_arm
 from ..machine.moves import duration_s
 from ..machine.paint_reload import report_dry_brush, split_into_loads
 from ..machine.posts import GCODE, POSTS
-from ..machine.program import out_of_arm
 from ..machine.setup_programs import round_outwards
 from ..machine.writer import called_programs, list_arm_notices, parted_post, report_renamed
 from ..model.library import brush_names, find_brush

@@ -18,10 +18,10 @@ from ..errors import Error, Notice, name_file_in_errors, need_number, need_one_o
 from ..files import write_files
 from ..machine import preflight, writer
 from ..machine.cells.cell import Cell
+from ..machine.job_program import WHOLE_JOB, CheckedProgram, Job
 from ..machine.moves import duration_s
 from ..machine.paint_reload import PlanInLoads, fetched_mm, split_into_loads
 from ..machine.posts import POSTS
-from ..machine.program import WHOLE_JOB, CheckedProgram, Job
 from ..notice_summary import summarize_notices
 from ..show.evaluation import report as reports
 from . import cancelling, outputs, prediction

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 from .. import _core
 from ..machine.cells.cell import Cell
+from ..machine.job_program import WHOLE_JOB, CheckedProgram, Job
 from ..machine.paint_reload import PlanInLoads, is_later_part
-from ..machine.program import WHOLE_JOB, CheckedProgram, Job
 from ..planning import shortest_travel
 from ..read.design import Notice
 from .options import Options

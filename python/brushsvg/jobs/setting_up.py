@@ -16,10 +16,10 @@ from ..errors import Notice, name_file_in_errors, need_number, require_type
 from ..files import write_files
 from ..machine import header_lines, preflight, setup_programs, writer
 from ..machine.cells.cell import Cell
+from ..machine.job_program import Job
 from ..machine.moves import Program, duration_s
 from ..machine.paint_reload import split_into_loads
 from ..machine.posts import Post
-from ..machine.program import Job
 from ..model.library import find_brush
 from . import outputs, prediction
 from .choices.choice_checks import check_choices, refuse_file_used_twice

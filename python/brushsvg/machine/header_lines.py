@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from ..units import clock
+from .job_program import WHOLE_JOB, Job
 from .moves import Program, duration_s, painting_mm
 from .paint_reload import PlanInLoads
 from .posts import POSTS
 from .posts.text import NAMED, plain_text
-from .program import WHOLE_JOB, Job
 
 TILT_LINE = "tilt: the brush is held as each move says"
 

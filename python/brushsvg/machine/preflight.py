@@ -10,8 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
-from .paint_reload import PlanInLoads
-from .program import (
+from .job_program import (
     MAX_POSES_AT_ONCE,
     WHOLE_JOB,
     CheckedProgram,
@@ -20,6 +19,7 @@ from .program import (
     make_written_form,
     out_of_arm,
 )
+from .paint_reload import PlanInLoads
 from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, cut_corners
 from .realised.distortion import true_pass

@@ -15,6 +15,15 @@ from .cells.cell import Cell
 from .cells.cell_check import OF_EXAMPLE
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from .header_lines import header_of
+from .job_program import (
+    WHOLE_JOB,
+    CheckedProgram,
+    Job,
+    beyond_part,
+    make_checked_program,
+    out_of_arm,
+    unchecked_program,
+)
 from .moves import Program, duration_s, program_in_robot_frame
 from .paint_reload import (
     PlanInLoads,
@@ -27,7 +36,6 @@ from .paint_reload import (
 from .pen_changes import with_one_pen
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush
-from .program import WHOLE_JOB, CheckedProgram, Job, beyond_part, make_checked_program, out_of_arm, unchecked_program
 from .realised.backlash import compensate_backlash
 from .realised.smooth_field import beyond_field
 

@@ -13,12 +13,12 @@ from .. import _core
 from ..machine.cells.cell import Cell, unit_mm, value_mm
 from ..machine.frames import apart_deg
 from ..machine.header_lines import header_of
+from ..machine.job_program import Job, make_written_form, unchecked_program
 from ..machine.moves import Program, duration_s, painting_mm
 from ..machine.paint_reload import PlanInLoads
 from ..machine.posts import POSTS
 from ..machine.posts.fanuc import cnt_mm
 from ..machine.posts.script import upright_tool_rotation
-from ..machine.program import Job, make_written_form, unchecked_program
 from ..machine.writer import text_of
 from .readback import Act, Readback, read_program
 from .servo_lifts import drop_rounding_lifts, join_lifts, join_paths, projected_length_mm, remove_servo_steps

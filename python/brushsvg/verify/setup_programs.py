@@ -9,8 +9,8 @@ import numpy as np
 from ..errors import Notice
 from ..machine.cells.cell import Cell
 from ..machine.header_lines import border_header, first_header, height_header
+from ..machine.job_program import Job
 from ..machine.moves import Program, duration_s
-from ..machine.program import Job
 from ..machine.realised.distortion import true_mm
 from ..machine.setup_programs import ONE_STROKE_DEPTH_MM, border, first_run, paper_height
 from .against_regenerated import differing_line

@@ -20,11 +20,11 @@ from ..machine.move_extents import make_paths
 from ..machine.pen_changes import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
 from ..machine.preflight import as_run, off_sheet
-from ..machine.program import names_of_stations
 from ..machine.realised.arc_chords import OFF_MM
 from ..machine.realised.corner_blending import blend_radii
 from ..machine.realised.distortion import commanded_pass, is_similar, true_mm, true_pass
 from ..machine.setup_programs import slow_below_mm
+from ..machine.station_moves import names_of_stations
 from ..machine.tool_axes import tilts_deg
 from ..machine.workspace_limits import (
     broken_limits,

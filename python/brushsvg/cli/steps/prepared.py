@@ -13,9 +13,9 @@ from ...jobs.preparation import preparation
 from ...jobs.prepared_drawing import PreparedDrawing
 from ...machine import preflight
 from ...machine.cells.cell import Cell
+from ...machine.job_program import CheckedProgram
 from ...machine.moves import duration_s
 from ...machine.paint_reload import PlanInLoads, report_long_strokes, split_into_loads, station_visits
-from ...machine.program import CheckedProgram
 from ..console import refuse_errors, stage, warn
 from .options import make_options
 

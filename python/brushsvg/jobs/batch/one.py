@@ -11,7 +11,7 @@ from importlib import metadata
 
 from ... import _core
 from ...errors import Error, Notice, describe_unexpected
-from ...machine.program import Job
+from ...machine.job_program import Job
 from ...machine.writer import join_pieces, list_cell_notices
 from ...model.library import parse_brush
 from ...read import InMemory

@@ -5,9 +5,9 @@ from __future__ import annotations
 from copy import copy
 
 from ... import _core
+from ...machine.job_program import POSES_KEPT, Job
 from ...machine.paint_reload import split_into_loads
 from ...machine.preflight import within_limits
-from ...machine.program import POSES_KEPT, Job
 from ..options import Options
 from ..prepared_drawing import KnownSimulation
 

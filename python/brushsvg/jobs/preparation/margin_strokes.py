@@ -13,9 +13,9 @@ import numpy as np
 
 from ... import _core
 from ...errors import Notice
+from ...machine.job_program import Job
 from ...machine.paint_reload import split_into_loads
 from ...machine.preflight import check_job
-from ...machine.program import Job
 from ...model.confidence import fitted_down_to_mm, law_band
 from ...model.describe import LAWS
 from ..prepared_drawing import PreparedDrawing

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 from ... import _core, read
 from ...comparison.corrections import apply_corrections
 from ...errors import Error
+from ...machine.job_program import Job
 from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
-from ...machine.program import Job
 from ...machine.workspace_limits import ROUNDING_MM, check_painting_speed
 from ...model.library import brush_names, find_brush, mistyped_keys
 from ...planning.paint_running_out import pressed_deeper

@@ -14,7 +14,7 @@ import numpy as np
 from ..cells.cell import min_part_mm, mm_from_step_counts, servo_parts, servo_stands, steps_from_mm
 from ..cells.language_limits import LEAST_SPEED_MM_S
 from ..moves import Move, Program, Wait
-from ..trajectory import joint_speed_limits, time_lines
+from ..timed_moves import joint_speed_limits, time_lines
 from .gcode_servo import TOUCHING_MEANINGS, lift_steps, line_feeds_mm_min, servo_values_at
 from .text import feed_of_speed_mm_min, plain_text
 

@@ -18,8 +18,8 @@ import numpy as np
 from ..cells.cell import Cell, robot_from_paper
 from ..frames import frame_of_pose, quaternion, rotation
 from ..moves import Program
+from ..timed_moves import make_timed_sections
 from ..tool_axes import is_parallel, turned_to
-from ..trajectory import make_timed_sections
 from .script import format_rounded_down, upright_deg
 from .text import PROGRAM_END, plain_text
 
@@ -28,7 +28,7 @@ SECOND_DECIMALS, SPEED_DECIMALS, TURN_DECIMALS = 7, 6, 9
 # More decimals of metres than of millimetres: the tip's places are on a grid, the flange's are not.
 EXTRA_METRE_DECIMALS = 5
 COLUMNS = "time_s,x_m,y_m,z_m,qx,qy,qz,qw,limit_m_s,row"
-ROW_KINDS = ("pose", "way", "rest")  # in the numbering of trajectory
+ROW_KINDS = ("pose", "way", "rest")  # in the numbering of timed_moves
 MAX_BYTES_IN_MEMORY = 20_000_000
 AXIS_COLUMN = 6  # first column with the brush's axis
 

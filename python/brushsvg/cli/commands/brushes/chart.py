@@ -10,8 +10,8 @@ from ....errors import Notice
 from ....jobs.conversion import estimate_output_time_s
 from ....jobs.options import DEFAULT_BRUSH
 from ....machine import preflight, writer
+from ....machine.job_program import Job
 from ....machine.paint_reload import split_into_loads
-from ....machine.program import Job
 from ....model.library import find_brush
 from ....notice_summary import summarize_notices
 from ...arguments.values import EDGE_NOISE_MM

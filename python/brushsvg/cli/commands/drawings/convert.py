@@ -15,8 +15,8 @@ from ....jobs.preparation.colours import list_colours, select_colour
 from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.prepared_drawing import PreparedDrawing
 from ....machine.cells.cell import Cell
+from ....machine.job_program import Job
 from ....machine.pen_changes import has_pens, may_pause, pens_changed
-from ....machine.program import Job
 from ....machine.writer import path_next_to, report_renamed
 from ....show.evaluation import report
 from ...console import RefusedError, print_text, refuse_errors, stage, warn

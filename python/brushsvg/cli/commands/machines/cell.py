@@ -14,11 +14,11 @@ from ....machine.cells import cell_check as cell_checks
 from ....machine.cells.cell import robot_from_paper
 from ....machine.cells.cell_file import DEFAULT_CELL, cell_names, find_cell, own_name, parse_cell, write_cell
 from ....machine.cells.describe_cell import cell_page
+from ....machine.job_program import find_stations_out_of_limits
 from ....machine.paint_reload import split_into_loads
 from ....machine.posts import POSTS
 from ....machine.posts.robodk import find_post
 from ....machine.preflight import DEFAULT_TOLERANCE_MM, check_rounding
-from ....machine.program import find_stations_out_of_limits
 from ....machine.writer import whole_program
 from ....model.library import find_brush
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
@@ -61,7 +61,7 @@ def cell_check(args) -> None:
 def cell_place(args) -> None:
     from ....machine.arm import place
     from ....machine.arm.joint_problems import follow
-    from ....machine.program import find_moves_out_of_limits
+    from ....machine.job_program import find_moves_out_of_limits
     from ....machine.setup_programs import over_sheet
     from ....show.table_picture import table_picture
 

@@ -1,4 +1,4 @@
-"""Turn a plan and a cell into the moves of a robot, and check every limit."""
+"""Make the program of a job: the moves of a plan on a cell, with every limit checked."""
 
 from __future__ import annotations
 
@@ -12,18 +12,17 @@ from .. import _core
 from ..errors import Error, Notice
 from .arm.inverse_kinematics import is_installed
 from .arm.place import find_unreachable
-from .cells.cell import Cell, Station, robot_from_paper, shorten_visit, value_mm
+from .cells.cell import Cell, Station, robot_from_paper, value_mm
 from .cells.language_limits import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS
 from .frames import transform_points
-from .moves import Arc, Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
+from .moves import Move, Program, Section, rise_height_mm, set_programmed_speeds
 from .paint_reload import PlanInLoads, station_visits
 from .posts import POSTS
-from .posts.text import make_unique_names
-from .realised.corner_blending import MAX_BLEND_TURN_RAD, blend_radii_and_angles, find_vertical_steps
-from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
+from .realised.distortion import true_mm
 from .realised.rounding import Written, as_written
-from .realised.tilt import limit_turning_speed
-from .tool_axes import axes_of, tilts_deg
+from .station_moves import make_visit, names_of_stations
+from .stroke_moves import make_stroke_moves
+from .tool_axes import axes_of
 from .workspace_limits import (
     broken_limits,
     check_first_rise,
@@ -33,8 +32,6 @@ from .workspace_limits import (
     find_vessels_near_travel,
     touching_mm_s,
 )
-
-STRAIGHT_SEGMENT, VERTICAL_SEGMENT = -1, -2  # kinds of segments that are not part of an arc
 
 
 @dataclass(frozen=True)
@@ -263,7 +260,7 @@ def unchecked_program(
         for number, a_pass in numbered_loads:
             stations = job.visits[number - 1] if job.visits else ()
             yield from (set_programmed_speeds(make_visit(station, brush, cell), cell) for station in stations)
-            moves = _stroke_moves(a_pass, written(number), brush, cell)
+            moves = make_stroke_moves(a_pass, written(number), brush, cell)
             yield set_programmed_speeds(Section(f"stroke {number} of {count}: {a_pass.stroke}", moves), cell)
 
     make_sections_once = cache(lambda: tuple(sections()))
@@ -271,34 +268,6 @@ def unchecked_program(
     iterate_sections = (lambda: iter(make_sections_once())) if _fits_in_cache(loads, job) else sections
     tilts = any(axes_of(a_pass) is not None for _, a_pass in numbered_loads)
     return Program((), cell, frame, iterate_sections, *rises_mm, commanded_touching_mm_s(brush, cell), tilts)
-
-
-def point_above(point, height_mm: float) -> np.ndarray:
-    """Return the place (1, 3) [mm] at a height above a point."""
-    return np.array([[point[0], point[1], height_mm]], dtype=float)
-
-
-def safe_point_above(commanded_mm, cell: Cell) -> np.ndarray:
-    """Return the place (1, 3) [mm] at the safe height above a commanded place."""
-    (height_mm,) = commanded_heights_mm(np.array([commanded_mm[:2]], dtype=float), cell.heights.safe_mm, cell.machine)
-    return point_above(commanded_mm, height_mm)
-
-
-def approach_mm_s(brush, cell: Cell) -> float:
-    """Return the speed [mm/s] of an approach, which is never above the brush's limit.
-
-    Nothing bends in the air, but a program is easier to trust if none of its feeds is above the brush's limit.
-    """
-    return min(cell.speeds.approach_mm_s, brush.max_speed_mm_s)
-
-
-def names_of_stations(cell: Cell) -> dict[Station, str]:
-    """Return a unique name for each station and for each short visit."""
-    stations = list(
-        dict.fromkeys(visited for station in cell.stations for visited in (station, shorten_visit(station)))
-    )
-    names = make_unique_names([station.name for station in stations])
-    return dict(zip(stations, names, strict=True))
 
 
 def find_stations_out_of_limits(brush, cell: Cell, frame: np.ndarray, sheet_mm=None) -> list[Notice]:
@@ -310,120 +279,3 @@ def find_stations_out_of_limits(brush, cell: Cell, frame: np.ndarray, sheet_mm=N
     """
     visited = ([make_visit(station, brush, cell)] for station in cell.stations)
     return [notice for sections in visited for notice in find_astray_sections(sections, frame, cell, sheet_mm)]
-
-
-def make_visit(station: Station, brush, cell: Cell) -> Section:
-    """Make the moves to the paint and back up to the safe height.
-
-    At a station that is served by hand, a person does the rest.
-    """
-    name = names_of_stations(cell).get(station, station.name)
-    speeds = cell.speeds
-    if not station.place_mm:
-        return Section(f"paint: {name}", (Wait(None, f"take the {name}"),))
-    steps = [Move("travel", safe_point_above(station.place_mm, cell), speeds.travel_mm_s)]
-    if station.by_hand:
-        return Section(f"paint: {name}", (*steps, Wait(None, f"dip the brush: {name}")))
-    # a vessel may be lower than the paper, but no move below the paper's height is fast
-    rim_mm = max(station.rim_mm, 0.0) + cell.heights.clearance_mm
-    press_mm_s = min(speeds.press_mm_s, touching_mm_s(brush, cell))
-    steps += [
-        Move("approach", point_above(station.place_mm, rim_mm), approach_mm_s(brush, cell)),
-        Move("dip", point_above(station.place_mm, station.surface_mm - station.depth_mm), press_mm_s),
-    ]
-    if station.stir_mm:
-        steps.append(Move("dip", _stir_circles(station), press_mm_s))
-    steps += [Wait(station.hold_s)] if station.hold_s else []
-    steps.append(Move("dip", point_above(station.place_mm, rim_mm), press_mm_s))
-    steps += [Wait(station.drip_s)] if station.drip_s else []
-    last_mm = station.place_mm
-    if station.wipe_mm:
-        steps.append(Move("wipe", np.array(station.wipe_mm, dtype=float), press_mm_s))
-        last_mm = station.wipe_mm[-1]
-        if last_mm[2] < rim_mm:
-            steps.append(Move("dip", point_above(last_mm, rim_mm), press_mm_s))
-    steps.append(Move("retract", safe_point_above(last_mm, cell), speeds.travel_mm_s))
-    return Section(f"paint: {name}", tuple(steps))
-
-
-POINTS_PER_STIR_CIRCLE = 24
-
-
-def _stir_circles(station: Station) -> np.ndarray:
-    """Return points (n, 3) [mm] of circles in the paint, which end in the middle."""
-    turn = np.linspace(0, 2 * np.pi * station.stir_turns, POINTS_PER_STIR_CIRCLE * station.stir_turns + 1)
-    x, y = station.place_mm
-    circles = np.column_stack([x + station.stir_mm * np.cos(turn), y + station.stir_mm * np.sin(turn)])
-    places = np.vstack([circles, [x, y]])
-    return np.column_stack([places, np.full(len(places), station.surface_mm - station.depth_mm)])
-
-
-def _stroke_moves(a_pass, written: Written, brush, cell: Cell) -> tuple[Move, ...]:
-    poses = written.commanded_mm
-    if len(poses) == 0:
-        return ()
-    heights, speeds = cell.heights, cell.speeds
-    start, end = true_mm(poses[[0, -1]], cell.machine)
-
-    def commanded_above(place, height_mm: float) -> np.ndarray:
-        return commanded_mm(point_above(place, height_mm), cell.machine)
-
-    axes = written.axes
-    first, last = (None, None) if axes is None else (axes[:1], axes[-1:])
-
-    def limit_turn_speed(speed_mm_s: float, axes_there) -> float:
-        """Limit the speed of a move that turns the tool.
-
-        The tool is upright at the safe height and turns on the way to or from the clearance.
-        """
-        turn_deg = 0.0 if axes_there is None else float(tilts_deg(axes_there)[0])
-        return limit_turning_speed(speed_mm_s, heights.safe_mm - heights.clearance_mm, turn_deg, cell)
-
-    paint_mm_s = min(a_pass.speed_mm_s, commanded_touching_mm_s(brush, cell))
-    # Pressing on the spot and lifting bend the bristles as much as painting does, so they are never faster.
-    press_mm_s = min(speeds.press_mm_s, paint_mm_s)
-    return (
-        Move("travel", safe_point_above(commanded_above(start, 0.0)[0], cell), speeds.travel_mm_s),
-        Move(
-            "approach",
-            commanded_above(start, heights.clearance_mm),
-            limit_turn_speed(approach_mm_s(brush, cell), first),
-            axes=first,
-        ),
-        Move("land", poses[:1], press_mm_s, axes=first),
-        *_paint_moves(poses, written, paint_mm_s, press_mm_s, cell),
-        Move("lift", commanded_above(end, heights.clearance_mm), press_mm_s, axes=last),
-        Move(
-            "retract",
-            safe_point_above(commanded_above(end, 0.0)[0], cell),
-            limit_turn_speed(speeds.travel_mm_s, last),
-        ),
-    )
-
-
-def _paint_moves(
-    poses: np.ndarray, written: Written, paint_mm_s: float, press_mm_s: float, cell: Cell
-) -> Iterator[Move]:
-    """Yield the moves that paint a pass, from its first pose on.
-
-    Straight moves up and down are as slow as a landing. The plan's arcs are circles.
-    """
-    arcs, steps = written.arcs, np.diff(true_mm(written.poses_mm, cell.machine), axis=0)
-    kinds = np.full(len(steps), STRAIGHT_SEGMENT)
-    kinds[find_vertical_steps(steps, written.sideways_mm)] = VERTICAL_SEGMENT
-    for number, arc in enumerate(arcs):
-        kinds[arc.first : arc.last] = number
-    starts_run = np.diff(kinds) != 0
-    radii = None
-    if cell.blending.radius_mm:
-        radii, turns_rad = blend_radii_and_angles(written.poses_mm, cell.blending, arcs)
-        starts_run |= turns_rad[1:-1] > MAX_BLEND_TURN_RAD
-    for run in np.split(np.arange(len(steps)), np.flatnonzero(starts_run) + 1):
-        if not len(run):
-            continue
-        kind = kinds[run[0]]
-        arc = Arc(tuple(arcs[kind].centre_mm), arcs[kind].direction) if kind >= 0 else None
-        speed = press_mm_s if kind == VERTICAL_SEGMENT else paint_mm_s
-        blends_mm = None if radii is None else radii[run + 1]
-        axes = None if written.axes is None else written.axes[run + 1]
-        yield Move("paint", poses[run + 1], speed, arc, blends_mm, axes)
