@@ -13,7 +13,7 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.jobs.prepared_drawing import order_nearest_first
 from brushsvg.machine import job_program, moves, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
-from brushsvg.planning import shortest_travel
+from brushsvg.planning import painting_order
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
@@ -75,9 +75,9 @@ def test_loads_of_a_stroke_stay_together_in_nearest_first_order():
         poses = [(begin, 20, 0), (begin, 20, -2), (end, 20, -2), (end, 20, 0)]
         passes.append(_core.Pass(name, np.array(poses, dtype=float), 10.0))
         passes[-1].load = load
-    assert shortest_travel.nearest_first(passes) == [0, 1, 2]
+    assert painting_order.nearest_first(passes) == [0, 1, 2]
     passes[1].load = 0
-    assert shortest_travel.nearest_first(passes) == [0, 2, 1], "b begins where a ends"
+    assert painting_order.nearest_first(passes) == [0, 2, 1], "b begins where a ends"
 
 
 FEW_COLOURS = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"

@@ -8,7 +8,7 @@ from .. import _core
 from ..machine.cells.cell import Cell
 from ..machine.job_program import WHOLE_JOB, CheckedProgram, Job
 from ..machine.paint_reload import PlanInLoads, is_later_part
-from ..planning import shortest_travel
+from ..planning import painting_order
 from ..read.design import Notice
 from .options import Options
 
@@ -115,4 +115,4 @@ def order_nearest_first(work: PreparedDrawing) -> PreparedDrawing:
     Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
     places, and no stroke is painted backwards.
     """
-    return select_passes(work, shortest_travel.nearest_first(work.plan.passes))
+    return select_passes(work, painting_order.nearest_first(work.plan.passes))

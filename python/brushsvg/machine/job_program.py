@@ -30,7 +30,6 @@ from .workspace_limits import (
     find_astray_sections,
     find_strokes_in_vessels,
     find_vessels_near_travel,
-    touching_mm_s,
 )
 
 
@@ -52,8 +51,6 @@ WHOLE_JOB = Job()
 POSES_AROUND_STROKE = 4  # points that a stroke has in addition to its poses
 # Largest plan whose moves are made once and kept. They need about 10 MB.
 POSES_KEPT = 300_000
-# Number of poses that one call to numpy handles. It limits the memory for plans of any size.
-MAX_POSES_AT_ONCE = 100_000
 
 
 @dataclass(frozen=True)

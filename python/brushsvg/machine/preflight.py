@@ -10,15 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
-from .job_program import (
-    MAX_POSES_AT_ONCE,
-    WHOLE_JOB,
-    CheckedProgram,
-    Job,
-    make_checked_program,
-    make_written_form,
-    out_of_arm,
-)
+from .job_program import WHOLE_JOB, CheckedProgram, Job, make_checked_program, make_written_form, out_of_arm
 from .paint_reload import PlanInLoads
 from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, cut_corners
@@ -28,6 +20,8 @@ from .tool_axes import interpolate_axes
 from .workspace_limits import distances_beyond_edges
 
 DEFAULT_TOLERANCE_MM = 0.05
+# Number of poses that one call to numpy handles. It limits the memory for plans of any size.
+MAX_POSES_AT_ONCE = 100_000
 
 
 def report_other_brush(plan: _core.Plan, brush: _core.Brush) -> list[Notice]:

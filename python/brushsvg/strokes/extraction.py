@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import Error, need_one_of, require_type
+from ..planning.painting_order import sort_by_order
 from ..read import SCRIPTS
 from ..read.design import Design, Element, Notice, SubPath
 from .corners import begin_amid_side
@@ -88,12 +89,8 @@ def strokes(design: Design, paths_as: str | None = None, script: str = "auto") -
     named_elements = [(*each, own) for each, own in zip(painted_elements, names, strict=True)]
     if script == "arabic":
         named_elements = _order_letters_from_right(named_elements)
-    ordered = [
-        (element.settings.get("order", 0), stroke)
-        for element, lines, own in named_elements
-        for stroke in _make_strokes(element, own, lines)
-    ]
-    return [stroke for _, stroke in sorted(ordered, key=lambda pair: pair[0])], [*renamed, *notices]
+    drawn = [stroke for element, lines, own in named_elements for stroke in _make_strokes(element, own, lines)]
+    return sort_by_order(drawn), [*renamed, *notices]
 
 
 def _order_letters_from_right(

@@ -21,7 +21,7 @@ from ... import _core
 from ...errors import Error, as_listed, need_number, need_one_of, need_truth, require_type
 from ...model.perturbed import with_lag
 from .dabs import HEADINGS_DEG, KIND, dab_depths, dab_poses
-from .painting_order import early_and_late, shallow_to_deep
+from .stroke_sequence import early_and_late, shallow_to_deep
 
 DEPTH_COUNTS = {"few": 4, "normal": 6, "many": 9}  # number of depths
 MAX_DEPTHS = 12  # number of depths; a larger sheet repeats them

@@ -1,10 +1,24 @@
-"""Reorder passes so that the tool travels less between them (--order nearest)."""
+"""The order in which strokes are painted: by the setting `order`, then as drawn or nearest first (--order nearest)."""
 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 
 import numpy as np
+
+
+def sort_by_order(strokes: Iterable) -> list:
+    """Return strokes sorted by their setting `order`, smaller first.
+
+    Strokes of the same order stay in the order of the drawing.
+    """
+    return sorted(strokes, key=_order_of)
+
+
+def _order_of(stroke) -> int:
+    """Return the setting `order` of a stroke or pass, 0 without one."""
+    return stroke.settings.order or 0
 
 
 def nearest_first(passes) -> list[int]:
@@ -13,12 +27,12 @@ def nearest_first(passes) -> list[int]:
     Only passes that follow each other in one layer change places, and none is painted backwards. The loads of one
     stroke stay together.
     """
-    return [int(k) for group in _group_by_layer(passes) for k in _order_nearest(passes, group)]
+    return [int(k) for group in _group_by_layer_and_order(passes) for k in _order_nearest(passes, group)]
 
 
-def _group_by_layer(passes) -> list[list[int]]:
+def _group_by_layer_and_order(passes) -> list[list[int]]:
     """Return the numbers of consecutive passes with the same layer and `order`."""
-    keys = [(a_pass.layer, a_pass.settings.order or 0) for a_pass in passes]
+    keys = [(a_pass.layer, _order_of(a_pass)) for a_pass in passes]
     numbers = range(len(passes))
     return [list(group) for _, group in itertools.groupby(numbers, key=keys.__getitem__)]
 
