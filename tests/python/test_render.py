@@ -21,10 +21,10 @@ from brushsvg import (
     simulate,
     trace_outlines,
 )
-from brushsvg.show.marks_svg import TOOLPATH
 from brushsvg.show.overlap_png import overlap_png
 from brushsvg.show.overlap_svg import overlap_svg
 from brushsvg.show.panels_png import Panel, panels_png
+from brushsvg.show.picture_colours import TOOLPATH
 
 SHEET = (60.0, 30.0)
 RED, BLUE = "#c01020", "#1020c0"

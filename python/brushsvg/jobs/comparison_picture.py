@@ -10,7 +10,8 @@ from .. import _core
 from ..machine.realised.arc_chords import with_chords
 from ..model.describe import one_line
 from ..show.evaluation import figures
-from ..show.panels_png import MIDDLE_LINE, Panel, panels_png
+from ..show.panels_png import Panel, panels_png
+from ..show.picture_colours import MIDDLE_LINE
 from .prepared_drawing import PreparedDrawing
 
 TITLES = {"none": "Tool follows the drawing", "closed": "With compensation"}

@@ -9,11 +9,11 @@ import cv2
 import numpy as np
 
 from .overlap_png import write_legend
-from .png_canvas import TEXT, bgr, blank_canvas, encode_png, text_width, write_text
+from .picture_colours import MUTED_TEXT, PAPER, REFUSED_TEXT, TEXT, WHITE
+from .png_canvas import bgr, blank_canvas, encode_png, text_width, write_text
 
 ACROSS, DOWN = 5, 6
 CARD_W, PICTURE_H, WORDS_H, GAP, MARGIN, TOP = 360, 220, 64, 16, 40, 110  # px
-PAPER, CARD, MUTED_TEXT, REFUSED_TEXT = "#fdfcf9", "#ffffff", "#767a82", "#b3261e"
 NAME_PX, WORDS_PX, LINE_PX = 20, 16, 24
 
 
@@ -52,7 +52,7 @@ def _draw_sheet(cards: list[Card], heading: str) -> bytes:
         x = MARGIN + k % ACROSS * (CARD_W + GAP)
         y = TOP + k // ACROSS * (card_h + GAP)
         part = image[y : y + card_h, x : x + CARD_W]
-        part[:] = bgr(CARD)
+        part[:] = bgr(WHITE)
         if card.picture is None:
             _write_wrapped(part, card.why)
         else:

@@ -19,16 +19,18 @@ from ..notice_summary import summarize_notices
 from ..read.design import Design, Notice
 from ..read.layout import bounds_mm
 from ..reporting.label_space import LabelSpace
+from .picture_colours import (
+    IMPORT_BACKGROUND,
+    IMPORT_MUTED_TEXT,
+    SHAPE_FILL,
+    SHEET_EDGE,
+    STROKE_INKS,
+    TEXT,
+    WARNING_TEXT,
+    WHITE,
+)
 from .stroke_labels import LABEL_CELL_PX, Run, group_runs, mark_cells, start_direction, width_text
 
-PAPER = "#f3f1ec"
-SHEET = "#ffffff"
-SHEET_EDGE = "#c9c7c0"
-TEXT = "#22252b"
-MUTED_TEXT = "#6d717a"
-SHAPE_FILL = "#d9d7d0"
-WARNING = "#b3401f"
-INKS = ("#2b3a67", "#b3401f", "#2f7d4f", "#8a3ffc", "#c07a00", "#0f7c8a", "#c2185b", "#5d6d1e")
 SHEET_PX, MARGIN_PX, LINE_PX, FONT_PX = 1500, 40, 30, 20
 MAX_LISTED = 120  # entries in each list
 LETTER_WIDTH_PX = 10.0  # width per letter of the lists, between the widths of OpenCV's font and of browsers
@@ -89,9 +91,9 @@ def _arrange_picture(design: Design, strokes: list, notices: list[Notice]) -> _C
     # The strokes of filled shapes depend on the brush, which is not known here.
     more = "; preview --show paint shows those that a brush adds" if any(stroke.target_mm for stroke in strokes) else ""
     words = f"sheet {w:.6g} x {h:.6g} mm, {count}, {warned}{more}"
-    canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, words, MUTED_TEXT)
+    canvas.text(MARGIN_PX, MARGIN_PX + FONT_PX + LINE_PX, words, IMPORT_MUTED_TEXT)
     sheet = place(np.array([[0, 0], [w, 0], [w, h], [0, h]]))
-    canvas.area([sheet], SHEET)
+    canvas.area([sheet], WHITE)
     canvas.line(np.vstack([sheet, sheet[:1]]), SHEET_EDGE, 1.5)
     for element in design.elements:
         if element.fill_rule:
@@ -116,7 +118,7 @@ def _choose_inks(runs: list[Run]) -> list[str]:
     number = 0
     for run in runs:
         for _ in range(run.first, run.last + 1):
-            inks.append(INKS[number % len(INKS)])
+            inks.append(STROKE_INKS[number % len(STROKE_INKS)])
             number += not run.is_one_element
         number += run.is_one_element
     return inks
@@ -174,7 +176,7 @@ def _list_strokes(canvas: _Canvas, strokes: list, inks: list[str], runs: list[Ru
         canvas.text(x, y, words, ink, 18)
         y += LINE_PX if k % columns == columns - 1 or k == min(len(runs), MAX_LISTED) - 1 else 0
     if len(runs) > MAX_LISTED:
-        canvas.text(MARGIN_PX, y, f"and {len(strokes) - runs[MAX_LISTED].first} more", MUTED_TEXT, 18)
+        canvas.text(MARGIN_PX, y, f"and {len(strokes) - runs[MAX_LISTED].first} more", IMPORT_MUTED_TEXT, 18)
         y += LINE_PX
     return y + LINE_PX / 2
 
@@ -198,7 +200,7 @@ def _letters_per_line(canvas: _Canvas) -> int:
 def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
     listed = [
         (colour, notice)
-        for is_damage, colour in ((True, WARNING), (False, TEXT))
+        for is_damage, colour in ((True, WARNING_TEXT), (False, TEXT))
         for notice in summarize_notices(notice for notice in notices if notice.damaged == is_damage)
     ]
     for colour, notice in listed[:MAX_LISTED]:
@@ -207,7 +209,7 @@ def _list_notices(canvas: _Canvas, notices: list[Notice], y: float) -> float:
             canvas.text(MARGIN_PX, y, line, colour, 18)
             y += LINE_PX
     if len(listed) > MAX_LISTED:
-        canvas.text(MARGIN_PX, y, f"and {len(listed) - MAX_LISTED} warnings more", MUTED_TEXT, 18)
+        canvas.text(MARGIN_PX, y, f"and {len(listed) - MAX_LISTED} warnings more", IMPORT_MUTED_TEXT, 18)
         y += LINE_PX
     return y
 
@@ -217,7 +219,7 @@ def _write_svg(canvas: _Canvas) -> str:
     size = f'width="{w}" height="{h}" viewBox="0 0 {w} {h}"'
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size}>',
-        f'<rect width="100%" height="100%" fill="{PAPER}"/>',
+        f'<rect width="100%" height="100%" fill="{IMPORT_BACKGROUND}"/>',
     ]
     for kind, *item in canvas.items:
         if kind == "area":
@@ -244,7 +246,7 @@ def _write_png(canvas: _Canvas) -> bytes:
 
     from .png_canvas import SUB_PIXEL_BITS, bgr, blank_canvas, encode_png, write_text
 
-    image = blank_canvas((round(canvas.height), round(canvas.width)), PAPER)
+    image = blank_canvas((round(canvas.height), round(canvas.width)), IMPORT_BACKGROUND)
     for kind, *item in canvas.items:
         if kind == "area":
             _fill_area(image, *item)

@@ -10,28 +10,9 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import Error, require_type
-from .marks_svg import (
-    BAND,
-    LINE_WIDTH_SHARE,
-    TOOLPATH,
-    Band,
-    band_letter_height,
-    check_lines,
-    check_picture,
-    known_colour,
-    travels,
-)
-from .overlap_svg import MISSING
-from .png_canvas import (
-    PNG_LONG_SIDE_PX,
-    SUB_PIXEL_BITS,
-    TEXT,
-    bgr,
-    blank_canvas,
-    blend,
-    encode_png,
-    write_text,
-)
+from .marks_svg import LINE_WIDTH_SHARE, Band, band_letter_height, check_lines, check_picture, known_colour, travels
+from .picture_colours import INTERVAL_BAND, MISSING, TEXT, TOOLPATH, WHITE
+from .png_canvas import PNG_LONG_SIDE_PX, SUB_PIXEL_BITS, bgr, blank_canvas, blend, encode_png, write_text
 
 
 def marks_png(
@@ -62,7 +43,7 @@ def marks_png(
         run = _core.Marks()
         run.passes = list(marks.passes[first:last])
         paint = _core.coverage(run, brush, window, px_per_mm)
-        image = blank_canvas(paint.shape, "#ffffff") if image is None else image
+        image = blank_canvas(paint.shape, WHITE) if image is None else image
         blend(image, paint, known_colour(colours[first]))
         first = last
     if image is None:
@@ -90,10 +71,10 @@ def _draw_band(image, band, window, px_per_mm: float) -> None:
     size = max(12, round(band_letter_height(band.words, columns, rows)))
     left, low = size, image.shape[0] - size
     for rings in filter(None, band.rings):
-        blend(image, 0.45 * _core.coverage(rings, window, px_per_mm), BAND)
+        blend(image, 0.45 * _core.coverage(rings, window, px_per_mm), INTERVAL_BAND)
     if any(band.rings):
         box = np.zeros(image.shape[:2])
         box[low - size : low, left : left + 2 * size] = 0.45
-        blend(image, box, BAND)
+        blend(image, box, INTERVAL_BAND)
         left += round(2.5 * size)
     write_text(image, band.words, (left, low - round(0.15 * size)), size, 400, TEXT)

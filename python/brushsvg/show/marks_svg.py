@@ -13,11 +13,9 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..errors import Error, need_numbers, require_type
-from .overlap_svg import MISSING
+from .picture_colours import INTERVAL_BAND, MISSING, TEXT, TOOLPATH
 from .svg_text import path_data, printable, quoted
 
-BAND = "#e0862b"  # the 95 % band of an edge
-TOOLPATH = "#2f6fd0"
 LINE_WIDTH_SHARE = 0.002  # of the sheet's longer side, for outlines of unpainted parts and for the toolpath
 
 
@@ -164,14 +162,14 @@ def _band_elements(band, width: float, height: float) -> list[str]:
     lines = []
     for rings in filter(None, band.rings):
         data = " ".join(path_data(ring, height) for ring in rings)
-        lines.append(f'<path class="band" fill="{BAND}" fill-opacity="0.45" d="{data}"/>')
+        lines.append(f'<path class="band" fill="{INTERVAL_BAND}" fill-opacity="0.45" d="{data}"/>')
     left, low = size, height - size
     if lines:
         box = f'x="{left:g}" y="{low - size:g}" width="{2 * size:g}" height="{size:g}"'
-        lines.append(f'<rect {box} fill="{BAND}" fill-opacity="0.45"/>')
+        lines.append(f'<rect {box} fill="{INTERVAL_BAND}" fill-opacity="0.45"/>')
         left += 2.5 * size
     text = f'x="{left:g}" y="{low - 0.15 * size:g}" font-family="sans-serif" font-size="{size:g}"'
-    return [*lines, f'<text {text} fill="#22252b">{escape(band.words)}</text>']
+    return [*lines, f'<text {text} fill="{TEXT}">{escape(band.words)}</text>']
 
 
 def band_letter_height(words: str, width: float, height: float) -> float:

@@ -8,8 +8,9 @@ import cv2
 import numpy as np
 
 from ..reporting.label_space import LabelSpace
-from .overlap_svg import BOTH, MIN_COVERAGE, MISSING, OVERLAP_COLOURS, OVERSPILL, RING_RADIUS
-from .png_canvas import TEXT, bgr, blank_canvas, encode_png, text_width, write_text
+from .overlap_svg import MIN_COVERAGE, RING_RADIUS
+from .picture_colours import BOTH, MISSING, OVERLAP_COLOURS, OVERSPILL, TEXT, WHITE
+from .png_canvas import bgr, blank_canvas, encode_png, text_width, write_text
 
 
 def overlap_png(
@@ -27,7 +28,7 @@ def overlap_png(
     rows, columns = common.shape
     size = max(14, round(0.016 * max(rows, columns)))
     foot, width = (2 * size, max(columns, _legend_width(size))) if legend else (0, columns)
-    image = blank_canvas((rows + foot, width), "#ffffff")
+    image = blank_canvas((rows + foot, width), WHITE)
     shares = ((common, BOTH), (target - common, MISSING), (painted - common, OVERSPILL))
     page = np.full((rows, columns, 3), 255.0)
     for share, colour in shares:  # the shares of a pixel add up; they do not cover each other

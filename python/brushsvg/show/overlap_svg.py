@@ -1,4 +1,4 @@
-"""Draw where paint is missing and where there is too much paint, as SVG; the colours of overlap pictures."""
+"""Draw where paint is missing and where there is too much paint, as SVG."""
 
 from __future__ import annotations
 
@@ -7,15 +7,8 @@ from html import escape
 
 from .. import _core
 from ..reporting.label_space import LabelSpace
+from .picture_colours import BOTH, MISSING, OVERLAP_COLOURS, OVERSPILL, TEXT, WHITE
 from .svg_text import path_data, printable
-
-BOTH, MISSING, OVERSPILL = "#b4b8c0", "#d1431f", "#2f6fd0"
-OVERLAP_COLOURS = (
-    (BOTH, "painted as drawn"),
-    (MISSING, "drawn, not painted"),
-    (OVERSPILL, "painted, not drawn"),
-)
-
 
 LABEL_GRID_CELLS = 1000  # along the longer side, for labels to keep clear of marks
 MIN_COVERAGE = 0.05  # share of a cell: less is a rounding error
@@ -49,7 +42,7 @@ def overlap_svg(
         f'viewBox="0 0 {across:g} {foot:g}">',
         f"<title>{escape(printable(title), quote=False)}</title>",
         f'<clipPath id="wanted"><path d="{data["wanted"]}"/></clipPath>',
-        f'<rect width="{across:g}" height="{foot:g}" fill="#ffffff"/>',
+        f'<rect width="{across:g}" height="{foot:g}" fill="{WHITE}"/>',
         f'<path fill="{MISSING}" d="{data["wanted"]}"/>',
         f'<path fill="{OVERSPILL}" d="{data["painted"]}"/>',
         f'<path fill="{BOTH}" clip-path="url(#wanted)" d="{data["painted"]}"/>',
@@ -60,7 +53,7 @@ def overlap_svg(
         lines.append(f'<rect x="{x:g}" y="{height + size:g}" width="{size:g}" height="{size:g}" fill="{colour}"/>')
         lines.append(
             f'<text x="{x + 1.5 * size:g}" y="{height + 1.85 * size:g}" font-family="sans-serif" '
-            f'font-size="{size:g}" fill="#22252b">{words}</text>'
+            f'font-size="{size:g}" fill="{TEXT}">{words}</text>'
         )
         x += entry_width
     return "\n".join([*lines, "</svg>", ""])
@@ -74,7 +67,7 @@ def _number_places(rings: list, sheet_mm, places: Mapping[int, tuple[float, floa
     down = {number: (x, height - y) for number, (x, y) in places.items()}
     bounds = (0.0, 0.0, width, height)
     space = LabelSpace(marks, 1 / cells, bounds, [*down.values()], RING_RADIUS * size)
-    lines = [f'<g class="places" stroke="#22252b" stroke-width="{size / 12:.3g}" fill="none">']
+    lines = [f'<g class="places" stroke="{TEXT}" stroke-width="{size / 12:.3g}" fill="none">']
     texts = []
     for number, (x, y) in down.items():
         lines.append(f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{RING_RADIUS * size:.3g}"/>')

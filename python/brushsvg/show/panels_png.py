@@ -9,15 +9,9 @@ import cv2
 import numpy as np
 
 from .. import _core
-from .png_canvas import SUB_PIXEL_BITS, TEXT, bgr, blank_canvas, blend, encode_png, write_text
+from .picture_colours import MUTED_TEXT, PANEL, PAPER, PREDICTED_INK, TARGET, TCP_LINE, TEXT
+from .png_canvas import SUB_PIXEL_BITS, bgr, blank_canvas, blend, encode_png, write_text
 
-PAPER = "#fdfcf9"
-CARD = "#f3f1ec"
-MUTED_TEXT = "#767a82"
-TARGET = "#b7b6b0"
-INK = "#2b3a67"
-TCP_LINE = "#3f8fd9"
-MIDDLE_LINE = TEXT
 MARGIN, TOP, BOTTOM, GAP, PAD = 56, 140, 84, 20, 28  # px
 LABEL_W, LABEL_H = 480, 190
 
@@ -62,7 +56,7 @@ def panels_png(panels: list[Panel], heading: str, note: str, width_px: int = 200
     for number, panel in enumerate(panels):
         left = MARGIN + (0 if is_wide else number * (card_w + GAP))
         upper = TOP + (number * (card_h + GAP) if is_wide else 0)
-        image[upper : upper + card_h, left : left + card_w] = bgr(CARD)
+        image[upper : upper + card_h, left : left + card_w] = bgr(PANEL)
         label_y = upper + (card_h - LABEL_H) // 2 if is_wide else upper + PAD
         _write_label(image, panel, left + PAD + 8, label_y)
         corner = (left + text_w + PAD, upper + (card_h - picture_h + text_h) // 2)
@@ -73,7 +67,7 @@ def panels_png(panels: list[Panel], heading: str, note: str, width_px: int = 200
 
 def _write_label(image, panel: Panel, x: int, y: int) -> None:
     write_text(image, panel.title, (x, y + 30), 30, 600, TEXT)
-    end = write_text(image, panel.score[0], (x - 3, y + 108), 68, 500, INK)
+    end = write_text(image, panel.score[0], (x - 3, y + 108), 68, 500, PREDICTED_INK)
     write_text(image, panel.score[1], (end + 14, y + 108), 24, 400, MUTED_TEXT)
     for line, text in enumerate(panel.notes):
         write_text(image, text, (x, y + 150 + 32 * line), 22, 400, MUTED_TEXT)
@@ -86,7 +80,7 @@ def _draw_panel(image, panel: Panel, window, px_per_mm: float, corner: tuple[int
     blend(part, target, TARGET)
     if panel.painted:
         painted = _core.coverage(panel.painted, window, px_per_mm)[: part.shape[0], : part.shape[1]]
-        blend(part, 0.86 * painted, INK)
+        blend(part, 0.86 * painted, PREDICTED_INK)
     for line in panel.lines:
         at_mm = np.column_stack([line[:, 0] - window[0], window[1] + window[3] - line[:, 1]])
         fixed = np.round((at_mm * px_per_mm - 0.5) * 2**SUB_PIXEL_BITS).astype(np.int32).reshape(-1, 1, 2)
@@ -96,7 +90,7 @@ def _draw_panel(image, panel: Panel, window, px_per_mm: float, corner: tuple[int
 
 
 def _draw_legend(image, x: int, y: int) -> None:
-    signs = ((TARGET, "wanted", 18), (INK, "painted, as predicted", 18), (TCP_LINE, "path of the tool", 4))
+    signs = ((TARGET, "wanted", 18), (PREDICTED_INK, "painted, as predicted", 18), (TCP_LINE, "path of the tool", 4))
     for colour, word, height in signs:
         middle = y - 8
         image[middle - height // 2 : middle + height // 2, x : x + 34] = bgr(colour)

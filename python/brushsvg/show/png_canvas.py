@@ -7,7 +7,6 @@ import unicodedata
 import cv2
 import numpy as np
 
-TEXT = "#22252b"
 PNG_LONG_SIDE_PX = 2400
 SUB_PIXEL_BITS = 4  # cv2 draws lines at 1/16 px
 

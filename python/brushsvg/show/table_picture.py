@@ -10,16 +10,26 @@ import numpy as np
 from ..machine.arm.place import LIMITED, REACHED, SINGULAR, UNREACHED, ReachTable
 from ..machine.cells.cell import Cell
 from ..machine.frames import transform_points
-from .png_canvas import TEXT, bgr, blank_canvas, encode_png, write_text
+from .picture_colours import (
+    ALTERNATIVE_SHEET_OUTLINE,
+    GRID_LINE,
+    LIMITED_AREA,
+    REACHED_AREA,
+    SHEET_OUTLINE,
+    SINGULAR_AREA,
+    TEXT,
+    UNREACHED_AREA,
+    WHITE,
+)
+from .png_canvas import bgr, blank_canvas, encode_png, write_text
 from .svg_text import printable
 
 REACH_COLOURS = {
-    REACHED: ("#bfe3c4", "reached"),
-    LIMITED: ("#f4c37d", "beyond a joint's limits"),
-    SINGULAR: ("#d99bd0", "near a singularity"),
-    UNREACHED: ("#e4e4e6", "out of reach"),
+    REACHED: (REACHED_AREA, "reached"),
+    LIMITED: (LIMITED_AREA, "beyond a joint's limits"),
+    SINGULAR: (SINGULAR_AREA, "near a singularity"),
+    UNREACHED: (UNREACHED_AREA, "out of reach"),
 }
-SHEET, ALTERNATIVE_SHEET, GRID_LINE = "#22252b", "#1b66c9", "#ffffff"
 LONG_SIDE_PX = 1200
 GRID_MM = 100.0
 TEXT_PX = 20
@@ -35,9 +45,9 @@ def table_picture(suffix: str, table: ReachTable, cell: Cell, sheet_mm, frame, f
     low = np.minimum(low, -40.0)
     high = np.maximum(np.array([table.x_mm[-1], table.y_mm[-1]]) + step_mm / 2, 40.0)
     corners = np.array([(0, 0, 0), (sheet_mm[0], 0, 0), (*sheet_mm, 0), (0, sheet_mm[1], 0)], dtype=float)
-    sheets = [(transform_points(frame, corners)[:, table.axes], SHEET, "paper")]
+    sheets = [(transform_points(frame, corners)[:, table.axes], SHEET_OUTLINE, "paper")]
     if found is not None:
-        sheets.append((transform_points(found, corners)[:, table.axes], ALTERNATIVE_SHEET, "would do here"))
+        sheets.append((transform_points(found, corners)[:, table.axes], ALTERNATIVE_SHEET_OUTLINE, "would do here"))
     for ring, _, _ in sheets:
         low, high = np.minimum(low, ring.min(axis=0) - 10), np.maximum(high, ring.max(axis=0) + 10)
     shown = "" if table.axes == (0, 1) else " and ".join("xyz"[axis] for axis in table.axes) + ", "
@@ -61,7 +71,7 @@ def _draw_png(table: ReachTable, step_mm: float, low, high, sheets, title: str) 
     width, height = np.ceil((high - low) * px_per_mm).astype(int)
     head = 2 * TEXT_PX
     foot = (len(REACH_COLOURS) // 2 + 1) * 2 * TEXT_PX
-    image = blank_canvas((head + height + foot, max(width, 36 * TEXT_PX)), "#ffffff")
+    image = blank_canvas((head + height + foot, max(width, 36 * TEXT_PX)), WHITE)
 
     def at(x, y) -> tuple[int, int]:
         return round((x - low[0]) * px_per_mm), head + round((high[1] - y) * px_per_mm)
@@ -105,7 +115,7 @@ def _draw_svg(table: ReachTable, step_mm: float, low, high, sheets, title: str) 
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{whole:.0f}mm" height="{head + height + foot:.0f}mm" '
         f'viewBox="0 0 {whole:.0f} {head + height + foot:.0f}" font-family="sans-serif" font-size="{size:g}">',
         f"<title>{escape(printable(title), quote=False)}</title>",
-        '<rect width="100%" height="100%" fill="#ffffff"/>',
+        f'<rect width="100%" height="100%" fill="{WHITE}"/>',
         f'<text x="6" y="20" font-weight="bold">{escape(printable(title), quote=False)}</text>',
     ]
     half = step_mm / 2
