@@ -12,8 +12,8 @@ import pytest
 import shapely
 from command import brush_file, brushsvg
 from drawings import SOURCES
+from judge.backlash import with_play
 from judge.moves import Leg, Run
-from judge.play import with_play
 
 from brushsvg import _core
 from brushsvg.machine.cells.cell import Machine

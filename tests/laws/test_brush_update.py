@@ -22,7 +22,7 @@ if not hasattr(core, "fit_marks"):
 from brushsvg import find_brush  # noqa: E402
 from brushsvg.calibration.marks.from_marks import brush_of  # noqa: E402
 from brushsvg.cli import main  # noqa: E402
-from brushsvg.comparison import learning  # noqa: E402
+from brushsvg.comparison import learned_brush  # noqa: E402
 from brushsvg.comparison.job_marks import job_marks  # noqa: E402
 from brushsvg.comparison.job_page import job_page  # noqa: E402
 from brushsvg.jobs.json_files import read_plan  # noqa: E402
@@ -222,7 +222,7 @@ def test_a_second_pass_without_single_strokes_keeps_the_first_result(tmp_path, c
         looks.append(job_marks(*of))
         return replace(looks[0], rings={} if looks[1:] else looks[0].rings)
 
-    monkeypatch.setattr(learning, "job_marks", seen_once)
+    monkeypatch.setattr(learned_brush, "job_marks", seen_once)
     assert in_json(capsys, *studio.words())[0] == 0 and len(looks) == 2
     assert abs(studio.brush().lag(4.0) / (1.05 * polyval(4.0, LAG)) - 1) < 0.03
 

@@ -33,7 +33,7 @@ from ..calibration.overlap.by_overlap import OverlapCalibration, by_overlap
 from ..calibration.overlap.lag_by_outlines import lag_by_outlines, refuse_assumed
 from ..calibration.prior import update_report
 from ..calibration.prior.from_prior import other_brush, refuse_learned, with_lineage
-from ..comparison.learning import learn
+from ..comparison.learned_brush import learn_brush
 from ..comparison.repeats import read_displacement_mm
 from ..errors import Error, Notice, name_file_in_errors, need_number, need_one_of, need_truth, require_type
 from ..files import read_bytes
@@ -452,7 +452,7 @@ def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
     warn(_path_of(options.plan), other_brush(plan, prior_brush))
     with name_file_in_errors(photos[0]):
         stage("reading the photographs and fitting the brush")
-        learned = learn(plan, prior_brush, pictures, name, options.machine, spread_mm)
+        learned = learn_brush(plan, prior_brush, pictures, name, options.machine, spread_mm)
     with_lineage(learned.updated.brush, prior_brush, digests)
     warn(photos[0], list(learned.notices))
     return BrushCalibration(learned.updated.brush, "job", learned.updated, update_report.report(learned.updated))

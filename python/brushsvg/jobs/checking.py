@@ -30,7 +30,7 @@ from ..model.library import brush_names, find_brush
 from ..read import settings_in
 from ..read.gcode import is_ours
 from ..show.evaluation.report import Report
-from ..verify import against_plan, against_regenerated, pauses_in_paint, setup_programs, simulate_program
+from ..verify import against_plan, against_regenerated, pauses_in_paint, setup_checks, simulate_program
 from ..verify.foreign_program import foreign_program
 from ..verify.readback import read_program, text_of_file
 from ..verify.readback.header import read_header as read_header
@@ -396,7 +396,7 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
         if header.border_mm:
             sheet_mm = work.plan.sheet_mm if work else header.sheet_mm
             z_offset_mm = program.z_offset_mm(chosen)
-            outcome = setup_programs.look_at_border(text, read, header, brush, cell, sheet_mm, z_offset_mm)
+            outcome = setup_checks.check_border(text, read, header, brush, cell, sheet_mm, z_offset_mm)
             problems = [*outcome.problems, *(_compare_border(header, work, stage) if work else [])]
             return Check(
                 "border",
@@ -406,9 +406,9 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
                 border_mm=tuple(header.border_mm),
             )
         if header.first_mm:
-            outcome = setup_programs.look_at_first_run(text, read, header, brush, cell)
+            outcome = setup_checks.check_first_run(text, read, header, brush, cell)
             return Check("first-run", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.first_mm))
-        outcome = setup_programs.look_at_heights(text, read, header, brush, cell)
+        outcome = setup_checks.check_heights(text, read, header, brush, cell)
         return Check("height", tuple(outcome.problems), outcome.time_s, heights_mm=tuple(header.heights_mm))
 
 

@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from . import places
+from .backlash import with_play
 from .dobot import run_dobot
 from .doosan import run_doosan
 from .ebb import run_ebb
@@ -26,7 +27,6 @@ from .hpgl import run_hpgl
 from .jaka import run_jaka
 from .krl import run_krl
 from .moves import Leg, Run, arc_points
-from .play import with_play
 from .printer import Pen, run_printer
 from .rapid import run_rapid
 from .ros2 import run_ros2

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .bridges import find_bars, find_bridges, find_corners, find_ends, find_forks, trace_bridge, trace_stub
 from .junctions import Arm, Crossing, find_crossings
+from .lines_at_crossings import find_bars, find_bridges, find_corners, find_ends, find_forks, trace_bridge, trace_stub
 
 # Least share of the places along a branch inside of a crossing that no line paints; with less, the lines that cross
 # there paint the branch.

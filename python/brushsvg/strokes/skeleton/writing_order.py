@@ -9,9 +9,9 @@ import numpy as np
 
 from ...geometry.polylines import length
 from ...geometry.rings import signed_area
-from .bridges import STRAIGHT_ROWS, trace_straight
 from .graph import Piece, Skeleton, reverse_piece
 from .junctions import Crossing
+from .lines_at_crossings import STRAIGHT_ROWS, trace_straight
 
 # Weights of the direction of writing. The first two multiply the unit vector from start to end, x to the right and
 # y up. The third multiplies the taper, (first third - last third) / wider of the two. A line is written in the

@@ -182,7 +182,7 @@ def read_program(text: str, suffix: str, cell: Cell) -> Readback:
     that brushsvg would not have written.
     """
     from ...machine.posts import POSTS
-    from .play import with_backlash
+    from .backlash import with_backlash
 
     post = POSTS.get(cell.language)
     if post is None or suffix not in post.extensions:

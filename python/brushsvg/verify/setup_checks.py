@@ -30,7 +30,7 @@ class SetupCheck:
     time_s: float
 
 
-def look_at_border(
+def check_border(
     text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> SetupCheck:
     """Check an air run around the border that its header names. Raises Error when a corner is outside the workspace."""
@@ -42,7 +42,7 @@ def look_at_border(
     return _check_setup_program(text, read, expected, sections, cell, cell.heights.safe_mm, "safe height")
 
 
-def look_at_heights(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+def check_heights(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
     """Check a program that finds the paper by strokes at several heights.
 
     Its header names the heights. Each of these strokes may be the first on the paper. Raises Error when the strokes do
@@ -56,7 +56,7 @@ def look_at_heights(text: str, read: Readback, origin: ProgramHeader, brush, cel
     return _check_setup_program(text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke")
 
 
-def look_at_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
+def check_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell) -> SetupCheck:
     """Check all steps of a first run. Raises Error when it leaves the workspace or does not fit on the sheet."""
     sheet_mm = origin.sheet_mm
     highest_mm, lowest_mm, step_mm = origin.first_mm

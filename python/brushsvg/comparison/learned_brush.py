@@ -19,21 +19,21 @@ MAX_ROUNDS = 2
 
 
 @dataclass(frozen=True)
-class LearntBrush:
+class LearnedBrush:
     """A brush that was updated from a job, and notices about strokes that were left out."""
 
     updated: UpdatedBrush
     notices: tuple[Notice, ...]
 
 
-def learn(
+def learn_brush(
     plan,
     brush: _core.Brush,
     photos: list[tuple[str, bytes]],
     name: str,
     machine: tuple[str, ...] = (),
     displacement_mm: float | None = None,
-) -> LearntBrush:
+) -> LearnedBrush:
     """Update a brush from photographs of one painted sheet of a job.
 
     plan: as painted, including corrections; brush: as known without this job; photos: names and contents of the files;
@@ -55,7 +55,7 @@ def learn(
         if not (marks.touching or marks.dry):
             break
     updated, marks, found = best
-    return LearntBrush(updated, (*_left_out_notices(found, marks, strokes),))
+    return LearnedBrush(updated, (*_left_out_notices(found, marks, strokes),))
 
 
 def _predict_strokes(plan, brush: _core.Brush) -> list[TargetStroke]:
