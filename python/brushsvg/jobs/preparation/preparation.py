@@ -89,7 +89,9 @@ def _prepare_source(source: Source, options: Options, stage: Callable[[str], obj
         raise
 
 
-def _plan_design(design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]) -> PreparedDrawing:
+def _plan_design(
+    design: Design, brush, options: Options, stage, partly: bool, notices: list[Notice]
+) -> PreparedDrawing:
     """Plan the strokes of a drawing that was read; notices: the drawing's warnings, extended here."""
     stage("finding strokes")
     on_cell = limit_depth(brush, options)

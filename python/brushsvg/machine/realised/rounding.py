@@ -157,7 +157,7 @@ def _split_arcs(arcs, poses: np.ndarray, circle_definition: str, cell: Cell) -> 
     for part in chain.from_iterable(_split_full_circles(arc, poses, MIN_CIRCLE_UNITS * unit) for arc in arcs):
         if (
             _defines_circle(poses[part.first : part.last + 1, :2], circle_definition, MIN_CIRCLE_UNITS * unit)
-            and _keeps_radius(poses[[part.first, part.last], :2] - part.centre_mm, cell)
+            and _is_accepted_as_circle(poses[[part.first, part.last], :2] - part.centre_mm, cell)
             and not is_tiny(last_end, part.first)
             and not is_tiny(part.last, len(poses) - 1)
         ):
@@ -198,7 +198,7 @@ MAX_BACKWARD_TURN_RAD = 1.0  # rounding turns tiny steps of a circle back by les
 TARGET_PART_RAD, MAX_PART_RAD = 3.5, 5.0
 
 
-def _keeps_radius(spokes: np.ndarray, cell: Cell) -> bool:
+def _is_accepted_as_circle(spokes: np.ndarray, cell: Cell) -> bool:
     """Return whether the firmware accepts a circle and stays close to it; spokes (2, 2): centre to ends."""
     first, last = (hypot(*spoke) for spoke in spokes.tolist())
     # The centre of the circle is rounded, too.
