@@ -33,15 +33,15 @@ help:
 	@echo "make demo         set up, then paint examples/vincent.svg into demo/"
 	@echo "make test         set up, then run the linters and the tests of both languages"
 	@echo "make quick        run the fast Python tests, within a minute"
-	@echo "make test-wording run the tests with other words in all that people read: what fails depends on wording"
-	@echo "make wording      write tests/golden/wording.txt anew, where wording is held"
+	@echo "make test-wording run the tests with other words in all messages: a test that fails depends on wording"
+	@echo "make wording      write tests/golden/wording.txt again, which holds the wording of all messages"
 	@echo "make integration  run the longer tests: fits to painted sheets, LinuxCNC, Inkscape, Chromium, pyright (installs them)"
 	@echo "make thorough     run every test, also those that .ci/run leaves out, and the C++ tests under sanitizers"
 	@echo "make test-times   run the tests and show which tests, fixtures and builds take longest (SUITES='python long integration')"
 	@echo "make plugins      the Inkscape extension as a zip for its extension manager, in dist/"
 	@echo "make wheel        wheels for x86-64 Linux in dist/, from a compiler of PyPI and Ceres without GPL code (PYTHONS='python3.11 ...')"
 	@echo "make wheel-test   install the wheel in a bare system, run the demo and the fast tests there (needs root)"
-	@echo "make wheel-docs   write docs/reference/wheels.md anew: licenses, auditwheel's report, bill of materials"
+	@echo "make wheel-docs   write docs/reference/wheels.md again: licenses, auditwheel's report, bill of materials"
 	@echo "make sdist        the source as an archive in dist/, which builds without a network"
 	@echo "make deb          the C++ library as libbrushsvg-dev, a package for Debian, in dist/"
 	@echo "make deb-test     that package in a bare system: programs are compiled against it and run"
@@ -50,13 +50,13 @@ help:
 	@echo "make docs-lint    check the language of docs and code: long sentences, words to avoid, the first sentence"
 	@echo "make clang-headers  the public headers read by clang and g++ with all warnings as errors"
 	@echo "make clang-check  the C++ sources read by clang, as macOS compiles them"
-	@echo "make bench        our figures beside the peers' and the floor"
-	@echo "make bench-compare REV=main    what became slower than at a revision, both run in turn"
+	@echo "make bench        measure our speed and accuracy, and compare them with other programs"
+	@echo "make bench-compare REV=main    show what is slower than at a revision; runs both in turn"
 	@echo "make test-variants  the tests under the arithmetic of other processors: compilers, maths libraries, vector units"
 	@echo "make asan         C++ tests, and Python tests with threads, under address and undefined behaviour sanitizers"
 	@echo "make tsan         C++ tests, and Python tests with threads, under the thread sanitizer"
-	@echo "make tidy         clang-tidy over the core: what compilers do not see"
-	@echo "make fuzz         each reader and each computation is fed made-up input for 20 s (FUZZ_S=600, ONLY='plan_json dxf')"
+	@echo "make tidy         run clang-tidy on the core, for faults that compilers do not find"
+	@echo "make fuzz         run each reader and each computation on random input for 20 s (FUZZ_S=600, ONLY='plan_json dxf')"
 	@echo "make format       format both languages"
 	@echo "make clean        remove what was built"
 
@@ -254,8 +254,8 @@ bench: setup
 	if [ -f $$font ]; then $(BIN)/pip install -q -e '.[bench]' --no-build-isolation; $(BIN)/python benchmarks/outlines.py $$font; fi
 	$(BIN)/python benchmarks/preview.py
 
-# The same script over both trees: that of REV is built beside ours and stays there, so that the next time is quick.
-# TABLE: what else the script is told, such as TABLE='--rounds 1 --only word'.
+# Run the same script on both trees. The tree of REV is built next to ours and kept, so that the next run is quick.
+# TABLE: more arguments of the script, such as TABLE='--rounds 1 --only word'.
 TABLE ?=
 bench-compare: setup
 	@: "$${REV:?which revision? make bench-compare REV=main}"

@@ -3,7 +3,7 @@
 """Store the settings of the whole job in the document.
 
 brushsvg on the command line reads these settings as well. Inkscape cannot show the stored values in a dialog.
-So the fields start with "leave as it is", and a message shows the stored values.
+So the fields start with "keep the setting of the document", and a message shows the stored values.
 """
 
 from __future__ import annotations

@@ -96,7 +96,7 @@ def test_the_dialog_shows_the_defaults_of_brushsvg(monkeypatch):
     } == OWN
     dialog = (SOURCE / "brushsvg_settings.inx").read_text()
     for name in ("brush", "compensation", "start", "end", "cell", "wide"):
-        assert f"brushsvg's own choice: {OWN[name]}<" in dialog
+        assert f"brushsvg's default: {OWN[name]}<" in dialog
     assert gives(dialog, "0.05 mm")
 
 
