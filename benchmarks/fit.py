@@ -79,7 +79,7 @@ def one_sheet(seed: int, parts: tuple[str, ...], rounds: int) -> dict:
     def options(with_machine: bool):
         made = truth_recovery.options_for(brush, faults)
         if with_machine:
-            machine_found.ask_for(made, parts)
+            machine_found.request_machine_parts(made, parts)
         return made
 
     out: dict = {"seed": seed, "marks": len(sheet.marks), "rows": {}, "values": {}}

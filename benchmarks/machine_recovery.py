@@ -148,7 +148,7 @@ def recover(
     for with_machine in (False, True):
         options = truth_recovery.options_for(brush, faults)
         if with_machine:
-            machine_found.ask_for(options, parts)
+            machine_found.request_machine_parts(options, parts)
         begin = time.perf_counter()
         fit = _core.fit_marks(marks, None, options)
         out["s"] = time.perf_counter() - begin
@@ -158,7 +158,7 @@ def recover(
         at = places(made)["lag"]
         half = half_interval_mm(np.array(made.covariance)[at, at], depths, None)
         out["z"][with_machine] = (lag - brush.law("lag")(depths)) / half
-    found = machine_found.numbers(fit, np.array(fit.covariance), options)
+    found = machine_found.list_machine_numbers(fit, np.array(fit.covariance), options)
     truth = [*machine["lean"]] * ("lean" in parts)
     scale_x, scale_y, skew = machine["axes"]
     truth += [1 + scale_x, 1 + scale_y, skew] * ("axes" in parts)

@@ -35,7 +35,12 @@ from numpy.polynomial import polynomial
 
 from brushsvg import _core
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import edge_mm, marks_of, read_chart_photos, remarks
+from brushsvg.calibration.chart.photograph import (
+    edge_mm,
+    list_measured_marks,
+    read_chart_photos,
+    report_reading_notices,
+)
 from brushsvg.calibration.marks.from_marks import brush_of, calibrate_marks, options_for
 from brushsvg.calibration.marks.mark_input import read_painted
 from brushsvg.cli.arguments import values
@@ -128,10 +133,10 @@ def outcome(case: Case, jpeg: bytes, true_height: float, height_known: float | N
         at = np.array(shares) * case.sheet_mm
         off = read.view.to_px(at) - photograph.corners_seen(case.camera, case.sheet_mm, at)
         out["geometry"] = float(np.sqrt(np.mean(np.sum(off**2, axis=1)))) / read.view.px_per_mm
-        out["remarks"] = [notice.code for notice in remarks(read)]
+        out["remarks"] = [notice.code for notice in report_reading_notices(read)]
         begin = time.process_time()
         plan = json.loads(_core.write_plan(made.plan))
-        marks = read_painted(plan, marks_of(read), None)
+        marks = read_painted(plan, list_measured_marks(read), None)
         options = options_for({})
         if height_known:
             seen = true_height + np.random.default_rng([case.number, 3]).normal(0, height_known)

@@ -53,7 +53,7 @@ from brushsvg.calibration.overlap.overlap_search import (
     SearchStart,
     Target,
     best_shift,
-    on_paper,
+    move_to_fitted_paper,
     predict_pictures,
     soft_overlap,
 )
@@ -294,7 +294,7 @@ def fit_ours(strokes, name, machine=()):
     options.widest_per_half = _core.Prior(1.0, 0.4)
     options.round_tail, options.spacing_mm = True, 2.0
     options.departing = False  # the documented figures are of the fit with few numbers
-    machine_found.ask_for(options, machine)
+    machine_found.request_machine_parts(options, machine)
     return _core.fit_marks(painted, None, options), options
 
 
@@ -307,7 +307,7 @@ def by_overlap(strokes, fit, options):
     targets = [_target(stroke, fit) for stroke in strokes]
     marks = painted_marks(strokes, [target.poses_mm for target in targets])
     options = copy(options)
-    machine_found.ask_for(options, ("lean", "axes"))
+    machine_found.request_machine_parts(options, ("lean", "axes"))
     begin = SearchStart(fit.laws, fit.height_mm, fit.shift_mm)
     found = find_best_prediction(marks, targets, begin, options)
     changed = {name: getattr(found, name) for name in ("laws", "height_mm", "shift_mm", "offsets")}
@@ -365,7 +365,7 @@ def _as_run(stroke: Stroke, fit) -> np.ndarray:
 
 def _moved(stroke: Stroke, fit) -> _core.Pass:
     """Return the way of the TCP on the fitted paper and sheet."""
-    return _core.Pass("stroke", on_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
+    return _core.Pass("stroke", move_to_fitted_paper(_as_run(stroke, fit), fit.height_mm, fit.shift_mm))
 
 
 def our_marks(strokes, fit, options) -> list[np.ndarray]:

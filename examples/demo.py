@@ -31,7 +31,7 @@ def main(drawing: Path, directory: Path) -> None:
     ways = ("none", "constant", "closed", "refined")
     works = {how: preparation.prepare(drawing, Options(compensation=how)) for how in ways}
     work = works["closed"]
-    works["best"] = best_constant(work)
+    works["best"] = find_best_constant_lag(work)
     marks = {how: prediction.predict(works[how]) for how in works}
     loads = split_into_loads(work.plan, work.brush, cell)
     walk = preflight.check_job(loads, work.brush, marks["closed"], cell, work.options.tolerance_mm)
@@ -40,7 +40,7 @@ def main(drawing: Path, directory: Path) -> None:
     warn(str(drawing), work.notices)
 
     totals = {
-        how: figures.measure(figures.PaintedPlan(each.plan, marks[how], each.brush, each.strokes))[1]
+        how: figures.measure_figures(figures.PaintedPlan(each.plan, marks[how], each.brush, each.strokes))[1]
         for how, each in works.items()
     }
     names = {
@@ -67,7 +67,7 @@ def main(drawing: Path, directory: Path) -> None:
     print(compared, *paths, sep="\n")
 
 
-def best_constant(work: PreparedDrawing) -> PreparedDrawing:
+def find_best_constant_lag(work: PreparedDrawing) -> PreparedDrawing:
     """Return the work compensated with the constant lag of largest overlap.
 
     Lags from 0 to the greatest lag of the brush are tried and compared by pixels. The best lag is in options.lag_mm.

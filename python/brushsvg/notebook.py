@@ -13,7 +13,7 @@ from .errors import Error
 from .machine.realised.arc_chords import with_chords
 from .model.plot import brush_picture
 from .read.design import Design
-from .show.import_picture import overview
+from .show.import_picture import draw_import_picture
 from .show.marks_svg import known_colour, marks_svg
 from .strokes.extraction import strokes
 
@@ -76,7 +76,7 @@ def design_svg(design: Design) -> str | None:
     """
     try:
         made, renamed = strokes(design)
-        return overview(".svg", design, made, [*design.notices, *renamed]).decode()
+        return draw_import_picture(".svg", design, made, [*design.notices, *renamed]).decode()
     except Error:
         return None
 

@@ -111,7 +111,7 @@ def machine_added(made, fit=None):
     """
     options = copy(made.expected)
     options.deepest_mm = made.brush.depth_range_mm[1]
-    machine_found.ask_for(options, ("lean", "axes"))
+    machine_found.request_machine_parts(options, ("lean", "axes"))
     edges = SimpleNamespace(brush=made.brush, fit=fit or made.fit)
     targets = [
         by_overlap._make_target(by_overlap._to_plan_frame(*each, edges), edges)
@@ -211,7 +211,7 @@ def test_changes_are_kept_if_they_predict_held_out_marks_and_reported():
     options.height_mm = core.Prior(0.0, 0.2)
     options.lag_terms, options.half_width_terms, options.round_tail = 2, 2, True
     options.widest_per_half, options.turn_rad = core.Prior(1.0, 0.4), 0.0
-    machine_found.ask_for(options, ("lean",))
+    machine_found.request_machine_parts(options, ("lean",))
     found = overlap_choice.find_best_prediction(marks, targets, SearchStart(laws(brush, [1.0, 1.0]), 0.0), options)
     assert found.kind == "machine"
     assert found.offsets.lean_mm_per_mm == pytest.approx(lean, abs=0.15)

@@ -19,7 +19,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import describe_reading, read_chart_photos, remarks
+from brushsvg.calibration.chart.photograph import describe_reading, read_chart_photos, report_reading_notices
 from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.photo.place_by_strokes import _match_turn_and_shift
@@ -139,7 +139,7 @@ def test_marks_are_found_for_any_pose_of_the_sheet(turn_deg, dpi):
     They are found up to a turn and shift of the whole sheet, which the fit finds on any sheet.
     """
     found = read(scanned(dpi, turn_deg), dpi)
-    assert not found.marks.missing and not found.marks.joined and not remarks(found)
+    assert not found.marks.missing and not found.marks.joined and not report_reading_notices(found)
     turn, scale, shift, left = similarity_off(found)
     assert abs(turn) < 0.6 and shift < 0.7, (turn, shift)
     assert abs(scale - 1) < 5e-4 and left < 0.03, (scale, left)

@@ -94,7 +94,7 @@ def painted_by(seed, parts, one_way=False):
 def options_for(parts):
     options = core.MarkOptions()
     options.displacement_mm = 0.3
-    machine_found.ask_for(options, parts)
+    machine_found.request_machine_parts(options, parts)
     return options
 
 
@@ -125,7 +125,7 @@ def test_brush_and_machine_are_recovered(parts):
         for axis, row in zip("xy", FIELD, strict=True)
         for term, value in zip(("u u", "u v", "v v"), row, strict=True)
     }
-    found = machine_found.numbers(made.fit, made.covariance, made.expected)
+    found = machine_found.list_machine_numbers(made.fit, made.covariance, made.expected)
     assert len(found) == 2 * ("lean" in parts) + 3 * ("axes" in parts) + 2 * ("tilt" in parts) + 6 * ("field" in parts)
     for one in found:
         assert abs(one.value - truth[one.name]) < 2 * one.half, one
@@ -146,7 +146,7 @@ def test_brush_and_machine_are_recovered(parts):
 def test_a_machine_without_a_field_has_no_certain_field(seed):
     _, painted = painted_by(seed, ())
     made = calibrate_marks(painted, "b", options=options_for(("field",)))
-    found = machine_found.numbers(made.fit, made.covariance, made.expected)
+    found = machine_found.list_machine_numbers(made.fit, made.covariance, made.expected)
     assert len(found) == 6 and not machine_found.has_field(found), found
     assert len(machine_found.describe_numbers(found)) == 7, "and that none is certain"
     assert "field_mm" not in report(made).text(True)
@@ -174,16 +174,16 @@ def test_the_fit_does_not_start_with_a_lag_that_looks_like_lean(seed):
 
 def test_strokes_of_one_direction_are_reported_to_separate_lean_poorly():
     _, painted = painted_by(5, ("lean",), one_way=True)
-    assert are_reported(machine_found.doubts(painted, options_for(("lean",))), "lean-like-lag 99 0 80")
-    assert machine_found.doubts(painted, options_for(())) == []
+    assert are_reported(machine_found.report_inseparable_lean(painted, options_for(("lean",))), "lean-like-lag 99 0 80")
+    assert machine_found.report_inseparable_lean(painted, options_for(())) == []
     _, both = painted_by(5, ("lean",))
-    assert machine_found.doubts(both, options_for(("lean",))) == []
+    assert machine_found.report_inseparable_lean(both, options_for(("lean",))) == []
 
 
 def test_an_exact_machine_is_recovered_as_exact():
     brush, painted = painted_by(5, ())
     made = calibrate_marks(painted, "b", options=options_for(("lean", "axes")))
-    found = machine_found.numbers(made.fit, made.covariance, made.expected)
+    found = machine_found.list_machine_numbers(made.fit, made.covariance, made.expected)
     assert [one.value for one in found[2:]] == pytest.approx([1.0, 1.0, 0.0], abs=0.006)
     assert all(abs(one.value) < 2 * one.half for one in found[:2])
     depths = np.linspace(0.2, 1, 9) * brush.deepest
@@ -203,7 +203,7 @@ def test_zero_lean_is_as_uncertain_as_a_real_lean(seed):
     known = {}
     for truth, painted in ((0.0, upright), (1.0, leaning)):
         made = calibrate_marks(painted, "b", options=options_for(("lean",)))
-        found = machine_found.numbers(made.fit, made.covariance, made.expected)
+        found = machine_found.list_machine_numbers(made.fit, made.covariance, made.expected)
         for one, true in zip(found, np.array(LEAN) * truth, strict=True):
             assert abs(one.value - true) < 2 * one.half, one
         known[truth] = np.array([one.half for one in found])

@@ -80,8 +80,8 @@ def check_figures(strokes, compensation, brush_name="round-6"):
     brush = find_brush(brush_name)
     done = _core.compensate(strokes, brush, (300.0, 300.0), compensation)
     marks = _core.simulate(done.plan, brush)
-    rows, total = figures.measure(figures.PaintedPlan(done.plan, marks, brush, strokes))
-    groups = figures.groups(marks, brush, strokes)
+    rows, total = figures.measure_figures(figures.PaintedPlan(done.plan, marks, brush, strokes))
+    groups = figures.group_touching_strokes(marks, brush, strokes)
 
     plan = json.loads(_core.write_plan(done.plan))
     for each, a_pass in zip(plan["passes"], done.plan.passes, strict=True):

@@ -179,7 +179,7 @@ def test_a_photograph_has_flags_and_no_measurement_file(made, flag):
 def test_marks_unlike_their_predictions_are_reported(monkeypatch):
     _, _, made = calibrated(3)
     assert "[0.5, 1]" not in report(made).text(True)
-    monkeypatch.setattr(mark_report, "overlaps", lambda _: (0.3, 0.36))
+    monkeypatch.setattr(mark_report, "measure_mean_overlaps", lambda _: (0.3, 0.36))
     assert gives(report(made).text(True), "0.36", "[0.5, 1]")
     assert report(made).verdict.startswith("do not use")
 

@@ -55,4 +55,4 @@ def test_a_pen_paints_all_of_its_line(compensation, name, line):
     rings = [shapely.Polygon(ring) for ring in marks.passes[0].outline_mm]
     predicted = functools.reduce(shapely.symmetric_difference, rings)  # areas of holes and of their rings
     assert share(predicted, painted) > 0.98
-    assert figures.measure(figures.PaintedPlan(plan, marks, brush, [stroke]))[1].overlap > 0.95
+    assert figures.measure_figures(figures.PaintedPlan(plan, marks, brush, [stroke]))[1].overlap > 0.95

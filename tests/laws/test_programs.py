@@ -277,4 +277,4 @@ def test_programs_for_inexact_machines_pass_check_and_are_read_back(seed):
     text = "".join(writer.encode(LANGUAGES[name], plan, brush, "random", (), cell))
     ran = simulate_program.simulate_program(read_program(text, LANGUAGES[name], cell), brush, cell, plan.sheet_mm)
     assert ran.problems == []
-    assert against_plan.with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []
+    assert against_plan.compare_with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []

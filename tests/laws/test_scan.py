@@ -23,7 +23,7 @@ from sampling import sample
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.file import read_chart, write_chart
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import expected, marks_of, read_chart_photos
+from brushsvg.calibration.chart.photograph import get_expected_errors, list_measured_marks, read_chart_photos
 from brushsvg.cli import main
 from brushsvg.photo.edges import StrokeBox, assign_marks, paint_seen
 from brushsvg.photo.flatten import Flat
@@ -302,7 +302,7 @@ def test_a_stroke_without_paint_is_named(tmp_path, capsys):
 
 @pytest.mark.thorough
 def test_other_formats_and_rotated_cameras_give_the_same_marks():
-    there = marks_of(read(small()))
+    there = list_measured_marks(read(small()))
     side = np.ascontiguousarray(small().swapaxes(0, 1)[:, ::-1])  # turned clockwise
     held = photograph.with_turn(photograph.encoded(side), 8)
     files = [held] + [
@@ -310,7 +310,7 @@ def test_other_formats_and_rotated_cameras_give_the_same_marks():
         for end, flags in ((".png", []), (".tif", []), (".webp", [cv2.IMWRITE_WEBP_QUALITY, 95]))
     ]
     for data in files:
-        marks = marks_of(read_chart_photos(a5(), [("", data)]))
+        marks = list_measured_marks(read_chart_photos(a5(), [("", data)]))
         assert [row["stroke"] for row in marks] == [row["stroke"] for row in there]
         for ours, theirs in zip(marks, there, strict=True):
             assert _core.overlap(*(list(map(np.array, row["outline_mm"])) for row in (ours, theirs))) > 0.95
@@ -585,7 +585,7 @@ def test_a_page_printed_about_its_corner_names_its_scale_and_is_read_by_its_bar(
     assert caught.value.value == pytest.approx(size, abs=0.01)
     found = read(pixels, bar_mm=size * bar_mm)
     assert not found.marks.missing and not found.marks.joined
-    sigma_mm = expected(found)["placement_mm"]
+    sigma_mm = get_expected_errors(found)["placement_mm"]
     marks = painted_marks()
     moves = [
         np.array(shape(found.marks.outlines_mm[stroke]).centroid.coords[0]) - shape(rings).centroid.coords[0]

@@ -87,7 +87,7 @@ def seen(brush, trace, pose):
 @pytest.mark.thorough
 def test_the_band_agrees_with_monte_carlo(brush, painted):
     work, marks, brushes = painted
-    reported = uncertainty.uncertainty(work.plan, brush, marks)
+    reported = uncertainty.estimate_confidence(work.plan, brush, marks)
     assert reported.source == uncertainty.COVARIANCE
     runs = [_core.simulate(work.plan, each) for each in brushes]
     compared = 0
@@ -118,7 +118,7 @@ def test_the_band_agrees_with_monte_carlo(brush, painted):
 def test_the_band_contains_95_percent_of_the_edges(brush, painted):
     """The band contains about 95 % of the edges of brushes drawn from the covariance."""
     work, marks, brushes = painted
-    band = uncertainty.band(work.plan, brush, marks)
+    band = uncertainty.make_band(work.plan, brush, marks)
     k = next(k for k, a_pass in enumerate(work.plan.passes) if a_pass.stroke == "n-arch")
     shells = [shapely.Polygon(ring) for ring in band.rings[k]]
     region = shapely.make_valid(shells[0])

@@ -15,7 +15,7 @@ from test_scan import A5, a5, hide, off_mm, painted_marks, painted_sheet
 
 from brushsvg import _core, find_brush
 from brushsvg.calibration.chart.layout import chart
-from brushsvg.calibration.chart.photograph import read_chart_photos, remarks
+from brushsvg.calibration.chart.photograph import read_chart_photos, report_reading_notices
 from brushsvg.errors import Error
 from brushsvg.photo.markers import Printed, find_view
 
@@ -152,14 +152,14 @@ def test_a_picture_one_pixel_wide_is_refused(shape):
 def test_a_picture_that_was_saved_too_small_is_refused():
     assert code_of(photograph.encoded(good(), 5)) == "photo-compressed"
     found = read_chart_photos(a5(), [("", photograph.encoded(good(), 30))])
-    assert not found.marks.missing and not remarks(found)
+    assert not found.marks.missing and not report_reading_notices(found)
 
 
 @pytest.mark.parametrize("kind", REPORTED)
 def test_partly_readable_pictures_are_reported(kind):
     make, code = REPORTED[kind]
     found = read_chart_photos(a5(), [("", photograph.encoded(make()))])
-    reported = {notice.code for notice in remarks(found)}
+    reported = {notice.code for notice in report_reading_notices(found)}
     assert code in reported
     touched = {stroke for pair in found.marks.joined for stroke in pair}
     for stroke, rings in painted_marks().items():
@@ -193,7 +193,7 @@ def test_white_around_a_rotated_picture_does_not_affect_the_lighting(deg):
     turn[:, 2] += [(wide - columns) / 2, (wide - rows) / 2]
     turned = cv2.warpAffine(good(), turn, (wide, wide), flags=cv2.INTER_CUBIC, borderValue=(255, 255, 255))
     found = read_chart_photos(a5(), [("", photograph.encoded(turned))])
-    assert not remarks(found) and not found.marks.missing
+    assert not report_reading_notices(found) and not found.marks.missing
 
 
 @sample(

@@ -47,7 +47,7 @@ def small_drawing(random, number: int) -> list:
 def overlaps(strokes, brush, method: str) -> np.ndarray:
     """Return the overlap that the report gives for each stroke painted alone."""
     plan = _core.compensate(strokes, brush, SHEET_MM, method).plan
-    rows, _ = figures.measure(figures.PaintedPlan(plan, _core.simulate(plan, brush), brush, strokes))
+    rows, _ = figures.measure_figures(figures.PaintedPlan(plan, _core.simulate(plan, brush), brush, strokes))
     return np.array([row.overlap for row in rows])
 
 

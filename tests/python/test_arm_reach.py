@@ -24,7 +24,7 @@ from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import transform_points
 from brushsvg.machine.job_program import unchecked_program
 from brushsvg.machine.paint_reload import split_into_loads
-from brushsvg.machine.setup_programs import over_sheet
+from brushsvg.machine.setup_programs import make_sheet_program
 from brushsvg.model.library import find_brush
 
 pytestmark = pytest.mark.arm
@@ -124,7 +124,7 @@ def test_the_nearest_workable_position_may_need_a_rotation_of_the_paper():
     made = unchecked_program(split_into_loads(plan, BRUSH, cell), BRUSH, cell)
     found = place.find_nearest_place(made, joints_of(cell.arm), lambda there: there.robot_from_frame[0, 0] < 0.999)
     assert found.turn_deg != 0
-    there = place.cell_at(cell, found.frame)
+    there = place.move_paper_of_cell(cell, found.frame)
     assert look(there, plan).problems == []
     assert gives(found.text, f"{found.turn_deg:g}")
 
@@ -169,14 +169,14 @@ def test_no_joint_is_behind_a_wall():
     workspace = replace(shipped.workspace, tilt_limit_deg=90.0)
     wall = Paper(taught_mm=((150, -550, 200), (-140, -550, 200), (150, -550, 400)))
     cell = replace(shipped, workspace=workspace, paper=wall)
-    made = over_sheet(BRUSH, cell, (200.0, 100.0))
+    made = make_sheet_program(BRUSH, cell, (200.0, 100.0))
     assert not follow(made, joints_of(cell.arm)).problems
     reversed_tool = replace(cell, tool=replace(cell.tool, tcp_mm=(0.0, 0.0, -250.0)))
-    made = over_sheet(BRUSH, reversed_tool, (200.0, 100.0))
+    made = make_sheet_program(BRUSH, reversed_tool, (200.0, 100.0))
     (notice,) = follow(made, joints_of(cell.arm)).problems
     assert agrees(notice, "joint-below-table 'behind the paper'")
     named = replace(reversed_tool, arm=replace(cell.arm, posture_deg=(-37.0, -93.0, -134.0, -133.0, -37.0, 180.0)))
-    assert not follow(over_sheet(BRUSH, named, (200.0, 100.0)), joints_of(named.arm)).problems
+    assert not follow(make_sheet_program(BRUSH, named, (200.0, 100.0)), joints_of(named.arm)).problems
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_place_draws_a_wall_from_the_front(tmp_path, capsys, taught, axes):
     cell = replace(shipped, workspace=workspace, paper=Paper(taught_mm=taught))
     (tmp_path / "wall.toml").write_text(write_cell(cell))
     assert in_json(capsys, "cell", "place", tmp_path / "wall.toml", "-o", tmp_path / "wall.svg")[0] == 0
-    table = place.table_of(cell, robot_from_paper(cell), joints_of(cell.arm))
+    table = place.rate_table(cell, robot_from_paper(cell), joints_of(cell.arm))
     assert table.axes == axes and np.count_nonzero(table.what == place.REACHED) > 100
     seen = " and ".join("xyz"[axis] for axis in axes)
     assert (f"{seen}, mm" in (tmp_path / "wall.svg").read_text()) is (axes != (0, 1))
@@ -233,7 +233,7 @@ def test_the_posture_with_the_highest_elbow_is_suggested(name):
     The suggested posture of ur10e once had its elbow 221 mm below the paper.
     """
     cell = find_cell(name)
-    made = over_sheet(BRUSH, cell, (200.0, 100.0))
+    made = make_sheet_program(BRUSH, cell, (200.0, 100.0))
     solved = joints_of(cell.arm)
     found = follow(made, solved)
     assert not found.problems
@@ -262,11 +262,11 @@ def test_joints_below_the_table_are_refused_unless_the_cell_sets_the_posture():
     shoulder = np.degrees(below[0][0])
     only[0] = (shoulder - 40, shoulder + 40)
     arm = replace(cell.arm, limits_deg=tuple(only))
-    made = over_sheet(BRUSH, replace(cell, arm=arm), (200.0, 100.0))
+    made = make_sheet_program(BRUSH, replace(cell, arm=arm), (200.0, 100.0))
     (notice,) = follow(made, joints_of(arm)).problems
     assert agrees(notice, "joint-below-table mm")
     named = replace(arm, posture_deg=tuple(np.degrees(below[0]).tolist()))
-    made = over_sheet(BRUSH, replace(cell, arm=named), (200.0, 100.0))
+    made = make_sheet_program(BRUSH, replace(cell, arm=named), (200.0, 100.0))
     assert not follow(made, joints_of(named)).problems
     # The paper is far below the robot's base: a frame that is only lower than the base is in the air.
     there, low = joint_frames_of(arm, below[0]), first.copy()

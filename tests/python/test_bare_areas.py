@@ -163,7 +163,7 @@ def test_each_stroke_is_compared_with_its_own_part_of_the_shape(tmp_path):
     beginning.
     """
     work = prepared(tmp_path, FLAG)
-    rows, _ = figures.measure(figures.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
+    rows, _ = figures.measure_figures(figures.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert all(row.overlap > 0.9 for row in rows)
     stem, limb = (region(stroke.target_mm) for stroke in work.strokes)
     shape = shape_of(FLAG)

@@ -12,7 +12,7 @@ import pytest
 from diagnostics import refused
 
 import brushsvg
-from brushsvg.calibration.chart.photograph import marks_of
+from brushsvg.calibration.chart.photograph import list_measured_marks
 from brushsvg.cli import main
 from brushsvg.jobs.calibrating import GivenOptions, make_checked_options, read_chart_photographs
 from brushsvg.jobs.calibration_options import CalibrationOptions, find_contradiction
@@ -118,7 +118,7 @@ def test_a_chart_and_a_plan_may_be_given_as_their_files(tmp_path, monkeypatch):
 
     def read(chart):
         found = read_chart_photographs(["photo.jpg"], make_checked_options({"chart": chart}), print, print)
-        return found.chart, marks_of(found)
+        return found.chart, list_measured_marks(found)
 
     by_path, by_chart = read("chart.json"), read(chart)
     assert len(by_path[1]) == len(chart.strokes) and by_chart == by_path

@@ -12,23 +12,10 @@ from diagnostics import agrees, are_reported, in_json, is_reported, refused
 
 from brushsvg.cli import main
 from brushsvg.machine.cells.cell import Machine, Paper, Reload, RoboDK, Servo, Station, Tool, robot_from_paper
-from brushsvg.machine.cells.cell_check import check, out_of_reach, report_unusual_values
-from brushsvg.machine.cells.cell_file import (
-    SHIPPED,
-    cell_names,
-    find_cell,
-    parse_cell,
-    read_cell,
-    write_cell,
-)
+from brushsvg.machine.cells.cell_check import check, report_unusual_values, report_workspace_out_of_reach
+from brushsvg.machine.cells.cell_file import SHIPPED, cell_names, find_cell, parse_cell, read_cell, write_cell
 from brushsvg.machine.cells.describe_cell import cell_page
-from brushsvg.machine.frames import (
-    frame_of_pose,
-    normal_tilt_deg,
-    rotation,
-    rotation_vector,
-    transform_points,
-)
+from brushsvg.machine.frames import frame_of_pose, normal_tilt_deg, rotation, rotation_vector, transform_points
 from brushsvg.machine.posts import POSTS
 
 TEXT = (SHIPPED / "linuxcnc-3axis.toml").read_text(encoding="utf-8")
@@ -234,8 +221,8 @@ def test_cell_check_refuses_units_that_convert_refuses(tmp_path, capsys):
 )
 def test_a_cell_that_reaches_no_paper_is_reported(workspace, expected):
     cell = find_cell("ur5e")
-    assert out_of_reach(cell) == []
-    (reported,) = out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
+    assert report_workspace_out_of_reach(cell) == []
+    (reported,) = report_workspace_out_of_reach(replace(cell, workspace=replace(cell.workspace, **workspace)))
     assert reported.where == f"workspace.{next(iter(workspace))}" and agrees(reported, expected), reported
 
 
@@ -264,7 +251,7 @@ def test_a_sheet_is_out_of_reach_only_if_no_point_of_it_is_reachable():
             away = np.linalg.norm(points, axis=1)
             inside = ((points >= low) & (points <= workspace.box_mm[1])).all(axis=1)
             is_met &= bool((inside & (away >= 100) & (away <= workspace.reach_mm[1])).any())
-        is_reported_out = bool(out_of_reach(cell))
+        is_reported_out = bool(report_workspace_out_of_reach(cell))
         # The sheet may meet the box and the reach at different points; the limits of each program cover that
         # case.
         assert not (is_reported_out and is_met)
@@ -321,7 +308,7 @@ def test_dips_next_to_leaning_paper_are_remarked_on(tilt_deg, by_hand, is_remark
 def test_shipped_cells_have_no_unusual_values(name):
     cell = find_cell(name)
     assert [key for key, _ in report_unusual_values(cell)] == (["paper"] if cell.paper.example else [])
-    assert out_of_reach(cell) == []
+    assert report_workspace_out_of_reach(cell) == []
 
 
 def test_the_paper_frame_passes_through_the_taught_points():

@@ -27,7 +27,7 @@ from brushsvg.cli import main
 from brushsvg.errors import Error
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
-from brushsvg.machine.paint_reload import split_into_loads, station_visits
+from brushsvg.machine.paint_reload import list_station_visits, split_into_loads
 from brushsvg.machine.posts import POSTS
 from brushsvg.model.perturbed import with_lag
 from brushsvg.strokes.swept_areas import region
@@ -482,7 +482,9 @@ def test_a_chart_for_one_load_fetches_paint_once():
     stations = (Station("any", (-20.0, 10.0), depth_mm=7.0),)
     cell = replace(find_cell(), reload=Reload("stroke"), stations=stations)
     made = chart(find_brush("round-6"), A5, one_load=True)
-    fetched = [bool(each) for each in station_visits(split_into_loads(made.plan, find_brush("round-6"), cell), cell)]
+    fetched = [
+        bool(each) for each in list_station_visits(split_into_loads(made.plan, find_brush("round-6"), cell), cell)
+    ]
     assert fetched[0] and not any(fetched[1:]) and len(fetched) == len(made.strokes)
 
 

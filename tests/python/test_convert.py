@@ -75,9 +75,9 @@ def test_loads_of_a_stroke_stay_together_in_nearest_first_order():
         poses = [(begin, 20, 0), (begin, 20, -2), (end, 20, -2), (end, 20, 0)]
         passes.append(_core.Pass(name, np.array(poses, dtype=float), 10.0))
         passes[-1].load = load
-    assert painting_order.nearest_first(passes) == [0, 1, 2]
+    assert painting_order.list_nearest_first(passes) == [0, 1, 2]
     passes[1].load = 0
-    assert painting_order.nearest_first(passes) == [0, 2, 1], "b begins where a ends"
+    assert painting_order.list_nearest_first(passes) == [0, 2, 1], "b begins where a ends"
 
 
 FEW_COLOURS = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"

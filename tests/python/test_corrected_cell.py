@@ -13,7 +13,11 @@ from diagnostics import agrees, are_reported
 core = pytest.importorskip("brushsvg._core")
 
 from brushsvg import find_brush  # noqa: E402
-from brushsvg.comparison.attribution.corrected_cell import as_table, certain_of, corrected_machine  # noqa: E402
+from brushsvg.comparison.attribution.corrected_cell import (  # noqa: E402
+    corrected_machine,
+    format_machine_table,
+    select_certain_numbers,
+)
 from brushsvg.comparison.attribution.model import BRUSH, MACHINE, PAPER, FaultModel  # noqa: E402
 from brushsvg.comparison.next_corrections import next_corrections  # noqa: E402
 from brushsvg.comparison.placing import Placed  # noqa: E402
@@ -88,7 +92,9 @@ def test_the_map_of_the_paper_stays():
     now = corrected_machine(found(TRUE), MIDDLE, replace(UNDONE, map_mm=rows))
     assert now.map_mm == rows
     cell = write_cell(replace(find_cell("linuxcnc-3axis"), machine=None))
-    assert parse_cell("\n".join([cell, *as_table(now)])).machine == now, "the table that is printed has it, too"
+    assert parse_cell("\n".join([cell, *format_machine_table(now)])).machine == now, (
+        "the table that is printed has it, too"
+    )
 
 
 @pytest.mark.parametrize("along, target", [((0, 1), (0.5, 0.2)), ((1, 0), (0.1, 0.6)), (None, (0.1, 0.2))])
@@ -213,9 +219,9 @@ def test_corrections_that_may_be_chance_are_reduced(displaced_mm, one_mm, share,
 def test_a_value_is_certain_beyond_half_its_interval(value, kept):
     number = SimpleNamespace(name="skew", cause=MACHINE)
     found = SimpleNamespace(found=[SimpleNamespace(value=value, half=0.001, number=number)])
-    assert certain_of(found) == {"skew": kept}
+    assert select_certain_numbers(found) == {"skew": kept}
 
 
 def test_a_scale_alone_is_written_to_the_table():
-    assert as_table(Machine(scale=(1.01, 1.0)))[1:] == ["scale = [1.01000, 1.00000]", "skew = 0.00000"]
-    assert as_table(Machine()) == ["[machine]"]
+    assert format_machine_table(Machine(scale=(1.01, 1.0)))[1:] == ["scale = [1.01000, 1.00000]", "skew = 0.00000"]
+    assert format_machine_table(Machine()) == ["[machine]"]

@@ -34,7 +34,7 @@ def found(target, how="closed", name="round-6", tolerance_mm=0.05):
     brush = find_brush(name)
     painted, target, _ = within_reach([target], brush, "clamp")
     plan = compensate(painted, brush, (120, 120), how, tolerance_mm).plan
-    rows, _ = figures.measure(
+    rows, _ = figures.measure_figures(
         figures.PaintedPlan(plan, simulate(plan, brush), brush, target, tolerance_mm, compensation=how)
     )
     return rows[0].worst

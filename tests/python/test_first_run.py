@@ -18,7 +18,7 @@ from brushsvg.machine.cells.cell import robot_from_paper
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, write_cell
 from brushsvg.machine.moves import Wait
 from brushsvg.machine.posts import POSTS
-from brushsvg.machine.setup_programs import first_run
+from brushsvg.machine.setup_programs import make_first_run_program
 from brushsvg.machine.writer import text_of
 from brushsvg.model.library import find_brush
 
@@ -41,7 +41,7 @@ def test_check_accepts_the_first_run_of_every_cell(name, tmp_path, capsys):
 @sample("name", WAITING, keep=5)
 def test_the_first_run_does_its_steps_in_a_safe_order(name):
     cell = find_cell(name)
-    sections = [*first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1).sections()]
+    sections = [*make_first_run_program(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1).sections()]
     lows = [min(move.points_mm[:, 2].min() for move in section.moves) for section in sections]
     safe_mm = cell.heights.safe_mm
     high, border, touches, strokes, one = lows[0], lows[1], lows[2:6], lows[6:-1], lows[-1]
@@ -73,7 +73,7 @@ def test_without_room_above_the_safe_height_the_high_lap_is_left_out(name, tmp_p
     assert status == 0 and is_reported(reported, f"out-of-box 15 z '{top_mm:g}] mm'"), reported
     status, _, reported = in_json(capsys, "check", program, "--cell", tmp_path / "low.toml")
     assert status == 0, reported
-    made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
+    made = make_first_run_program(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
     assert made.rise_mm == pytest.approx(cell.heights.safe_mm)
     first, *others = made.sections()
     assert first.title.endswith("at safe height") and isinstance(first.steps[0], Wait)
@@ -85,7 +85,7 @@ def test_a_lamp_over_either_side_of_the_sheet_lowers_the_high_lap(x_mm):
     cell = find_cell("linuxcnc-3axis")
     lamp = (x_mm - 5.0, 40.0, cell.heights.safe_mm + 20.0), (x_mm + 5.0, 60.0, 200.0)
     cell = replace(cell, workspace=replace(cell.workspace, keep_out_mm=(lamp,)))
-    made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
+    made = make_first_run_program(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
     assert made.rise_mm == pytest.approx(cell.heights.safe_mm + 15.0)
 
 
@@ -96,7 +96,7 @@ def test_the_first_run_rises_to_its_own_height_and_never_lowers_fast(name):
     It once rose to the safe height, and then moved on a slant from any place to the height of its air run.
     """
     cell = find_cell(name)
-    made = first_run(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
+    made = make_first_run_program(find_brush("round-6"), cell, SHEET_MM, 1.0, -1.0, 0.1)
     moves = all_moves(made.sections())
     start = moves[0].points_mm[0]
     assert made.rise_mm == pytest.approx(start[2]) and start[2] > cell.heights.safe_mm

@@ -165,7 +165,7 @@ def test_random_lines_are_read_back(seed):
         assert leg.kind != "feed" or leg.speed_mm_s <= plan.passes[0].speed_mm_s
     ran = simulate_program.simulate_program(read_program(text, ".hpgl", cell), brush, cell, SHEET)
     assert ran.problems == []
-    assert against_plan.with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []
+    assert against_plan.compare_with_plan(ran, split_into_loads(plan, brush, cell), cell)[1] == []
 
 
 def test_a_plotter_selects_pens_by_the_colours_of_the_cell(tmp_path, capsys, monkeypatch):

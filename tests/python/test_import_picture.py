@@ -10,7 +10,7 @@ from brushsvg.cli.arguments.parser import parse
 from brushsvg.read import ReadOptions
 from brushsvg.read.design import Notice
 from brushsvg.read.svg import read_svg
-from brushsvg.show.import_picture import overview
+from brushsvg.show.import_picture import draw_import_picture
 from brushsvg.strokes.extraction import strokes
 
 BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 30h30"/>
@@ -20,7 +20,7 @@ BODY = """<path id="a" d="M10 10H60" stroke-width="6"/><path id="b&lt;" d="M10 3
 def test_svg_shows_numbers_names_and_warnings():
     design = read(BODY)
     made, notices = strokes(design)
-    tree = ET.fromstring(overview(".svg", design, made, [*design.notices, *notices]))
+    tree = ET.fromstring(draw_import_picture(".svg", design, made, [*design.notices, *notices]))
     words = [node.text for node in tree.iter("{http://www.w3.org/2000/svg}text")]
     assert "1" in words and "2" in words
     assert any(word.startswith("1  a: 6 mm") for word in words)
@@ -30,7 +30,9 @@ def test_svg_shows_numbers_names_and_warnings():
 
 def test_png_shows_the_stroke_at_its_place_and_width():
     design = read(BODY)
-    image = cv2.imdecode(np.frombuffer(overview(".png", design, strokes(design)[0], []), np.uint8), cv2.IMREAD_COLOR)
+    image = cv2.imdecode(
+        np.frombuffer(draw_import_picture(".png", design, strokes(design)[0], []), np.uint8), cv2.IMREAD_COLOR
+    )
     column = image[:, 40 + (30 * 15)].astype(int)  # x = 30 mm at 15 px/mm, clear of arrows and numbers
     painted = np.flatnonzero(np.abs(column - 255).sum(axis=1) > 60)
     top = 100
@@ -41,13 +43,13 @@ def test_png_shows_the_stroke_at_its_place_and_width():
 
 def test_a_drawing_without_strokes_still_gives_a_picture():
     design = read('<circle r="5" cx="80" cy="20" fill="red" stroke="none"/>')
-    assert overview(".png", design, [], []).startswith(b"\x89PNG")
+    assert draw_import_picture(".png", design, [], []).startswith(b"\x89PNG")
 
 
 def words_of(body, notices=()):
     design = read(body)
     made, _ = strokes(design)
-    tree = ET.fromstring(overview(".svg", design, made, [*design.notices, *notices]))
+    tree = ET.fromstring(draw_import_picture(".svg", design, made, [*design.notices, *notices]))
     return [
         (node.text, float(node.get("x")), float(node.get("y")), node.get("fill"))
         for node in tree.iter("{http://www.w3.org/2000/svg}text")
@@ -121,7 +123,7 @@ def test_lists_stay_on_the_picture_and_entries_do_not_overlap():
     long = Notice("TEXT-95", "the outlines of a font that is not the drawing's " * 4, code="x")
     design = read_svg(f"{head}{lines}</svg>".encode(), ReadOptions())
     made, _ = strokes(design)
-    tree = ET.fromstring(overview(".svg", design, made, [long]))
+    tree = ET.fromstring(draw_import_picture(".svg", design, made, [long]))
     width = float(tree.get("width"))
     rows: dict[float, list] = {}
     for node in tree.iter("{http://www.w3.org/2000/svg}text"):

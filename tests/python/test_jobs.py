@@ -8,7 +8,7 @@ import pytest
 from diagnostics import refused
 
 from brushsvg.machine.cells.cell_file import find_cell
-from brushsvg.machine.setup_programs import border, paper_height
+from brushsvg.machine.setup_programs import make_border_program, make_height_program
 from brushsvg.model.library import find_brush
 
 BRUSH = find_brush("round-6")
@@ -20,15 +20,15 @@ def points(program):
 
 
 def test_the_border_is_followed_above_the_paper():
-    path = points(border((10, 20, 60, 45), BRUSH, CELL, (80, 60)))
+    path = points(make_border_program((10, 20, 60, 45), BRUSH, CELL, (80, 60)))
     assert (path[:, 2] == CELL.heights.safe_mm).all()
     assert path[:, :2].tolist() == [[10, 20], [60, 20], [60, 45], [10, 45], [10, 20]]
-    (section,) = border((10, 20, 60, 45), BRUSH, CELL, (80, 60)).sections()
+    (section,) = make_border_program((10, 20, 60, 45), BRUSH, CELL, (80, 60)).sections()
     assert max(move.speed_mm_s for move in section.moves[1:]) <= BRUSH.max_speed_mm_s
 
 
 def test_each_height_stroke_is_one_step_deeper_and_states_its_height():
-    sections = list(paper_height(BRUSH, CELL, (200, 100), 1.0, -1.0, 0.1).sections())
+    sections = list(make_height_program(BRUSH, CELL, (200, 100), 1.0, -1.0, 0.1).sections())
     assert len(sections) == 21
     painted = [next(move for move in section.moves if move.meaning == "paint") for section in sections]
     heights = [move.points_mm[0, 2] for move in painted]
@@ -42,7 +42,7 @@ def test_each_height_stroke_is_one_step_deeper_and_states_its_height():
 
 def test_height_strokes_are_separate_and_on_the_sheet():
     sheet = (120, 60)
-    made = paper_height(BRUSH, CELL, sheet, 1.0, -1.0, 0.1)
+    made = make_height_program(BRUSH, CELL, sheet, 1.0, -1.0, 0.1)
     rows = [[move.points_mm for move in s.moves if move.meaning in ("land", "paint")] for s in made.sections()]
     spans = [(land[0, 0], paint[0, 0], land[0, 1]) for land, paint in rows]
     for number, (left, right, y) in enumerate(spans):
@@ -63,17 +63,17 @@ def test_height_strokes_are_separate_and_on_the_sheet():
 )
 def test_height_strokes_that_do_not_fit_are_refused(sheet, heights, expected):
     with refused(expected):
-        paper_height(BRUSH, CELL, sheet, *heights)
+        make_height_program(BRUSH, CELL, sheet, *heights)
 
 
 def test_border_and_height_jobs_stay_in_the_workspace():
     small = replace(CELL, workspace=replace(CELL.workspace, box_mm=((0.0, 0.0, -20.0), (50.0, 50.0, 60.0))))
     with refused("out-of-box 'x 60.0 mm'"):
-        border((10, 20, 60, 45), BRUSH, small, (80, 60))
+        make_border_program((10, 20, 60, 45), BRUSH, small, (80, 60))
     with refused("out-of-box"):
-        paper_height(BRUSH, small, (200, 100), 1.0, -1.0, 0.1)
+        make_height_program(BRUSH, small, (200, 100), 1.0, -1.0, 0.1)
     with refused("height-out-of-range -1"):
-        paper_height(
+        make_height_program(
             SimpleNamespace(**{"depth_range_mm": (0, 0.5), "max_speed_mm_s": 9.0}),
             CELL,
             (200, 100),

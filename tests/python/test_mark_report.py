@@ -11,8 +11,8 @@ from brushsvg import _core
 from brushsvg.calibration.marks import machine_found
 from brushsvg.calibration.marks.from_marks import brush_of
 from brushsvg.calibration.marks.mark_input import Painted
-from brushsvg.calibration.marks.mark_report import overlaps
-from brushsvg.machine.cells.cell import not_undone, reason_for_no_backlash
+from brushsvg.calibration.marks.mark_report import measure_mean_overlaps
+from brushsvg.machine.cells.cell import list_uncorrectable_keys, reason_for_no_backlash
 from brushsvg.machine.cells.cell_file import cell_names, find_cell
 
 
@@ -37,7 +37,7 @@ def test_overlaps_are_given_with_and_without_displacement():
             for d, way in zip(([0.0, 0.0], [0.0, 1.5]), ways, strict=True)
         ],
     )
-    placed, without = overlaps(SimpleNamespace(brush=brush, fit=fit, painted=Painted(painted, 4.0, 2)))
+    placed, without = measure_mean_overlaps(SimpleNamespace(brush=brush, fit=fit, painted=Painted(painted, 4.0, 2)))
     assert without == pytest.approx(1.0, abs=1e-3)
     rings = marks.passes[1].outline_mm
     second = _core.overlap([np.add(ring, [0.0, 1.5]) for ring in rings], rings)
@@ -70,11 +70,11 @@ def test_the_table_for_a_cell_marks_lines_without_effect_on_some_machines(name):
     cell = find_cell(name)
     parts = ("lean", "axes", "tilt", "backlash")
     options = _core.MarkOptions()
-    machine_found.ask_for(options, parts)
+    machine_found.request_machine_parts(options, parts)
     machine = SimpleNamespace(lean_mm_per_mm=(0.1, 0.0), scale=(1.01, 1.0), skew=0.0, tilt_mm_per_mm=(0.001, 0.0))
     fit = SimpleNamespace(machine=machine, height_mm=0.2, centre_mm=(0.0, 0.0))
     found = [machine_found.Number("backlash", f"backlash in {axis}", 0.3, 0.1, "mm") for axis in "xy"]
-    head, *lines = machine_found.cell_table(fit, options, found)
+    head, *lines = machine_found.format_cell_table(fit, options, found)
     remarks = {line.partition(" = ")[0]: line.partition("  # ")[2] for line in lines}
     assert head == "[machine]" and {"backlash_mm", "scale"} <= tomllib.loads("\n".join(lines)).keys()
     kinds = {
@@ -87,4 +87,4 @@ def test_the_table_for_a_cell_marks_lines_without_effect_on_some_machines(name):
         for key, remark in remarks.items()
         if any(of and re.search(rf"\b{kind}\b", remark) for kind, of in kinds.items())
     }
-    assert of_no_use == not_undone(cell).keys() & remarks.keys()
+    assert of_no_use == list_uncorrectable_keys(cell).keys() & remarks.keys()

@@ -81,7 +81,7 @@ def test_the_program_draws_the_plan_and_check_accepts_it(seed):
     assert np.abs(np.array(strokes) - np.array(target)).max() <= 0.5e-3 + 1e-9
     ran = simulate_program.simulate_program(read_program(text, ".gcode", cell), find_brush("rigid"), cell, SHEET)
     assert ran.problems == []
-    assert against_plan.with_plan(ran, split_into_loads(plan, find_brush("rigid"), cell), cell)[1] == []
+    assert against_plan.compare_with_plan(ran, split_into_loads(plan, find_brush("rigid"), cell), cell)[1] == []
 
 
 def test_the_program_stops_for_a_pen_of_another_colour(tmp_path, capsys):

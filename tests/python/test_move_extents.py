@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from brushsvg.machine.cells.cell import Blending
 from brushsvg.machine.frames import frame_of_pose, transform_points
 from brushsvg.machine.move_extents import (
-    bounds,
     distances_from_origin,
     find_place_inside,
     make_paths,
+    measure_bounds,
     paths_in_frame,
 )
 from brushsvg.machine.realised.corner_blending import blend_radii, cut_corners
@@ -69,7 +69,7 @@ def both(frame, start, end, circle):
 @pytest.mark.slow
 def test_extents_and_distances_match_sampled_points(frame, start, end, circle):
     some, places, step_mm = both(frame, start, end, circle)
-    low, high = bounds(some)
+    low, high = measure_bounds(some)
     assert low == pytest.approx(places.min(axis=0), abs=step_mm) and (low <= places.min(axis=0) + 1e-9).all()
     assert high == pytest.approx(places.max(axis=0), abs=step_mm) and (high >= places.max(axis=0) - 1e-9).all()
     away = np.linalg.norm(places, axis=1)
@@ -101,7 +101,7 @@ def test_extents_of_a_climbing_circle_are_never_underestimated(frame, circle, co
         paths_in_frame(frame, make_paths([], [circle[:3]])),
         transform_points(frame, sampled(circle)),
     )
-    low, high = bounds(some)
+    low, high = measure_bounds(some)
     assert (low <= places + 1e-9).all() and (high >= places - 1e-9).all()
     away = np.linalg.norm(places, axis=1)
     assert distances_from_origin(some)[0] <= away.min() + 1e-9 and distances_from_origin(some)[1] >= away.max() - 1e-9
@@ -116,7 +116,7 @@ def test_a_circle_that_ends_where_it_starts_goes_all_the_way_round():
     Machines run it this way, although its start and end do not show it.
     """
     some = make_paths([], [((10, 0, -2), (10, 0, -2), (7, 0, 1))])
-    low, high = bounds(some)
+    low, high = measure_bounds(some)
     assert np.vstack([low, high]) == pytest.approx(np.array([(4, -3, -2), (10, 3, -2)], dtype=float))
     assert distances_from_origin(some) == pytest.approx((math.hypot(4, 2), math.hypot(10, 2)))
     assert find_place_inside(some, (3.9, -1, -3), (4.1, 1, -1)) == pytest.approx([4, 0, -2], abs=0.2)

@@ -22,18 +22,18 @@ from brushsvg.machine.job_program import make_checked_program
 from brushsvg.machine.moves import Wait
 from brushsvg.machine.paint_reload import (
     dips_mm,
+    list_station_visits,
     load_length_mm,
     painted_mm,
     report_dry_brush,
     report_long_strokes,
     report_missing_paint,
     split_into_loads,
-    station_visits,
 )
 from brushsvg.machine.preflight import check_job
 from brushsvg.machine.station_moves import make_visit
 from brushsvg.model.library import find_brush
-from brushsvg.show.evaluation.figures import PaintedPlan, measure
+from brushsvg.show.evaluation.figures import PaintedPlan, measure_figures
 from brushsvg.verify.readback import read_program
 from brushsvg.verify.simulate_program import simulate_program
 
@@ -65,12 +65,12 @@ def names(found):
 
 
 def test_a_cell_without_reload_has_no_paint_visits():
-    assert station_visits(whole(plan_of((10, "#000000", ""))), find_cell()) == ()
+    assert list_station_visits(whole(plan_of((10, "#000000", ""))), find_cell()) == ()
 
 
 def test_paint_is_fetched_after_the_length_of_a_load():
     plan = plan_of(*[(40, "#000000", "")] * 6)
-    assert names(station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
+    assert names(list_station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
         ["black"],
         [],
         ["black"],
@@ -78,7 +78,7 @@ def test_paint_is_fetched_after_the_length_of_a_load():
         ["black"],
         [],
     ]
-    assert names(station_visits(whole(plan), cell_with(Reload("length", 1000.0)))) == [
+    assert names(list_station_visits(whole(plan), cell_with(Reload("length", 1000.0)))) == [
         ["black"],
         [],
         [],
@@ -90,19 +90,19 @@ def test_paint_is_fetched_after_the_length_of_a_load():
 
 def test_paint_can_be_fetched_for_every_stroke_or_layer():
     plan = plan_of((9, "#000000", "a"), (9, "#000000", "a"), (9, "#000000", "b"))
-    assert names(station_visits(whole(plan), cell_with(Reload("stroke")))) == [["black"]] * 3
-    assert names(station_visits(whole(plan), cell_with(Reload("layer")))) == [["black"], [], ["black"]]
+    assert names(list_station_visits(whole(plan), cell_with(Reload("stroke")))) == [["black"]] * 3
+    assert names(list_station_visits(whole(plan), cell_with(Reload("layer")))) == [["black"], [], ["black"]]
 
 
 def test_the_brush_is_washed_before_another_colour():
     plan = plan_of((9, "#000000", ""), (9, "#FF0000", ""), (9, "#00ff00", ""), (9, "#000000", ""))
-    found = names(station_visits(whole(plan), cell_with(Reload("length", wash="water"))))
+    found = names(list_station_visits(whole(plan), cell_with(Reload("length", wash="water"))))
     assert found == [["black"], ["water", "any"], [], ["water", "black"]], "red and green come from one vessel"
 
 
 def test_a_resumed_job_starts_with_a_paint_visit():
     plan = plan_of(*[(40, "#000000", "")] * 4)
-    assert names(station_visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
+    assert names(list_station_visits(whole(plan), cell_with(Reload("length", 1000.0)), first_stroke=3)) == [
         [],
         [],
         ["black"],
@@ -113,13 +113,13 @@ def test_a_resumed_job_starts_with_a_paint_visit():
 def test_strokes_skipped_on_resume_need_no_paint():
     plan = plan_of((40, "#00ff00", ""), (40, "#000000", ""))
     cell = cell_with(Reload("stroke"), BLACK)
-    assert names(station_visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
+    assert names(list_station_visits(whole(plan), cell, first_stroke=2)) == [[], ["black"]]
 
 
 def test_a_colour_without_a_station_is_refused():
     cell = cell_with(Reload("stroke"), BLACK)
     with refused("colour-not-served #ff0000 #000000", "s2"):
-        station_visits(whole(plan_of((9, "#000000", ""), (9, "#ff0000", ""))), cell)
+        list_station_visits(whole(plan_of((9, "#000000", ""), (9, "#ff0000", ""))), cell)
 
 
 def test_a_visit_dips_the_brush_and_lets_it_drip():
@@ -353,7 +353,7 @@ def test_cell_check_and_convert_refuse_the_same_stations(capsys, tmp_path, stir_
 
 def test_a_stroke_may_request_or_refuse_paint():
     plan = plan_of((9, "#000000", ""), (9, "#000000", "", REQUESTED), (999, "#000000", "", REFUSED))
-    assert names(station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
+    assert names(list_station_visits(whole(plan), cell_with(Reload("length", 100.0)))) == [
         ["black"],
         ["black"],
         [],
@@ -377,7 +377,7 @@ def test_a_stroke_named_like_a_load_is_not_mistaken_for_one():
     cell = cell_with(Reload("length", every, 5.0))
     loads = split_into_loads(plan, brush, cell)
     assert [a_pass.stroke for a_pass in loads.loads] == names
-    assert [bool(stations) for stations in station_visits(loads, cell)] == [
+    assert [bool(stations) for stations in list_station_visits(loads, cell)] == [
         True,
         False,
         True,
@@ -386,7 +386,7 @@ def test_a_stroke_named_like_a_load_is_not_mistaken_for_one():
         False,
         True,
     ]
-    assert station_visits(whole(plan), cell) == station_visits(loads, cell)
+    assert list_station_visits(whole(plan), cell) == list_station_visits(loads, cell)
 
 
 def test_a_stroke_without_a_possible_stop_causes_a_warning():
@@ -439,7 +439,7 @@ def test_a_long_stroke_is_split_into_loads_with_the_same_mark():
     assert [(a_pass.origin.element, a_pass.origin.load) for a_pass in loads.loads] == names_of_loads
     assert [a_pass.load for a_pass in loads.loads] == [0, 1, 2, 3, 0]
     assert {a_pass.settings for a_pass in loads.loads} == {_core.Settings()}
-    assert names(station_visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
+    assert names(list_station_visits(loads, cell)) == [["black"], ["black"], ["black"], ["black"], ["black"]]
     assert max(map(painted_mm, loads.loads)) < 120 + 8
     rings = []
     for each in (plan, loads.as_plan()):
@@ -461,7 +461,7 @@ def test_a_load_lasts_until_its_marks_are_narrower_than_allowed():
 
     def fetched(brush, reload):
         cell = cell_with(reload)
-        return [bool(each) for each in station_visits(split_into_loads(plan, brush, cell), cell)]
+        return [bool(each) for each in list_station_visits(split_into_loads(plan, brush, cell), cell)]
 
     assert fetched(brush, reload) == [True, False, False, False, True, False], "nobody knows how it narrows"
     brush.paint = _core.Paint(0.4)
@@ -498,7 +498,7 @@ def test_the_predicted_width_of_a_stroke_is_the_width_of_its_loads():
     brush.paint = _core.Paint(3.0)
     plan = long_plan(brush)
     loads = split_into_loads(plan, brush, cell)
-    fetched = [bool(each) for each in station_visits(loads, cell)]
+    fetched = [bool(each) for each in list_station_visits(loads, cell)]
     assert loads.strokes() == ["short", "long", "long", "long", "last"] and fetched[-1] is False
     parts = _core.simulate(loads.as_plan(), brush)
     _core.narrow(parts, brush.paint, [[0.0] if each else [] for each in fetched])
@@ -583,12 +583,12 @@ def test_loads_are_not_split_or_reported_as_strokes():
     loads = split_into_loads(long_plan(brush), brush, cell)
     for taken in (
         lambda: split_into_loads(loads, brush, cell),
-        lambda: measure(PaintedPlan(loads, None, brush)),
+        lambda: measure_figures(PaintedPlan(loads, None, brush)),
     ):
         with pytest.raises(AttributeError, match="passes"):
             taken()
     with pytest.raises(AttributeError, match="loads"):
-        station_visits(long_plan(brush), cell)
+        list_station_visits(long_plan(brush), cell)
 
 
 def test_loads_written_as_a_plan_are_not_split_again():
@@ -605,7 +605,7 @@ def test_loads_written_as_a_plan_are_not_split_again():
     again = split_into_loads(back, brush, cell)
     assert [a_pass.stroke for a_pass in again.loads] == [a_pass.stroke for a_pass in loads.loads]
     assert again.strokes() == loads.strokes() == ["short", "long", "long", "long", "last"]
-    assert station_visits(again, cell) == station_visits(loads, cell)
+    assert list_station_visits(again, cell) == list_station_visits(loads, cell)
     for before, after in zip(loads.loads, again.loads, strict=True):
         assert np.abs(before.poses_mm - after.poses_mm).max() <= 1e-7
     shorter = split_into_loads(back, brush, cell_with(Reload("length", 30.0))).strokes()

@@ -23,7 +23,7 @@ from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.job_program import Job
-from brushsvg.machine.paint_reload import split_into_loads, station_visits
+from brushsvg.machine.paint_reload import list_station_visits, split_into_loads
 from brushsvg.model.library import find_brush
 
 COUNT = 60
@@ -111,7 +111,7 @@ def test_depth_returns_to_normal_after_a_paint_visit(tmp_path):
     cell = cell_with(Reload("length", 1e5, 6.0, narrower_percent=20.0))
     same = drawing().replace('stroke-width="', 'stroke-width="3" data-was="')
     work = prepared(tmp_path, 0.4, cell, drawn=same)
-    fetched = [bool(each) for each in station_visits(split_into_loads(work.plan, brush_of(0.4), cell), cell)]
+    fetched = [bool(each) for each in list_station_visits(split_into_loads(work.plan, brush_of(0.4), cell), cell)]
     deepest = np.array([-np.asarray(one.poses_mm)[:, 2].min() for one in work.plan.passes])
     fresh = prepared(tmp_path, 0.0, cell, drawn=same).plan.passes
     usual = np.array([-np.asarray(one.poses_mm)[:, 2].min() for one in fresh])

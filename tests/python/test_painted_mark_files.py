@@ -7,7 +7,7 @@ import pytest
 from diagnostics import refused
 
 from brushsvg import _core
-from brushsvg.calibration.marks.mark_input import depths_painted, read_painted
+from brushsvg.calibration.marks.mark_input import count_painted_depths, read_painted
 from brushsvg.calibration.numbers.measurements import read_measurements
 from brushsvg.errors import Error
 
@@ -77,10 +77,10 @@ def test_depths_are_counted_only_on_painted_marks():
     def at(*depths):
         return np.array([[30.0 * k, 0, -d] for k, d in enumerate(depths)])
 
-    assert depths_painted([at(3, 3)]) == 1
-    assert depths_painted([at(3, 3), at(5, 5)]) == 2
-    assert depths_painted([at(0, 0)]) == 0
-    assert depths_painted([np.array([[0, 0, 0], [200, 0, -5.0]])]) > 4
+    assert count_painted_depths([at(3, 3)]) == 1
+    assert count_painted_depths([at(3, 3), at(5, 5)]) == 2
+    assert count_painted_depths([at(0, 0)]) == 0
+    assert count_painted_depths([np.array([[0, 0, 0], [200, 0, -5.0]])]) > 4
 
 
 def bent(mark, **changes):

@@ -18,7 +18,14 @@ import brushsvg
 from brushsvg.cli import main
 from brushsvg.cli.arguments.parser import command_parser, parse
 from brushsvg.jobs.choices.choices import CHOICE_VALUES, CHOICES
-from brushsvg.jobs.project import CHOICE_BY_TOP_KEY, MAX_BYTES, NAME, find_project_file, options, write_project
+from brushsvg.jobs.project import (
+    CHOICE_BY_TOP_KEY,
+    MAX_BYTES,
+    NAME,
+    find_project_file,
+    list_default_keys,
+    write_project,
+)
 
 BEGIN = 'format = "brushsvg/project"\nversion = 1\n'
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="160mm" height="90mm" viewBox="0 0 160 90" fill="none"
@@ -138,13 +145,15 @@ TYPED = {  # option: valid values, and refused values
 
 
 def test_every_option_is_in_the_project_table():
-    flags = {flag for flag, choice in options().items() if choice not in CHOICE_VALUES}
+    flags = {flag for flag, choice in list_default_keys().items() if choice not in CHOICE_VALUES}
     assert flags - {"join"} | {"sheet", "layer"} == set(TYPED)
 
 
-@pytest.mark.parametrize("flag", [*TYPED, *(flag for flag, choice in options().items() if choice in CHOICE_VALUES)])
+@pytest.mark.parametrize(
+    "flag", [*TYPED, *(flag for flag, choice in list_default_keys().items() if choice in CHOICE_VALUES)]
+)
 def test_project_values_equal_command_line_values(desk, flag):
-    choice = options().get(flag, flag)
+    choice = list_default_keys().get(flag, flag)
     good, bad = TYPED.get(flag) or (" ".join(CHOICE_VALUES.get(choice, ())), "nonsense")
     more = ["--compensation", "constant"] if flag == "lag" else []
     key = {"sheet": "paper", "layer": "layers"}.get(flag, flag)

@@ -16,7 +16,7 @@ from brushsvg.jobs.prediction import predict
 from brushsvg.jobs.preparation.paint_astray import find_off_middle_line, find_paint_outside
 from brushsvg.jobs.preparation.preparation import prepare
 from brushsvg.machine.preflight import as_exact_as
-from brushsvg.planning.refinement import FORBIDDEN, NO_GAIN, towards_reach
+from brushsvg.planning.refinement import FORBIDDEN, NO_GAIN, limit_target_to_reach
 
 BRUSH = find_brush("round-6")
 BARS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="90mm" viewBox="0 0 120 90">
@@ -66,8 +66,8 @@ def bar(half, target=True):
 def test_outlines_up_to_slightly_beyond_reach_are_refinement_targets():
     greatest = BRUSH.half_width_range_mm()[1]
     for half in (0.5 * greatest, 1.05 * greatest):
-        assert towards_reach(bar(min(half, greatest)), bar(half), BRUSH).target_mm
-    assert not towards_reach(bar(greatest), bar(1.2 * greatest), BRUSH).target_mm
+        assert limit_target_to_reach(bar(min(half, greatest)), bar(half), BRUSH).target_mm
+    assert not limit_target_to_reach(bar(greatest), bar(1.2 * greatest), BRUSH).target_mm
 
 
 @pytest.mark.parametrize(("away_mm", "is_reported"), [(0.8, [True, False]), (2.5, [True, True])])

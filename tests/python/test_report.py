@@ -13,7 +13,7 @@ from brushsvg import Stroke, compensate, find_brush, simulate
 from brushsvg.errors import Notice
 from brushsvg.reporting.report_text import format_overlap
 from brushsvg.show.evaluation import figures
-from brushsvg.show.evaluation.figures import Figures, Group, PaintedPlan, Worst, groups, measure
+from brushsvg.show.evaluation.figures import Figures, Group, PaintedPlan, Worst, group_touching_strokes, measure_figures
 from brushsvg.show.evaluation.places import Place, worst_places
 from brushsvg.show.evaluation.report import Report, as_text, to_csv, to_json, to_text
 from brushsvg.show.evaluation.uncertainty import Confidence, PlanConfidence
@@ -33,7 +33,7 @@ def two_strokes():
     for how in ("none", "closed"):
         plan = compensate(strokes, brush, (90, 60), how).plan
         marks = simulate(plan, brush)
-        found[how] = measure(PaintedPlan(plan, marks, brush, strokes))
+        found[how] = measure_figures(PaintedPlan(plan, marks, brush, strokes))
     return found
 
 
@@ -73,7 +73,7 @@ def test_a_line_that_tapers_to_nothing_is_measured():
     brush = find_brush("round-6")
     drawn = straight("s", (20, 30), (80, 30), 2.0, [(0, 0.0), (0.5, 2.0), (1, 0.0)])
     plan = compensate([drawn.replaced(half_width=[(0, 0.1), (0.5, 2.0), (1, 0.1)])], brush, (100, 60)).plan
-    _, total = measure(PaintedPlan(plan, simulate(plan, brush), brush, [drawn]))
+    _, total = measure_figures(PaintedPlan(plan, simulate(plan, brush), brush, [drawn]))
     assert total.overlap > 0.9 and total.centre_largest_mm < 0.2
 
 
@@ -128,11 +128,11 @@ def test_strokes_that_touch_are_compared_together():
     ]
     plan = compensate(strokes, brush, (90, 80)).plan
     marks = simulate(plan, brush)
-    (letter,) = groups(marks, brush, strokes)
+    (letter,) = group_touching_strokes(marks, brush, strokes)
     assert letter.strokes == ("down", "across")
-    rows, total = measure(PaintedPlan(plan, marks, brush, strokes))
+    rows, total = measure_figures(PaintedPlan(plan, marks, brush, strokes))
     assert max(rows[0].overlap, rows[2].overlap) - 0.03 < letter.overlap
-    assert groups(marks, brush, None) == ()
+    assert group_touching_strokes(marks, brush, None) == ()
     text = to_text(Report("T", "round-6", "closed", 0.05, rows, total, 5, groups=(letter,)), details=True)
     assert f"down + across    {format_overlap(letter.overlap)}" in text
 
@@ -142,8 +142,8 @@ def test_a_repeated_stroke_does_not_lower_the_overlap_of_its_letter():
     strokes = [straight("a", (20, 20), (60, 20), 2.0), straight("b", (60, 20), (20, 20), 2.0)]
     plan = compensate(strokes, brush, (90, 80)).plan
     marks = simulate(plan, brush)
-    rows, _ = measure(PaintedPlan(plan, marks, brush, strokes))
-    (letter,) = groups(marks, brush, strokes)
+    rows, _ = measure_figures(PaintedPlan(plan, marks, brush, strokes))
+    (letter,) = group_touching_strokes(marks, brush, strokes)
     # Each mark covers the pointed start of the other mark.
     assert letter.overlap > max(row.overlap for row in rows) + 0.01
 

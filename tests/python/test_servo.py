@@ -19,7 +19,7 @@ from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.machine.job_program import Job
 from brushsvg.machine.posts.gcode_servo import grbl_servo, servo_values_at
-from brushsvg.machine.setup_programs import border
+from brushsvg.machine.setup_programs import make_border_program
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
 from brushsvg.verify.against_regenerated import _ActComparison
@@ -158,7 +158,7 @@ def test_heights_outside_the_servo_table_are_refused(z_offset, height):
     with refused(f"servo-out-of-range {height} '[-10, 10] mm'"):
         program(plan, brush, CELL, (), Job(z_offset))
     with refused("servo-out-of-range grbl-servo"):
-        border((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
+        make_border_program((10, 20, 60, 45), brush, CELL, plan.sheet_mm, z_offset * 10)
 
 
 @pytest.mark.parametrize(("cell", "offset", "widest_mm"), [("grbl-servo", "0", 6.72), ("axidraw-ebb", "-1", 5.88)])

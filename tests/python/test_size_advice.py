@@ -40,7 +40,7 @@ def painted(strokes):
 
 
 def test_a_smaller_size_is_suggested_for_a_drawing_that_is_too_large():
-    found = size_advice.best_size([line(200, 8.0)] * 3, BRUSH, painted)
+    found = size_advice.find_best_size([line(200, 8.0)] * 3, BRUSH, painted)
     assert found.overlaps[1.0] == 0.0  # refused, because it is 16 mm wide
     assert found.best == 0.5
     advice = size_advice.advise_on_size(found)
@@ -50,7 +50,7 @@ def test_a_smaller_size_is_suggested_for_a_drawing_that_is_too_large():
 
 
 def test_a_drawing_of_the_right_size_gets_no_suggestion():
-    found = size_advice.best_size([line(150, 1.5)] * 40, BRUSH, painted)
+    found = size_advice.find_best_size([line(150, 1.5)] * 40, BRUSH, painted)
     assert (found.best, found.tried, found.strokes) == (1.0, size_advice.MAX_FIRST_STROKES, 40)
     advice = size_advice.advise_on_size(found)
     assert gives(advice, "0.35", "2.8", "6", "40")
@@ -67,19 +67,19 @@ def test_better_sizes_are_tried_with_the_settings_of_the_drawing():
         seen.extend(strokes)
         return painted(strokes)
 
-    found = size_advice.best_size([line(150, 4.0), line(150, 5.0)] * 20, BRUSH, made, quick=painted)
+    found = size_advice.find_best_size([line(150, 4.0), line(150, 5.0)] * 20, BRUSH, made, quick=painted)
     assert found.overlaps[1.0] == pytest.approx(0.4, abs=0.15)  # half of the strokes are refused
     assert (found.best, found.tried, len(seen)) == (
         0.7,
         size_advice.MAX_TRIED_STROKES,
         size_advice.MAX_TRIED_STROKES * len(found.overlaps),
     )
-    found = size_advice.best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
+    found = size_advice.find_best_size([line(150, 4.0)] * 3, BRUSH, painted, quick=lambda strokes: ([], strokes))
     assert found.best == 1.0  # no size looked better
 
 
 def test_nothing_is_suggested_if_no_size_can_be_painted():
-    assert size_advice.advise_on_size(size_advice.best_size([line(200, 40.0)], BRUSH, painted)) == ""
+    assert size_advice.advise_on_size(size_advice.find_best_size([line(200, 40.0)], BRUSH, painted)) == ""
 
 
 def advised(tmp_path, text, **options):
@@ -127,7 +127,7 @@ def test_sizes_are_tried_with_passes_if_requested(tmp_path):
 def test_scaling_a_stroke_scales_its_line_width_and_target():
     stroke = line(50, 2.0)
     stroke.target_mm = [np.array([(0.0, 0.0), (4.0, 0.0), (0.0, 3.0)])]
-    twice = size_advice.scaled(stroke, 2.0)
+    twice = size_advice.scale_stroke(stroke, 2.0)
     assert twice.middle_mm == pytest.approx(2 * stroke.middle_mm)
     assert twice.half_width == ((0.0, 4.0), (1.0, 4.0))
     assert twice.target_mm[0] == pytest.approx(2 * stroke.target_mm[0])

@@ -18,9 +18,9 @@ from brushsvg.comparison.corrections import Correction, apply_corrections
 from brushsvg.comparison.job_page import job_page
 from brushsvg.machine.cells.cell import Machine
 from brushsvg.machine.paint_reload import split_into_loads
+from brushsvg.machine.realised.pass_on_path import move_pass_to_path
 from brushsvg.machine.realised.passes import as_run
-from brushsvg.machine.realised.retimed import on_way
-from brushsvg.show.evaluation.uncertainty import uncertainty
+from brushsvg.show.evaluation.uncertainty import estimate_confidence
 
 BRUSH = brushsvg.find_brush("round-6")
 POSES = [[20, 20, 0], [30, 20, -2], [60, 20, -2], [70, 30, 0]]
@@ -143,14 +143,14 @@ READERS = {
     "simplify_pass": lambda of: _core.simplify_pass(of.passes[1], BRUSH, 0.5),
     "interrupted": lambda of: _core.split_into_loads(of.passes[1], BRUSH, 20, 20),
     "in_loads": lambda of: split_into_loads(of, BRUSH, brushsvg.find_cell("linuxcnc-3axis")),
-    "on_way": lambda of: on_way(of.passes[1], POSES, ()),
+    "move_pass_to_path": lambda of: move_pass_to_path(of.passes[1], POSES, ()),
     "as_run": lambda of: as_run(of.passes, Machine()),
     "expected_marks": lambda of: expected_marks(of, BRUSH),
     "read_painted": lambda of: read_painted(json.loads(_core.write_plan(of)), [], None),
     "read_chart": read_chart_of,
     "job_page": lambda of: job_page(of),
     "corrected": lambda of: apply_corrections(of, (CORRECTION,), BRUSH),
-    "uncertainty": lambda of: uncertainty(of, BRUSH, brushsvg.simulate(plan(np.zeros((0, 3))), BRUSH)),
+    "uncertainty": lambda of: estimate_confidence(of, BRUSH, brushsvg.simulate(plan(np.zeros((0, 3))), BRUSH)),
 }
 
 
@@ -163,7 +163,7 @@ def test_functions_without_tilt_support_refuse_tilted_plans(name):
 @pytest.mark.parametrize("name", [name for name in READERS if not name.startswith("read_")])
 def test_functions_without_tilt_support_accept_upright_axes(name):
     made = READERS[name](plan(axes(0, 0, 0, 0)))
-    passes = {"simplify_pass": [made], "on_way": [made], "interrupted": made, "as_run": made}.get(name, [])
+    passes = {"simplify_pass": [made], "move_pass_to_path": [made], "interrupted": made, "as_run": made}.get(name, [])
     for one in passes:
         assert len(one.tool_axes) in (0, len(one.poses_mm))
 

@@ -25,7 +25,7 @@ from brushsvg import _core
 from brushsvg.machine.cells.cell import Machine, Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import write_cell
 from brushsvg.machine.frames import of_quaternion, of_rotation_vector
-from brushsvg.machine.job_program import make_checked_program, out_of_arm
+from brushsvg.machine.job_program import find_moves_out_of_arm, make_checked_program
 from brushsvg.machine.moves import program_in_robot_frame
 from brushsvg.machine.paint_reload import split_into_loads
 from brushsvg.machine.posts import POSTS, ros2
@@ -729,7 +729,7 @@ def test_an_invalid_tilt_is_refused_before_use(poses, held, expected, tmp_path):
 
 def arm_problems(of, cell):
     made = make_checked_program(split_into_loads(of, BRUSH, cell), BRUSH, cell).made
-    return out_of_arm(made, (100, 60))
+    return find_moves_out_of_arm(made, (100, 60))
 
 
 @pytest.mark.arm

@@ -93,7 +93,7 @@ def test_the_legend_of_a_band_ends_inside_the_sheet(sheet_mm):
     brush = find_brush("round-6")
     marks = _core.simulate(plan, brush)
     _core.trace_outlines(marks, brush)
-    band = uncertainty.band(plan, brush, marks)
+    band = uncertainty.make_band(plan, brush, marks)
     text = marks_svg(marks, sheet_mm, ["#000000"], band=band).split("<text ")[1]
     x, size = (float(re.search(f'{name}="([0-9.]+)"', text)[1]) for name in ("x", "font-size"))
     assert x + 0.55 * size * len(band.words) <= sheet_mm[0]

@@ -102,7 +102,7 @@ def test_a_shape_far_wider_than_the_brush_is_reported_unless_filled(tmp_path):
     assert all(piece.is_rim for piece in work.unreached)  # the stroke runs along the middle of the shape
     rim = prepared(tmp_path, "M20 5H31V45H20Z", wide="clamp")
     assert agrees(*notices_of_areas(rim.unreached), "unreached", "p")
-    (row, *_), _ = figures.measure(
+    (row, *_), _ = figures.measure_figures(
         figures.PaintedPlan(rim.plan, predict(rim), rim.brush, rim.strokes, unreached=rim.unreached)
     )
     assert row.worst.code == "wider-than-brush"
@@ -158,7 +158,7 @@ def test_the_report_names_an_uncovered_area_as_the_reason(tmp_path):
     marks = _core.simulate(plan, brush)
 
     def worst(unreached):
-        return figures.measure(figures.PaintedPlan(plan, marks, brush, target, unreached=unreached))[0][0].worst
+        return figures.measure_figures(figures.PaintedPlan(plan, marks, brush, target, unreached=unreached))[0][0].worst
 
     assert worst(()).is_missing
     assert worst(()).code != "wider-than-brush"
@@ -174,5 +174,5 @@ def test_a_corner_left_blank_by_discs_is_not_a_tracking_error(tmp_path):
     For the corners of a bar with slanted cuts, the report once said: tracking error up to 0.012 mm.
     """
     work = prepared(tmp_path, "M10 10H50L45 16H15Z")
-    (row, *_), _ = figures.measure(figures.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
+    (row, *_), _ = figures.measure_figures(figures.PaintedPlan(work.plan, predict(work), work.brush, work.strokes))
     assert row.worst.code == "shape-corner"

@@ -18,7 +18,7 @@ from brushsvg.machine import workspace_limits as limits
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.move_extents import make_paths
-from brushsvg.machine.setup_programs import border, paper_height
+from brushsvg.machine.setup_programs import make_border_program, make_height_program
 from brushsvg.machine.workspace_limits import find_broken_limits, find_limits_broken_between
 from brushsvg.model.library import find_brush
 
@@ -296,10 +296,10 @@ def test_forbidden_boxes_are_written_read_and_named(desk, capsys):
 def test_setup_jobs_check_their_whole_path():
     cell = robot(keep_out_mm=(((-1.0, -200.0, 0.0), (1.0, 200.0, 300.0)),))
     with refused("in-kept-out-box") as caught:
-        border((20.0, 20.0, 580.0, 180.0), BRUSH, cell, SHEET)
+        make_border_program((20.0, 20.0, 580.0, 180.0), BRUSH, cell, SHEET)
     assert re.search(r"x -?0\.0", caught.value.sentence)
-    assert len(list(border((20.0, 20.0, 280.0, 180.0), BRUSH, cell, SHEET).sections())) == 1
-    assert len(list(paper_height(BRUSH, cell, SHEET, 1.0, -1.0, 0.1).sections())) == 21
+    assert len(list(make_border_program((20.0, 20.0, 280.0, 180.0), BRUSH, cell, SHEET).sections())) == 1
+    assert len(list(make_height_program(BRUSH, cell, SHEET, 1.0, -1.0, 0.1).sections())) == 21
 
 
 def test_a_wipe_beyond_the_sheet_does_not_cross_the_sheet():

@@ -13,14 +13,14 @@ from .. import _core
 from ..errors import Error, need_one_of, require_type
 from ..files import read_bytes
 from .marks.from_marks import MarkCalibration, calibrate_marks, options_for
-from .marks.machine_found import ask_for, refuse_unknown_parts
+from .marks.machine_found import refuse_unknown_parts, request_machine_parts
 from .marks.mark_input import read_painted
 from .marks.paint_found import calibrate_paint
 from .numbers.from_measurements import Calibration
 from .numbers.from_measurements import calibrate as calibrate_measured
 from .numbers.measurements import FORMAT, Measurements, Row, read_measurements
 from .numbers.turn_picture import centre_line
-from .overlap.by_overlap import OverlapCalibration, by_overlap
+from .overlap.by_overlap import OverlapCalibration, maximize_overlap
 
 AIMS = ("edges", "overlap")
 
@@ -75,13 +75,13 @@ def fit_measurements(
         return calibrate_measured(contents, name, bool(absolute), bool(total))
     painted = read_painted(contents.plan, contents.marks, read)
     options = options_for(contents.expected)
-    ask_for(options, machine)
+    request_machine_parts(options, machine)
     if paint and aim == "overlap":
         sentence = "--paint needs --aim edges: --aim overlap cannot estimate how marks narrow"
         raise Error(sentence, code="options-contradict")
     fit = calibrate_paint if paint else calibrate_marks
     calibration = fit(painted, name, contents.depth_range_mm, contents.max_speed_mm_s, options)
-    return by_overlap(calibration, progress or (lambda text: None)) if aim == "overlap" else calibration
+    return maximize_overlap(calibration, progress or (lambda text: None)) if aim == "overlap" else calibration
 
 
 def _to_json(measured: dict) -> bytes:

@@ -27,7 +27,7 @@ def depths_shown(brush, deepest_mm: float | None = None) -> np.ndarray:
     return np.linspace(least, greatest if deepest_mm is None else deepest_mm, TABLE_ROWS)
 
 
-def values(brush, law: str, depths: np.ndarray) -> list[str]:
+def evaluate_law(brush, law: str, depths: np.ndarray) -> list[str]:
     """Return the values of a law at depths, with half the 95 % interval."""
     band = law_band(brush, law, depths)
     halves = [f" +- {half:.2f}" for half in band[0]] if band else [""] * len(depths)
@@ -45,10 +45,10 @@ def law_table(depths: np.ndarray, columns: Iterable[tuple[str, Sequence[str]]]) 
 def laws_table(brush) -> list[str]:
     """Return a table of all laws of a brush at six depths."""
     depths = depths_shown(brush)
-    return [*law_table(depths, [(law, values(brush, law, depths)) for law in LAWS]), HALF_95]
+    return [*law_table(depths, [(law, evaluate_law(brush, law, depths)) for law in LAWS]), HALF_95]
 
 
-def coefficients(brush, laws: Iterable[str] = LAWS) -> list[str]:
+def format_coefficients(brush, laws: Iterable[str] = LAWS) -> list[str]:
     """Return the polynomial of each law, with intervals if they are known."""
     lines = []
     for name in laws:
@@ -59,7 +59,7 @@ def coefficients(brush, laws: Iterable[str] = LAWS) -> list[str]:
     return lines
 
 
-def in_short(brush) -> str:
+def summarize_laws(brush) -> str:
     """Return the ranges of lag and width, with their largest intervals."""
     depths = np.linspace(*brush.depth_range_mm, 21)
     parts = []

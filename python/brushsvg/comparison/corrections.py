@@ -16,7 +16,7 @@ from ..files import read_bytes
 from ..geometry.polylines import evenly
 from ..geometry.rotation import rotation
 from ..machine.cells.cell import Machine
-from ..machine.realised.retimed import on_way
+from ..machine.realised.pass_on_path import move_pass_to_path
 from .offset_width import offset_edges
 
 FORMAT = "brushsvg/comparison"
@@ -198,7 +198,7 @@ def _correct_pass(a_pass, correction: Correction, brush):
         _core.Arc(arc.first, arc.last, tuple(correction.moved(np.array([arc.centre_mm]))[0]), arc.direction)
         for arc in a_pass.arcs
     ]
-    return on_way(a_pass, poses, arcs)
+    return move_pass_to_path(a_pass, poses, arcs)
 
 
 def _refuse_other_way(a_pass, known_mm: np.ndarray) -> None:

@@ -46,7 +46,7 @@ class Ends:
 UNKNOWN_ENDS = Ends(None, None)
 
 
-def ends_of(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, Ends]:
+def measure_ends(found: Comparison, strokes: list[TargetStroke], drawn) -> dict[str, Ends]:
     """Return where the paint of each stroke begins and ends.
 
     Rings and dabs have no ends and are left out. drawn: strokes with their middle lines, empty for a plan without its

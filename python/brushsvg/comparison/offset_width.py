@@ -7,7 +7,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error
 from ..machine.realised.arc_chords import with_chords
-from ..machine.realised.retimed import on_way
+from ..machine.realised.pass_on_path import move_pass_to_path
 
 DEPTH_SAMPLES = 400  # number of depths at which the law of width is sampled to invert it
 
@@ -35,7 +35,7 @@ def offset_edges(a_pass, by_mm: float, brush):
     ahead = brush.lag(after) - brush.lag(before)
     poses[:, :2] += ahead[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
     poses[:, 2] = -after
-    return on_way(a_pass, poses, [])
+    return move_pass_to_path(a_pass, poses, [])
 
 
 def refuse_width(a_pass, by_mm: float, brush) -> None:

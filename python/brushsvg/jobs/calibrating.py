@@ -16,20 +16,27 @@ from .. import _core
 from ..calibration.chart.dabs import dabs_of, is_of_dabs
 from ..calibration.chart.file import read_chart, write_chart
 from ..calibration.chart.layout import Chart
-from ..calibration.chart.photograph import Read, edge_mm, expected, marks_of, read_chart_photos, remarks
+from ..calibration.chart.photograph import (
+    ChartReading,
+    edge_mm,
+    get_expected_errors,
+    list_measured_marks,
+    read_chart_photos,
+    report_reading_notices,
+)
 from ..calibration.chart.photograph import describe_reading as reading_in_words
 from ..calibration.dabs import dab_report
 from ..calibration.dabs.from_dabs import calibrate_dabs
 from ..calibration.from_file import fit_measurements
 from ..calibration.marks import mark_report, photo_report
 from ..calibration.marks.from_marks import MarkCalibration, calibrate_marks, options_for
-from ..calibration.marks.machine_found import ask_for, doubts, refuse_unknown_parts
+from ..calibration.marks.machine_found import refuse_unknown_parts, report_inseparable_lean, request_machine_parts
 from ..calibration.marks.mark_input import read_painted
 from ..calibration.marks.paint_found import calibrate_paint
 from ..calibration.numbers import law_report
 from ..calibration.numbers.from_measurements import Calibration
 from ..calibration.overlap import by_overlap_report, lag_by_outlines_report
-from ..calibration.overlap.by_overlap import OverlapCalibration, by_overlap
+from ..calibration.overlap.by_overlap import OverlapCalibration, maximize_overlap
 from ..calibration.overlap.lag_by_outlines import lag_by_outlines, refuse_assumed
 from ..calibration.prior import update_report
 from ..calibration.prior.from_prior import other_brush, refuse_learned, with_lineage
@@ -132,7 +139,7 @@ class BrushCalibration(Generic[Fit]):
     report: Report = field(repr=False)
     reading: str = ""
     notices: tuple[Notice, ...] = ()
-    _read: Read | None = field(default=None, repr=False, compare=False)
+    _read: ChartReading | None = field(default=None, repr=False, compare=False)
 
     @property
     def text(self) -> str:
@@ -336,7 +343,7 @@ def _path_of(file) -> str:
     return file if isinstance(file, str) else ""
 
 
-def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> Read:
+def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, stage, warn: Warn) -> ChartReading:
     """Read the photographs of one painted chart, and warn of missing strokes."""
     with name_file_in_errors(_path_of(options.chart)):
         # a chart that was made in Python must be valid as a file
@@ -351,7 +358,7 @@ def read_chart_photographs(photos: Sequence[str], options: CalibrationOptions, s
             options.dpi,
             options.mirrored,
         )
-    warn(photos[0], remarks(read))
+    warn(photos[0], report_reading_notices(read))
     return read
 
 
@@ -370,10 +377,10 @@ def _calibrate_from_measurements(source, name, default_name, options, stage, war
             progress=stage,
         )
     if isinstance(calibration, OverlapCalibration):
-        warn(file, doubts(calibration.by_edges.painted, calibration.by_edges.expected))
+        warn(file, report_inseparable_lean(calibration.by_edges.painted, calibration.by_edges.expected))
         kind = "overlap"
     elif isinstance(calibration, MarkCalibration):
-        warn(file, doubts(calibration.painted, calibration.expected))
+        warn(file, report_inseparable_lean(calibration.painted, calibration.expected))
         kind = "marks"
     else:
         warn(file, calibration.doubts)
@@ -381,30 +388,30 @@ def _calibrate_from_measurements(source, name, default_name, options, stage, war
     return BrushCalibration(calibration.brush, kind, calibration, _REPORT_MODULES[kind].report(calibration))
 
 
-def _calibrate_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+def _calibrate_from_strokes(photos, read: ChartReading, name, options, stage, warn) -> BrushCalibration:
     """Return a brush from the painted strokes of a chart."""
     with name_file_in_errors(photos[0]):
         edge_fit = calibration = _fit_strokes(read, name, options, stage)
         if options.aim == "overlap":
-            calibration = by_overlap(edge_fit, stage)
-    warn(photos[0], mark_report.list_strays(edge_fit) + doubts(edge_fit.painted, edge_fit.expected))
+            calibration = maximize_overlap(edge_fit, stage)
+    warn(photos[0], mark_report.list_strays(edge_fit) + report_inseparable_lean(edge_fit.painted, edge_fit.expected))
     kind = "overlap" if options.aim == "overlap" else "marks"
     report = _REPORT_MODULES[kind].report(calibration, of_photo=True)
     return BrushCalibration(calibration.brush, kind, calibration, report, reading_in_words(read), _read=read)
 
 
-def _fit_strokes(read: Read, name, options, stage) -> MarkCalibration:
+def _fit_strokes(read: ChartReading, name, options, stage) -> MarkCalibration:
     stage("fitting the brush")
-    painted = read_painted(json.loads(_core.write_plan(read.chart.plan)), marks_of(read), read_bytes)
+    painted = read_painted(json.loads(_core.write_plan(read.chart.plan)), list_measured_marks(read), read_bytes)
     uncertainties = {"displacement_mm": read_displacement_mm(options.spread)} if options.spread else {}
     uncertainties |= {"height_mm": options.height_mm} if options.height_mm is not None else {}
-    fit_options = options_for(expected(read) | uncertainties)
-    ask_for(fit_options, options.machine)
+    fit_options = options_for(get_expected_errors(read) | uncertainties)
+    request_machine_parts(fit_options, options.machine)
     calibrate_painted = calibrate_paint if options.paint else calibrate_marks
     return calibrate_painted(painted, name, options=fit_options, edge_mm=edge_mm(read), leave_out_strays=True)
 
 
-def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibration:
+def _calibrate_from_dabs(photos, read: ChartReading, name, options, warn) -> BrushCalibration:
     """Return a brush whose lag is known, with outlines from dabs."""
     for is_broken, why in (
         (
@@ -425,7 +432,7 @@ def _calibrate_from_dabs(photos, read: Read, name, options, warn) -> BrushCalibr
     return BrushCalibration(calibration.brush, "dabs", calibration, report, reading_in_words(read), _read=read)
 
 
-def _fit_lag_from_strokes(photos, read: Read, name, options, stage, warn) -> BrushCalibration:
+def _fit_lag_from_strokes(photos, read: ChartReading, name, options, stage, warn) -> BrushCalibration:
     """Return a brush whose outlines are known, with the lag of painted strokes."""
     known_brush = load_brush(options.brush)
     with name_file_in_errors("" if isinstance(options.brush, _core.Brush) else options.brush):

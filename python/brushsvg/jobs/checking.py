@@ -20,7 +20,7 @@ from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
-from ..machine.job_program import out_of_arm
+from ..machine.job_program import find_moves_out_of_arm
 from ..machine.moves import duration_s
 from ..machine.paint_reload import report_dry_brush, split_into_loads
 from ..machine.posts import GCODE, POSTS
@@ -31,7 +31,7 @@ from ..read import settings_in
 from ..read.gcode import is_ours
 from ..show.evaluation.report import Report
 from ..verify import against_plan, against_regenerated, pauses_in_paint, setup_checks, simulate_program
-from ..verify.foreign_program import foreign_program
+from ..verify.foreign_program import simulate_foreign_program
 from ..verify.readback import read_program, text_of_file
 from ..verify.readback.header import read_header as read_header
 from ..verify.readback.ros2 import as_table
@@ -246,7 +246,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         if work:
             loads = split_into_loads(work.plan, brush, cell)
             warn(program.path, report_dry_brush(loads, brush, cell, header.first_stroke))
-            stroke_rows, differences = against_plan.with_plan(simulated, loads, cell, header.first_stroke)
+            stroke_rows, differences = against_plan.compare_with_plan(simulated, loads, cell, header.first_stroke)
             if header.is_of_plan and work.strokes is not None:
                 differences = _merge_style_differences(differences)
             problems = problems + differences
@@ -259,7 +259,7 @@ def _check_painting(program: _OwnProgram, chosen: Choices, stage, warn: Warn) ->
         rewritten, rewrite_notices = _compare_with_rewritten(program, simulated, work, speeds, z_offset_mm)
         problems = problems + rewrite_notices
         if rewritten and not problems:
-            problems = out_of_arm(rewritten, sheet_mm)
+            problems = find_moves_out_of_arm(rewritten, sheet_mm)
         painted_work = PreparedDrawing(header.title, brush, simulated.plan, strokes, (), Options(), ())
         seconds, as_run_s = duration_s(rewritten) if rewritten else 0.0, time_as_run_s(read, cell)
         if as_run_s > 1.1 * seconds + 1.0:  # feeds were lowered in the program
@@ -372,7 +372,7 @@ def _check_foreign_program(path: str, text: str, chosen: Choices, warn: Warn) ->
             sentence = f"brushsvg did not write this program: --{flag} has no effect"
             raise Error(sentence, code="flag-without-effect")
     cell, brush = load_cell(chosen.cell), load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
-    foreign = foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
+    foreign = simulate_foreign_program(text, brush, cell, chosen.sheet, chosen.paper_z)
     warn(path, foreign.warnings)
     painted_work = PreparedDrawing("", brush, foreign.plan, None, (), Options(cell=cell), ())
     figures = outputs.make_report(painted_work, foreign.marks, cell, forbidden=foreign.problems)

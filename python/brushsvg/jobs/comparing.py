@@ -16,7 +16,7 @@ from .. import _core
 from ..calibration.prior.from_prior import has_learned
 from ..comparison import report
 from ..comparison.attribution.corrected_cell import (
-    certain_of,
+    select_certain_numbers,
     corrected_machine,
     key_of,
     significant_part,
@@ -33,7 +33,7 @@ from ..comparison.corrections import (
     remove_corrections,
     select_for_machine,
 )
-from ..comparison.ends import Ends, ends_of
+from ..comparison.ends import Ends, measure_ends
 from ..comparison.job_marks import job_marks
 from ..comparison.job_page import JobPage, job_page
 from ..comparison.next_corrections import find_growing_displacements, next_corrections
@@ -41,7 +41,7 @@ from ..comparison.photographs import Compared, Comparison, TargetStroke, compare
 from ..comparison.picture import comparison_png
 from ..errors import Error, Notice, name_file_in_errors, require_type
 from ..files import read_bytes
-from ..machine.cells.cell import Cell, Machine, axes_along_paper, not_undone
+from ..machine.cells.cell import Cell, Machine, axes_along_paper, list_uncorrectable_keys
 from ..machine.cells.cell_file import own_name, parse_cell, write_cell
 from ..reporting.report_text import Report
 from ..show.evaluation.figures import target_rings
@@ -263,7 +263,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
             certain = significant_part(faults, cell.machine, axes, left_out)
             remaining = subtract_faults(comparison, certain, sheet.plan, brush, strokes)
             residual = machine_sha256(machine), next_corrections(remaining, work.plan, before, brush)[0]
-    ends = ends_of(comparison, strokes, work.strokes or ())
+    ends = measure_ends(comparison, strokes, work.strokes or ())
     made_with = report.SheetFingerprints(brush.sha256, work.plan.brush_sha256, machine_sha256(_get_cell_machine(work)))
     has_isolated_marks = faults is None or faults.first != BRUSH or bool(job_marks(*before_selection).rings)
     places = report.places_of(comparison, strokes)
@@ -285,7 +285,7 @@ def compare_sheet(sheet: Sheet, paths: list[str], stage: Callable[[str], object]
 
 def _find_correctable_machine(faults: Faults, middle_mm, cell: Cell, axes) -> tuple[Machine | None, dict[str, str]]:
     """Return the next cell's machine without numbers that the cell refuses, and by key why they are left out."""
-    left_out = not_undone(cell)
+    left_out = list_uncorrectable_keys(cell)
     if print_scale := _estimate_print_scale(faults):
         left_out["scale"] = f"the page was probably printed at {100 * print_scale:.1f} %"
     while True:
@@ -303,7 +303,7 @@ def _find_correctable_machine(faults: Faults, middle_mm, cell: Cell, axes) -> tu
 
 def _report_uncorrectable(faults: Faults, cell: Cell, left_out: dict[str, str]) -> list[Notice]:
     """Return notices on certain errors of the machine that the cell cannot correct."""
-    certain_errors = [name for name, value in certain_of(faults).items() if value]
+    certain_errors = [name for name, value in select_certain_numbers(faults).items() if value]
     print_scale = _estimate_print_scale(faults)
     uncorrectable = [
         name for name in certain_errors if key_of(name) in left_out and not (print_scale and key_of(name) == "scale")
@@ -327,7 +327,7 @@ def _estimate_print_scale(faults: Faults) -> float | None:
     If both axes of the machine seem to have the same scale error, the print is the probable cause. Printers shrink
     a page to their printable area, and machines seldom have the same fault in both axes.
     """
-    x, y = (certain_of(faults).get(f"scale in {axis}", 0.0) for axis in "xy")
+    x, y = (select_certain_numbers(faults).get(f"scale in {axis}", 0.0) for axis in "xy")
     if min(abs(x), abs(y)) < MIN_PRINT_SCALE_ERROR or abs(x - y) > MAX_AXIS_SCALE_DIFFERENCE:
         return None
     return 1.0 / (1.0 + (x + y) / 2)

@@ -16,7 +16,7 @@ from ..machine.tool_axes import is_tilted
 from ..machine.writer import time_s, whole_program
 from ..show.animation import animation
 from ..show.evaluation import figures, places, report
-from ..show.evaluation.uncertainty import Band, is_law_interval_known, uncertainty
+from ..show.evaluation.uncertainty import Band, estimate_confidence, is_law_interval_known
 from ..show.marks_svg import marks_svg
 from ..show.overlap_svg import overlap_svg
 from ..show.timeline import timeline
@@ -185,8 +185,8 @@ def make_report(
         work.options.compensation,
         work.unreached,
     )
-    rows, total = figures.measure(painted)
-    confidence = None if is_tilted_plan else uncertainty(as_run or work.plan, work.brush, marks)
+    rows, total = figures.measure_figures(painted)
+    confidence = None if is_tilted_plan else estimate_confidence(as_run or work.plan, work.brush, marks)
     return report.Report(
         title=work.title,
         brush=work.plan.brush,
@@ -200,7 +200,7 @@ def make_report(
         forbidden=tuple(forbidden),
         confidence=confidence,
         is_tilted=is_tilted_plan,
-        groups=figures.groups(marks, work.brush, work.strokes),
+        groups=figures.group_touching_strokes(marks, work.brush, work.strokes),
         advice=advice,
         assumed=list_assumed_laws(work.brush),
         without_interval=list_laws_without_interval(work.brush),

@@ -115,4 +115,4 @@ def order_nearest_first(work: PreparedDrawing) -> PreparedDrawing:
     Travel goes from the end of one stroke to the start of the next. Only consecutive strokes of one layer change
     places, and no stroke is painted backwards.
     """
-    return select_passes(work, painting_order.nearest_first(work.plan.passes))
+    return select_passes(work, painting_order.list_nearest_first(work.plan.passes))

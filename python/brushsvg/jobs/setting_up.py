@@ -161,7 +161,7 @@ def make_border(
         warn(file, [*work.notices, *(replace(problem, refused=True) for problem in walk.problems)])
         suffix, post = _find_post(path, cell)
         around_mm = setup_programs.round_outwards(preflight.job_bounds_mm(plan, marks, brush))
-        program = setup_programs.border(around_mm, brush, cell, plan.sheet_mm, job.z_offset_mm)
+        program = setup_programs.make_border_program(around_mm, brush, cell, plan.sheet_mm, job.z_offset_mm)
         title = f"border of {work.title or 'untitled'}"
         notes = outputs.header_lines(work)
         header = header_lines.border_header(
@@ -180,7 +180,7 @@ def make_first_run(chosen: Choices, path: str | None, warn: Warn = lambda file, 
     cell, brush = _load_cell_and_brush(chosen)
     suffix, post = _find_post(path, cell)
     with name_file_in_errors(cell.name):
-        program = setup_programs.first_run(brush, cell, chosen.sheet, *DEFAULT_HEIGHTS_MM)
+        program = setup_programs.make_first_run_program(brush, cell, chosen.sheet, *DEFAULT_HEIGHTS_MM)
         header = header_lines.first_header(brush.name, chosen.sheet, DEFAULT_HEIGHTS_MM, program)
         text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, writer.list_cell_notices(cell))
@@ -199,7 +199,7 @@ def make_height(
     cell, brush = _load_cell_and_brush(chosen)
     suffix, post = _find_post(path, cell)
     with name_file_in_errors(cell.name):
-        program = setup_programs.paper_height(brush, cell, chosen.sheet, *heights_mm)
+        program = setup_programs.make_height_program(brush, cell, chosen.sheet, *heights_mm)
         header = header_lines.height_header(brush.name, chosen.sheet, heights_mm, program)
         text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, writer.list_cell_notices(cell))

@@ -16,7 +16,7 @@ from .cells.cell import Cell, Station, robot_from_paper, value_mm
 from .cells.language_limits import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS
 from .frames import transform_points
 from .moves import Move, Program, Section, rise_height_mm, set_programmed_speeds
-from .paint_reload import PlanInLoads, station_visits
+from .paint_reload import PlanInLoads, list_station_visits
 from .posts import POSTS
 from .realised.distortion import true_mm
 from .realised.rounding import Written, as_written
@@ -88,7 +88,7 @@ def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE
     """
     problems = []
     try:
-        job = replace(job, visits=station_visits(loads, cell, job.first_stroke))
+        job = replace(job, visits=list_station_visits(loads, cell, job.first_stroke))
     except Error as error:
         problems.append(error.notice())
     written = make_written_form(loads, cell, job)
@@ -129,7 +129,7 @@ def make_checked_program(loads: PlanInLoads, brush, cell: Cell, job: Job = WHOLE
     return CheckedProgram(loads, job, made, written, list(dict.fromkeys(problems)))
 
 
-def beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
+def report_strokes_beyond_part(loads: PlanInLoads, cell: Cell) -> list[Notice]:
     """Report each stroke that alone is too long for one program.
 
     The language limits the lines of a program.
@@ -202,7 +202,7 @@ def _home_sections(program: Program) -> tuple[Section, ...]:
     return (Section("home: where the motors begin and end", (travel,)),)
 
 
-def out_of_arm(program: Program, sheet_mm, with_advice: bool = True) -> list[Notice]:
+def find_moves_out_of_arm(program: Program, sheet_mm, with_advice: bool = True) -> list[Notice]:
     """Report what the cell's arm cannot do of a program.
 
     The advice is the place that the paper would need. Reports nothing if the cell has no arm, or if the library for

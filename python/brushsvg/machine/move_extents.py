@@ -59,7 +59,7 @@ def paths_in_frame(frame: np.ndarray, moves: Ways) -> Ways:
     return Ways(*places, moves.spoke @ turned, moves.across @ turned, moves.rise @ turned, moves.sweep_rad)
 
 
-def bounds(moves: Ways) -> tuple[np.ndarray, np.ndarray]:
+def measure_bounds(moves: Ways) -> tuple[np.ndarray, np.ndarray]:
     """Return the smallest and the largest x, y and z, (3,) each.
 
     A line reaches them at its ends, a circle perhaps between its ends.

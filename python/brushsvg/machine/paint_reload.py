@@ -17,7 +17,7 @@ from .pen_changes import may_pause, pen_visits
 from .posts import POSTS, circles_by
 from .realised.arc_chords import points_with_chords, split_arcs_at_extremes, with_chords
 from .realised.distortion import in_lines_mm, is_similar, keeps_lines
-from .realised.retimed import on_way
+from .realised.pass_on_path import move_pass_to_path
 from .realised.tilt import refuse_tilt_without_tool, split_turning_moves
 from .tool_axes import axes_of, normalize
 
@@ -100,7 +100,7 @@ def split_into_loads(plan: _core.Plan, brush: _core.Brush, cell: Cell) -> PlanIn
 def _split_for_map(a_pass, machine):
     axes = axes_of(a_pass)
     rows = in_lines_mm(np.asarray(a_pass.poses_mm if axes is None else np.hstack([a_pass.poses_mm, axes])), machine)
-    return on_way(a_pass, rows[:, :3], (), None if axes is None else normalize(rows[:, 3:]))
+    return move_pass_to_path(a_pass, rows[:, :3], (), None if axes is None else normalize(rows[:, 3:]))
 
 
 def load_length_mm(brush: _core.Brush, cell: Cell) -> float:
@@ -165,7 +165,7 @@ def _start_and_end_on_paper(a_pass):
     axes = np.asarray(a_pass.tool_axes).reshape(-1, 3)
     if len(axes):
         axes = np.vstack([axes[:1][below[:1]], axes, axes[-1:][below[1:]]])
-    return on_way(a_pass, np.vstack([before, poses, after]), arcs, axes)
+    return move_pass_to_path(a_pass, np.vstack([before, poses, after]), arcs, axes)
 
 
 def report_long_strokes(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> list[Notice]:
@@ -196,7 +196,7 @@ def report_dry_brush(loads: PlanInLoads, brush: _core.Brush, cell: Cell, first_s
     """
     if not brush.paint or not brush.paint.lasts_mm or (cell.reload and cell.reload.when == "length"):
         return []
-    visits_of_loads = station_visits(loads, cell, first_stroke) or ((),) * len(loads.loads)
+    visits_of_loads = list_station_visits(loads, cell, first_stroke) or ((),) * len(loads.loads)
     used_mm, longest_mm = 0.0, 0.0
     for a_pass, visits in list(zip(loads.loads, visits_of_loads, strict=True))[first_stroke - 1 :]:
         used_mm = painted_mm(a_pass) + (0.0 if visits else used_mm)
@@ -211,7 +211,7 @@ def report_dry_brush(loads: PlanInLoads, brush: _core.Brush, cell: Cell, first_s
     return [Notice("", sentence, code="paint-runs-out", advice=advice)]
 
 
-def station_visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
+def list_station_visits(loads: PlanInLoads, cell: Cell, first_stroke: int = 1) -> tuple[tuple[Station, ...], ...]:
     """Return for each load the stations to visit before it.
 
     Loads before first_stroke are not run and have no visits. For a cell without paint, the visits are changes of the
@@ -263,7 +263,7 @@ def dips_mm(passes, loads: PlanInLoads, cell: Cell) -> list[list[float]]:
     """
     if not cell.reload:
         return dips_without_cell(passes)
-    visits_of_loads, dips_of_passes, load_index = station_visits(loads, cell), [], 0
+    visits_of_loads, dips_of_passes, load_index = list_station_visits(loads, cell), [], 0
     for a_pass in passes:
         dips = [0.0] if visits_of_loads[load_index] else []
         load_index += 1

@@ -57,18 +57,18 @@ def _plotter_pen_visits(passes: Sequence[_core.Pass], cell: Cell, first_stroke: 
     return tuple(visits_of_loads)
 
 
-def pens_changed(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int = 1) -> int:
+def count_pen_changes(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int = 1) -> int:
     """Return how often the pen changes between strokes, on a cell without paint."""
     taken = () if cell.reload else pen_visits(passes, cell, first_stroke)
     return sum(map(bool, taken)) - (1 if taken and has_pens(cell) else 0)
 
 
-def with_one_pen(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int = 1) -> list[Notice]:
+def report_single_pen(passes: Sequence[_core.Pass], cell: Cell, first_stroke: int = 1) -> list[Notice]:
     """Report strokes of several colours that are painted in one run.
 
     Cells with pause_per_colour set to false are not reported.
     """
-    if not cell.pause_per_colour or may_pause(cell) or not pens_changed(passes, cell, first_stroke):
+    if not cell.pause_per_colour or may_pause(cell) or not count_pen_changes(passes, cell, first_stroke):
         return []
     sentence = f"strokes of several colours are painted with one pen: {reason_for_no_waiting(cell)}"
     return [Notice("", sentence, code="colours-as-one", advice="convert --per-colour writes a program for each")]

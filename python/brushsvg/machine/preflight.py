@@ -10,7 +10,7 @@ import numpy as np
 from .. import _core
 from ..errors import Error, Notice
 from .cells.cell import Cell, unit_mm
-from .job_program import WHOLE_JOB, CheckedProgram, Job, make_checked_program, make_written_form, out_of_arm
+from .job_program import WHOLE_JOB, CheckedProgram, Job, find_moves_out_of_arm, make_checked_program, make_written_form
 from .paint_reload import PlanInLoads
 from .realised.arc_chords import with_chords
 from .realised.corner_blending import blend_radii, cut_corners
@@ -49,15 +49,15 @@ def check_job(
     """Check a job and return it with every reason not to run it on the robot.
 
     marks: marks of the plan or of its loads. Of a resumed job, only the rest is checked.
-    walk: the result of within_limits, if it is known already.
-    of_drawing: see off_sheet.
-    with_advice: see out_of_arm.
+    walk: the result of check_limits, if it is known already.
+    of_drawing: see find_paint_off_sheet.
+    with_advice: see find_moves_out_of_arm.
     """
-    walk = walk or within_limits(loads, brush, marks, cell, job, of_drawing)
+    walk = walk or check_limits(loads, brush, marks, cell, job, of_drawing)
     left_loads = loads.left(job.first_stroke) if job.first_stroke > 1 else loads
     if job.first_stroke > 1 and not left_loads.loads:
         return walk
-    limit_problems = walk.problems or out_of_arm(walk.made, left_loads.sheet_mm, with_advice)
+    limit_problems = walk.problems or find_moves_out_of_arm(walk.made, left_loads.sheet_mm, with_advice)
     # In this case, the program was checked for the paper's place in the cell.
     is_paper_unchanged = walk.made.cell is cell and not job.z_offset_mm
     written = walk.written if is_paper_unchanged else make_written_form(loads, cell, WHOLE_JOB)
@@ -67,7 +67,7 @@ def check_job(
     )
 
 
-def within_limits(
+def check_limits(
     loads: PlanInLoads,
     brush: _core.Brush,
     marks: _core.Marks,
@@ -82,7 +82,7 @@ def within_limits(
         if not loads.loads:
             return walk
         marks = _core.simulate(loads.as_plan(), brush)
-    return replace(walk, problems=walk.problems + off_sheet(marks, brush, loads.sheet_mm, of_drawing))
+    return replace(walk, problems=walk.problems + find_paint_off_sheet(marks, brush, loads.sheet_mm, of_drawing))
 
 
 def as_exact_as(cell: Cell, tolerance_mm: float) -> Cell:
@@ -118,7 +118,7 @@ def check_rounding(cell: Cell, tolerance_mm: float) -> None:
         )
 
 
-def off_sheet(
+def find_paint_off_sheet(
     marks: _core.Marks, brush: _core.Brush, sheet_mm, of_drawing: bool = True, rounded_mm: float = 0.0
 ) -> list[Notice]:
     """Report each edge of the sheet that the paint of a stroke crosses.

@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import Error, Notice
 from .cells.cell import Cell, reason_for_no_waiting, robot_from_paper
 from .cells.language_limits import LEAST_SPEED_MM_S
-from .job_program import find_moves_out_of_limits, out_of_arm
+from .job_program import find_moves_out_of_arm, find_moves_out_of_limits
 from .move_extents import make_paths
 from .moves import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .realised.distortion import commanded_mm, in_lines_mm
@@ -42,13 +42,13 @@ def round_outwards(bounds_mm) -> tuple[float, float, float, float]:
     return (rounded_sides[0], rounded_sides[1], -rounded_sides[2], -rounded_sides[3])
 
 
-def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
+def make_first_run_program(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
     """Make the program for the first run of a machine.
 
     The tool goes round the sheet high in the air and again at the safe height. It goes down to the paper at four
-    points, paints the strokes of `paper_height`, and paints one more stroke. A person confirms each of these steps.
-    The tool first rises straight up to the height of the first air run, and is never lowered at travel speed. Without
-    room above the safe height, the high air run is left out.
+    points, paints the strokes of `make_height_program`, and paints one more stroke. A person confirms each of these
+    steps. The tool first rises straight up to the height of the first air run, and is never lowered at travel speed.
+    Without room above the safe height, the high air run is left out.
 
     Raises Error if the program cannot wait for a person, leaves the workspace, or has strokes that do not fit.
     """
@@ -60,8 +60,8 @@ def first_run(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, 
         )
     width, height = sheet_mm
     high_mm = _air_run_rise_mm(cell, sheet_mm)
-    air_run = border((0.0, 0.0, width, height), brush, cell, sheet_mm)
-    strokes = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    air_run = make_border_program((0.0, 0.0, width, height), brush, cell, sheet_mm)
+    strokes = make_height_program(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
     used_mm = max(x for x, _ in _stroke_starts(len(stroke_heights_mm(highest_mm, lowest_mm, step_mm)), sheet_mm))
     start = (width - LANE_SPACING_MM - LAST_STROKE_MM, LANE_SPACING_MM)
     if start[0] < used_mm + TEST_STROKE_MM * LONG_STROKE_RATIO + LANE_SPACING_MM:
@@ -163,7 +163,7 @@ def _touch_moves(place, clearance_mm: float, brush, cell: Cell) -> tuple[Move | 
     )
 
 
-def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+def make_border_program(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
     """Make an air run round the job at the safe height, corner by corner.
 
     around_mm: left, bottom, right and top of the job [mm].
@@ -185,7 +185,7 @@ def border(around_mm, brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> 
     return _checked_program(sections, brush, cell, sheet_mm, z_offset_mm)
 
 
-def paper_height(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
+def make_height_program(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_mm: float, step_mm: float) -> Program:
     """Make short strokes side by side, each step_mm deeper than the one before.
 
     The strokes go from highest_mm over the paper to lowest_mm, in heights of the cell. The first stroke that leaves
@@ -253,7 +253,7 @@ def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell
     )
 
 
-def over_sheet(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+def make_sheet_program(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
     """Make moves to and fro over a whole sheet, high and touching the paper.
 
     They stand for everything that a drawing on the sheet may need from an arm. The program is only checked for the arm
@@ -313,6 +313,6 @@ def _checked_program(
 
     program = Program((), cell, frame, sections_at_programmed_speeds, *rises_mm, touching_mm_s(brush, cell))
     problems = find_vessels_near_travel(cell, z_offset_mm) or find_moves_out_of_limits(program, sheet_mm)
-    for notice in problems or out_of_arm(program, sheet_mm):
+    for notice in problems or find_moves_out_of_arm(program, sheet_mm):
         raise Error(notice.sentence, code=notice.code, advice=notice.advice)
     return program

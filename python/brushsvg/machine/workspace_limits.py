@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import Notice
 from .cells.cell import Cell
 from .cells.language_limits import LEAST_SPEED_MM_S
-from .move_extents import Ways, bounds, distances_from_origin, find_place_inside, make_paths, paths_in_frame
+from .move_extents import Ways, distances_from_origin, find_place_inside, make_paths, measure_bounds, paths_in_frame
 from .moves import Move, Section
 from .realised.backlash import half_mm
 from .realised.distortion import max_true_per_commanded
@@ -231,10 +231,10 @@ def find_broken_limits(
     frame: (4, 4) pose of the moves' frame, which is the paper's frame, in the robot's frame.
     slack_mm: how far rounding may have moved the moves.
     """
-    notices = [] if sheet_mm is None else [*_check_sheet(*bounds(moves), sheet_mm, cell, slack_mm)]
+    notices = [] if sheet_mm is None else [*_check_sheet(*measure_bounds(moves), sheet_mm, cell, slack_mm)]
     moves = paths_in_frame(frame, moves)
     if cell.workspace.box_mm or cell.servo:
-        notices += _check_box(*bounds(moves), cell, slack_mm)
+        notices += _check_box(*measure_bounds(moves), cell, slack_mm)
     # A cut corner stays in the triangle of its joint. The triangle's third side is r sin(turn) / 2 away from the other
     # two sides. This is at most twice the r tan(turn / 4) by which the corner is cut. A convex limit holds the triangle
     # anyway.

@@ -19,21 +19,21 @@ from .job_program import (
     WHOLE_JOB,
     CheckedProgram,
     Job,
-    beyond_part,
+    find_moves_out_of_arm,
     make_checked_program,
-    out_of_arm,
+    report_strokes_beyond_part,
     unchecked_program,
 )
 from .moves import Program, duration_s, program_in_robot_frame
 from .paint_reload import (
     PlanInLoads,
+    list_station_visits,
     report_dry_brush,
     report_long_strokes,
     report_missing_paint,
     split_into_loads,
-    station_visits,
 )
-from .pen_changes import with_one_pen
+from .pen_changes import report_single_pen
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush
 from .realised.backlash import compensate_backlash
@@ -96,7 +96,7 @@ def encode(
     post_for(suffix, cell)
     walk = make_checked_program(split_into_loads(plan, brush, cell), brush, cell, job)
     if not walk.problems:
-        walk = replace(walk, problems=out_of_arm(walk.made, plan.sheet_mm))
+        walk = replace(walk, problems=find_moves_out_of_arm(walk.made, plan.sheet_mm))
     return encode_checked(suffix, plan, walk, brush, title, notes)
 
 
@@ -212,7 +212,7 @@ def text_of(post: Post, program: Program, suffix: str = "") -> Iterator[str]:
 
 def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> Program:
     """Make the whole program, including paint, for a picture. Limits are not checked."""
-    job = replace(job, visits=station_visits(loads, cell, job.first_stroke))
+    job = replace(job, visits=list_station_visits(loads, cell, job.first_stroke))
     return unchecked_program(loads, brush, cell, job)
 
 
@@ -232,9 +232,9 @@ def report_program(
     notices = [*report_missing_paint(brush, cell), *report_long_strokes(loads, brush, cell)]
     if suffix != ".json":
         notices += report_dry_brush(loads, brush, cell, first_stroke)
-        notices += with_one_pen(loads.loads, cell, first_stroke)
+        notices += report_single_pen(loads.loads, cell, first_stroke)
         notices += beyond_field(loads.loads, cell)
-        notices += beyond_part(loads, cell)
+        notices += report_strokes_beyond_part(loads, cell)
     return [*notices, *report_renamed(name, suffix, cell)]
 
 

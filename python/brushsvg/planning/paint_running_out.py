@@ -44,7 +44,7 @@ class Pressed:
     notices: list[Notice]
 
 
-def pressed_deeper(
+def press_deeper(
     painted: list,
     targets: list,
     brush: _core.Brush,

@@ -21,7 +21,7 @@ def _order_of(stroke) -> int:
     return stroke.settings.order or 0
 
 
-def nearest_first(passes) -> list[int]:
+def list_nearest_first(passes) -> list[int]:
     """Return the numbers of the passes, each followed by the one that starts nearest.
 
     Only passes that follow each other in one layer change places, and none is painted backwards. The loads of one

@@ -60,7 +60,7 @@ def refine_where_better(painted: list, targets: list, brush, closed, compensated
     should become; closed: their compensation in closed form; compensated: a function of strokes and method, with
     the result of _core.compensate; forbidden: a function from a plan to the sentences that forbid it.
     """
-    aims = [towards_reach(*pair, brush) for pair in zip(painted, targets, strict=True)]
+    aims = [limit_target_to_reach(*pair, brush) for pair in zip(painted, targets, strict=True)]
     done = compensated(aims, "refined")
     passes, tracking_errors, moved = list(done.plan.passes), list(done.tracking_errors), [True] * len(painted)
     kept = [""] * len(painted)
@@ -85,7 +85,7 @@ def refine_where_better(painted: list, targets: list, brush, closed, compensated
     return Refined(passes, tracking_errors, moved, kept)
 
 
-def towards_reach(painted, target, brush):
+def limit_target_to_reach(painted, target, brush):
     """Return the target of refinement for a stroke.
 
     These are its discs alone, if the outline in which it was found is far too wide. All of the shape next to the

@@ -40,7 +40,7 @@ class SizeAdvice:
     reach: tuple[float, float] = (SCALES[0], SCALES[-1])
 
 
-def best_size(strokes, brush, made, quick=None) -> SizeAdvice:
+def find_best_size(strokes, brush, made, quick=None) -> SizeAdvice:
     """Try scales on strokes chosen evenly from all, each stroke alone.
 
     Letters and neighbours do not count. made: from strokes to (marks, strokes they should become), as the drawing
@@ -62,10 +62,10 @@ def best_size(strokes, brush, made, quick=None) -> SizeAdvice:
     return SizeAdvice(overlaps, _choose_factor(overlaps), len(tried_units), len(strokes))
 
 
-def best_letter_size(strokes, brush, made) -> SizeAdvice:
+def find_best_letter_size(strokes, brush, made) -> SizeAdvice:
     """Try fewer scales on whole letters, for shapes filled in passes.
 
-    Letters are strokes that touch. Otherwise this works as best_size does.
+    Letters are strokes that touch. Otherwise this works as find_best_size does.
     """
     groups = _core.group_touching(strokes)
     alone = set(range(len(strokes))).difference(*groups)
@@ -117,7 +117,7 @@ def advise_on_size(size: SizeAdvice, scale: float | None = 1.0) -> str:
 
 def _overlap_at(factor: float, units, brush, made) -> float:
     def area(unit):
-        larger = [scaled(stroke, factor) for stroke in unit]
+        larger = [scale_stroke(stroke, factor) for stroke in unit]
         try:
             marks, targets = made(larger)
         except Error:  # the stroke cannot be painted at this size, so all of it is missing
@@ -134,7 +134,7 @@ def _overlap_at(factor: float, units, brush, made) -> float:
     return sum(each.intersection_mm2 for each in areas) / total_mm2 if total_mm2 > 0 else 1.0
 
 
-def scaled(stroke, factor: float):
+def scale_stroke(stroke, factor: float):
     """Return a stroke scaled by a factor, including its widths."""
     half_width = [(at, half * factor) for at, half in stroke.half_width]
     rings = [ring * factor for ring in stroke.target_mm]

@@ -63,7 +63,7 @@ class _Canvas:
         self.items.append(("text", (x, y), words, colour, size))
 
 
-def overview(suffix: str, design: Design, strokes: list, notices: list[Notice]) -> bytes:
+def draw_import_picture(suffix: str, design: Design, strokes: list, notices: list[Notice]) -> bytes:
     """Return the overview of a drawing as the bytes of an .svg or a .png.
 
     strokes: the strokes of the design, may be empty; notices: all warnings.

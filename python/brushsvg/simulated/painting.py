@@ -14,8 +14,8 @@ from ..machine.paint_reload import dips_without_cell
 from ..machine.realised.arc_chords import with_chords
 from ..machine.realised.backlash import from_air_mm
 from ..machine.realised.distortion import commanded_mm, in_lines_mm
+from ..machine.realised.pass_on_path import move_pass_to_path
 from ..machine.realised.passes import as_run
-from ..machine.realised.retimed import on_way
 from ..model.perturbed import with_factors
 from .studio import Studio
 
@@ -129,4 +129,4 @@ def _commanded_pass(a_pass, undone: Machine | None):
     commanded = commanded_mm(in_lines_mm(poses, undone), undone)
     if undone and any(undone.backlash_mm):
         commanded = from_air_mm(commanded, undone.backlash_mm)
-    return on_way(a_pass, commanded, [])
+    return move_pass_to_path(a_pass, commanded, [])

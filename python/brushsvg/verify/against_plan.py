@@ -8,25 +8,17 @@ import math
 import numpy as np
 
 from ..errors import Error, Notice
-from ..machine.cells.cell import (
-    Cell,
-    ends_rounded_mm,
-    least_move_mm,
-    servo_parts,
-    servo_stands,
-    unit_mm,
-    value_mm,
-)
-from ..machine.paint_reload import PlanInLoads, station_visits
+from ..machine.cells.cell import Cell, ends_rounded_mm, least_move_mm, servo_parts, servo_stands, unit_mm, value_mm
+from ..machine.paint_reload import PlanInLoads, list_station_visits
 from ..machine.posts.text import spelled
-from ..machine.realised.rounding import steep_ways_lifted
+from ..machine.realised.rounding import lift_on_steep_paths
 from ..machine.tool_axes import axes_of, between_deg, interpolate_axes, tilts_deg
 from .simulate_program import Problems, SimulatedProgram, arc_points, slack_mm
 
 MAX_PATH_DEVIATION_MM = 0.02  # deviation of a path by rounding and by chords of circles: invisible in paint
 
 
-def with_plan(
+def compare_with_plan(
     ran: SimulatedProgram, expected: PlanInLoads, cell: Cell, first_stroke: int = 1
 ) -> tuple[list[int | None], Problems]:
     """Compare the passes of a program with the loads of its plan.
@@ -45,7 +37,7 @@ def with_plan(
     for a_pass, lines, k in rows:
         problems += _check_pass(a_pass, lines, due[k], cell) if k is not None else []
     if not problems and len(ran.visits) == len(due):  # otherwise a stroke is not one touch, which is reported elsewhere
-        planned_visits = station_visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
+        planned_visits = list_station_visits(expected, cell, first)[first - 1 :] or ((),) * len(due)
         problems += _check_station_visits(ran, due, planned_visits)
     return [None if k is None else first - 1 + k for k in partners], problems
 
@@ -101,7 +93,7 @@ def _check_pass(a_pass, lines: np.ndarray, planned, cell: Cell) -> Problems:
     lines: (n,) line of the program for each pose of the pass.
     """
     problems = _check_tool_axes(a_pass, lines, planned)
-    planned = steep_ways_lifted(planned, cell) if cell.servo else planned
+    planned = lift_on_steep_paths(planned, cell) if cell.servo else planned
     # Where units are coarse, brushsvg drops a pose that is less than the smallest move from another one.
     limit_mm = max(MAX_PATH_DEVIATION_MM, slack_mm(cell), least_move_mm(cell) + unit_mm(cell))
     # A servo's height changes in steps of whole values, so it is off the line by half a step and half a value. A pose

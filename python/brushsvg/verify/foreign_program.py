@@ -16,7 +16,7 @@ from ..machine.cells.cell import Cell, robot_from_paper
 from ..machine.cells.cell_file import find_cell
 from ..machine.move_extents import make_paths as straight_extents
 from ..machine.posts.gcode_servo import height_at
-from ..machine.preflight import off_sheet
+from ..machine.preflight import find_paint_off_sheet
 from ..machine.workspace_limits import ROUNDING_MM, broken_limits, find_broken_limits
 from ..read.gcode.pen import pen_kind, read_pen
 from ..read.gcode.toolpaths import CHORD_MM, Way, ways_and_end
@@ -43,7 +43,7 @@ class SimulatedForeignProgram:
     warnings: tuple[Notice, ...] = ()
 
 
-def foreign_program(
+def simulate_foreign_program(
     text: str, brush, cell: Cell, sheet_mm=None, paper_z_mm: float | None = None
 ) -> SimulatedForeignProgram:
     """Simulate a foreign program on the cell.
@@ -77,7 +77,10 @@ def foreign_program(
         *_check_brush_lifted(ways, lift(power) if lift else float(ways[-1].points_mm[-1, 2])),
         *outside,
         *broken_limits(passes, sheet_mm, brush, cell),
-        *(replace(notice, advice=ADVICE_BY_SIDE[notice.about]) for notice in off_sheet(marks, brush, sheet_mm)),
+        *(
+            replace(notice, advice=ADVICE_BY_SIDE[notice.about])
+            for notice in find_paint_off_sheet(marks, brush, sheet_mm)
+        ),
     ]
     return SimulatedForeignProgram(plan, marks, tuple(dict.fromkeys(problems)), _unit_warnings(ways))
 

@@ -12,7 +12,12 @@ from ..machine.header_lines import border_header, first_header, height_header
 from ..machine.job_program import Job
 from ..machine.moves import Program, duration_s
 from ..machine.realised.distortion import true_mm
-from ..machine.setup_programs import ONE_STROKE_DEPTH_MM, border, first_run, paper_height
+from ..machine.setup_programs import (
+    ONE_STROKE_DEPTH_MM,
+    make_border_program,
+    make_first_run_program,
+    make_height_program,
+)
 from .against_regenerated import differing_line
 from .readback import Readback
 from .readback.header import ProgramHeader
@@ -34,7 +39,7 @@ def check_border(
     text: str, read: Readback, origin: ProgramHeader, brush, cell: Cell, sheet_mm, z_offset_mm: float
 ) -> SetupCheck:
     """Check an air run around the border that its header names. Raises Error when a corner is outside the workspace."""
-    expected = border(origin.border_mm, brush, cell, sheet_mm, z_offset_mm)
+    expected = make_border_program(origin.border_mm, brush, cell, sheet_mm, z_offset_mm)
     job, notes = Job(z_offset_mm), origin.notes
     header = border_header(origin.title, brush.name, origin.strokes, sheet_mm, notes, origin.border_mm, expected, job)
     expected = replace(expected, header=header)
@@ -50,7 +55,7 @@ def check_heights(text: str, read: Readback, origin: ProgramHeader, brush, cell:
     """
     sheet_mm = origin.sheet_mm
     highest_mm, lowest_mm, step_mm = origin.heights_mm
-    expected = paper_height(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    expected = make_height_program(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
     expected = replace(expected, header=height_header(brush.name, sheet_mm, origin.heights_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     return _check_setup_program(text, read, expected, sections, cell, lowest_mm, "height of the lowest stroke")
@@ -60,7 +65,7 @@ def check_first_run(text: str, read: Readback, origin: ProgramHeader, brush, cel
     """Check all steps of a first run. Raises Error when it leaves the workspace or does not fit on the sheet."""
     sheet_mm = origin.sheet_mm
     highest_mm, lowest_mm, step_mm = origin.first_mm
-    expected = first_run(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
+    expected = make_first_run_program(brush, cell, sheet_mm, highest_mm, lowest_mm, step_mm)
     expected = replace(expected, header=first_header(brush.name, sheet_mm, origin.first_mm, expected))
     sections = [*walk_sections(read, brush, cell, sheet_mm, paper_mm=max(0.0, highest_mm))]
     deepest_mm = min(lowest_mm, -ONE_STROKE_DEPTH_MM)

@@ -19,7 +19,7 @@ from ..machine.frames import is_upright, transform_points
 from ..machine.move_extents import make_paths
 from ..machine.pen_changes import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
-from ..machine.preflight import as_run, off_sheet
+from ..machine.preflight import as_run, find_paint_off_sheet
 from ..machine.realised.arc_chords import OFF_MM
 from ..machine.realised.corner_blending import blend_radii
 from ..machine.realised.distortion import commanded_pass, is_similar, true_mm, true_pass
@@ -125,7 +125,7 @@ def simulate_program(read: Readback, brush, cell: Cell, sheet_mm, z_offset_mm: f
         _core.narrow(marks, brush.paint, dips)
     problems += find_vessels_near_travel(cell, z_offset_mm)
     problems += broken_limits(programmed, sheet_mm, brush, _with_rounding_allowance(cell))
-    problems += off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
+    problems += find_paint_off_sheet(marks, brush, sheet_mm, rounded_mm=slack)
     return SimulatedProgram(plan, run_plan, marks, list(dict.fromkeys(problems)), visited, tuple(lines), tuple(rests))
 
 

@@ -269,8 +269,8 @@ def _stroke_units(brush, depths: list[float], repeats: int) -> list[_StrokeUnit]
     groups: list[tuple[UnplacedStroke, ...]] = list(_references(brush, least + 0.4 * (deepest - least)))
     for _ in range(repeats):
         for number, depth in enumerate(depths):
-            groups.append((straight(brush, depth),))
-            groups.append((angular(brush, depth), _auxiliary(brush, depth, shallow)))
+            groups.append((make_straight_stroke(brush, depth),))
+            groups.append((make_angular_stroke(brush, depth), _auxiliary(brush, depth, shallow)))
             groups.append((_arc(brush, depth, 1 if number % 2 else -1),))
             groups.append((_reversal(brush, depth),))
     boxes = find_mark_boxes(brush, [stroke for group in groups for stroke in group])
@@ -301,7 +301,7 @@ def _unit_vector(vector: np.ndarray) -> np.ndarray:
     return vector / np.hypot(*vector)
 
 
-def straight(brush, depth: float) -> UnplacedStroke:
+def make_straight_stroke(brush, depth: float) -> UnplacedStroke:
     length = depth / LANDING_SLOPE + brush.lag(depth) + 15.0 + depth / LIFT_SLOPE
     return UnplacedStroke("straight", depth, _poses_along(depth, [(0, 0), (length, 0)], LANDING_SLOPE))
 
@@ -311,7 +311,7 @@ def _length_before_corner(brush, depth: float) -> float:
     return depth / LIFT_SLOPE + 1.5 * brush.lag(depth) + 5.0
 
 
-def angular(brush, depth: float) -> UnplacedStroke:
+def make_angular_stroke(brush, depth: float) -> UnplacedStroke:
     first = _length_before_corner(brush, depth)
     second = 2.0 * brush.lag(depth) + 3.0 + depth / LIFT_SLOPE
     return UnplacedStroke("angular", depth, _poses_along(depth, [(0, 0), (first, 0), (first, -second)]))

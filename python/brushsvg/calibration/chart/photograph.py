@@ -45,7 +45,7 @@ MAX_SHEET_DIFFERENCE_MM = 0.15
 
 
 @dataclass(frozen=True)
-class Read:
+class ChartReading:
     """The contents of a photograph.
 
     flat: the flattened picture. view: the view of the camera. marks: the marks of the strokes.
@@ -67,7 +67,7 @@ def read_chart_photos(
     bar_mm: float | None = None,
     dpi: float | None = None,
     mirrored: bool = False,
-) -> Read:
+) -> ChartReading:
     """Read one or more photographs of one painted sheet.
 
     photos: names and contents of the files. bar_mm: length of the printed bar, measured with a ruler, if the page was
@@ -83,7 +83,7 @@ def read_chart_photos(
     page = _make_page(chart, size)
     stroke_boxes = [StrokeBox(stroke.id, stroke.box_mm, stroke.depth_mm) for stroke in chart.strokes]
     refuse_twice(photos)
-    reads: list[Read] = []
+    reads: list[ChartReading] = []
     for name, data in photos:
         try:
             pixels = read_photo(data)
@@ -125,7 +125,7 @@ def read_chart_photos(
     for (name, _), read in zip(photos, reads, strict=True):
         _refuse_another_sheet(read.marks, marks, name)
     worst = max((read.view for read in reads), key=lambda view: view.residual_mm)
-    return Read(chart, reads[0].flat, worst, marks, len(reads), page.is_rescaled)
+    return ChartReading(chart, reads[0].flat, worst, marks, len(reads), page.is_rescaled)
 
 
 @dataclass(frozen=True)
@@ -159,13 +159,15 @@ def _make_page(chart: Chart, size: float, shift_mm=None) -> _Page:
     return _Page(printed, tuple(rings), tuple(labels), size != 1.0)
 
 
-def _read_photo(chart: Chart, page: _Page, stroke_boxes: list[StrokeBox], pixels: np.ndarray, view: View, fine) -> Read:
+def _read_photo(
+    chart: Chart, page: _Page, stroke_boxes: list[StrokeBox], pixels: np.ndarray, view: View, fine
+) -> ChartReading:
     refuse_cropped(pixels, view, stroke_boxes)
     refuse_unsure(pixels, view, page.printed.corners_mm)
     flat = flatten(pixels, view, chart.plan.sheet_mm, fine)
     refuse_dark_paper(float(np.median(grey_light(flat.pixels[::3, ::3]))))
     marks = find_marks(flat, stroke_boxes, page.rings, page.labels)
-    return Read(chart, flat, view, marks, is_rescaled=page.is_rescaled)
+    return ChartReading(chart, flat, view, marks, is_rescaled=page.is_rescaled)
 
 
 def _moved_page(chart: Chart, page: _Page, size: float, stroke_boxes, pixels, view: View, refusal: Error) -> _Page:
@@ -257,12 +259,12 @@ def _page_scale(chart: Chart, bar_mm: float | None) -> float:
     return size
 
 
-def edge_mm(read: Read) -> float:
+def edge_mm(read: ChartReading) -> float:
     """Return the standard deviation of a common shift of all edges [mm]."""
     return EDGE_PX / read.view.px_per_mm
 
 
-def marks_of(read: Read) -> list[dict]:
+def list_measured_marks(read: ChartReading) -> list[dict]:
     """Return the marks as a measurement file lists them."""
     return [
         {"stroke": stroke, "outline_mm": [ring.round(3).tolist() for ring in rings]}
@@ -270,22 +272,22 @@ def marks_of(read: Read) -> list[dict]:
     ]
 
 
-def expected(read: Read) -> dict:
+def get_expected_errors(read: ChartReading) -> dict:
     """Return the expected error of the sheet position, as a key of a measurement file."""
     return {} if read.view.seen and not read.is_rescaled else {"placement_mm": SCAN_PLACEMENT_MM}
 
 
-def write_marks(read: Read) -> str:
+def write_measurements(read: ChartReading) -> str:
     """Return a measurement file for `brushsvg calibrate`."""
     plan = _core.write_plan(read.chart.plan).strip()
-    rows = ",\n  ".join(json.dumps(row) for row in marks_of(read))
+    rows = ",\n  ".join(json.dumps(row) for row in list_measured_marks(read))
     head = '"format": "brushsvg/measurements", "version": 1'
-    if errors := expected(read):
+    if errors := get_expected_errors(read):
         head += f',\n "expected": {json.dumps(errors)}'
     return f'{{{head},\n "plan": {plan},\n "marks": [\n  {rows}]}}\n'
 
 
-def describe_reading(read: Read) -> str:
+def describe_reading(read: ChartReading) -> str:
     """Describe in one line how well the photograph could be read."""
     view, count, found_count = read.view, len(read.chart.strokes), len(read.marks.outlines_mm)
     strokes = f"{found_count} strokes" if found_count == count else f"{found_count} of {count} strokes"
@@ -302,7 +304,7 @@ def describe_reading(read: Read) -> str:
     )
 
 
-def remarks(read: Read) -> list[Notice]:
+def report_reading_notices(read: ChartReading) -> list[Notice]:
     """Return notices to read before a brush is made from the photograph."""
     notices = []
     view = read.view
@@ -337,7 +339,7 @@ def remarks(read: Read) -> list[Notice]:
     return notices
 
 
-def _describe_remaining(read: Read, missing: list[str]) -> str:
+def _describe_remaining(read: ChartReading, missing: list[str]) -> str:
     """Describe how many strokes are left at the depths where strokes are missing."""
     strokes = read.chart.strokes
     depths = sorted({stroke.depth_mm for stroke in strokes if stroke.id in missing})

@@ -12,7 +12,7 @@ import numpy as np
 from ... import _core
 from ...model.plot import INK, brush_picture_on, encoded, new_figure
 from ...reporting.report_text import Report, plural, verdict
-from ..law_text import HALF_95, coefficients, law_table, name_and_depths, values
+from ..law_text import HALF_95, evaluate_law, format_coefficients, law_table, name_and_depths
 from .dab_outlines import MAX_SMOOTHING_MM, Shape
 
 LIMITS_OF_DABS = (
@@ -47,13 +47,13 @@ def report(calibration) -> Report:
     counts = [str(len(shape.seen)) for shape in shapes]
     repeats = [f"{shape.repeat_mm:.3f}" for shape in shapes]
     columns = [("dabs", counts), ("rms distance from the mean", repeats)]
-    details = law_table(depths, [*columns, *((law, values(brush, law, depths)) for law in _MEASURED_LAWS)])
+    details = law_table(depths, [*columns, *((law, evaluate_law(brush, law, depths)) for law in _MEASURED_LAWS)])
     edges = (
         f"; it includes a common shift of all edges by {calibration.edge_mm:.2f} mm" if calibration.edge_mm > 0 else ""
     )
     sides = "both sides are equal" if outlines.is_even else "one side is larger than the other, by more than chance"
     details += [f"{HALF_95}{edges}", f"outlines: {sides}; they are smoothed by {MAX_SMOOTHING_MM:g} mm at most"]
-    return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
+    return Report(verdict([], reservations), tuple(lines), (*details, "", *format_coefficients(brush)))
 
 
 _MEASURED_LAWS = ("tip_gap", "tip_to_widest", "half_width")

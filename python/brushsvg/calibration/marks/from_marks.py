@@ -20,8 +20,8 @@ from ...model.laws.fitted import need_fits
 from ..numbers.from_widths import outlines_assumed
 from ..numbers.plausibility import MAX_DEPTH_PER_MEASURED
 from .ink_depletion import InkDepletion
-from .machine_found import PARTS, Number, ask_for, numbers
-from .mark_input import UPRIGHT, Painted, depths_painted, middle
+from .machine_found import PARTS, Number, list_machine_numbers, request_machine_parts
+from .mark_input import UPRIGHT, Painted, count_painted_depths, find_box_middle
 from .sheet_scale import SheetScale, fit_sheet_scale, refuse_scale
 from .stray_marks import MAX_RESIDUAL_SIGMAS, MAX_STRAY_SHARE, Stray, find_strays
 
@@ -361,10 +361,10 @@ def expected_machine(
     The machine has no errors. Each number has half its 95 % interval.
     """
     options = _core.MarkOptions()
-    ask_for(options, parts)
+    request_machine_parts(options, parts)
     painted = painted or expected_marks(plan, brush)
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
-    return numbers(fit, np.array(fit.covariance), options)
+    return list_machine_numbers(fit, np.array(fit.covariance), options)
 
 
 def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMark]:
@@ -393,7 +393,7 @@ def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, 
     options: depths and coefficients per law are set here.
     """
     options.deepest_mm = brush.depth_range_mm[1]
-    depths = max(1, depths_painted([np.array(stroke_pass.poses_mm) for stroke_pass in plan.passes]))
+    depths = max(1, count_painted_depths([np.array(stroke_pass.poses_mm) for stroke_pass in plan.passes]))
     options.lag_terms = min(LAG_TERMS, depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)
     options.noise_mm, options.noise_length_mm = noise_mm, noise_length_mm
@@ -524,7 +524,7 @@ def _footprint(brush: _core.Brush, depth: float, laws) -> _core.Footprint:
 def _fit_scale(fit, painted: Painted) -> SheetScale | None:
     """Fit the scale of the sheet to marks that are not outliers."""
     usable = [
-        (middle(np.array(mark.poses_mm)[:, :2]), residual.displacement_mm)
+        (find_box_middle(np.array(mark.poses_mm)[:, :2]), residual.displacement_mm)
         for mark, residual in zip(painted.marks, fit.marks, strict=True)
         if not residual.outlier
     ]

@@ -24,7 +24,7 @@ PARTS = {
     "field": ("field_mm", 0.5),
 }
 FIELD_TERMS = ("u u", "u v", "v v")
-# Remarks in the table on numbers that some machines cannot compensate, see cell.not_undone.
+# Remarks in the table on numbers that some machines cannot compensate, see cell.list_uncorrectable_keys.
 SERVO_REMARK = "# leave this line out for a brush on a servo or a pen lift"
 PEN_REMARK = "# leave this line out for a pen lift"
 ARM_REMARK = "# only for a machine with one motor for x and one for y: leave this line out for an arm or an EBB"
@@ -67,7 +67,7 @@ def refuse_unknown_parts(machine) -> None:
             raise Error(sentence, "machine", code="choice-unknown")
 
 
-def ask_for(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:
+def request_machine_parts(options: _core.MarkOptions, parts: tuple[str, ...]) -> None:
     """Request that the fit finds these parts of the machine as well."""
     for part in parts:
         key, sigma = PARTS[part]
@@ -78,7 +78,7 @@ def list_requested_parts(options: _core.MarkOptions) -> tuple[str, ...]:
     return tuple(part for part, (key, _) in PARTS.items() if getattr(options, key) > 0)
 
 
-def numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Number]:
+def list_machine_numbers(fit, covariance: np.ndarray, options: _core.MarkOptions) -> list[Number]:
     """Return all requested numbers, in the order of the fit."""
     parts = list_requested_parts(options)
     if not parts:
@@ -129,7 +129,7 @@ def has_field(found: list[Number]) -> bool:
     return any(abs(number.value) > MIN_FIELD_HALF_INTERVALS * number.half for number in found if number.part == "field")
 
 
-def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
+def format_cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str]:
     """Return the lines of a cell's table [machine].
 
     There are no lines if a cell can compensate none of the requested numbers.
@@ -157,10 +157,10 @@ def cell_table(fit, options: _core.MarkOptions, found: list[Number]) -> list[str
         ]
     if any(backlash):
         lines.append("backlash_mm = [{:.3f}, {:.3f}]  ".format(*backlash) + ARM_REMARK)
-    return [*lines, *(field_lines(machine) if is_bent else [])]
+    return [*lines, *(format_field_lines(machine) if is_bent else [])]
 
 
-def field_lines(machine) -> list[str]:
+def format_field_lines(machine) -> list[str]:
     """Return the lines of the field in a cell's table [machine]. machine: a fitted machine or the machine of a cell."""
     rows = ", ".join("[" + ", ".join(f"{mm:.4f}" for mm in row) + "]" for row in machine.field_mm)
     places = (machine.field_middle_mm, machine.field_reach_mm)
@@ -172,7 +172,7 @@ def format_pair(values) -> str:
     return "[{:.5f}, {:.5f}]".format(*values)
 
 
-def doubts(painted, options: _core.MarkOptions) -> list[Notice]:
+def report_inseparable_lean(painted, options: _core.MarkOptions) -> list[Notice]:
     """Return a notice where lean cannot be separated from lag."""
     if "lean" not in list_requested_parts(options):
         return []

@@ -94,11 +94,11 @@ def read_painted(plan: str | dict, marks: str | list, read: Callable[[str], byte
             for stroke, poses, rings in sorted(found, key=lambda mark: painted_as[mark[0]])
         ]
     )
-    before_mm, way_mm = ways_before_mm(passes)
+    before_mm, way_mm = measure_paths_before_mm(passes)
     return replace(whole, before_mm=before_mm, way_mm=way_mm)
 
 
-def ways_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], float]:
+def measure_paths_before_mm(passes: dict[str, _core.Pass]) -> tuple[dict[str, float], float]:
     """Return the TCP path length on the paper before each stroke, and in total."""
     ways = [polylines.length(np.array(plan_pass.poses_mm)[:, :2]) for plan_pass in passes.values()]
     *before, way_mm = np.cumsum([0.0, *ways]).tolist()
@@ -109,7 +109,7 @@ def to_painted(marks: list) -> Painted:
     """Return the marks as Painted. Raises Error if they are not informative about a brush."""
     ways = [np.array(mark.poses_mm) for mark in marks]
     _refuse_uninformative(ways)
-    return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
+    return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), count_painted_depths(ways))
 
 
 def _read_passes(plan, read) -> dict[str, _core.Pass]:
@@ -184,7 +184,7 @@ def _orient_rings(rings: list[np.ndarray]) -> list[np.ndarray]:
     return [np.array(ring) for ring in _core.fill(rings, "evenodd")] or rings
 
 
-def middle(points: np.ndarray) -> np.ndarray:
+def find_box_middle(points: np.ndarray) -> np.ndarray:
     """Return the middle of the bounding box of points (n, 2)."""
     return 0.5 * (points.min(axis=0) + points.max(axis=0))
 
@@ -194,8 +194,8 @@ def _refuse_other_frames(found: list) -> None:
 
     They show in the positions of marks relative to their strokes. found: (stroke, poses, rings) of each mark.
     """
-    planned = np.array([middle(poses[:, :2]) for _, poses, _ in found])
-    marked = np.array([middle(np.vstack(rings)) for _, _, rings in found])
+    planned = np.array([find_box_middle(poses[:, :2]) for _, poses, _ in found])
+    marked = np.array([find_box_middle(np.vstack(rings)) for _, _, rings in found])
     spread = lambda points: float(np.hypot(*np.std(points, axis=0)))  # noqa: E731
     sizes = lambda points: float(np.hypot(*np.ptp(points, axis=0)))  # noqa: E731
     lengths = [sizes(poses[:, :2]) for _, poses, _ in found]
@@ -305,7 +305,7 @@ def _refuse_foreign_outlines(found: list) -> None:
                 )
 
 
-def depths_painted(ways: list[np.ndarray]) -> int:
+def count_painted_depths(ways: list[np.ndarray]) -> int:
     """Count the depths at which MIN_PAINTED_MM or more was painted.
 
     Depths are in bins of a twentieth of the deepest.
@@ -326,7 +326,7 @@ def depths_painted(ways: list[np.ndarray]) -> int:
 
 
 def _refuse_uninformative(ways: list[np.ndarray]) -> None:
-    count = depths_painted(ways)
+    count = count_painted_depths(ways)
     if count == 0:
         sentence = f"no stroke is painted for more than {MIN_PAINTED_MM:g} mm at any depth: paint longer ones"
         raise Error(sentence, "plan", code="depths-too-few")

@@ -12,7 +12,7 @@ from ...geometry.rotation import rotation
 from ...model.confidence import law_band, paint_interval_per_m
 from ...model.plot import INK, brush_picture_on, encoded, fill_rings, new_figure, shortened
 from ...reporting.report_text import Report, format_overlap, overlap_reasons, plural, verdict
-from ..law_text import NOT_CONVERGED, coefficients, in_short, laws_table, name_and_depths, paper_height
+from ..law_text import NOT_CONVERGED, format_coefficients, laws_table, name_and_depths, paper_height, summarize_laws
 from . import machine_found
 from .from_marks import (
     GAP_TERMS,
@@ -48,7 +48,7 @@ def report(calibration, of_photo: bool = False) -> Report:
     differs from the expected one; a tenth of the edges is masked; too few depths were painted for the usual lag.
     """
     brush, fit = calibration.brush, calibration.fit
-    in_place, moved = overlaps(calibration)
+    in_place, moved = measure_mean_overlaps(calibration)
     unexpected = _unexpected(calibration, of_photo)
     reasons_against, low_overlap = judge_overlap(moved)
     strays = plural(len(calibration.strays), "mark")
@@ -68,10 +68,10 @@ def report(calibration, of_photo: bool = False) -> Report:
         else "",
         f"only {calibration.painted.depths} depths were painted" if len(brush.lag.coefficients) < LAG_TERMS else "",
     ]
-    machine_numbers = machine_found.numbers(fit, calibration.covariance, calibration.expected)
-    cell = machine_found.cell_table(fit, calibration.expected, machine_numbers)
+    machine_numbers = machine_found.list_machine_numbers(fit, calibration.covariance, calibration.expected)
+    cell = machine_found.format_cell_table(fit, calibration.expected, machine_numbers)
     lines = [
-        f"{name_and_depths(brush)}: {in_short(brush)}, from {len(calibration.painted.marks)} painted marks",
+        f"{name_and_depths(brush)}: {summarize_laws(brush)}, from {len(calibration.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {format_overlap(in_place)} as painted, and by {format_overlap(moved)} "
         "after each mark is moved to its predicted place (mean of intersection over union)",
         *(_describe_paint(calibration) if brush.paint else []),
@@ -97,7 +97,7 @@ def report(calibration, of_photo: bool = False) -> Report:
         *_describe_residuals(calibration),
         *(["", "for the cell file:", *cell] if cell else []),
     ]
-    return Report(verdict(reasons_against, reservations), tuple(lines), (*details, "", *coefficients(brush)))
+    return Report(verdict(reasons_against, reservations), tuple(lines), (*details, "", *format_coefficients(brush)))
 
 
 def judge_overlap(moved: float) -> tuple[list[str], list[str]]:
@@ -353,7 +353,9 @@ def _describe_sheet_and_machine(calibration) -> list[str]:
         f"the sheet is shifted by {fit.shift_mm[0]:+.2f} +- {shift[0]:.2f}, {fit.shift_mm[1]:+.2f} +- {shift[1]:.2f} "
         f"mm and turned by {math.degrees(fit.turn_rad):+.2f} +- {math.degrees(turn):.2f} degrees",
     ]
-    lines += machine_found.describe_numbers(machine_found.numbers(fit, calibration.covariance, calibration.expected))
+    lines += machine_found.describe_numbers(
+        machine_found.list_machine_numbers(fit, calibration.covariance, calibration.expected)
+    )
     if calibration.scale:
         lines.append(
             f"according to the places of its marks, the sheet is "
@@ -388,7 +390,7 @@ def _describe_residuals(calibration) -> list[str]:
     return lines
 
 
-def overlaps(calibration) -> tuple[float, float]:
+def measure_mean_overlaps(calibration) -> tuple[float, float]:
     """Return the mean overlap of painted with predicted marks.
 
     The two values are in place and without the displacements of the marks.

@@ -15,7 +15,7 @@ from ...geometry.polylines import lengths
 from ...geometry.rotation import rotation
 from .from_marks import MarkCalibration, brush_of, calibrate_marks, expected_fit, simulate_fitted_brush
 from .ink_depletion import find_ink_depletion
-from .mark_input import Painted, to_painted, ways_before_mm
+from .mark_input import Painted, measure_paths_before_mm, to_painted
 from .mark_report import predict_outlines
 
 MAX_ROUNDS = 8  # rounds of correcting the rate
@@ -199,7 +199,7 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     """
     options = _core.MarkOptions()
     fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
-    before_mm, _ = ways_before_mm({plan_pass.stroke: plan_pass for plan_pass in plan.passes})
+    before_mm, _ = measure_paths_before_mm({plan_pass.stroke: plan_pass for plan_pass in plan.passes})
     complete = replace(to_painted(painted), before_mm=before_mm)
     calibration = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)
     flanks = _collect_flanks(calibration)

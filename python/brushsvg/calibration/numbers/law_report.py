@@ -11,7 +11,7 @@ from ..._core import remarks
 from ...model.confidence import law_band
 from ...model.plot import brush_picture
 from ...reporting.report_text import Report, plural, verdict
-from ..law_text import coefficients, in_short, laws_table, name_and_depths
+from ..law_text import format_coefficients, laws_table, name_and_depths, summarize_laws
 
 
 def report(calibration) -> Report:
@@ -39,7 +39,7 @@ def report(calibration) -> Report:
         *(notice.sentence for notice in calibration.doubts),
     ]
     lines = [
-        f"{name_and_depths(brush)}: {in_short(brush)}",
+        f"{name_and_depths(brush)}: {summarize_laws(brush)}",
         *(_describe_fit(brush, fitted) for fitted in calibration.laws),
     ]
     for fitted in calibration.laws:
@@ -48,7 +48,7 @@ def report(calibration) -> Report:
         *laws_table(brush),
         *calibration.remarks,
         "",
-        *coefficients(brush),
+        *format_coefficients(brush),
     ]
     return Report(verdict(scattered, reservations), (*lines, *_suggest_next(calibration)), tuple(details))
 

@@ -53,7 +53,7 @@ class OverlapCalibration(ArrayValue):
         return f"<OverlapCalibration of {self.brush!r} from {len(self.mark_calibration.painted.marks)} marks>"
 
 
-def by_overlap(
+def maximize_overlap(
     calibration: MarkCalibration, progress: Callable[[str], object] = lambda text: None
 ) -> OverlapCalibration:
     """Change a fit by edges to the brush with the largest overlap.

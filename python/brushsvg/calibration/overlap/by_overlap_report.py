@@ -9,8 +9,8 @@ import numpy as np
 from ...model.describe import LAWS
 from ...model.plot import brush_picture
 from ...reporting.report_text import Report, format_overlap, verdict
-from ..law_text import coefficients, depths_shown, in_short, law_table, name_and_depths, paper_height
-from ..marks.mark_report import judge_overlap, overlaps
+from ..law_text import depths_shown, format_coefficients, law_table, name_and_depths, paper_height, summarize_laws
+from ..marks.mark_report import judge_overlap, measure_mean_overlaps
 from ..marks.mark_report import report as edge_report
 from ..marks.mark_report import report_picture as edge_report_picture
 
@@ -24,10 +24,13 @@ def report(calibration, of_photo: bool = False) -> Report:
     if found.kind == "edges":
         by_edges = edge_report(edges, of_photo)
         return replace(by_edges, lines=(chosen_in_words(found), *by_edges.lines))
-    (in_place, moved), (now_in_place, now_moved) = overlaps(edges), overlaps(calibration.mark_calibration)
+    (in_place, moved), (now_in_place, now_moved) = (
+        measure_mean_overlaps(edges),
+        measure_mean_overlaps(calibration.mark_calibration),
+    )
     lines = [
-        f"{name_and_depths(brush)}: {in_short(brush)}, fitted to the largest overlap with {len(edges.painted.marks)} "
-        "painted marks",
+        f"{name_and_depths(brush)}: {summarize_laws(brush)}, fitted to the largest overlap with "
+        f"{len(edges.painted.marks)} painted marks",
         f"painted and predicted marks overlap by {format_overlap(now_in_place)} as painted, and by "
         f"{format_overlap(now_moved)} after each mark is moved to its predicted place (fit by edges: "
         f"{format_overlap(in_place)} and {format_overlap(moved)})",
@@ -46,7 +49,7 @@ def report(calibration, of_photo: bool = False) -> Report:
         for law, _ in LAWS
     ]
     by_edges = "  in brackets: the fit by edges, which calibrate writes without --aim overlap"
-    details = [*law_table(depths, columns), by_edges, "", *coefficients(brush)]
+    details = [*law_table(depths, columns), by_edges, "", *format_coefficients(brush)]
     return Report(verdict(*judge_overlap(now_moved)), tuple(lines), tuple(details))
 
 

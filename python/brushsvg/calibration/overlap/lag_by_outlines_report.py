@@ -3,8 +3,16 @@
 from __future__ import annotations
 
 from ...reporting.report_text import Report, format_overlap, verdict
-from ..law_text import HALF_95, coefficients, depths_shown, law_table, name_and_depths, paper_height, values
-from ..marks.mark_report import judge_overlap, overlaps
+from ..law_text import (
+    HALF_95,
+    depths_shown,
+    evaluate_law,
+    format_coefficients,
+    law_table,
+    name_and_depths,
+    paper_height,
+)
+from ..marks.mark_report import judge_overlap, measure_mean_overlaps
 
 
 def report(found) -> Report:
@@ -13,7 +21,7 @@ def report(found) -> Report:
     found: a lag_by_outlines.LagByOutlines.
     """
     brush, outline_brush, before = found.brush, found.outline_brush, found.before
-    overlap_before, overlap_now = overlaps(before)[1], overlaps(found.mark_calibration)[1]
+    overlap_before, overlap_now = measure_mean_overlaps(before)[1], measure_mean_overlaps(found.mark_calibration)[1]
     worse = "the measured outlines predict the marks worse than the usual drops or eggs: check the dabs again"
     reasons_against, reservations = judge_overlap(overlap_now)
     lines = [
@@ -28,9 +36,11 @@ def report(found) -> Report:
     depths = depths_shown(brush, found.mark_calibration.painted.deepest_mm)
     names = (f"lag of {outline_brush.name}"[:19], "with drops or eggs", "with its outlines")
     columns = zip(
-        names, (values(shown_brush, "lag", depths) for shown_brush in (outline_brush, before.brush, brush)), strict=True
+        names,
+        (evaluate_law(shown_brush, "lag", depths) for shown_brush in (outline_brush, before.brush, brush)),
+        strict=True,
     )
-    details = [*law_table(depths, columns), HALF_95, "", *coefficients(brush, ["lag"])]
+    details = [*law_table(depths, columns), HALF_95, "", *format_coefficients(brush, ["lag"])]
     return Report(
         verdict(reasons_against, [worse if overlap_now < overlap_before else "", *reservations]),
         tuple(lines),

@@ -23,8 +23,8 @@ from .overlap_search import (
     Search,
     SearchStart,
     Target,
-    best_from,
     choose_subset,
+    find_best_vector,
     mean_place,
     refine_with_all,
     search_each_kind,
@@ -86,7 +86,7 @@ def find_best_prediction(
     search = Search(begin, options, targets, mean_place(targets))
     starts = [result.x for result in results[kind] if len(result.x) == len(search.begin)]
     if starts:
-        x = best_from(search, kind, starts, choose_subset(targets), count_evaluation)
+        x = find_best_vector(search, kind, starts, choose_subset(targets), count_evaluation)
     else:  # the parts have fewer marks, which determine fewer numbers of a law
         kind, x = _search_subset(search, targets, count_evaluation, kind)
     best = _finish_search(search, kind, x, targets, count_evaluation)

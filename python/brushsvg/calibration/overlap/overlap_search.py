@@ -329,7 +329,7 @@ def mean_place(targets: list[Target]) -> np.ndarray:
     return np.vstack([target.poses_mm[:, :2] for target in targets]).mean(axis=0)
 
 
-def best_from(
+def find_best_vector(
     search: Search,
     kind: str,
     starts: list[np.ndarray],
@@ -457,7 +457,7 @@ def map_predicted(
     brush.footprints = _core.FootprintTable([_core.Footprint(depth, ring) for depth, ring in outlines])
 
     def predict(target: Target):
-        stroke_pass = _core.Pass("mark", on_paper(target.poses_mm, height_mm, shift_mm))
+        stroke_pass = _core.Pass("mark", move_to_fitted_paper(target.poses_mm, height_mm, shift_mm))
         marks = _core.simulate(_core.Plan("fitted", "", (1.0, 1.0), [stroke_pass]), brush, ROW_SPACING_MM)
         return evaluate(target, _core.coverage(marks, brush, target.window_mm, target.px_per_mm))
 
@@ -469,7 +469,7 @@ def _workers() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(os.cpu_count())
 
 
-def on_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
+def move_to_fitted_paper(poses_mm, height_mm: float, shift_mm) -> np.ndarray:
     """Return the poses of the TCP relative to the fitted paper. The paper has the given height and shift."""
     poses = np.array(poses_mm)
     poses[:, :2] += shift_mm

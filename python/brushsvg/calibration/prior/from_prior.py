@@ -14,14 +14,7 @@ from numpy.polynomial.polynomial import polyval
 
 from ... import _core
 from ...errors import Error, Notice
-from ...model.confidence import (
-    LAWS,
-    LEARNED,
-    fitted_down_to_mm,
-    half_interval_mm,
-    learned_of,
-    places,
-)
+from ...model.confidence import LAWS, LEARNED, fitted_down_to_mm, half_interval_mm, learned_of, places
 from ...model.extra_keys import read_extra_keys
 from ...model.laws.fitted import need_fits
 from ..marks.from_marks import (
@@ -36,8 +29,8 @@ from ..marks.from_marks import (
     refuse_many_outliers,
     to_brush_covariance,
 )
-from ..marks.machine_found import ask_for
-from ..marks.mark_input import Painted, depths_painted
+from ..marks.machine_found import request_machine_parts
+from ..marks.mark_input import Painted, count_painted_depths
 from ..marks.stray_marks import Stray, find_strays
 from .known_laws import DEPTH_COUNT, KnownLaws, known_laws, numbers_of, root_of_inverse
 
@@ -80,7 +73,7 @@ class UpdatedBrush:
 def marks_with_prior(marks: list) -> Painted:
     """Return marks as Painted without checks. The prior supplies what the marks do not determine."""
     ways = [np.array(mark.poses_mm) for mark in marks]
-    return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), depths_painted(ways))
+    return Painted(marks, max(float(-poses[:, 2].min()) for poses in ways), count_painted_depths(ways))
 
 
 def update_brush(
@@ -108,7 +101,7 @@ def update_brush(
     options.front_per_half = _core.Prior(known.laws.front_per_half, options.front_per_half.sigma)
     if displacement_mm is not None:
         options.displacement_mm = displacement_mm
-    ask_for(options, machine)
+    request_machine_parts(options, machine)
     fit, wider = _fit_wide_enough(painted.marks, known, options)
     refuse_many_outliers(fit, painted)
     astray = tuple(find_strays(painted.marks, fit))

@@ -10,14 +10,14 @@ from ...model.confidence import LAWS
 from ...reporting.report_text import Report, plural, verdict
 from ..law_text import (
     NOT_CONVERGED,
-    coefficients,
     depths_shown,
+    evaluate_law,
+    format_coefficients,
     law_table,
     name_and_depths,
     paper_height,
-    values,
 )
-from ..marks.machine_found import cell_table, describe_numbers, numbers
+from ..marks.machine_found import describe_numbers, format_cell_table, list_machine_numbers
 from .from_prior import found_height
 
 MIN_REPORTED_OFFSET_MM = 0.05  # the report mentions a different form of the prior if it moves a law by more
@@ -41,8 +41,8 @@ def report(calibration) -> Report:
         *(f"{law}: {_describe_law(calibration, law)}" for law in LAWS),
         *_list_remarks(calibration),
     ]
-    machine_numbers = numbers(fit, calibration.covariance, calibration.options)
-    table = cell_table(fit, calibration.options, machine_numbers)
+    machine_numbers = list_machine_numbers(fit, calibration.covariance, calibration.options)
+    table = format_cell_table(fit, calibration.options, machine_numbers)
     details = [*_compare_laws(calibration, laws), *_describe_residuals(calibration)]
     details += [
         f"{law}, uncertainty before: {calibration.known.how[law]}{_describe_prior(calibration, law)}" for law in LAWS
@@ -52,7 +52,7 @@ def report(calibration) -> Report:
         *describe_numbers(machine_numbers),
         *(["", *table] if table else []),
     ]
-    return Report(verdict([], reservations), tuple(lines), (*details, "", *coefficients(brush)))
+    return Report(verdict([], reservations), tuple(lines), (*details, "", *format_coefficients(brush)))
 
 
 def _list_remarks(calibration) -> list[str]:
@@ -96,7 +96,9 @@ def _compare_laws(calibration, laws: list[str]) -> list[str]:
     depths = depths_shown(calibration.brush)
     columns = []
     for law in laws:
-        pairs = zip(values(calibration.brush, law, depths), values(calibration.before, law, depths), strict=True)
+        pairs = zip(
+            evaluate_law(calibration.brush, law, depths), evaluate_law(calibration.before, law, depths), strict=True
+        )
         columns.append((law, [f"{now} ({was})" for now, was in pairs]))
     return [
         *law_table(depths, columns),

@@ -15,7 +15,7 @@ from ...machine import preflight
 from ...machine.cells.cell import Cell
 from ...machine.job_program import CheckedProgram
 from ...machine.moves import duration_s
-from ...machine.paint_reload import PlanInLoads, report_long_strokes, split_into_loads, station_visits
+from ...machine.paint_reload import PlanInLoads, list_station_visits, report_long_strokes, split_into_loads
 from ..console import refuse_errors, stage, warn
 from .options import make_options
 
@@ -51,7 +51,7 @@ class PreparedPaint:
         """
         with suppress(Error):
             # Raises Error for a colour that no station serves: the program then lacks the visits to paint stations.
-            station_visits(self.loads, self.work.options.cell)
+            list_station_visits(self.loads, self.work.options.cell)
             return duration_s(self.walk.made) if self.walk else None
         return None
 
@@ -93,7 +93,7 @@ def prepare_and_simulate(
             walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, walk=known_walk, of_drawing=is_drawing)
         forbidden = [replace(problem, refused=True) for problem in walk.problems] if walk else []
         sheet_mm = work.plan.sheet_mm
-        off_sheet_notices = preflight.off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []
+        off_sheet_notices = preflight.find_paint_off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []
         warnings = [*work.notices, *forbidden, *off_sheet_notices, *tilt_notices]
         warnings += report_long_strokes(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)

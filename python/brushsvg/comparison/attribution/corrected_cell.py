@@ -9,7 +9,7 @@ from collections.abc import Container
 
 import numpy as np
 
-from ...calibration.marks.machine_found import field_lines, format_pair
+from ...calibration.marks.machine_found import format_field_lines, format_pair
 from ...machine.cells.cell import LEAST_BACKLASH_MM, Machine
 from ..photographs import EDGE_BLUR_MM, Comparison, TargetStroke, subtract_displacements
 from ..placing import NOWHERE, Canvas, Placed, locate_mark
@@ -36,7 +36,7 @@ def key_of(name: str) -> str:
     return KEY_OF_NAME[name.partition(" ")[0]]
 
 
-def certain_of(faults: Faults) -> dict[str, float]:
+def select_certain_numbers(faults: Faults) -> dict[str, float]:
     """Return the value of each number of machine and paper by its name. A value that is not certain is 0."""
     return {
         fault.number.name: fault.value if abs(fault.value) > MIN_CERTAINTY * fault.half else 0.0
@@ -52,7 +52,9 @@ def significant_part(
 
     The part is 0 where the number is not certain. left_out: keys of the table that this machine cannot compensate.
     """
-    certain = {name: 0.0 if key_of(name) in left_out else value for name, value in certain_of(faults).items()}
+    certain = {
+        name: 0.0 if key_of(name) in left_out else value for name, value in select_certain_numbers(faults).items()
+    }
     for paper, name in enumerate("xy"):
         previous_mm = before.backlash_mm[along[paper]] if before and along else 0.0
         total_mm = previous_mm + certain.get(f"backlash in {name}", 0.0) if along else previous_mm
@@ -107,7 +109,7 @@ def _round_all(values) -> tuple[float, ...]:
     return tuple(round(float(value), 5) for value in values)
 
 
-def as_table(machine: Machine) -> list[str]:
+def format_machine_table(machine: Machine) -> list[str]:
     """Return the lines of a cell's table [machine].
 
     Parts without an error are left out.
@@ -128,7 +130,7 @@ def as_table(machine: Machine) -> list[str]:
     if any(machine.backlash_mm):
         lines.append("backlash_mm = [{:.3f}, {:.3f}]".format(*machine.backlash_mm))
     if machine.field_mm:
-        lines += field_lines(machine)
+        lines += format_field_lines(machine)
     return lines
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...machine.cells.cell import Machine
 from ...reporting.report_text import format_overlap, table
 from ..job_marks import PAINT_A_CHART
-from .corrected_cell import as_table
+from .corrected_cell import format_machine_table
 from .faults import MISSING_PAINT, OWN_PLACE, EstimatedFault, Faults
 from .model import BRUSH, MACHINE, PAPER, SHEET
 
@@ -63,7 +63,7 @@ def fault_lines(faults: Faults | None, machine: Machine | None) -> list[str]:
         lines += [
             "",
             "Table for the next cell, with the certain errors and the errors that the cell already corrects:",
-            *as_table(machine),
+            *format_machine_table(machine),
         ]
     return lines
 

@@ -15,7 +15,7 @@ from ...machine.job_program import Job
 from ...machine.writer import join_pieces, list_cell_notices
 from ...model.library import parse_brush
 from ...read import InMemory
-from ...show.evaluation.figures import PaintedPlan, measure
+from ...show.evaluation.figures import PaintedPlan, measure_figures
 from .. import conversion, outputs
 from ..choices.choice_checks import check_choices
 from ..choices.choices import Choices
@@ -137,7 +137,7 @@ def _convert(task: Task) -> TaskResult:
         raise Error(f"{problem.sentence}{rest}", problem.where, code=problem.code, advice=problem.advice)
     joined = {name: join_pieces(pieces) for name, pieces in simulated.encoded().items()}
     texts = {name: text.encode() if isinstance(text, str) else text for name, text in joined.items()}
-    _, total = measure(
+    _, total = measure_figures(
         PaintedPlan(
             simulated.work.plan,
             simulated.marks,

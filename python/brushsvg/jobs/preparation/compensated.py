@@ -7,7 +7,7 @@ from copy import copy
 from ... import _core
 from ...machine.job_program import POSES_KEPT, Job
 from ...machine.paint_reload import split_into_loads
-from ...machine.preflight import within_limits
+from ...machine.preflight import check_limits
 from ..options import Options
 from ..prepared_drawing import KnownSimulation
 
@@ -55,7 +55,7 @@ def fit_ends_to_machine(
     def simulate(a_plan) -> KnownSimulation:
         loads = split_into_loads(a_plan, brush, options.cell)
         marks = _core.simulate(a_plan, brush, progress=lambda now, all_: stage(f"simulated {now} of {all_} strokes"))
-        walk = within_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
+        walk = check_limits(loads, brush, marks, options.cell, Job(options.z_offset_mm))
         return KnownSimulation(copy(a_plan), marks, walk)
 
     def find_refused(simulation: KnownSimulation) -> set[str]:

@@ -145,12 +145,18 @@ def _place_passes(work: PreparedDrawing, deepest_mm: float, last_pass) -> tuple[
     Returns the passes and the size of the sheet with their strip, or None if a pass is wider than the sheet.
     """
     # The chart layout imports OpenCV, which is not needed without margin strokes.
-    from ...calibration.chart.layout import GAP_MM, angular, chart_depths, find_mark_boxes, straight
+    from ...calibration.chart.layout import (
+        GAP_MM,
+        chart_depths,
+        find_mark_boxes,
+        make_angular_stroke,
+        make_straight_stroke,
+    )
 
     brush, (width, height) = work.brush, work.plan.sheet_mm
     # The shallowest mark is too thin to be visible in a photograph.
     _, shallowest, *deeper = chart_depths(brush, 1 + DEPTH_COUNT, deepest_mm)
-    charted = [straight(brush, shallowest), *(angular(brush, depth) for depth in deeper)]
+    charted = [make_straight_stroke(brush, shallowest), *(make_angular_stroke(brush, depth) for depth in deeper)]
     left, bottom, top, passes = 0.0, height + GAP_MM, height, []
     names = {each.stroke for each in work.plan.passes}
     free_names = (name for k in range(1, len(names) + DEPTH_COUNT + 1) if (name := f"{MARGIN_KIND}-{k}") not in names)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 
-from ...show.evaluation.figures import PaintedPlan, measure
+from ...show.evaluation.figures import PaintedPlan, measure_figures
 from ..options import Options
 from ..prediction import predict
 from .preparation import prepare
@@ -37,7 +37,7 @@ def rank_brushes(path: str | os.PathLike[str], options: Options, brushes, stage=
         work = prepare(path, replace(options, brush=brush), stage, partly=True)
         marks = predict(work, outlines=False, stage=stage)
         drawn = [*work.strokes, *work.left_out]
-        rows, total = measure(
+        rows, total = measure_figures(
             PaintedPlan(work.plan, marks, brush, work.strokes, options.tolerance_mm, drawn, options.compensation)
         )
         results.append(rate_brush(brush.name, rows, total.overlap if rows else 0.0, work.refused))

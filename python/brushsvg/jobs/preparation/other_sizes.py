@@ -28,9 +28,9 @@ def advise_on_size(work: PreparedDrawing) -> str:
         options = replace(options, wide="clamp")
     trial = _make_trial(work.brush, options)
     if are_filled:
-        size = size_advice.best_letter_size(work.drawn, work.brush, trial)
+        size = size_advice.find_best_letter_size(work.drawn, work.brush, trial)
     else:
-        size = size_advice.best_size(work.drawn, work.brush, trial, _make_quick_trial(work.brush, options))
+        size = size_advice.find_best_size(work.drawn, work.brush, trial, _make_quick_trial(work.brush, options))
     scale = (options.layout.scale or 1.0) if options.layout.fit_mm is None else None
     return size_advice.advise_on_size(size, scale)
 

@@ -108,7 +108,7 @@ def read_project(path: str | os.PathLike[str]) -> Project:
     return Project(path, settings)
 
 
-def options() -> dict[str, str]:
+def list_default_keys() -> dict[str, str]:
     """Return the keys of [defaults], each with the name of its choice."""
     from ..choices.choices import CHOICE_BY_FLAG, CHOICES
 
@@ -163,7 +163,7 @@ def _read_settings(document: dict, folder: str) -> dict[str, object]:
     defaults = document.pop("defaults", {})
     if not isinstance(defaults, dict):
         raise Error("defaults is written as a table, [defaults]", where="defaults", code="wrong-type")
-    choice_by_key = options()
+    choice_by_key = list_default_keys()
     for key in document:
         _refuse_unknown(key, CHOICE_BY_TOP_KEY, choice_by_key, "write it below [defaults]")
     settings = {

@@ -73,7 +73,7 @@ def find_nearest_place(program: Program, joints: JointSolver, allowed: Callable[
     """
     outermost_mm, followed_count = outermost_places(program), 0
     for place in _tried_places(program, outermost_mm):
-        moved_program = at(program, place.frame)
+        moved_program = move_paper(program, place.frame)
         robot_points_mm = transform_points(place.frame, outermost_mm)
         if not all(
             _can_reach(joints, moved_program.cell, place.frame, point) for point in robot_points_mm
@@ -87,13 +87,13 @@ def find_nearest_place(program: Program, joints: JointSolver, allowed: Callable[
     return None
 
 
-def at(program: Program, frame: np.ndarray) -> Program:
+def move_paper(program: Program, frame: np.ndarray) -> Program:
     """Return the program with the paper at a pose (4, 4) in the robot's frame."""
     rise = program.rise_in_robot_mm + frame[2, 3] - program.robot_from_frame[2, 3]
-    return replace(program, cell=cell_at(program.cell, frame), robot_from_frame=frame, rise_in_robot_mm=rise)
+    return replace(program, cell=move_paper_of_cell(program.cell, frame), robot_from_frame=frame, rise_in_robot_mm=rise)
 
 
-def cell_at(cell: Cell, frame: np.ndarray) -> Cell:
+def move_paper_of_cell(cell: Cell, frame: np.ndarray) -> Cell:
     """Return the cell with the paper at a pose (4, 4) in the robot's frame."""
     origin, turned = (tuple((np.round(each, 6) + 0.0).tolist()) for each in (frame[:3, 3], rotation_deg(frame[:3, :3])))
     return replace(cell, paper=replace(cell.paper, origin_mm=origin, rotation_deg=turned, taught_mm=()))
@@ -147,7 +147,7 @@ class ReachTable:
     what: np.ndarray
 
 
-def table_of(cell: Cell, frame: np.ndarray, joints: JointSolver) -> ReachTable:
+def rate_table(cell: Cell, frame: np.ndarray, joints: JointSolver) -> ReachTable:
     """Rate each square of the paper's plane for the arm.
 
     The plane is seen along the axis of the robot's frame that is nearest to its normal. The map covers the cell's box,

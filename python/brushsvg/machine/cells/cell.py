@@ -553,7 +553,7 @@ def reason_for_no_backlash(cell: Cell) -> str:
     return JOINT_PLAY_REASON if cell.arm else NO_BACKLASH_REASONS.get(cell.language, "")
 
 
-def not_undone(cell: Cell) -> dict[str, str]:
+def list_uncorrectable_keys(cell: Cell) -> dict[str, str]:
     """Return the keys of the table machine that cannot be corrected on a cell.
 
     The values of the result are the reasons.

@@ -24,8 +24,8 @@ from .cell import (
     Speeds,
     Station,
     entries_of,
+    list_uncorrectable_keys,
     min_backlash_mm,
-    not_undone,
     reason_for_no_waiting,
     robot_from_paper,
     value_mm,
@@ -233,7 +233,7 @@ def _check_workspace(cell: Cell) -> None:
 LARGEST_SHEET_MM = 1e5
 
 
-def out_of_reach(cell: Cell) -> list[Notice]:
+def report_workspace_out_of_reach(cell: Cell) -> list[Notice]:
     """Report a workspace in which the tool can reach no point of a sheet of any size.
 
     The sheet is checked at the paper and at the safe height. Each notice names the key.
@@ -380,7 +380,7 @@ def _check_servo(cell: Cell) -> None:
 
 
 def _check_corrections(cell: Cell) -> None:
-    for key, why in not_undone(cell).items():
+    for key, why in list_uncorrectable_keys(cell).items():
         values = np.atleast_1d(getattr(cell.machine, key)).tolist()
         if np.any(values):
             sentence = f"{key} {values} is outside the range [0, 0] of this machine: {why}"

@@ -8,7 +8,7 @@ from math import acos, atan2, ceil, cos, hypot, inf, pi, sin
 import numpy as np
 
 from ... import _core
-from .retimed import on_way
+from .pass_on_path import move_pass_to_path
 
 # Largest turn of a chord and its largest distance from the circle. The mark's edge shows less of the polygon than that.
 MAX_CHORD_TURN_RAD = 0.12
@@ -24,7 +24,7 @@ def with_chords(a_pass: _core.Pass) -> _core.Pass:
     """Return a pass with poses so dense on its arcs that chords can replace the arcs."""
     if not len(a_pass.arcs):
         return a_pass
-    return on_way(a_pass, *add_chords(np.asarray(a_pass.poses_mm), a_pass.arcs, a_pass.arcs))
+    return move_pass_to_path(a_pass, *add_chords(np.asarray(a_pass.poses_mm), a_pass.arcs, a_pass.arcs))
 
 
 def add_chords(poses: np.ndarray, dense, arcs) -> tuple[np.ndarray, list]:
@@ -67,7 +67,7 @@ def split_arcs_at_extremes(a_pass: _core.Pass, turned_rad: float) -> _core.Pass:
     for number, arc in enumerate(a_pass.arcs):
         ends = [new_rows[arc.first], *(new_rows[row] + k for row, k in cuts[number]), new_rows[arc.last]]
         arcs += [_core.Arc(first, last_quarter, arc.centre_mm, arc.direction) for first, last_quarter in pairwise(ends)]
-    return on_way(a_pass, dense, arcs)
+    return move_pass_to_path(a_pass, dense, arcs)
 
 
 # Largest distance that an arc may go beyond its turning point. It is not visible, and it avoids tiny arcs.

@@ -12,7 +12,7 @@ import numpy as np
 
 from ... import _core
 from ..cells.cell import Cell, Machine
-from .retimed import on_way
+from .pass_on_path import move_pass_to_path
 from .smooth_field import count_line_parts, cuts_at_field_edge, field_displacement_mm, has_field, max_field_slope
 
 # Error [mm] at which inverting a field stops, and largest number of rounds. Each round leaves at most a quarter of the
@@ -230,4 +230,4 @@ def _transform_pass(a_pass, machine: Machine | None, transform):
     for arc in a_pass.arcs if is_similar(machine) else ():
         centre = transform(np.array([[*arc.centre_mm, poses[arc.first, 2]]]), machine)[0, :2]
         arcs.append(_core.Arc(arc.first, arc.last, tuple(centre.tolist()), arc.direction))
-    return on_way(a_pass, transform(poses, machine), arcs, a_pass.tool_axes)
+    return move_pass_to_path(a_pass, transform(poses, machine), arcs, a_pass.tool_axes)

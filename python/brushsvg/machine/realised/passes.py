@@ -13,7 +13,7 @@ from ... import _core
 from ..cells.cell import Machine
 from .arc_chords import with_chords
 from .distortion import has_lean, true_path_mm
-from .retimed import on_way
+from .pass_on_path import move_pass_to_path
 
 MAX_STEP_MM = 0.4  # largest sideways length of a step with backlash
 MAX_STRAIGHT_SINE = 1e-7  # sine of the largest turn between two moves that count as one
@@ -38,7 +38,7 @@ def as_run(passes, machine: Machine, backlash_mm=(0.0, 0.0), deepest_mm: float =
         path_on_paper = _clip_to_paper(true_path_mm(poses, machine))
         if path_on_paper is not None:
             path_on_paper[:, 2] = np.maximum(path_on_paper[:, 2], -deepest_mm)
-            runs.append(on_way(a_pass, path_on_paper, []))
+            runs.append(move_pass_to_path(a_pass, path_on_paper, []))
     return runs
 
 
@@ -61,7 +61,7 @@ def passes_with_backlash(passes, backlash_mm) -> list:
         lags = np.column_stack([_axis_lags_mm(moves[:, k], half[k], lag[k]) for k in (0, 1)])
         run = poses - np.column_stack([lags, np.zeros(len(poses))])
         lag = lags[-1]
-        runs.append(on_way(a_pass, run[_bent_rows(poses, lags)], []))
+        runs.append(move_pass_to_path(a_pass, run[_bent_rows(poses, lags)], []))
     return runs
 
 

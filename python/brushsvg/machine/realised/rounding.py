@@ -22,7 +22,7 @@ from ..tool_axes import axes_of
 from .arc_chords import OFF_MM, add_chords, with_chords
 from .corner_blending import MAX_VERTICAL_SIDEWAYS_MM
 from .distortion import commanded_pass, has_lean
-from .retimed import on_way
+from .pass_on_path import move_pass_to_path
 
 # Smallest size and height of a circle, in units of the last decimal. Smaller or flatter circles are run along their
 # chords. Rounded, they could turn the other way or all round, or become a line.
@@ -55,7 +55,7 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
     frame: (4, 4) pose of the paper's frame in the robot's frame.
     was_read: whether the pass was read from a program.
     """
-    a_pass = commanded_pass(steep_ways_lifted(a_pass, cell, was_read) if cell.servo else a_pass, cell)
+    a_pass = commanded_pass(lift_on_steep_paths(a_pass, cell, was_read) if cell.servo else a_pass, cell)
     post = POSTS.get(cell.language)
     unit = unit_mm(cell)
     exact = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
@@ -103,7 +103,7 @@ def _at_servo_values(poses: np.ndarray, servo: Servo) -> np.ndarray:
     return np.column_stack([poses[:, :2], np.interp(rounded_values, values[rising], heights[rising])])
 
 
-def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
+def lift_on_steep_paths(a_pass, cell: Cell, was_read: bool = False):
     """Return a pass without moves that are too steep for a servo.
 
     A servo changes its height in steps along a move, each with a move of its own. Where a move is too steep for that,
@@ -113,18 +113,18 @@ def steep_ways_lifted(a_pass, cell: Cell, was_read: bool = False):
     was_read: whether the pass was read from a program.
     """
 
-    def outrun(poses: np.ndarray) -> np.ndarray:
+    def find_steep_rows(poses: np.ndarray) -> np.ndarray:
         return np.flatnonzero(is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read))
 
     poses = np.asarray(a_pass.poses_mm, dtype=float).reshape(-1, 3)
-    if not len(outrun(poses)):
+    if not len(find_steep_rows(poses)):
         return a_pass
     poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float)
-    rows, ways = outrun(poses), np.diff(poses, axis=0)
+    rows, ways = find_steep_rows(poses), np.diff(poses, axis=0)
     presses = ways[rows, 2] < 0
     places = np.where(presses[:, None], poses[rows, :2], poses[rows + 1, :2])
     heights = np.where(presses, poses[rows + 1, 2], poses[rows, 2])
-    return on_way(a_pass, np.insert(poses, rows + 1, np.column_stack([places, heights]), axis=0), [])
+    return move_pass_to_path(a_pass, np.insert(poses, rows + 1, np.column_stack([places, heights]), axis=0), [])
 
 
 def _servo_rows(places: np.ndarray, least_mm: float) -> np.ndarray:

@@ -8,7 +8,7 @@ from ... import _core
 from ...errors import Notice
 from ..cells.cell import MOST_TILT_DEG, Cell
 from ..tool_axes import axes_of, between_deg, normalize, tilts_deg
-from .retimed import on_way
+from .pass_on_path import move_pass_to_path
 
 # Largest turn between two poses. A robot turns the tool evenly about one line in space. Within this step, the tool
 # stays within 0.03 degrees of the prediction.
@@ -51,7 +51,7 @@ def split_turning_moves(a_pass):
         new_poses.append(points)
         new_leans.append(lean)
     lean = np.vstack(new_leans)
-    return on_way(a_pass, np.vstack(new_poses), (), normalize(np.column_stack([lean, np.ones(len(lean))])))
+    return move_pass_to_path(a_pass, np.vstack(new_poses), (), normalize(np.column_stack([lean, np.ones(len(lean))])))
 
 
 def _can_be_simulated(poses: np.ndarray, axes: np.ndarray) -> bool:

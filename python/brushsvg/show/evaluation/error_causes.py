@@ -48,7 +48,7 @@ REMEDIES = {  # by code of the cause, where a remedy exists
 LINE_CODES = ("stroke-start", "stroke-end", "off-middle-line")
 
 
-def remedy(code: str, stroke) -> str:
+def find_remedy(code: str, stroke) -> str:
     """Return the remedy for a cause, "" where there is none."""
     return SCALE_UP if code in LINE_CODES and stroke.target_mm else REMEDIES.get(code, "")
 
@@ -82,7 +82,7 @@ def find_cause(painted, stroke, line, place, size_mm, tracking_error) -> Cause:
     is_rim = place.is_missing and bool(pieces_here)
     is_corner = place.is_missing and _outside_discs_mm2(stroke, place.at_mm, size_mm) > place.area_mm2 / 2
     where = "bare" if is_bare else "rim" if is_rim else "corner" if is_corner else ""
-    return cause(
+    return find_gravest_cause(
         stroke,
         line,
         painted.brush,
@@ -115,7 +115,7 @@ def _square_ring(place_mm, reach_mm: float) -> np.ndarray:
     return np.array([(x + reach_mm * right, y + reach_mm * up) for right, up in sides])
 
 
-def cause(
+def find_gravest_cause(
     stroke,
     line: np.ndarray,
     brush,

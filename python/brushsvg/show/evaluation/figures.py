@@ -111,7 +111,7 @@ class PaintedPlan:
         return None if self.strokes is None or None in self.strokes else list(self.strokes)
 
 
-def measure(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
+def measure_figures(painted: PaintedPlan) -> tuple[tuple[Figures, ...], Figures]:
     """Return the figures of each pass, and of all passes together."""
     plan, strokes, brush = painted.plan, painted.strokes, painted.brush
     if strokes is None:
@@ -154,7 +154,9 @@ def _stroke_figures(painted: PaintedPlan, a_pass, stroke, verdict, tracking_erro
     )
 
 
-def groups(marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None) -> tuple[Group, ...]:
+def group_touching_strokes(
+    marks: _core.Marks, brush: _core.Brush, strokes: Sequence[_core.Stroke] | None
+) -> tuple[Group, ...]:
     """Return groups of strokes that touch, so that each letter is judged as a whole.
 
     strokes: one per pass, None for a pass that is a part of a stroke.

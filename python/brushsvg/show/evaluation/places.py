@@ -9,7 +9,7 @@ import numpy as np
 
 from ... import _core
 from ...reporting.report_text import place_line
-from .error_causes import RING_TOLERANCE_MM, Cause, find_cause, remedy, square_side_mm
+from .error_causes import RING_TOLERANCE_MM, Cause, find_cause, find_remedy, square_side_mm
 from .figures import PaintedPlan
 
 PX_PER_MM, MAX_PIXELS = 10.0, 8e6  # limits of the resolution and number of compared pixels
@@ -107,7 +107,7 @@ def _describe_place(number: int, stroke, area, why) -> Place:
     if error_mm is not None:
         size += f", tracking error up to {error_mm:.2g} mm"
     at = (area.missing_mm2, area.outside_mm2, error_mm)
-    return Place(number, stroke.id, area.at_mm, *at, cause.words, cause.code, remedy(cause.code, stroke), size)
+    return Place(number, stroke.id, area.at_mm, *at, cause.words, cause.code, find_remedy(cause.code, stroke), size)
 
 
 def _window_around(lines: Iterable[np.ndarray]) -> tuple[tuple[float, float, float, float], float]:

@@ -105,7 +105,7 @@ def is_law_interval_known(brush, law: str) -> bool:
     return _is_law_measured(brush, law) or getattr(brush, law).rmse_mm is not None
 
 
-def uncertainty(plan, brush, marks) -> PlanConfidence | None:
+def estimate_confidence(plan, brush, marks) -> PlanConfidence | None:
     """Return the confidence in the marks of a plan, per pass and in total.
 
     Returns None where nothing is known. marks: the plan's marks, simulated with this brush.
@@ -119,7 +119,7 @@ def uncertainty(plan, brush, marks) -> PlanConfidence | None:
     return PlanConfidence(source, in_words(brush), strokes, _largest(strokes))
 
 
-def band(plan, brush, marks) -> Band:
+def make_band(plan, brush, marks) -> Band:
     """Return the band of every pass. It has no rings where nothing is known. marks: with outlines."""
     if known_from(brush) is None:
         return Band(tuple([] for _ in marks.passes), in_words(brush))

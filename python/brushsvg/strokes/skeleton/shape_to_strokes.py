@@ -19,7 +19,7 @@ from .graph import Skeleton, build_skeleton
 from .reading_order import order_strokes
 from .rough_outlines import smooth_rough_outlines
 from .shared_corners import with_shared_corners
-from .touching_dots import touching_dots
+from .touching_dots import part_touching_dots
 from .writing_order import join_pieces
 
 # How far a middle line may leave the medial axis to be smooth, as a share of the half width. With less it follows
@@ -88,7 +88,7 @@ def _find_area_strokes(
     area_skeleton = build_skeleton(area, nodes, branches)
     if not area_skeleton.pieces:  # the whole shape is roughly one disc
         return [(disc[None, :3], _make_dab(disc, area)) for disc in area_skeleton.dabs[:1]]
-    if dots := touching_dots(area_skeleton.pieces, area):
+    if dots := part_touching_dots(area_skeleton.pieces, area):
         return [(disc[None, :3], _make_dab(disc, part)) for disc, part in dots]
     chains = [run_to_cuts(chain, area) for chain in join_pieces(area_skeleton.pieces, area_skeleton, script)]
     lines = [np.vstack([piece.line for piece in chain]) for chain in chains]

@@ -16,7 +16,7 @@ from ...geometry.polylines import lengths
 MAX_WAIST, MAX_TO_MIDDLE, MAX_LENGTH = 0.65, 1.45, 1.9
 
 
-def touching_dots(pieces: list, area: list[np.ndarray]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
+def part_touching_dots(pieces: list, area: list[np.ndarray]) -> list[tuple[np.ndarray, list[np.ndarray]]]:
     """Return the two dots that a shape consists of, parted across its waist.
 
     pieces: of the shape's skeleton; area: its outer ring and holes. Returns for each dot its widest disc (x, y,

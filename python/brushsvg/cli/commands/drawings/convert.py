@@ -16,7 +16,7 @@ from ....jobs.preparation.margin_strokes import describe_expected_accuracy
 from ....jobs.prepared_drawing import PreparedDrawing
 from ....machine.cells.cell import Cell
 from ....machine.job_program import Job
-from ....machine.pen_changes import has_pens, may_pause, pens_changed
+from ....machine.pen_changes import count_pen_changes, has_pens, may_pause
 from ....machine.writer import path_next_to, report_renamed
 from ....show.evaluation import report
 from ...console import RefusedError, print_text, refuse_errors, stage, warn
@@ -105,7 +105,7 @@ def _describe_pen_changes(simulated: conversion.SimulatedWork, from_stroke: int)
     """Describe how often a person has to change the pen."""
     if not (simulated.is_program and may_pause(simulated.cell)):
         return ""
-    stops = pens_changed(simulated.loads.loads, simulated.cell, from_stroke)
+    stops = count_pen_changes(simulated.loads.loads, simulated.cell, from_stroke)
     times = "once" if stops == 1 else f"{stops} times"
     sentence = f"takes another pen {times}" if has_pens(simulated.cell) else f"stops {times} for another pen"
     return sentence if stops else ""

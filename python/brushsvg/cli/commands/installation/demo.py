@@ -29,7 +29,7 @@ def demo_picture(args) -> None:
     works = {how: preparation.prepare(DEMO_DRAWING, Options(compensation=how)) for how in TITLES}
     marks = {how: prediction.predict(work) for how, work in works.items()}
     totals = {
-        how: figures.measure(figures.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
+        how: figures.measure_figures(figures.PaintedPlan(work.plan, marks[how], work.brush, work.strokes))[1]
         for how, work in works.items()
     }
     picture = comparison_png(works, marks, totals)

@@ -50,7 +50,7 @@ def cell_check(args) -> None:
         sentence = f"no program can be written in {cell.language!r} yet, only plans; known: {known_languages}"
         warn(args.input, [Notice("language", sentence, code="language-unknown")])
     frame = robot_from_paper(cell)
-    if problems := cell_checks.out_of_reach(cell) or find_stations_out_of_limits(
+    if problems := cell_checks.report_workspace_out_of_reach(cell) or find_stations_out_of_limits(
         find_brush(DEFAULT_BRUSH), cell, frame
     ):
         raise RefusedError(args.input, problems)
@@ -62,7 +62,7 @@ def cell_place(args) -> None:
     from ....machine.arm import place
     from ....machine.arm.joint_problems import follow
     from ....machine.job_program import find_moves_out_of_limits
-    from ....machine.setup_programs import over_sheet
+    from ....machine.setup_programs import make_sheet_program
     from ....show.table_picture import table_picture
 
     check_outputs(args, args.output)
@@ -81,7 +81,7 @@ def cell_place(args) -> None:
         flags = (flag for flag in (*LAYOUT_FLAGS, "wide") if flag != "sheet")
         warn(args.input, report_flags_without_effect(make_choices(args, input=None), flags, "the whole sheet"))
         sheet_mm = args.sheet or DEFAULT_SHEET_MM
-        program = over_sheet(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
+        program = make_sheet_program(load_brush(args.brush) or find_brush(DEFAULT_BRUSH), cell, sheet_mm)
     stage("following the joints")
     followed = follow(program, joints)
     problems = [*followed.problems, *find_moves_out_of_limits(program, sheet_mm)]
@@ -90,10 +90,12 @@ def cell_place(args) -> None:
         if problems
         else None
     )
-    followed_there = followed if nearest_place is None else follow(place.at(program, nearest_place.frame), joints)
+    followed_there = (
+        followed if nearest_place is None else follow(place.move_paper(program, nearest_place.frame), joints)
+    )
     if args.output:
         stage("checking places for the paper")
-        table = place.table_of(cell, program.robot_from_frame, joints)
+        table = place.rate_table(cell, program.robot_from_frame, joints)
         drawn = table_picture(
             suffix_of(args.output),
             table,
@@ -106,7 +108,7 @@ def cell_place(args) -> None:
     if not problems:
         print_text(f"{args.input}: arm {cell.arm.name} reaches all of it with the paper where it is\n")
     elif nearest_place:
-        pose = place.cell_at(cell, nearest_place.frame).paper
+        pose = place.move_paper_of_cell(cell, nearest_place.frame).paper
         print_text(
             f"{args.input}: the arm reaches all of it with the sheet {nearest_place.text}: {_format_pose(pose)}\n"
         )
@@ -146,5 +148,7 @@ def cell_new(args) -> None:
         )
         text = write_cell(replace(cell, name=own_name(name), paper=paper))
         new_cell = parse_cell(text)
-    warn(args.output, cell_checks.out_of_reach(new_cell) or cell_checks.report_unusual_values(new_cell))
+    warn(
+        args.output, cell_checks.report_workspace_out_of_reach(new_cell) or cell_checks.report_unusual_values(new_cell)
+    )
     write_outputs(args, {args.output: text}, sources=[args.output])

@@ -23,10 +23,10 @@ def preview_paint(args) -> None:
     with refuse_errors(args.input):
         band = None
         if args.band:
-            from ....show.evaluation.uncertainty import band as band_of
+            from ....show.evaluation.uncertainty import make_band
 
             stage("finding the confidence band")
-            band = band_of(work.plan, work.brush, marks)
+            band = make_band(work.plan, work.brush, marks)
             if not any(band.rings):
                 say(work.brush.name, band.words)
         picture = outputs.make_picture(suffix, work, marks, band, with_toolpath=args.show == "toolpath")

@@ -44,9 +44,9 @@ def preview_strokes(args) -> None:
 
             picture = lines_svg(strokes, design.sheet_mm, design.title, settings_in(args.input)).encode()
         else:
-            from ....show.import_picture import overview
+            from ....show.import_picture import draw_import_picture
 
-            picture = overview(suffix_of(args.output), design, strokes, notices)
+            picture = draw_import_picture(suffix_of(args.output), design, strokes, notices)
     write_outputs(args, {args.output: picture}, len(strokes))
 
 

@@ -1,12 +1,12 @@
-"""Passes on other paths."""
+"""Move a pass to another path."""
 
 from __future__ import annotations
 
 from ... import _core
 
 
-def on_way(a_pass, poses_mm, arcs, tool_axes=None):
-    """Return a pass with all its settings along other poses (n, 3) and arcs.
+def move_pass_to_path(a_pass, poses_mm, arcs, tool_axes=None):
+    """Move a pass with all its settings to other poses (n, 3) and arcs.
 
     tool_axes: (n, 3) the brush's axes at the poses. If they are None, a pass with a tilted brush raises Error.
     """
