@@ -44,7 +44,7 @@ from ..comparison.learned_brush import learn_brush
 from ..comparison.repeats import read_displacement_mm
 from ..errors import Error, Notice, name_file_in_errors, need_number, need_one_of, need_truth, require_type
 from ..files import read_bytes
-from ..machine.cells.cell import Cell, not_undone
+from ..machine.cells.cell import Cell, list_uncorrectable_keys
 from ..model.plot import brush_picture
 from ..reporting.report_text import Report
 from .calibration_options import AIMS, MAX_DPI, MIN_DPI, CalibrationOptions, find_contradiction, is_photograph
@@ -467,7 +467,7 @@ def _update_from_job(photos, name, options, stage, warn) -> BrushCalibration:
 
 def select_correctable_parts(parts: tuple[str, ...], cell: Cell) -> tuple[tuple[str, ...], list[Notice]]:
     """Return the parts that this cell can undo, and a notice on the other parts."""
-    left_out = not_undone(cell)
+    left_out = list_uncorrectable_keys(cell)
     uncorrectable = [part for part in parts if CELL_KEY_BY_PART[part] in left_out]
     if not uncorrectable:
         return parts, []

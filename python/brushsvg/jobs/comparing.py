@@ -16,9 +16,9 @@ from .. import _core
 from ..calibration.prior.from_prior import has_learned
 from ..comparison import report
 from ..comparison.attribution.corrected_cell import (
-    select_certain_numbers,
     corrected_machine,
     key_of,
+    select_certain_numbers,
     significant_part,
     subtract_faults,
 )
