@@ -88,7 +88,7 @@ def length_px(text: str, percent_of: float, em_px: float = FONT_PX) -> float:
     return value * percent_of / 100 if unit == "%" else value * PX_PER[unit or "px"]
 
 
-def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
+def size_mm(text: str) -> tuple[float, float]:
     """Read a width and a height in mm from "210x297", "8.5x11in" or "210mm x 297mm".
 
     A unit at the end applies to both numbers.
@@ -97,10 +97,7 @@ def size_mm(text: str, default_unit: str = "mm") -> tuple[float, float]:
     if not found:
         raise Error(f"{_shown(text)} is not a size; write for example 210x297mm or 8.5x11in", code="not-a-size")
     height_unit = found[4]
-    size = (
-        length_mm(found[1] + (found[2] or height_unit), default_unit),
-        length_mm(found[3] + height_unit, default_unit),
-    )
+    size = length_mm(found[1] + (found[2] or height_unit)), length_mm(found[3] + height_unit)
     for value in size:
         if not 0 < value <= 1e6:
             sentence = f"{value} mm in the size {_shown(text)} is outside the range (0, 1000000] mm"

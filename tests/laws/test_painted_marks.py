@@ -393,7 +393,7 @@ def test_predicted_intervals_agree_with_fitted_intervals():
     _brush, strokes, _ = sheet(3)
     _, _, made = calibrated(3)
     plan = core.Plan("b", "", (300.0, 300.0), [core.Pass(name, poses) for name, poses in strokes])
-    promised, remarks = expected_brush(plan, made.brush, noise_mm=0.1, noise_length_mm=1.0)
+    promised, remarks = expected_brush(plan, made.brush, noise_mm=0.1)
     assert not remarks
     for law, count in (("lag", 4), ("half_width", 3)):
         reported = np.array(getattr(promised, law).half_interval_95)

@@ -253,7 +253,7 @@ def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell
     )
 
 
-def make_sheet_program(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) -> Program:
+def make_sheet_program(brush, cell: Cell, sheet_mm) -> Program:
     """Make moves to and fro over a whole sheet, high and touching the paper.
 
     They stand for everything that a drawing on the sheet may need from an arm. The program is only checked for the arm
@@ -269,7 +269,7 @@ def make_sheet_program(brush, cell: Cell, sheet_mm, z_offset_mm: float = 0.0) ->
         Move("look", low_points[::-1], touching_mm_s(brush, cell)),
         Move("retract", point_above(low_points[0], cell.heights.safe_mm), cell.speeds.travel_mm_s),
     )
-    frame = robot_from_paper(cell, z_offset_mm)
+    frame = robot_from_paper(cell)
     rises_mm = (rise_height_mm(cell, sheet_mm, of) for of in (np.eye(4), frame))
     sections = (Section("the sheet", moves),)
     return Program((), cell, frame, lambda: iter(sections), *rises_mm, touching_mm_s(brush, cell))

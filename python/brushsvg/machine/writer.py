@@ -216,9 +216,9 @@ def whole_program(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job =
     return unchecked_program(loads, brush, cell, job)
 
 
-def time_s(loads: PlanInLoads, brush: _core.Brush, cell: Cell, job: Job = WHOLE_JOB) -> float:
+def time_s(loads: PlanInLoads, brush: _core.Brush, cell: Cell) -> float:
     """Estimate the duration [s] of a plan, including paint. Limits are not checked."""
-    return duration_s(whole_program(loads, brush, cell, job))
+    return duration_s(whole_program(loads, brush, cell))
 
 
 def report_program(

@@ -109,7 +109,7 @@ def find_view(pixels: np.ndarray, printed: Printed) -> View:
     """
     light = grey_light(pixels)
     found = _find_chart_markers(pixels, light, printed)
-    modules = _modules_per_side(printed.dictionary)
+    modules = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, printed.dictionary)).markerSize + 2
     corners, blurs, clear = {}, [], {}
     for number, rough in found.items():
         corners[number], blur, clear[number] = _refine_corners(light, rough, modules)
@@ -139,10 +139,6 @@ def _sheet_light(light: np.ndarray, view: View, printed: Printed) -> np.ndarray:
     column, row = view.to_px(np.column_stack([x.ravel(), y.ravel()])).round().T
     inside = (row >= 0) & (row < light.shape[0]) & (column >= 0) & (column < light.shape[1])
     return light[row[inside].astype(int), column[inside].astype(int)][:, None]
-
-
-def _modules_per_side(dictionary: str) -> int:
-    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary)).markerSize + 2
 
 
 def detect_markers(pixels: np.ndarray, dictionary: str) -> list[tuple[int, np.ndarray]]:
@@ -408,17 +404,13 @@ def _fit_without_covered(view: View, corners: dict, clear: dict, printed: Printe
         hidden.setdefault(number, np.ones(4, bool))
     for count in range(1, min(len(hidden), len(corners) - MIN_MARKERS) + 1):
         fits = [
-            _fit_view(corners | {k: _mask_corners(corners[k], hidden[k]) for k in chosen}, printed, shape)
+            _fit_view(corners | {k: np.where(hidden[k][:, None], np.nan, corners[k]) for k in chosen}, printed, shape)
             for chosen in combinations(sorted(hidden), count)
         ]
         others = min(fits, key=lambda fit: fit.residual_mm)
         if others.residual_mm < others.most_residual_mm / MIN_COVERED_FACTOR:
             return others
     return view
-
-
-def _mask_corners(corners: np.ndarray, hidden: np.ndarray) -> np.ndarray:
-    return np.where(hidden[:, None], np.nan, corners)
 
 
 def _least_certain_px(view, unknowns: np.ndarray, covariance: np.ndarray, sheet_mm) -> float:

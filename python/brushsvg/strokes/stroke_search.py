@@ -262,7 +262,7 @@ def _name_added(shape: _Shape, added: list, following, are_corners_filled: bool)
             end_covered=shape.is_filled,
             settings=like.settings.replaced(start=path_stroke.settings.start, end=path_stroke.settings.end),
         )
-        are_filled = are_corners_filled and not any(map(_is_set, (like.settings.start, like.settings.end)))
+        are_filled = are_corners_filled and {like.settings.start, like.settings.end} <= {None, "auto"}
         is_rim = not shape.is_filled and is_mostly_within(area_mm, by_found)
         share = _core.area(area_mm) / whole_mm2
         is_corner = share < MIN_MISSED_SHARE or (is_rim and is_mostly_within(area_mm, by_painted))
@@ -278,10 +278,6 @@ def _name_added(shape: _Shape, added: list, following, are_corners_filled: bool)
 
 def _part_key(stroke) -> tuple[str, int]:
     return stroke.origin.element, stroke.origin.part
-
-
-def _is_set(end: str | None) -> bool:
-    return end not in (None, "auto")
 
 
 def _repeat_stroke(stroke, repeat: int):

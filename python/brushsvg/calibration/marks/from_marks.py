@@ -331,21 +331,18 @@ def expected_brush(
     plan: _core.Plan,
     brush: _core.Brush,
     noise_mm: float = 0.1,
-    noise_length_mm: float = 1.0,
-    options: _core.MarkOptions | None = None,
     painted: list[_core.PaintedMark] | None = None,
 ) -> tuple[_core.Brush, list[str]]:
     """Predict how well the marks of a plan will determine a brush.
 
-    noise_mm: standard deviation of a painted edge. noise_length_mm: correlation length of that noise along the
-    outline. options: sigmas of sheet, displacement and height, as for calibrate_marks. painted: the result of
-    expected_marks(plan, brush), if it is already known.
+    noise_mm: standard deviation of a painted edge. painted: the result of expected_marks(plan, brush), if it is
+    already known.
 
     Return the brush as the fit sees it, with the expected covariance and intervals, and remarks on what the strokes
     cannot separate.
     """
     painted = painted or expected_marks(plan, brush)
-    fit = expected_fit(painted, plan, brush, noise_mm, noise_length_mm, options or _core.MarkOptions())
+    fit = expected_fit(painted, plan, brush, noise_mm, _core.MarkOptions())
     return brush_of(fit.laws, brush.name, brush.depth_range_mm, np.array(fit.covariance)), fit.remarks
 
 
@@ -353,7 +350,6 @@ def expected_machine(
     plan: _core.Plan,
     brush: _core.Brush,
     noise_mm: float = 0.1,
-    parts: tuple[str, ...] = tuple(PARTS),
     painted: list[_core.PaintedMark] | None = None,
 ) -> list[Number]:
     """Predict the numbers of the machine that marks will determine.
@@ -361,9 +357,9 @@ def expected_machine(
     The machine has no errors. Each number has half its 95 % interval.
     """
     options = _core.MarkOptions()
-    request_machine_parts(options, parts)
+    request_machine_parts(options, PARTS)
     painted = painted or expected_marks(plan, brush)
-    fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
+    fit = expected_fit(painted, plan, brush, noise_mm, options)
     return list_machine_numbers(fit, np.array(fit.covariance), options)
 
 
@@ -387,7 +383,7 @@ def expected_marks(plan: _core.Plan, brush: _core.Brush) -> list[_core.PaintedMa
     return painted
 
 
-def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, options) -> _core.MarkFit:
+def expected_fit(painted, plan, brush, noise_mm: float, options) -> _core.MarkFit:
     """Fit simulated marks with the given noise of their edges.
 
     options: depths and coefficients per law are set here.
@@ -396,7 +392,7 @@ def expected_fit(painted, plan, brush, noise_mm: float, noise_length_mm: float, 
     depths = max(1, count_painted_depths([np.array(stroke_pass.poses_mm) for stroke_pass in plan.passes]))
     options.lag_terms = min(LAG_TERMS, depths)
     options.tip_gap_terms, options.half_width_terms = GAP_TERMS, min(HALF_TERMS, depths)
-    options.noise_mm, options.noise_length_mm = noise_mm, noise_length_mm
+    options.noise_mm = noise_mm
     return _core.fit_marks(painted, laws_of(brush, options.lag_terms, options.half_width_terms), options)
 
 

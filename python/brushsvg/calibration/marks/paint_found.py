@@ -198,7 +198,7 @@ def expected_paint(plan: _core.Plan, brush: _core.Brush, noise_mm: float, painte
     painted: the result of expected_marks(plan, brush).
     """
     options = _core.MarkOptions()
-    fit = expected_fit(painted, plan, brush, noise_mm, 1.0, options)
+    fit = expected_fit(painted, plan, brush, noise_mm, options)
     before_mm, _ = measure_paths_before_mm({plan_pass.stroke: plan_pass for plan_pass in plan.passes})
     complete = replace(to_painted(painted), before_mm=before_mm)
     calibration = MarkCalibration(brush_of(fit.laws, brush.name, brush.depth_range_mm), fit, complete, options)

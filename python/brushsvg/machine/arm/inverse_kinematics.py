@@ -23,6 +23,7 @@ MAX_PREBUILT_DIFFERENCE_MM = 0.01
 NEWTON_TOLERANCE = 1e-8  # largest error of the flange's pose after Newton's steps, in mm and rad
 # Largest Newton step of a joint. A longer step does not correct rounding, and near a singularity may go anywhere.
 MAX_NEWTON_STEP_RAD = 0.02
+MAX_NEWTON_STEPS = 5
 
 
 @dataclass(frozen=True)
@@ -138,29 +139,24 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
         ssik_flange_offset = np.linalg.inv(our_flanges[0]) @ np.linalg.inv(ssik_from_robot) @ ssik_flanges[0]
         if np.abs(ssik_from_robot @ our_flanges @ ssik_flange_offset - ssik_flanges).max() < MAX_PREBUILT_DIFFERENCE_MM:
             solve_roughly = _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh)))
-            return lambda flange: _refine_on_links(arm, solve_roughly(flange), flange)
+            # Two steps are enough for differently rounded links, except near a singularity.
+            return lambda flange: refine_angles(arm, solve_roughly(flange), flange, MAX_NEWTON_STEP_RAD)[0]
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
     raise Error(sentence, where="arm.prebuilt", code="cell-arm", advice="correct the links, or leave prebuilt out")
 
 
-def _refine_on_links(arm: Arm, angles: np.ndarray, flange: np.ndarray) -> np.ndarray:
-    """Refine angles of differently rounded links by two Newton steps, enough unless near a singularity."""
-    return refine_angles(arm, angles, flange, 5, MAX_NEWTON_STEP_RAD)[0]
-
-
 def refine_angles(
-    arm: Arm, angles: np.ndarray, flange: np.ndarray, steps: int, most_step_rad: float
+    arm: Arm, angles: np.ndarray, flange: np.ndarray, most_step_rad: float
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Refine joint angles for a flange pose by Newton's steps.
 
     angles: (k, 6) angles that put the flange near the pose.
     flange: (4, 4) the pose.
-    steps: largest number of steps.
     most_step_rad: longest step of a joint. A longer step is left out.
 
     Returns the angles, and the frames of the joints if all solutions have converged, else None.
     """
-    for number in range(steps + 1):
+    for number in range(MAX_NEWTON_STEPS + 1):
         joint_frames = joint_frames_of(arm, angles)
         rates = flange_rates_at(joint_frames, flange[:3, 3])
         turned = flange[:3, :3] @ joint_frames[:, -1, :3, :3].swapaxes(-1, -2)
@@ -171,7 +167,7 @@ def refine_angles(
             and np.abs(joint_frames[:, -1] - flange).max(initial=0.0) < NEWTON_TOLERANCE
         ):
             return angles, joint_frames
-        if number == steps:
+        if number == MAX_NEWTON_STEPS:
             break
         try:
             step = np.linalg.solve(rates, error[..., None])[..., 0]

@@ -212,7 +212,7 @@ def _continue_solutions(
     if not angles_before:
         return None
     previous = np.array(angles_before)
-    angles, joint_frames = refine_angles(arm, previous, flange, 5, MAX_JOINT_STEP_RAD)
+    angles, joint_frames = refine_angles(arm, previous, flange, MAX_JOINT_STEP_RAD)
     if joint_frames is None or np.abs(angles - previous).max() > MAX_JOINT_STEP_RAD:
         return None
     return _rate_solutions(angles, joint_frames, place, frame)

@@ -41,12 +41,12 @@ def filled_rings(element: Element) -> list[np.ndarray]:
     return _core.fill([ring for ring in outlines if len(ring) >= 3], element.fill_rule or "evenodd")
 
 
-def _estimate_crossings(tails: np.ndarray, heads: np.ndarray, pairs: int = 100_000) -> float:
+def _estimate_crossings(tails: np.ndarray, heads: np.ndarray) -> float:
     """Estimate how often edges cross, from random pairs; the result is reproducible."""
     count = len(tails)
     if count < 200:
         return 0.0
-    firsts, seconds = np.random.default_rng(0).integers(0, count, (2, pairs))
+    firsts, seconds = np.random.default_rng(0).integers(0, count, (2, 100_000))
 
     def side(a, b, p):  # the side of the line from a to b on which p is
         return np.sign((b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0]))

@@ -182,12 +182,10 @@ class _RowReader:
         self.turned = turned
         self.now_s = self.begin_s = now_s
 
-    def _is_same_rotation(
-        self, a: np.ndarray | None, b: np.ndarray | None, most_deg: float = TILT_TOLERANCE_DEG
-    ) -> bool:
+    def _is_same_rotation(self, a: np.ndarray | None, b: np.ndarray | None) -> bool:
         """Return whether no brush shows a difference of two rotations. None is upright."""
         a, b = (self.upright if each is None else each for each in (a, b))
-        return bool(apart_deg(a, b) <= most_deg)
+        return bool(apart_deg(a, b) <= TILT_TOLERANCE_DEG)
 
     def _check_way_rows(self, tip: tuple, limit_mm_s: float, turned: np.ndarray | None) -> None:
         """Check the rows between the last pose and this one.

@@ -37,7 +37,8 @@ def init_project(args) -> None:
     paper, speed = args.sheet, args.paint_speed
 
     def read_speed(text: str, folder: str) -> float | None:
-        return _check_speed(_read_speed(text), brush, cell, folder)
+        speed_mm_s = values.paint_speed(text.replace(",", ".")) if text else None
+        return _check_speed(speed_mm_s, brush, cell, folder)
 
     if can_answer(args):
         if cell is None:
@@ -104,10 +105,6 @@ def _read_brush(text: str, folder: str) -> str:
 def _read_paper(text: str, _folder: str) -> str:
     values.sheet(text)
     return text
-
-
-def _read_speed(text: str) -> float | None:
-    return values.paint_speed(text.replace(",", ".")) if text else None
 
 
 def _check_speed(speed_mm_s: float | None, brush: str | None, cell: str | None, folder: str) -> float | None:
