@@ -13,7 +13,7 @@ from brushsvg.cli import main
 from brushsvg.machine.cells.cell import Blending
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.preflight import as_exact_as
-from brushsvg.machine.realised.corner_blending import blend_radii, corner_angles_rad, cut_corners
+from brushsvg.machine.realised.corner_blending import blend_radii, blend_radii_and_angles, cut_corners
 from brushsvg.model.library import find_brush
 
 CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
@@ -21,7 +21,7 @@ CORNER = np.array([(0, 0, -2), (20, 0, -2), (20, 30, -2)], dtype=float)
 
 def test_turns_are_the_angles_between_moves():
     path = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (2, 0, 0), (2, 0, 5)], dtype=float)
-    assert corner_angles_rad(path) == pytest.approx([0, 0, np.pi / 2, np.pi, np.pi / 2, 0])
+    assert blend_radii_and_angles(path, Blending(0.1))[1] == pytest.approx([0, 0, np.pi / 2, np.pi, np.pi / 2, 0])
 
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.01, 0.5])
@@ -42,7 +42,7 @@ TURN_IN_PLACE = np.array(
 
 
 def test_a_circle_has_a_corner_only_at_a_change_of_direction():
-    assert corner_angles_rad(TURN_IN_PLACE, [QUARTER]) == pytest.approx([0, 0, 0, np.pi / 2, 0])
+    assert blend_radii_and_angles(TURN_IN_PLACE, Blending(0.1), [QUARTER])[1] == pytest.approx([0, 0, 0, np.pi / 2, 0])
 
 
 @pytest.mark.parametrize("tolerance", [0.001, 0.02, 0.1])

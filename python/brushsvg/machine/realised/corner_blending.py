@@ -49,12 +49,8 @@ def _move_geometry(poses_mm: np.ndarray, arcs) -> _MoveGeometry:
     return _MoveGeometry(leaving, reaching, lengths, bends)
 
 
-def corner_angles_rad(poses_mm: np.ndarray, arcs=()) -> np.ndarray:
-    """Return the angles [rad] between the moves that meet at each pose, (n,). They are 0 at the ends."""
-    return _corner_angles(_move_geometry(poses_mm, arcs))
-
-
 def _corner_angles(moves: _MoveGeometry) -> np.ndarray:
+    """Return the angles [rad] between the moves that meet at each pose, (n,). They are 0 at the ends."""
     before, after = moves.reaching[:-1], moves.leaving[1:]
     # atan2 of the half angle is exact both for straight on and for straight back
     across, along = np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1)
@@ -72,7 +68,7 @@ def blend_radii(poses_mm: np.ndarray, blending: Blending, arcs=()) -> np.ndarray
 
 
 def blend_radii_and_angles(poses_mm: np.ndarray, blending: Blending, arcs=()) -> tuple[np.ndarray, np.ndarray]:
-    """Return the results of blend_radii and corner_angles_rad."""
+    """Return the results of blend_radii, and the angle [rad] between the moves at each pose, (n,)."""
     radii = np.zeros(len(poses_mm))
     moves = _move_geometry(poses_mm, arcs)
     all_turns = _corner_angles(moves)
