@@ -316,14 +316,21 @@ def _beyond(way: Way, job: Job):
 
 
 def _first_place(way: Way) -> int:
-    """Return the first sample after the way to the first place of the run.
+    """Return the first sample after the line of the program that goes to the first place of the run.
 
-    That way may begin anywhere.
+    That way may begin anywhere. It has several steps where axes take up their play. A rise along the robot's z axis
+    is not that way, although it goes sideways over tilted paper.
     """
     if not len(way.row):
         return 0
-    sideways = np.linalg.norm((way.ends - way.starts)[:, :2], axis=1) > SLACK_MM
-    return int(np.searchsorted(way.row, sideways.argmax(), "right")) if sideways.any() else 1
+    legs = [way.run.legs[k] for k in way.leg]
+    by_robot = np.array([np.subtract(leg.end, leg.start) for leg in legs], dtype=float)
+    sideways = [np.linalg.norm(steps[:, :2], axis=1) > SLACK_MM for steps in (way.ends - way.starts, by_robot)]
+    if not np.logical_and(*sideways).any():
+        return 1
+    first = np.logical_and(*sideways).argmax()
+    later = np.flatnonzero([leg.line != legs[first].line for leg in legs[first:]])
+    return int(np.searchsorted(way.row, first + later[0], "left")) if len(later) else len(way.row)
 
 
 def _line(way: Way, sample: int) -> int:
