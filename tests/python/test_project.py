@@ -660,6 +660,8 @@ def test_init_without_a_terminal_uses_flags_as_answers(desk, capsys):
     assert main("init --cell ur5e -o other.toml".split()) == 2
     assert main("init --cell ur5e --sheet a9".split()) == 2
     assert {path.name for path in desk.iterdir() if path.is_file()} == {"d.svg", "mine.json"}
+    assert main("init --cell ur5e".split()) == 0
+    assert brushsvg.read_project(desk / NAME).settings == {"cell": "ur5e"}, "each drawing keeps its page"
 
 
 def at_terminal(folder, *words, answers: str) -> tuple[int, str]:
@@ -685,7 +687,7 @@ def at_terminal(folder, *words, answers: str) -> tuple[int, str]:
 def test_init_asks_four_questions_each_with_a_default(desk):
     status, shown = at_terminal(desk, "init", answers="\n\n\n\n")
     assert status == 0 and len(re.findall(r"\[[^\[\]]+\]: ", shown)) == 4
-    assert brushsvg.read_project(desk / NAME).settings == {"cell": "linuxcnc-3axis", "sheet": (210.0, 297.0)}
+    assert brushsvg.read_project(desk / NAME).settings == {"cell": "linuxcnc-3axis"}
     status, shown = at_terminal(desk, "init", answers="\n\n\n\n")
     # The file exists already, so init asks no questions.
     assert status == 1 and not re.search(r"\[[^\[\]]+\]: ", shown)

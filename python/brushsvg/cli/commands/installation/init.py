@@ -21,7 +21,7 @@ from ...steps.ask_measurements import can_answer
 from ...steps.output_places import check_outputs, write_outputs
 
 NOT_MEASURED = "none"
-DEFAULT_PAPER = "a4"
+AS_DRAWN = "as each drawing says"
 
 
 def init_project(args) -> None:
@@ -55,12 +55,12 @@ def init_project(args) -> None:
             )
         if paper is None:
             say(f"Papers: {', '.join(PAPERS_MM)}, or a size such as 300x200mm")
-            paper = _ask(f"Paper [{DEFAULT_PAPER}]: ", DEFAULT_PAPER, folder, _read_paper)
+            paper = _ask(f"Paper [{AS_DRAWN}]: ", AS_DRAWN, folder, _read_paper)
         if speed is None:
             speed = _ask("Painting speed in mm/s [as each drawing says, or 20]: ", "", folder, read_speed)
     with refuse_errors("--speed"):
         _check_speed(speed, brush, cell, folder)
-    text = write_project(brush or None, cell, paper or DEFAULT_PAPER, speed)
+    text = write_project(brush or None, cell, paper, speed)
     write_outputs(args, {args.output: text}, sources=[args.output])
     if not args.quiet:
         print_text("".join(f"{line}\n" for line in _list_next_steps(brush)))
@@ -102,7 +102,10 @@ def _read_brush(text: str, folder: str) -> str:
     return text if text in brush_names() else _make_relative_path(folder, text)
 
 
-def _read_paper(text: str, _folder: str) -> str:
+def _read_paper(text: str, _folder: str) -> str | None:
+    """Return the paper, or None for the page of each drawing."""
+    if text == AS_DRAWN:
+        return None
     values.sheet(text)
     return text
 
