@@ -134,7 +134,7 @@ clang-headers: setup
 	rm -rf build/clang-consumer && mkdir -p build/clang-consumer/source
 	{ echo 'cmake_minimum_required(VERSION 3.25)'; echo 'project(consumer CXX)'; echo "add_subdirectory($$PWD brushsvg)"; } >build/clang-consumer/source/CMakeLists.txt
 	cmake -S build/clang-consumer/source -B build/clang-consumer/build -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS=-Werror >/dev/null
-	cmake --build build/clang-consumer/build --target brushsvg/CMakeFiles/brushsvg_core.dir/cpp/model/profile.cpp.o >/dev/null
+	cmake --build build/clang-consumer/build --target brushsvg/CMakeFiles/brushsvg_core.dir/cpp/model/brush_law.cpp.o >/dev/null
 
 # Read by clang, which refuses what g++ lets pass (clang 14: captured structured bindings); nothing is compiled or run.
 clang-check: clang-headers $(VENV)/.dev

@@ -1,5 +1,5 @@
 #include "bindings.hpp"
-#include "brushsvg/curve_fit.hpp"
+#include "brushsvg/cubic_fit.hpp"
 #include "brushsvg/stroke.hpp"
 #include "brushsvg/target_mark.hpp"
 

@@ -14,7 +14,7 @@
 #include "converters.hpp"
 #include "value_type.hpp"
 
-void bind_profile(py::module_& m);
+void bind_brush_law(py::module_& m);
 void bind_paint(py::module_& m);
 void bind_student_t(py::module_& m);
 void bind_footprint(py::module_& m);
@@ -28,7 +28,7 @@ void bind_bristle(py::module_& m);
 void bind_simulate(py::module_& m);
 void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);
-void bind_curve_fit(py::module_& m);
+void bind_cubic_fit(py::module_& m);
 void bind_coverage(py::module_& m);
 void bind_mark_overlap(py::module_& m);
 void bind_stroke_score(py::module_& m);

@@ -46,7 +46,7 @@ Lengths are in mm, angles in radians, coordinates in the paper frame.)";
     if (!std::getenv("GLOG_minloglevel")) FLAGS_minloglevel = google::GLOG_ERROR;
 #endif
 
-    bind_profile(m);
+    bind_brush_law(m);
     bind_paint(m);
     bind_student_t(m);
     bind_footprint(m);
@@ -60,7 +60,7 @@ Lengths are in mm, angles in radians, coordinates in the paper frame.)";
     bind_simulate(m);
     bind_region(m);
     bind_medial_axis(m);
-    bind_curve_fit(m);
+    bind_cubic_fit(m);
     bind_coverage(m);
     bind_mark_overlap(m);
     bind_stroke_score(m);

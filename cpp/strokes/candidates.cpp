@@ -89,7 +89,7 @@ Stroke within_room(Stroke stroke, ShapeOutline& outline, double tolerance_mm) {
             halves.push_back(std::min(half_width_at(stroke, at.z() / length), outline.room_mm(places.back())));
         }
     }
-    stroke.half_width = fit_curve(make_line(places, halves), tolerance_mm, stroke.closed).half_width;
+    stroke.half_width = fit_cubics(make_line(places, halves), tolerance_mm, stroke.closed).half_width;
     return stroke;
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "brushsvg/curve_fit.hpp"
+#include "brushsvg/cubic_fit.hpp"
 #include "regions/nearest_on_polyline.hpp"
 #include "strokes/canvas.hpp"
 #include "strokes/edge_runs.hpp"

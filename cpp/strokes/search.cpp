@@ -394,7 +394,7 @@ class Search {
 
     std::optional<Trial> try_line(const WideLine& line) const {
         Trial trial;
-        FittedLine fitted = fit_curve(line, kCurveToleranceHalfWidths * line.col(2).mean(), false);
+        FittedLine fitted = fit_cubics(line, kCurveToleranceHalfWidths * line.col(2).mean(), false);
         trial.stroke.middle_mm = std::move(fitted.middle_mm);
         trial.stroke.half_width = std::move(fitted.half_width);
         for (WidthKnot& knot : trial.stroke.half_width)

@@ -351,13 +351,13 @@ TEST_CASE("any number as an argument gives a result or Error") {
         ends([&] { coverage(Marks{{mark}, {}}, brush, {0, 0, 40, 20}, x); });
         ends([&] { width_across(seen.painted, seen, {5, 5}, {0, 1}, x); });
         ends([&] { worst_place(seen, x); });
-        ends([&] { fit_curve(WideLine::Constant(5, 3, x), 0.05, false); });
-        ends([&] { fit_curve(WideLine::Random(50, 3), x, true); });
+        ends([&] { fit_cubics(WideLine::Constant(5, 3, x), 0.05, false); });
+        ends([&] { fit_cubics(WideLine::Random(50, 3), x, true); });
         ends([&] { bristle_deflection(bristle_coefficients(SlidingEnd::shear_free), x); });
     }
     ends([&] { real_roots(std::vector<double>(100000, 1.0), 0.0, 1.0); });
     ends([&] { make_law({}); });
-    ends([&] { fit_curve(WideLine(0, 3), 0.05, true); });
+    ends([&] { fit_cubics(WideLine(0, 3), 0.05, true); });
     ends([&] { worst_place({{0, 0, 1, 1}, 1.0, Coverage(0, 0), Coverage(0, 0)}, 1.0); });
     ends([&] { worst_place({{0, 0, 1, 1}, 1.0, Coverage::Zero(9, 9), Coverage::Zero(3, 3)}, 1.0); });
     ends([&] { common_area(MarkOverlap{{0, 0, 1, 1}, 1.0, Coverage::Zero(9, 9), Coverage::Zero(3, 3)}); });

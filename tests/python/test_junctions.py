@@ -19,7 +19,7 @@ EDGE_MM = 0.15
 
 def swept(points_mm: np.ndarray, half_mm: float) -> list[np.ndarray]:
     line = np.column_stack([points_mm, np.full(len(points_mm), half_mm)])
-    middle_mm, half_width = _core.fit_curve(line, 0.002, False)
+    middle_mm, half_width = _core.fit_cubics(line, 0.002, False)
     return _core.target_outline(_core.Stroke(middle_mm=middle_mm, half_width=half_width), 0.005)
 
 

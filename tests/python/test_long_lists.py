@@ -33,7 +33,7 @@ CALLS = {
     "poses": lambda: brushsvg.Pass("a", LONG),
     "poses that are one": lambda: brushsvg.Pass("a", all_rows(3)),
     "cubics": lambda: brushsvg.Stroke("a", all_rows(8)),
-    "a line": lambda: _core.fit_curve(LONG, 0.1),
+    "a line": lambda: _core.fit_cubics(LONG, 0.1),
     "a footprint": lambda: _core.Footprint(1.0, LONG),
     "rows within rows": lambda: setattr(brushsvg.Brush(), "covariance", [[0.0], LONG]),
     "depths": lambda: brushsvg.find_brush("round-6").lag(LONG),

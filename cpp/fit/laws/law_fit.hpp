@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "brushsvg/profile.hpp"
+#include "brushsvg/brush_law.hpp"
 
 // Fits a law with its confidence intervals to measured (depth, value) pairs. Lengths are in mm.
 namespace brushsvg::fit {

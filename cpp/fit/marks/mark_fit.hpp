@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "brushsvg/brush_law.hpp"
 #include "brushsvg/plan.hpp"
-#include "brushsvg/profile.hpp"
 #include "brushsvg/ring.hpp"
 
 // Fits a brush to whole painted marks: outlines on the paper, and the TCP's path that painted each. Lengths are in mm.

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "brushsvg/brush_law.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/footprint.hpp"
 #include "brushsvg/paint.hpp"
-#include "brushsvg/profile.hpp"
 
 namespace [[gnu::visibility("default")]] brushsvg {
 

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "brushsvg/profile.hpp"
+#include "brushsvg/brush_law.hpp"
 
 // The model of the brush's lag: how the contact patch trails the TCP.
 //

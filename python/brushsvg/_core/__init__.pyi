@@ -58,7 +58,7 @@ __all__: list[str] = [
     "excess_turning",
     "fill",
     "first_crossings",
-    "fit_curve",
+    "fit_cubics",
     "fit_law",
     "fit_marks",
     "flatten",
@@ -1456,7 +1456,7 @@ def first_crossings(
     Raises Error if there are not as many ways as places.
     """
 
-def fit_curve(
+def fit_cubics(
     line: numpy.typing.ArrayLike, tolerance_mm: float, closed: bool = False
 ) -> tuple[numpy.typing.NDArray[numpy.float64], list[tuple[float, float]]]:
     """

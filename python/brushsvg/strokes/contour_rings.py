@@ -180,7 +180,7 @@ def _fit_line(points: np.ndarray, corners: list[int], half: float, closed: bool)
         points = np.vstack([points, points[:1]])
     rows = np.column_stack([points, np.full(len(points), half)])
     middles = [
-        _core.fit_curve(rows[a : b + 1], FIT_TOLERANCE * half, closed and not corners)[0]
+        _core.fit_cubics(rows[a : b + 1], FIT_TOLERANCE * half, closed and not corners)[0]
         for a, b in itertools.pairwise([0, *corners, len(rows) - 1])
     ]
     return Line(np.vstack(middles), [(0.0, half)], closed)

@@ -131,7 +131,7 @@ def _make_stroke(chain, target_mm: list[np.ndarray], area: list[np.ndarray]) -> 
     middles, knots, at_mm = [], [], 0.0
     for piece in chain:
         line = piece.line
-        middle, widths = _core.fit_curve(line, max(MAX_SMOOTHING * float(line[:, 2].mean()), 1e-3), piece.closed)
+        middle, widths = _core.fit_cubics(line, max(MAX_SMOOTHING * float(line[:, 2].mean()), 1e-3), piece.closed)
         length_mm = _length_mm(middle)
         knots += [(at_mm + at * length_mm, half) for at, half in widths]
         at_mm += length_mm

@@ -1,9 +1,9 @@
 #include <pybind11/numpy.h>
 
 #include "bindings.hpp"
-#include "brushsvg/profile.hpp"
+#include "brushsvg/brush_law.hpp"
 
-void bind_profile(py::module_& m) {
+void bind_brush_law(py::module_& m) {
     using brushsvg::Profile;
     py::class_<Profile> type(m, "Profile",
                              R"(A law of a brush: one parameter [mm] against the press depth d [mm].

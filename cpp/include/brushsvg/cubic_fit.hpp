@@ -11,7 +11,7 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// A middle line as it was found, with its noise. Rows: x, y, half width [mm].
 using WideLine = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// The result of fit_curve().
+/// The result of fit_cubics().
 struct FittedLine {
     Cubics middle_mm;
     std::vector<WidthKnot> half_width;
@@ -25,7 +25,7 @@ struct FittedLine {
 ///
 /// `closed`: whether the last point repeats the first one; the tangent is then continuous there. A line without length
 /// gives one cubic that is a point.
-FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed);
+FittedLine fit_cubics(const WideLine& line, double tolerance_mm, bool closed);
 
 /// Make a stroke through points, in painting direction.
 ///

@@ -1,12 +1,12 @@
 #include "bindings.hpp"
-#include "brushsvg/curve_fit.hpp"
+#include "brushsvg/cubic_fit.hpp"
 
-void bind_curve_fit(py::module_& m) {
+void bind_cubic_fit(py::module_& m) {
     using namespace brushsvg;
     m.def(
-        "fit_curve",
+        "fit_cubics",
         [](const WideLine& line, double tolerance_mm, bool closed) {
-            const FittedLine fitted = fit_curve(line, tolerance_mm, closed);
+            const FittedLine fitted = fit_cubics(line, tolerance_mm, closed);
             std::vector<std::pair<double, double>> knots;
             for (const WidthKnot& k : fitted.half_width) knots.emplace_back(k.at, k.half_width_mm);
             return std::make_pair(fitted.middle_mm, knots);

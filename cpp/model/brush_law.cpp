@@ -1,4 +1,4 @@
-#include "brushsvg/profile.hpp"
+#include "brushsvg/brush_law.hpp"
 
 #include <algorithm>
 #include <cmath>

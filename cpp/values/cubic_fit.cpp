@@ -1,4 +1,4 @@
-#include "brushsvg/curve_fit.hpp"
+#include "brushsvg/cubic_fit.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -44,9 +44,9 @@ bool turns_back(const Cubic& c) {
            first * last - amid * amid < slowest * (first - 2.0 * amid + last);
 }
 
-class CurveFitter {
+class CubicFitter {
  public:
-    CurveFitter(Points points, double tolerance, bool closed) : p_(std::move(points)), tolerance_(tolerance) {
+    CubicFitter(Points points, double tolerance, bool closed) : p_(std::move(points)), tolerance_(tolerance) {
         const std::size_t last = p_.size() - 1;
         Vector2d start = direction_from(0, 1), end = direction_from(last, -1);
         if (closed) {
@@ -197,7 +197,7 @@ void select_knots(const std::vector<WidthKnot>& all, std::size_t first, std::siz
 
 }  // namespace
 
-FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
+FittedLine fit_cubics(const WideLine& line, double tolerance_mm, bool closed) {
     if (line.rows() > 0 && !(line.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
         throw Error("geometry-out-of-range", "the line has a number that is not finite, or beyond 1e6 mm");
     require_tolerance(tolerance_mm);
@@ -213,7 +213,7 @@ FittedLine fit_curve(const WideLine& line, double tolerance_mm, bool closed) {
         result.half_width = {{0.0, half[0]}};
         return result;
     }
-    const CurveFitter fit(std::move(points), tolerance_mm, closed);
+    const CubicFitter fit(std::move(points), tolerance_mm, closed);
     result.middle_mm.resize(Index(fit.cubics.size()), 8);
     for (Index i = 0; i < result.middle_mm.rows(); ++i)
         for (int k = 0; k < 4; ++k)
@@ -286,7 +286,7 @@ void append_smooth_cubics(const WideLine& line, const std::vector<double>& at, I
         }
         ++fits;
         Stroke part;
-        part.middle_mm = fit_curve(line.middleRows(from, to - from + 1), 0.5 * tolerance, closed).middle_mm;
+        part.middle_mm = fit_cubics(line.middleRows(from, to - from + 1), 0.5 * tolerance, closed).middle_mm;
         part.half_width = {{0.0, 1.0}};
         const MiddlePolyline way = flatten(part, 0.1 * tolerance);
         NearestOnPolyline<MiddlePolyline> nearest(way);

@@ -1,4 +1,4 @@
-#include "brushsvg/curve_fit.hpp"
+#include "brushsvg/cubic_fit.hpp"
 
 #include <doctest/doctest.h>
 
@@ -34,7 +34,7 @@ double farthest(const FittedLine& fitted, double radius) {
 TEST_CASE("a straight line with an even taper is one cubic and two widths") {
     WideLine line(50, 3);
     for (int i = 0; i < 50; ++i) line.row(i) << i, 2.0 * i, 3.0 - 0.05 * i;
-    const FittedLine fitted = fit_curve(line, 0.01, false);
+    const FittedLine fitted = fit_cubics(line, 0.01, false);
     CHECK(fitted.middle_mm.rows() == 1);
     REQUIRE(fitted.half_width.size() == 2);
     CHECK(fitted.half_width[0].half_width_mm == doctest::Approx(3.0));
@@ -42,8 +42,8 @@ TEST_CASE("a straight line with an even taper is one cubic and two widths") {
 }
 
 TEST_CASE("half a circle is fitted within its tolerance, with more cubics for a finer one") {
-    const FittedLine coarse = fit_curve(arc(20.0, kPi, 200), 0.2, false);
-    const FittedLine fine = fit_curve(arc(20.0, kPi, 200), 0.005, false);
+    const FittedLine coarse = fit_cubics(arc(20.0, kPi, 200), 0.2, false);
+    const FittedLine fine = fit_cubics(arc(20.0, kPi, 200), 0.005, false);
     CHECK(farthest(coarse, 20.0) < 0.2);
     CHECK(farthest(fine, 20.0) < 0.005);
     CHECK(coarse.middle_mm.rows() <= 2);
@@ -59,14 +59,14 @@ TEST_CASE("no cubic runs backwards along a noisy straight line") {
             aside += 0.2 * (double(noise()) / double(std::mt19937::max()) - 0.5);
             line.row(i) << i / 3.0, aside, 2.0;
         }
-        const FittedLine fitted = fit_curve(line, 0.05, false);
+        const FittedLine fitted = fit_cubics(line, 0.05, false);
         for (Eigen::Index i = 0; i < fitted.middle_mm.rows(); ++i)
             for (double t = 0.0; t <= 1.0; t += 0.02) CHECK(tangent_at(fitted.middle_mm, {i, t}).x() > 0.3);
     }
 }
 
 TEST_CASE("cubics meet with one tangent, also at the seam of a closed line") {
-    const FittedLine ring = fit_curve(arc(20.0, 2.0 * kPi, 400), 0.02, true);
+    const FittedLine ring = fit_cubics(arc(20.0, 2.0 * kPi, 400), 0.02, true);
     const Eigen::Index n = ring.middle_mm.rows();
     CHECK(n > 1);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -79,7 +79,7 @@ TEST_CASE("cubics meet with one tangent, also at the seam of a closed line") {
 TEST_CASE("noise below the tolerance adds few cubics") {
     WideLine line(200, 3);
     for (int i = 0; i < 200; ++i) line.row(i) << 0.25 * i, (i % 2 ? 0.01 : -0.01), 2.0 + (i % 3 ? 0.01 : -0.01);
-    const FittedLine fitted = fit_curve(line, 0.06, false);
+    const FittedLine fitted = fit_cubics(line, 0.06, false);
     CHECK(fitted.middle_mm.rows() <= 3);
     CHECK(fitted.half_width.size() == 2);
 }
@@ -87,13 +87,13 @@ TEST_CASE("noise below the tolerance adds few cubics") {
 TEST_CASE("fits of a point, repeated points and a reversal terminate") {
     WideLine point(3, 3);
     point << 1, 2, 0.5, 1, 2, 0.5, 1, 2, 0.5;
-    const FittedLine dab = fit_curve(point, 0.1, false);
+    const FittedLine dab = fit_cubics(point, 0.1, false);
     CHECK(dab.middle_mm.rows() == 1);
     CHECK(dab.half_width.size() == 1);
-    CHECK(fit_curve(WideLine(0, 3), 0.1, false).middle_mm.rows() == 0);
+    CHECK(fit_cubics(WideLine(0, 3), 0.1, false).middle_mm.rows() == 0);
     WideLine back(21, 3);
     for (int i = 0; i < 21; ++i) back.row(i) << (i <= 10 ? i : 20 - i), 0.0, 1.0;
-    const FittedLine there_and_back = fit_curve(back, 0.05, false);
+    const FittedLine there_and_back = fit_cubics(back, 0.05, false);
     CHECK(there_and_back.middle_mm.allFinite());
     CHECK(there_and_back.middle_mm.rows() <= 20);
 }
