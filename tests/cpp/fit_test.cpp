@@ -37,6 +37,18 @@ TEST_CASE("a range of depths too short for its powers is refused") {
     CHECK_THROWS_AS(fit_law({1, 2, 3, 4, 5}, {1, 1, 2, 1, 3}, shape), Error);
 }
 
+TEST_CASE("a degree that no law can have is refused with the greatest degree") {
+    std::vector<double> depth, value;
+    for (int i = 0; i < 20; ++i) {
+        depth.push_back(i);
+        value.push_back(1.0 + i);
+    }
+    LawShape shape;
+    shape.range_mm = {0.0, 20.0};
+    shape.degree = 11;
+    CHECK(agrees(refusal([&] { fit_law(depth, value, shape); }), "law-terms", "degree", {"11", "[0, 10]"}));
+}
+
 TEST_CASE("a line through zero agrees with a manual calculation") {
     LawShape shape;
     shape.through_zero = true;

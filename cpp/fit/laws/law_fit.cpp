@@ -306,7 +306,10 @@ void require_fittable_values(const std::vector<double>& depth, const std::vector
         for (const auto& [what, number] : {std::pair{"value ", value[i]}, std::pair{"the depth of value ", depth[i]}})
             require_within(number, {-kMaxMagnitude, kMaxMagnitude}, what + std::to_string(i + 1));
     if (shape.degree < 0 || shape.degree > kMaxLawDegree)
-        throw Error("law-terms", "a law of degree " + std::to_string(shape.degree) + " is outside the range [0, 8]");
+        throw Error("law-terms",
+                    "the degree of the law, " + std::to_string(shape.degree) + ", is outside the range [0, " +
+                        std::to_string(kMaxLawDegree) + "]",
+                    "degree", double(shape.degree), std::array<double, 2>{0.0, double(kMaxLawDegree)});
     if (shape.degree == 0 && shape.through_zero)
         throw Error("law-terms", "a law of degree 0 through zero has nothing to fit");
     for (const double end : shape.range_mm)
