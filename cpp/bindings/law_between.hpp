@@ -14,9 +14,7 @@ inline constexpr double kMaxLengthMm = 1e6;  // limit of lengths; a longer one i
 ///
 /// Throws Error if the lever is negative, or 0 at some depths. Only the lever of a rigid pen is 0 at all depths.
 inline brushsvg::LagLaw<double> make_law_between(const brushsvg::Profile& profile, double depth0, double depth1) {
-    if (profile.coefficients.empty() || int(profile.coefficients.size()) > brushsvg::kMaxLawDegree + 1)
-        throw brushsvg::Error("law-terms", "a lag has 1 to " + std::to_string(brushsvg::kMaxLawDegree + 1) +
-                                               " coefficients, not " + std::to_string(profile.coefficients.size()));
+    brushsvg::require_law_degree(profile.coefficients, "");
     for (const double c : profile.coefficients)
         brushsvg::require_within(c, {-kMaxLengthMm, kMaxLengthMm}, "a coefficient of the lag");
     for (const double depth : {depth0, depth1}) brushsvg::require_within(depth, {0.0, 1000.0}, "the depth");

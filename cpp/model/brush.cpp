@@ -350,12 +350,7 @@ void check(const Brush& brush) {
                     format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kMaxDepthMm),
                     "depth_range_mm");
     for (const auto& [profile, where] : laws(brush)) {
-        if (profile->coefficients.empty()) throw Error("law-terms", "the law has no coefficients", where);
-        if (int(profile->coefficients.size()) > kMaxLawDegree + 1)
-            throw Error("law-terms",
-                        format("the law has %.0f coefficients; at most %.0f are read",
-                               double(profile->coefficients.size()), kMaxLawDegree + 1.0),
-                        where);
+        require_law_degree(profile->coefficients, where);
         for (double c : profile->coefficients)
             if (!std::isfinite(c)) throw Error("not-finite", "a coefficient is not finite", where);
         check_range(*profile, lo, hi, where);

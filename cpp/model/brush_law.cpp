@@ -36,6 +36,16 @@ double Profile::at(double depth_mm) const {
     return (*this)(depth_mm);
 }
 
+void require_law_degree(const std::vector<double>& coefficients, const std::string& where) {
+    constexpr int most = kMaxLawDegree + 1;
+    const std::size_t count = coefficients.size();
+    if (count >= 1 && count <= std::size_t(most)) return;
+    throw Error("law-terms",
+                "the law has " + std::to_string(count) + " coefficients, outside the range [1, " +
+                    std::to_string(most) + "]: " + (count == 0 ? "add one" : "use a polynomial of lower degree"),
+                where, double(count), std::array<double, 2>{1.0, double(most)});
+}
+
 std::vector<double> real_roots(const std::vector<double>& coefficients, double lo, double hi) {
     std::vector<double> c = coefficients;
     while (!c.empty() && c.back() == 0.0) c.pop_back();

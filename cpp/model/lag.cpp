@@ -55,9 +55,7 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
             if (!std::isfinite(x)) throw Error("not-finite", "a coefficient of a law is not finite", "", x);
             x *= sign;
         }
-        if (int(c.size()) > kMaxLawDegree + 1)
-            throw Error("law-terms", "a law of degree " + std::to_string(c.size() - 1) +
-                                         " is beyond the greatest degree, " + std::to_string(kMaxLawDegree));
+        require_law_degree(c, "");
         LawPiece<double> piece;
         piece.lo = from.lo;
         piece.hi = from.hi;

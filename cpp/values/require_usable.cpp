@@ -21,11 +21,7 @@ std::string format(const char* pattern, Numbers... numbers) {
 }
 
 void require_law(const Profile& law, double lo, double hi, bool is_length, const char* where) {
-    if (int(law.coefficients.size()) > kMaxLawDegree + 1)
-        throw Error("law-terms",
-                    format("the law has %.0f coefficients; at most %.0f are read", double(law.coefficients.size()),
-                           kMaxLawDegree + 1.0),
-                    where);
+    require_law_degree(law.coefficients, where);
     for (double c : law.coefficients)
         if (!std::isfinite(c)) throw Error("not-finite", "a coefficient is not finite", where, c);
     if (std::isnan(law.floor) || law.floor > kMaxLawValueMm || !std::isfinite(law.floor_slope))

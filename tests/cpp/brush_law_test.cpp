@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "brushsvg/error.hpp"
+#include "brushsvg/simulate.hpp"
+#include "refusal.hpp"
+#include "round6.hpp"
 
 using namespace brushsvg;
 
@@ -42,6 +45,19 @@ TEST_CASE("a law of a brush refuses depths that the brush cannot have") {
             CHECK(error.code() == "depth-out-of-range");
             CHECK((*error.range())[1] == 10.0);
         }
+}
+
+TEST_CASE("a law has 1 to 11 coefficients wherever it is used") {
+    Pass pass;
+    pass.poses_mm.resize(2, 3);
+    pass.poses_mm << 0, 0, -1, 20, 0, -1;
+    for (const std::size_t count : {std::size_t(0), std::size_t(12)}) {
+        Brush brush = shipped("round-6");
+        brush.lag.coefficients = std::vector<double>(count, 1e-3);
+        const std::vector<std::string> parts{std::to_string(count), "[1, 11]"};
+        CHECK(agrees(refusal([&] { check(brush); }), "law-terms", "lag", parts));
+        CHECK(agrees(refusal([&] { simulate(pass, brush); }), "law-terms", "lag", parts));
+    }
 }
 
 TEST_CASE("the difference of two laws is split where either changes") {

@@ -47,6 +47,11 @@ struct Profile {
 /// Greatest degree of a law's polynomial.
 inline constexpr int kMaxLawDegree = 10;
 
+/// Throw Error (law-terms) unless a law has 1 to kMaxLawDegree + 1 coefficients.
+///
+/// `coefficients`: c0, c1, ..., in ascending powers of depth. `where`: the law that the error names.
+void require_law_degree(const std::vector<double>& coefficients, const std::string& where);
+
 /// A polynomial (ascending coefficients) that holds on [lo, hi].
 struct PolynomialPiece {
     double lo, hi;
