@@ -16,7 +16,7 @@ Raises Error if the clockwise rings outweigh the others.)");
         "fill",
         [](const Rings& outlines, const std::string& rule) {
             if (rule != "nonzero" && rule != "evenodd")
-                throw Error("choice-unknown", "the fill rule is nonzero or evenodd, not \"" + rule + "\"");
+                throw Error("choice-unknown", "the fill rule must be nonzero or evenodd, not \"" + rule + "\"");
             return fill(outlines, rule == "nonzero" ? FillRule::nonzero : FillRule::evenodd);
         },
         py::arg("outlines"), py::arg("rule") = "nonzero", unlocked,
@@ -31,15 +31,15 @@ rule: "nonzero" or "evenodd".)");
           "Return the convex hull of points (n, 2), counter-clockwise.");
     m.def("clearance", &clearance, py::arg("rings"), py::arg("points"), unlocked,
           "Return the distance [mm] of points (n, 2) from the outline, on either side.");
-    m.def("first_crossings", &first_crossings, py::arg("rings"), py::arg("places"), py::arg("ways"), unlocked,
+    m.def("first_crossings", &first_crossings, py::arg("rings"), py::arg("places"), py::arg("directions"), unlocked,
           R"(Return how far ahead of each place the outline of rings is first crossed [mm].
 
 The distance is infinite if the outline is not crossed.
 
 places: (n, 2).
-ways: (n, 2), the unit vector from each place along which to look.
+directions: (n, 2), the unit vector from each place along which to look.
 
-Raises Error if there are not as many ways as places.)");
+Raises Error if there are not as many directions as places.)");
     m.def("area", &area, py::arg("rings"),
           R"(Return the area of rings [mm^2].
 

@@ -50,7 +50,7 @@ Polygon to_polygon(const Ring& ring) {
     for (Eigen::Index i = 0; i < ring.rows(); ++i) {
         const double x = ring(i, 0) * kUnitsPerMm, y = ring(i, 1) * kUnitsPerMm;
         if (!(std::abs(x) < 2e9 && std::abs(y) < 2e9))
-            throw Error("geometry-out-of-range", "a ring reaches beyond 20 m");
+            throw Error("geometry-out-of-range", "a ring has a coordinate beyond 20 m or not finite: check its unit");
         points.emplace_back(int(std::lround(x)), int(std::lround(y)));
     }
     Polygon polygon;
@@ -61,7 +61,8 @@ Polygon to_polygon(const Ring& ring) {
 /// Thrown where Boost could not combine outlines.
 struct NotCombined : Error {
     NotCombined()
-        : Error("outline-too-complex", "outlines that nearly coincide cannot be combined: unite them in the drawing") {}
+        : Error("outline-too-complex",
+                "some outlines nearly coincide and cannot be combined: unite them in the drawing") {}
 };
 
 /// Return the polygons of a set. Throws NotCombined if its edges do not close, or if its polygons do not have the area
@@ -125,8 +126,8 @@ Rings to_rings(const Set& set) {
 void require_outer_rings(const Rings& rings) {
     const double sum = area(rings);
     if (sum < -kMinAreaMm2)
-        throw Error("outline-clockwise", "the rings run clockwise: outer ones go counter-clockwise, holes clockwise",
-                    "", sum);
+        throw Error("outline-clockwise",
+                    "the rings are clockwise: list outer rings counter-clockwise and holes clockwise", "", sum);
 }
 
 /// Return the set of rings that are already disjoint, including holes.
@@ -323,8 +324,8 @@ Set fill_odd_nesting(const Rings& outlines) {
     for (const Ring& ring : outlines) {
         std::optional<Set> alone = fill_odd_windings({ring}, kMaxTurns);
         if (!alone)
-            throw Error("outline-too-complex",
-                        "an outline runs more than " + std::to_string(kMaxTurns) + " times round a point");
+            throw Error("outline-too-complex", "an outline winds more than " + std::to_string(kMaxTurns) +
+                                                   " times around a point: simplify it in the drawing");
         level.push_back(std::move(*alone));
     }
     while (level.size() > 1) {
@@ -460,21 +461,21 @@ std::vector<double> clearance(const Rings& rings, const Ring& points) {
     return distances;
 }
 
-std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways) {
-    if (ways.rows() != places.rows())
-        throw Error("sizes-differ",
-                    std::to_string(ways.rows()) + " ways for " + std::to_string(places.rows()) + " places");
+std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& directions) {
+    if (directions.rows() != places.rows())
+        throw Error("sizes-differ", "there are " + std::to_string(directions.rows()) + " directions for " +
+                                        std::to_string(places.rows()) + " places: give one direction for each place");
     require_finite(places);
-    require_finite(ways);
+    require_finite(directions);
     for (const Ring& ring : rings) require_finite(ring);
     std::vector<double> nearest(std::size_t(places.rows()), std::numeric_limits<double>::infinity());
     for (Eigen::Index k = 0; k < places.rows(); ++k) {
-        const Eigen::Vector2d way = ways.row(k).transpose();
+        const Eigen::Vector2d direction = directions.row(k).transpose();
         for (const Ring& ring : rings) {
             checkpoint(1 + int(ring.rows() / 100));
-            const auto ahead = [&](Eigen::Index i) { return (ring.row(i) - places.row(k)).dot(way); };
+            const auto ahead = [&](Eigen::Index i) { return (ring.row(i) - places.row(k)).dot(direction); };
             const auto left = [&](Eigen::Index i) {
-                return way.x() * (ring(i, 1) - places(k, 1)) - way.y() * (ring(i, 0) - places(k, 0));
+                return direction.x() * (ring(i, 1) - places(k, 1)) - direction.y() * (ring(i, 0) - places(k, 0));
             };
             const Eigen::Index n = ring.rows();
             double left_before = n > 0 ? left(n - 1) : 0.0;

@@ -36,14 +36,14 @@ inline bool stands_in(const std::string& part, const std::string& sentence) {
 
 /// Return whether an Error has this code and element, and these numbers and names in its sentence. The other words of
 /// the sentence do not matter.
-inline bool agrees(const std::optional<brushsvg::Error>& told, const std::string& code, const std::string& where,
+inline bool agrees(const std::optional<brushsvg::Error>& error, const std::string& code, const std::string& where,
                    const std::vector<std::string>& parts = {}) {
-    if (!told) {
+    if (!error) {
         MESSAGE("not refused");
         return false;
     }
-    bool all = told->code() == code && told->where() == where;
-    for (const std::string& part : parts) all = all && stands_in(part, told->what());
-    if (!all) MESSAGE(told->code(), ", ", told->where(), ": ", told->what());
+    bool all = error->code() == code && error->where() == where;
+    for (const std::string& part : parts) all = all && stands_in(part, error->what());
+    if (!all) MESSAGE(error->code(), ", ", error->where(), ": ", error->what());
     return all;
 }

@@ -53,11 +53,11 @@ struct Brush {
 /// Throw Error if the kind of a brush is not in kBrushKinds. An empty kind is round.
 void require_known_kind(const Brush& brush);
 
-/// Throw Error, naming the law and the depth, if a brush would make a robot go wrong.
+/// Throw Error, naming the law and the depth, if a brush is not valid.
 ///
-/// Refused are: negative lag, or lag 0 in part of the range; a half width that falls; footprints that are not simple
-/// counter-clockwise rings with the tip first and equal vertex counts; outlines that differ from the laws by more than
-/// 0.5 mm.
+/// The lag must be positive over the depth range, or 0 everywhere. The half width must not fall with depth. Footprints
+/// must be simple counter-clockwise rings that begin at the tip and have equal vertex counts. Outlines and laws may
+/// differ by at most 0.5 mm.
 void check(const Brush& brush);
 
 /// Return warnings about a brush that check() accepts but that is unusual.

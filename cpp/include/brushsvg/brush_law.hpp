@@ -22,14 +22,14 @@ struct Profile {
     std::optional<double> rmse_mm;             ///< root mean square error of the fit; none: not known
     std::optional<double> degrees_of_freedom;  ///< number of spare values from which the scatter is known
     std::string extra = "{}";                  ///< JSON object of unknown keys, written back as read
-    /// Depths that at() accepts: to how deep the brush may be pressed. read_brush() sets them; none: any depth. They
-    /// are not part of the law: comparing and writing laws ignores them.
+    /// Depths to which the brush may be pressed, which limit at(). read_brush() sets them; none: any depth. They are
+    /// not part of the law: comparing and writing laws ignores them.
     std::optional<std::array<double, 2>> depth_range_mm;
 
     /// Return the value [mm] at a depth [mm] that the brush can have.
     ///
-    /// These depths go from 0, where the brush touches the paper, to the deepest of `depth_range_mm`. Throws Error
-    /// (depth-out-of-range) for other depths. A polynomial is soon meaningless beyond its measurements.
+    /// These are the depths from 0, where the brush touches the paper, to the greatest of `depth_range_mm`. Throws
+    /// Error (depth-out-of-range) for other depths, where the polynomial would be meaningless.
     double at(double depth_mm) const;
 
     /// Return the value [mm] at any depth [mm], without a check. For inner loops. T is any scalar with arithmetic, so a
@@ -58,14 +58,14 @@ struct PolynomialPiece {
     std::vector<double> coefficients;
 };
 
-/// Return the profile as polynomials on the depths [lo, hi] [mm].
+/// Return a law as polynomials on the depths [lo, hi] [mm].
 ///
-/// It is split where its floor takes over.
+/// It is split where the floor and the polynomial cross.
 std::vector<PolynomialPiece> pieces(const Profile& profile, double lo, double hi);
 
 /// Return the difference a - b as polynomials on the depths [lo, hi] [mm].
 ///
-/// It is split where either profile changes.
+/// It is split where either law is split.
 std::vector<PolynomialPiece> difference(const Profile& a, const Profile& b, double lo, double hi);
 
 /// Return the real roots of a polynomial in [lo, hi], in ascending order.

@@ -20,18 +20,18 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// constant lag. e is the distance from the contact to the widest section.
 enum class Compensation {
     none,      ///< the TCP is on the middle line; the brush is pressed and lifted on the spot
-    constant,  ///< q = m + r0 T, the constant offset of other tools, but with a fair landing
+    constant,  ///< q = m + r0 T, the constant offset of other tools, with a landing along the stroke
     closed     ///< q = m + (r - e) u, the inverse of the article's model
 };
 
 /// The shape of a stroke's start or end, in closed form. A stroke's settings `start` and `end` use the same words.
 enum class Terminal {
     pointed,  ///< a start has the shape of the footprint's rear; an end narrows to the mirrored shape
-    round,    ///< has the shape of the footprint's front, or is turned round on the spot if that is rounder. A start is
-              ///< set down inside the stroke, goes back to its beginning and turns over there
+    round,    ///< has the shape of the footprint's front, or is painted by a turn in place if that is rounder. At a
+              ///< start, the brush is pressed down inside the stroke, moves back to its beginning and turns over there
     butt,     ///< straight or slanted: a narrower mark goes into one corner, along the cut, and into the other corner
-    automatic,  ///< the terminal whose mark is most like the drawn end, or a plainer one if hardly any difference is
-                ///< visible
+    automatic,  ///< the terminal whose mark is most similar to the drawn end, or a simpler one if the difference is
+                ///< hardly visible
 };
 /// The words for terminals in settings, files and the command line.
 inline constexpr std::array<std::pair<std::string_view, Terminal>, 4> kTerminalNames{{{"pointed", Terminal::pointed},
@@ -50,8 +50,8 @@ struct CompensateOptions {
     std::optional<double> lag_mm;  ///< constant only; default: the lag at the stroke's median depth
     double speed_mm_s = 20.0;      ///< painting speed; the brush's own limit caps it
     bool few_poses = true;         ///< closed only: use no more poses than the tolerance needs, see simplify_pass.hpp
-    /// Closed only: the terminals of strokes that do not set their own. Without a cut, or without room, a butt terminal
-    /// is round. Without room, a round start is pointed and a pointed end is round.
+    /// Closed only: the terminals of strokes that do not set their own. If a stroke has no cut there or is too short, a
+    /// butt terminal becomes round. If it is too short, a round start becomes pointed and a pointed end round.
     Terminal start = Terminal::pointed, end = Terminal::round;
 };
 

@@ -20,16 +20,17 @@ struct MarkOverlap {
 struct CommonArea {
     double intersection_mm2;
     double union_mm2;
-    /// Return the area of the intersection over the area of the union; 1 if both are empty.
+    /// Return intersection_mm2 / union_mm2, or 1 if both areas are empty.
     double overlap() const { return union_mm2 > 0.0 ? intersection_mm2 / union_mm2 : 1.0; }
 };
 
-/// Draw the marks and the strokes that they should be, with a margin of paper.
+/// Draw painted marks and target strokes on the same pixels, with a margin of paper.
 ///
-/// `wanted`: drawn as outlines if the strokes have them, else as paths with their widths.
+/// `painted`: the marks of each stroke's pass. `target`: the strokes, drawn as outlines if they have them, otherwise as
+/// paths with their widths.
 ///
-/// The scale is 8 to 40 pixels per mm, with 6 pixels across the finest half width if 40 per mm allow that. The picture
-/// has at most 4 million pixels. So coarse marks are quick to compare, and hairlines still have an area.
+/// The scale is 8 to 40 pixels per mm, with 6 pixels across the finest half width if 40 pixels per mm are enough. The
+/// picture has at most 4 million pixels. So coarse marks are quick to compare, and hairlines still have an area.
 MarkOverlap mark_overlap(const std::vector<PassMarks>& painted, const std::vector<Stroke>& target, const Brush& brush);
 
 /// Return the areas of intersection and union in a picture of both.

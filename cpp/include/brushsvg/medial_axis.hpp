@@ -20,13 +20,13 @@ struct AxisNode {
 struct AxisBranch {
     int from, to;
     AxisLine line;
-    Rings part;  ///< the part of the shape nearest to the branch, with all that was dropped along it
+    Rings part;  ///< the part of the shape nearest to the branch, including the branches that were dropped from it
 };
 
 /// The medial axis of a shape: a graph of nodes and branches.
 struct MedialAxis {
     std::vector<AxisNode> nodes;
-    std::vector<AxisBranch> branches;  ///< a node without a branch is a part of the shape that is only a dab
+    std::vector<AxisBranch> branches;  ///< a node without a branch is a round part of the shape, a dab
 };
 
 /// Return the medial axis: centres of discs that touch the outline twice or more.
@@ -34,15 +34,15 @@ struct MedialAxis {
 /// It is the Voronoi diagram of the outline's edges, inside the shape, and exact for straight edges. `rings`: a shape
 /// as fill() in region.hpp returns it.
 ///
-/// A branch with a free end is dropped if it adds too little area to the disc where it leaves. `min_share`: the least
-/// area that it must add, in squares of that disc's radius. The rest is then checked again.
+/// A branch with a free end is dropped if it adds too little area to the disc where it begins. `min_share`: the least
+/// area that it must add, in squares of that disc's radius. The remaining branches are then checked again.
 MedialAxis medial_axis(const Rings& rings, double min_share);
 
 /// Return the medial axis, and keep limbs that are thin relative to the shape.
 ///
-/// A branch is also kept if it meets two conditions. The part beyond some place on it adds at least `min_share` to
-/// the disc at that place. And the part adds at least `min_limb_share` to the disc where the branch leaves. Both areas
-/// are in squares of the disc's radius.
+/// A branch is also kept if the part beyond some place on it meets two conditions. It adds at least `min_share` to the
+/// disc at that place, and at least `min_limb_share` to the disc where the branch begins. Both areas are in squares of
+/// the disc's radius.
 MedialAxis medial_axis(const Rings& rings, double min_share, double min_limb_share);
 
 }  // namespace brushsvg

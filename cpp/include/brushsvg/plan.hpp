@@ -81,7 +81,7 @@ double turn_between(const Arc& arc, const Eigen::Vector2d& from_mm, const Eigen:
 /// Throw Error if arc `k` of the pass is not valid.
 ///
 /// The arc must begin at an existing pose, not before the previous arc's end, and end at a later existing pose. Its
-/// poses must be on one circle and at one depth. They must go round the circle in its direction, each step by less than
+/// poses must be on one circle and at one depth. They must follow the circle in its direction, each step by less than
 /// half a turn. `where`: the element that the error names.
 void check_arc(const Pass& pass, std::size_t k, const std::string& where);
 
@@ -94,10 +94,10 @@ void check_tool_axes(const Pass& pass, const std::string& where);
 /// Return whether the brush is tilted at any pose.
 bool is_tilted(const Pass& pass);
 
-/// Throw Error if the pass is tilted. For code that supports only an upright brush: without its tilt, the pass would
-/// paint something else.
+/// Throw Error if the pass is tilted. For code that supports only an upright brush, because without its tilt the pass
+/// would paint a different mark.
 ///
-/// `upright`: the beginning of the error's sentence, which says what keeps the brush upright.
+/// `upright`: the beginning of the error's sentence, which says what needs an upright brush.
 void refuse_tilted(const Pass& pass, const std::string& upright);
 
 }  // namespace brushsvg

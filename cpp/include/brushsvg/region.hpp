@@ -10,8 +10,7 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// and cross; the rings of the result do not cross. Coordinates are rounded to 1e-5 mm, or to 4e-5 mm where edges are
 /// so near to each other that rounding would lose area.
 ///
-/// Throws Error if the area of the clockwise rings outweighs the area of the others, or if the rings nearly coincide
-/// and cannot be united.
+/// Throws Error if the total area is negative, or if the rings nearly coincide and cannot be united.
 Rings unite(const Rings& rings);
 
 /// Return the intersection of two shapes, each given as for unite().
@@ -23,17 +22,17 @@ enum class FillRule { nonzero, evenodd };
 /// Return the shape that closed outlines fill, as rings that do not cross.
 ///
 /// The outlines may cross themselves and each other, turn either way, and overlap. Coordinates are rounded as by
-/// unite(). Throws Error if outlines nearly coincide and cannot be combined, or run too often round a point.
+/// unite(). Throws Error if outlines nearly coincide and cannot be combined, or wind too many times around a point.
 Rings fill(const Rings& outlines, FillRule rule);
 
-/// Return the area [mm^2] of rings, less the area of the clockwise rings.
+/// Return the area [mm^2] of the counter-clockwise rings minus the area of the clockwise rings, which are holes.
 ///
-/// Clockwise rings are holes. The area is negative if they outweigh the others.
+/// The area is negative if the holes are larger.
 double area(const Rings& rings);
 
-/// Return the area of the intersection over the area of the union.
-///
-/// Each shape is given as for unite(). 1 if both are empty.
+/// Return the overlap of two shapes, each given as for unite():
+///     area(A and B) / area(A or B)
+/// It is 1 if both are empty.
 double overlap(const Rings& a, const Rings& b);
 
 /// Return convex pieces that cover the hulls of neighbouring rings in a chain.
@@ -45,15 +44,16 @@ Rings pieces_between(const Rings& chain);
 /// Return the convex hull of points, counter-clockwise.
 Ring convex_hull(const Ring& points);
 
-/// Return the distance [mm] of each point from the outline, on either side of it.
+/// Return the distance [mm] of each point from the nearest outline, positive inside and outside.
 ///
 /// Throws Error for a coordinate that is not finite.
 std::vector<double> clearance(const Rings& rings, const Ring& points);
 
-/// Return how far ahead of each place an outline is first crossed [mm].
+/// Return the distance [mm] from each place to the first crossing with an outline, along a ray.
 ///
-/// `ways`: the unit direction in which to look, for each place. Infinite if no outline is crossed. Throws Error if
-/// there are not as many directions as places, and for a coordinate that is not finite.
-std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& ways);
+/// `places`: (n, 2), the start of each ray [mm]. `directions`: (n, 2), the unit vector of each ray. The distance is
+/// infinite if the ray crosses no outline. Throws Error if there are not as many directions as places, and for a
+/// coordinate that is not finite.
+std::vector<double> first_crossings(const Rings& rings, const Ring& places, const Ring& directions);
 
 }  // namespace brushsvg

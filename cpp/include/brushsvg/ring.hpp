@@ -19,7 +19,7 @@ struct Window {
 /// Return the area of a ring [mm^2], negative if it is clockwise.
 double signed_area(const Ring& ring);
 
-/// Return the length of a ring [mm], with the way from its last point to its first.
+/// Return the length of a ring [mm], including the edge from its last point to its first.
 double length_around(const Ring& ring);
 
 }  // namespace brushsvg

@@ -11,9 +11,9 @@ namespace [[gnu::visibility("default")]] brushsvg {
 /// edges stay within the tolerance of where they were. The tolerance [mm] is for the mark, not for the tool's path,
 /// which the brush smooths.
 ///
-/// Nothing changes where the brush lands, is lifted, goes loose, or turns on an arc. No pose is deeper than the deepest
-/// one was. The result is simulated before it is returned; if nothing is gained, the original pass is returned. Throws
-/// Error as simulate() does.
+/// Nothing changes where the brush lands, is lifted, goes loose, or turns on an arc. No pose gets deeper than the
+/// deepest pose of the original. The result is simulated before it is returned. If no simplified pass is within the
+/// tolerance, the original pass is returned. Throws Error as simulate() does.
 Pass simplify_pass(const Pass& pass, const Brush& brush, double tolerance_mm);
 
 }  // namespace brushsvg

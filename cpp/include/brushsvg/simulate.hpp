@@ -10,15 +10,15 @@ namespace [[gnu::visibility("default")]] brushsvg {
 
 /// Simulate the brush while the TCP follows a pass: the forward model.
 ///
-/// There are rows at every pose, at every event (loosening, tightening, touching, lifting) and in between. Half way
+/// There are rows at every pose, at every event (loosening, tightening, touching, lifting) and in between. Half-way
 /// between two rows, no point of the footprint is further than `tolerance_mm` from the straight line between them.
 /// Where a pen turns, there are two rows at one pose, because the pen heads for the next pose at once.
 ///
-/// A pass that begins or ends below z = 0 is set down or lifted on the spot, with rows of its own: see pose_rows().
+/// A pass that begins or ends below z = 0 is pressed down or lifted in place, with additional rows: see pose_rows().
 ///
-/// `for_outlines`: false leaves out rows that only the footprint's shape needs, not its motion. This is quick, and
-/// enough for widest_points(). `may_rise`: true if the pass is the motion of a machine, which may leave the paper;
-/// above it the brush hangs free.
+/// `for_outlines`: false leaves out rows that are needed only for the outline of the mark, not for the motion of the
+/// patch. This is faster, and enough for widest_points(). `may_rise`: true if the pass is the motion of a machine,
+/// which may leave the paper; above the paper the bristles are free.
 ///
 /// Throws Error if a pose is deeper than the brush allows, not finite, or above the paper (z > 0) without `may_rise`. A
 /// pass that is entirely above the paper is refused in any case.
@@ -35,9 +35,9 @@ Marks simulate(const Plan& plan, const Brush& brush, double tolerance_mm = 0.02)
 
 /// Return the row of each pose.
 ///
-/// contact_mm.row(pose_rows(marks)[k]) is the patch when the TCP is at pose k. Rows before the first pose's row show a
-/// pass that begins on the paper being set down on the spot. Rows after the last pose's row show a pass that ends on
-/// the paper being lifted on the spot. All of them have the index of that pose, while the patch moves.
+/// contact_mm.row(pose_rows(marks)[k]) is the contact when the TCP is at pose k. If a pass begins on the paper, the
+/// rows before the first pose's row show how the brush is pressed down in place. If it ends on the paper, the rows
+/// after the last pose's row show how the brush is lifted in place. All of these rows have the index of that pose.
 std::vector<std::size_t> pose_rows(const PassMarks& marks);
 
 /// Return the centre of the widest section at every row [mm]: m = p + e(d) u.

@@ -33,14 +33,14 @@ struct SearchedShape {
     std::vector<AddedStroke> added;
 };
 
-/// Search for the strokes with which the mark of each shape costs least.
+/// Search for the strokes whose mark has the least cost for each shape (ObjectiveWeights).
 ///
-/// The search begins with the given strokes. A stroke that sticks out of its shape gets another path: as narrow as the
-/// shape, narrower everywhere, shortened at an end, or in parts that meet at its corners. A stroke that fills the shape
-/// together with others, whose paint covers its ends, may also be reversed or left out.
+/// The search begins with the given strokes. A stroke that paints outside its shape gets another path: as narrow as the
+/// shape, narrower everywhere, shortened at an end, or in parts that meet at its corners. A stroke whose ends are
+/// covered by the paint of other strokes may also be reversed or left out.
 ///
-/// Then strokes are added, for the largest bare area first. They go straight out from a stroke next to the area, along
-/// the edge of the shape, from a corner inwards, or across.
+/// Then strokes are added for areas without paint, the largest area first. They continue a stroke next to the area, or
+/// run along the edge of the shape, from a corner inwards, or across the area.
 ///
 /// `are_free`: true if strokes may get another path, false if strokes are only added. The result does not depend on the
 /// number of threads. Throws Error as check(weights) does.

@@ -18,9 +18,7 @@ Rings target_outline(const Stroke& stroke, double tolerance_mm = 0.005);
 /// outline's cost.
 Rings target_pieces(const Stroke& stroke, double tolerance_mm = 0.005);
 
-/// Return the rings of target_pieces() that may show in a part of the paper.
-///
-/// They are in the same order.
+/// Return the rings of target_pieces() that may overlap a part of the paper, in the same order.
 Rings target_pieces_near(const Stroke& stroke, const Window& window, double tolerance_mm = 0.005);
 
 }  // namespace brushsvg

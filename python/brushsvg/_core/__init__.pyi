@@ -1443,7 +1443,7 @@ def fill(
 def first_crossings(
     rings: collections.abc.Sequence[numpy.typing.ArrayLike],
     places: numpy.typing.ArrayLike,
-    ways: numpy.typing.ArrayLike,
+    directions: numpy.typing.ArrayLike,
 ) -> list[float]:
     """
     Return how far ahead of each place the outline of rings is first crossed [mm].
@@ -1451,9 +1451,9 @@ def first_crossings(
     The distance is infinite if the outline is not crossed.
 
     places: (n, 2).
-    ways: (n, 2), the unit vector from each place along which to look.
+    directions: (n, 2), the unit vector from each place along which to look.
 
-    Raises Error if there are not as many ways as places.
+    Raises Error if there are not as many directions as places.
     """
 
 def fit_cubics(
