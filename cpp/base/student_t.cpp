@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/format_text.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg {
@@ -15,7 +16,8 @@ constexpr double kMinDegreesOfFreedom = 0.01;  // with less, an interval would b
 
 void require_degrees_of_freedom(double degrees) {
     if (!(degrees >= kMinDegreesOfFreedom))
-        throw Error("out-of-range", "the degrees of freedom are less than 0.01 or no number", "", degrees);
+        throw Error("out-of-range", format_text("the degrees of freedom are %.4g, but must be at least 0.01", degrees),
+                    "", degrees);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <cstdio>
 #include <string>
 
+#include "base/format_text.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg {
@@ -14,9 +14,9 @@ inline constexpr std::array<double, 2> kToleranceRangeMm{1e-8, 1000.0};
 /// Throws Error for a tolerance [mm] outside this range.
 inline void require_tolerance(double tolerance_mm, const std::string& where = "") {
     if (tolerance_mm >= kToleranceRangeMm[0] && tolerance_mm <= kToleranceRangeMm[1]) return;
-    char text[120];
-    std::snprintf(text, sizeof text, "the tolerance of %.4g mm is outside the range [1e-8, 1000] mm", tolerance_mm);
-    throw Error("out-of-range", text, where, tolerance_mm, kToleranceRangeMm);
+    throw Error("out-of-range",
+                format_text("the tolerance is %.4g mm, outside the range [1e-8, 1000] mm", tolerance_mm), where,
+                tolerance_mm, kToleranceRangeMm);
 }
 
 }  // namespace brushsvg

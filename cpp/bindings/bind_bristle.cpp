@@ -9,7 +9,7 @@ void bind_bristle(py::module_& m) {
         [](const std::string& end) {
             if (end != "third_derivative" && end != "shear_free")
                 throw Error("choice-unknown",
-                            "the sliding end is \"third_derivative\" or \"shear_free\", not \"" + end + "\"");
+                            "the sliding end must be \"third_derivative\" or \"shear_free\", not \"" + end + "\"");
             return bristle_coefficients(end == "shear_free" ? SlidingEnd::shear_free : SlidingEnd::third_derivative);
         },
         py::arg("sliding_end"),

@@ -30,7 +30,7 @@ Compensator make_compensator(const std::string& method, const brushsvg::Brush& b
         }
     if (method != "refined")
         throw brushsvg::Error("choice-unknown",
-                              "compensation is none, constant, closed or refined, not \"" + method + "\"");
+                              "compensation must be none, constant, closed or refined, not \"" + method + "\"");
 #ifdef BRUSHSVG_FIT
     const brushsvg::fit::RefineOptions refining{options.tolerance_mm, options.speed_mm_s, sheet_mm, options.start,
                                                 options.end};
@@ -39,7 +39,7 @@ Compensator make_compensator(const std::string& method, const brushsvg::Brush& b
     };
 #else
     throw brushsvg::Error("package-missing",
-                          "this build of brushsvg has no refined compensation: it was made without Ceres");
+                          "this build of brushsvg has no refined compensation, because Ceres was missing: use closed");
 #endif
 }
 
@@ -197,7 +197,10 @@ The pass is simulated.)");
         "tracking_errors_of",
         [](const std::vector<Pass>& passes, const std::vector<Stroke>& strokes, const Brush& brush,
            double tolerance_mm) {
-            if (passes.size() != strokes.size()) throw Error("sizes-differ", "a stroke is needed for each pass");
+            if (passes.size() != strokes.size())
+                throw Error("sizes-differ", "there are " + std::to_string(strokes.size()) + " strokes for " +
+                                                std::to_string(passes.size()) +
+                                                " passes: give one stroke for each pass");
             std::vector<TrackingError> found(passes.size());
             run_in_parallel_chunks(found.size(), 64, py::none(), [&](std::size_t i) {
                 found[i] = tracking_error_of(passes[i], strokes[i], brush, tolerance_mm);

@@ -32,7 +32,7 @@ double alpha_after(double alpha0, double exponent) {
 }
 
 double exponent(double s_mm, double depth0, double depth1, const Profile& profile) {
-    require_within(s_mm, {0.0, kMaxLengthMm}, "the way s [mm]");
+    require_within(s_mm, {0.0, kMaxLengthMm}, "the length s [mm]");
     const LagLaw<double> law = make_law_between(profile, depth0, depth1);
     if (s_mm == 0.0) return 0.0;
     if (law.rigid) return std::numeric_limits<double>::infinity();
@@ -51,13 +51,14 @@ py::dict follow(const Rows& tcp_mm, const std::vector<double>& depth_mm, const P
                 const std::optional<Vector2d>& contact_mm) {
     const auto n = std::size_t(tcp_mm.rows());
     if (n == 0 || depth_mm.size() != n)
-        throw Error("sizes-differ", "each of the TCP's " + std::to_string(n) +
-                                        " places, at least one, needs its depth; there are " +
-                                        std::to_string(depth_mm.size()) + " depths");
+        throw Error("sizes-differ", "there are " + std::to_string(n) + " positions of the TCP and " +
+                                        std::to_string(depth_mm.size()) +
+                                        " depths: give at least one position, and one depth for each");
     for (std::size_t k = 0; k < n; ++k) {
         require_within(depth_mm[k], {0.0, 1000.0}, "depth " + std::to_string(k));
         for (int axis = 0; axis < 2; ++axis)
-            require_within(tcp_mm(Eigen::Index(k), axis), {-kMaxLengthMm, kMaxLengthMm}, "place " + std::to_string(k));
+            require_within(tcp_mm(Eigen::Index(k), axis), {-kMaxLengthMm, kMaxLengthMm},
+                           "a coordinate of position " + std::to_string(k));
     }
     const auto [lo, hi] = std::minmax_element(depth_mm.begin(), depth_mm.end());
     const LagLaw<double> law = make_law_between(profile, *lo, *hi);
@@ -111,8 +112,8 @@ Table stack_tables(const std::vector<FollowedRows>& lags, Ring FollowedRows::* t
 py::list follow_lags(const std::vector<Pass>& passes, const std::vector<PassMarks>& marks,
                      const std::vector<Profile>& lags, const std::array<double, 2>& depth_range_mm) {
     if (passes.size() != marks.size())
-        throw Error("sizes-differ", std::to_string(passes.size()) + " passes and marks of " +
-                                        std::to_string(marks.size()) + ": each pass needs its own");
+        throw Error("sizes-differ", "there are " + std::to_string(passes.size()) + " passes and marks of " +
+                                        std::to_string(marks.size()) + " passes: give the marks of each pass");
     std::vector<LagLaw<double>> laws;
     for (const Profile& lag : lags) {
         make_law_between(lag, depth_range_mm[0], depth_range_mm[1]);  // throws for a lag that is not positive

@@ -90,13 +90,13 @@ Set middle_mm, half_width, target_mm and settings as a whole.)");
                 const py::ssize_t n = points_mm.rows();
                 if (widths.ndim() > 1)
                     throw Error("sizes-differ",
-                                "widths stand in one row, not in an array of " + std::to_string(widths.ndim()) +
-                                    " dimensions: widths.ravel() makes one",
+                                "the array of widths must have 1 dimension, not " + std::to_string(widths.ndim()) +
+                                    ": use widths.ravel()",
                                 name);
                 if (widths.ndim() == 1 && widths.size() != n)
                     throw Error("sizes-differ",
-                                "a width in mm is needed, or one for each of " + std::to_string(n) + " points, not " +
-                                    std::to_string(widths.size()),
+                                "there are " + std::to_string(widths.size()) + " widths for " + std::to_string(n) +
+                                    " points: give one width in mm, or one for each point",
                                 name);
                 const auto given = py::array_t < double, py::array::c_style | py::array::forcecast > (widths);
                 WideLine line(n, 3);

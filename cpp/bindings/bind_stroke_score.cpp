@@ -38,7 +38,9 @@ worst: a WorstPlace.)");
         "score_strokes",
         [](const std::vector<PassMarks>& painted, const std::vector<Stroke>& target, const Brush& brush) {
             if (painted.size() != target.size())
-                throw Error("sizes-differ", "a stroke is needed for each pass of marks");
+                throw Error("sizes-differ", "there are " + std::to_string(target.size()) +
+                                                " strokes for the marks of " + std::to_string(painted.size()) +
+                                                " passes: give one stroke for each pass");
             std::vector<StrokeScore> found(painted.size());
             run_in_parallel_chunks(found.size(), 64, py::none(),
                                    [&](std::size_t i) { found[i] = stroke_score(painted[i], target[i], brush); });

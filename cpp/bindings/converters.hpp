@@ -39,9 +39,9 @@ class EntryCounter {
         const double all = double(entry_count_) + double(more);
         if (all > double(kMaxEntries))
             throw brushsvg::Error("list-too-long",
-                                  "a list of " +
+                                  "a list has " +
                                       std::to_string(entry_count_ + std::min(more, PY_SSIZE_T_MAX - entry_count_)) +
-                                      " entries is longer than any that is read, " + std::to_string(kMaxEntries),
+                                      " entries, but at most " + std::to_string(kMaxEntries) + " are allowed",
                                   "", all, std::array<double, 2>{0.0, double(kMaxEntries)});
     }
     static void add(py::ssize_t more) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/format_text.hpp"
 #include "base/within.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag.hpp"
@@ -26,8 +27,12 @@ inline brushsvg::LagLaw<double> make_law_between(const brushsvg::Profile& profil
         const std::vector<double> zeros = brushsvg::real_roots(own, piece.lo, piece.hi);
         const bool falls = !zeros.empty() && !(zeros.size() == 1 && zeros[0] <= 1e-12);  // 0 at touch-down is valid
         if (falls || piece.at(0.5 * (piece.lo + piece.hi)) < 0.0)
-            throw brushsvg::Error("law-negative", "the lag is not positive at all depths from " + std::to_string(lo) +
-                                                      " to " + std::to_string(hi) + " mm");
+            throw brushsvg::Error(
+                "law-negative",
+                brushsvg::format_text(
+                    "the lag is not positive at all depths from %.4g to %.4g mm: correct its coefficients, or "
+                    "use depths where it is positive",
+                    lo, hi));
     }
     return law;
 }

@@ -17,7 +17,8 @@ static void refuse_uninitialised_values(const py::module_& m) {
         if (!py::isinstance<py::type>(what)) continue;
         if (auto* known = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(what.ptr())))
             known->operator_new = [](std::size_t) -> void* {
-                throw py::type_error("this value was never made: its constructor was not called, or refused");
+                throw py::type_error(
+                    "this object is not initialised, because its constructor was not called or raised an exception");
             };
     }
 }

@@ -86,7 +86,8 @@ struct State {
         if constexpr (has_members<Value>) {
             const auto all = state.cast<py::tuple>();
             if (all.size() != std::tuple_size_v<std::decay_t<decltype(members<Value>)>>)
-                throw py::type_error("this was pickled by another version of brushsvg");
+                throw py::type_error(
+                    "the object was pickled by another version of brushsvg: pickle it again with this version");
             Value value{};
             std::size_t k = 0;
             const auto set = [&](auto& member) { member = State<std::decay_t<decltype(member)>>::from(all[k++]); };

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/format_text.hpp"
 #include "base/tolerance.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -81,7 +81,8 @@ Depths depth_range_of_widths(const Stroke& stroke, const Brush& brush) {
     Depths found{std::numeric_limits<double>::infinity(), 0.0};
     for (const WidthKnot& knot : stroke.half_width) {
         if (!(knot.half_width_mm > 0.0))
-            throw Error("width-out-of-reach", "its width is 0 mm at a place: no brush paints that, draw it wider",
+            throw Error("width-out-of-reach",
+                        "the width is 0 mm along a part of the stroke, which no brush can paint: draw it wider",
                         stroke.id, 0.0, std::array<double, 2>{0.0, 2.0 * brush.half_width_range_mm()[1]});
         const double depth = brush.depth_for_half_width(knot.half_width_mm, stroke.id);
         found = {std::min(found[0], depth), std::max(found[1], depth)};
@@ -99,10 +100,10 @@ void warn_unmeasured_depths(const Depths& depths, const std::string& stroke, con
         hi = std::min(hi, (*profile->calibrated_mm)[1]);
     }
     if (least >= lo - 1e-9 && greatest <= hi + 1e-9) return;
-    char text[200];
-    std::snprintf(text, sizeof text, "depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
-                  least < lo - 1e-9 ? least : greatest, lo, hi);
-    warnings.push_back(Warning{"depth-not-measured", stroke, text + brush.name + " was measured"});
+    warnings.push_back(Warning{"depth-not-measured", stroke,
+                               format_text("depth %.2f mm is outside the range [%.1f, %.1f] mm in which brush ",
+                                           least < lo - 1e-9 ? least : greatest, lo, hi) +
+                                   brush.name + " was measured"});
 }
 
 /// Return the depths at which the brush is turned on the spot, for a stroke that begins with only a turn: a dot. Its
@@ -150,7 +151,8 @@ bool try_simplified(const Pass& from, double share, double limit_mm, const Strok
 Terminal parse_terminal(const std::string& name, const std::string& where) {
     for (const auto& [known, value] : kTerminalNames)
         if (name == known) return value;
-    throw Error("choice-unknown", "the end of a stroke is pointed, round, butt or auto, not \"" + name + "\"", where);
+    throw Error("choice-unknown", "the end of a stroke must be pointed, round, butt or auto, not \"" + name + "\"",
+                where);
 }
 
 namespace {
@@ -208,10 +210,13 @@ CompensatedPass compensate_at_tolerance(const Stroke& stroke, const Brush& brush
     require_usable(brush);
     require_tolerance(options.tolerance_mm, stroke.id);
     if (options.lag_mm && !(*options.lag_mm >= 0.0 && *options.lag_mm <= kMaxLagMm))
-        throw Error("out-of-range", "the lag is not within [0, 1000] mm", stroke.id, options.lag_mm,
-                    std::array<double, 2>{0.0, kMaxLagMm});
+        throw Error("out-of-range",
+                    format_text("the lag is %.4g mm, outside the range [0, %g] mm", *options.lag_mm, kMaxLagMm),
+                    stroke.id, options.lag_mm, std::array<double, 2>{0.0, kMaxLagMm});
     if (!(options.speed_mm_s > 0.0) || std::isinf(options.speed_mm_s))
-        throw Error("out-of-range", "the speed must be finite and greater than 0 mm/s", stroke.id, options.speed_mm_s);
+        throw Error("out-of-range",
+                    format_text("the speed is %.4g mm/s, but must be finite and greater than 0", options.speed_mm_s),
+                    stroke.id, options.speed_mm_s);
     const Line line(stroke, brush);
     CompensatedPass result;
     const Depths depths = depth_range_of_widths(stroke, brush);  // throws if the brush cannot paint a width

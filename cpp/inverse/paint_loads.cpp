@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_text.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/lag_arc.hpp"
@@ -142,18 +143,27 @@ Pass make_part(const RefinedMoves& fine, const Brush& brush, const CutPlace* fro
 }  // namespace
 
 std::vector<Pass> split_into_loads(const Pass& pass, const Brush& brush, const PaintLoadOptions& options) {
-    if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0 && options.every_mm > 2.0 * options.backtrack_mm))
-        throw Error("load-too-short", "paint must last for more than twice the backtrack", pass.stroke,
-                    options.every_mm);
+    const auto refuse = [&](const char* pattern, double first, double second) {
+        throw Error("load-too-short", format_text(pattern, first, second), pass.stroke, options.every_mm);
+    };
+    if (!(options.first_mm >= 0.0 && options.backtrack_mm >= 0.0))
+        refuse("the first length is %.4g mm and the backtrack %.4g mm, but both must be at least 0", options.first_mm,
+               options.backtrack_mm);
+    if (!(options.every_mm > 2.0 * options.backtrack_mm))
+        refuse(
+            "the paint lasts %.4g mm, but must last for more than twice the backtrack of %.4g mm: refill after a "
+            "longer path, or reduce the backtrack",
+            options.every_mm, options.backtrack_mm);
     require_usable(brush);
-    refuse_tilted(pass, "strokes are parted into loads of paint for an upright brush");
+    refuse_tilted(pass, "only strokes of an upright brush can be split into loads of paint");
     if (!(path_lengths(pass.poses_mm).back() > options.first_mm) || !pass.poses_mm.allFinite()) return {pass};
     for (std::size_t k = 0; k < pass.arcs.size(); ++k) check_arc(pass, k, pass.stroke);
     const auto require_few_loads = [&](double loads) {
         if (!(loads <= kMaxLoads))
-            throw Error("load-too-short",
-                        "paint that lasts so short would have to be fetched more than 1000 times in one stroke",
-                        pass.stroke, options.every_mm);
+            refuse(
+                "the stroke would need more than %.0f refills, because its paint lasts only %.4g mm: refill after a "
+                "longer path, or split the stroke",
+                kMaxLoads, options.every_mm);
     };
     require_few_loads(path_lengths(pass.poses_mm).back() / options.every_mm);
     const RefinedMoves fine = refine_moves(pass, options.every_mm / kPlacesPerLoad);

@@ -380,7 +380,7 @@ double largest_distance_mm(const PassMarks& marks, const Ring& widest, const Rin
 }  // namespace
 
 Pass simplify_pass(const Pass& pass, const Brush& brush, double tolerance_mm) {
-    refuse_tilted(pass, "a path is simplified for an upright brush");
+    refuse_tilted(pass, "only paths of an upright brush can be simplified");
     require_tolerance(tolerance_mm, pass.stroke);
     const double exact_mm = std::min(0.02, 0.1 * tolerance_mm);
     const PassMarks marks = simulate(pass, brush, exact_mm, false);

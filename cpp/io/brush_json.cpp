@@ -37,11 +37,12 @@ Profile read_profile(Field field) {
     Profile profile;
     const Field coefficients = fields.take("coefficients");
     profile.coefficients = numbers(coefficients);
-    if (profile.coefficients.empty()) coefficients.refuse("law-terms", "coefficients must hold at least one number");
+    if (profile.coefficients.empty()) coefficients.refuse("law-terms", "coefficients must contain at least one number");
     if (const auto floor = fields.find("floor")) profile.floor = number(*floor);
     if (const auto slope = fields.find("floor_slope")) {
         profile.floor_slope = number(*slope);
-        if (!std::isfinite(profile.floor)) slope->refuse("key-missing", "floor_slope needs a floor");
+        if (!std::isfinite(profile.floor))
+            slope->refuse("key-missing", "floor_slope has no effect without floor: add floor, or remove floor_slope");
     }
     if (const auto calibrated = fields.find("calibrated_mm")) profile.calibrated_mm = interval(*calibrated);
     if (const auto source = fields.find("source")) profile.source = text(*source);
@@ -49,9 +50,9 @@ Profile read_profile(Field field) {
     if (const auto half = fields.find("half_interval_95")) {
         profile.half_interval_95 = numbers(*half);
         if (profile.half_interval_95.size() != profile.coefficients.size()) {
-            half->refuse("sizes-differ", "half_interval_95 must hold " + std::to_string(profile.coefficients.size()) +
-                                             " numbers, one per coefficient, not " +
-                                             std::to_string(profile.half_interval_95.size()));
+            half->refuse("sizes-differ",
+                         "half_interval_95 must contain " + std::to_string(profile.coefficients.size()) +
+                             " numbers, one per coefficient, not " + std::to_string(profile.half_interval_95.size()));
         }
     }
     if (const auto rmse = fields.find("rmse_mm")) profile.rmse_mm = number(*rmse);
@@ -59,7 +60,7 @@ Profile read_profile(Field field) {
         profile.degrees_of_freedom = number(*freedom);
         if (!(*profile.degrees_of_freedom >= 1.0 && *profile.degrees_of_freedom <= kMaxDegreesOfFreedom))
             throw Error("out-of-range",
-                        "degrees_of_freedom must be within [1, 1e9], not be " + describe(*profile.degrees_of_freedom),
+                        "degrees_of_freedom must be within [1, 1e9], not " + describe(*profile.degrees_of_freedom),
                         freedom->path, *profile.degrees_of_freedom, std::array<double, 2>{1.0, kMaxDegreesOfFreedom});
     }
     profile.extra = fields.extra();
@@ -72,7 +73,7 @@ std::vector<std::vector<double>> read_covariance(Field field, std::size_t size) 
     for (const Field& row : members(std::move(field))) {
         matrix.push_back(numbers(row));
         if (matrix.back().size() != size) {
-            row.refuse("covariance-invalid", "a row of covariance must hold " + std::to_string(size) +
+            row.refuse("covariance-invalid", "a row of covariance must contain " + std::to_string(size) +
                                                  " numbers, one per coefficient, not " +
                                                  std::to_string(matrix.back().size()));
         }
@@ -111,14 +112,20 @@ std::vector<Footprint> read_outlines(Field field, Eigen::Index& vertex_count, Js
         const Field outline = fields.take("outline_mm");
         Footprint footprint{positive(depth), points(outline)};
         if (!outlines.empty() && footprint.depth_mm <= outlines.back().depth_mm) {
-            throw Error("not-ascending", "depths must ascend from outline to outline", depth.path, footprint.depth_mm);
+            throw Error("not-ascending",
+                        "depth_mm is " + describe(footprint.depth_mm) + ", but must be greater than " +
+                            describe(outlines.back().depth_mm) + ": sort the outlines by ascending depth",
+                        depth.path, footprint.depth_mm);
         }
         if (footprint.outline_mm.rows() < 3)
-            outline.refuse("footprint-invalid", "an outline must have at least three points");
+            outline.refuse("footprint-invalid", "the outline has " + std::to_string(footprint.outline_mm.rows()) +
+                                                    " points, but needs at least 3");
         if (vertex_count == 0) vertex_count = footprint.outline_mm.rows();
         if (footprint.outline_mm.rows() != vertex_count) {
             outline.refuse("footprint-invalid", "the outline has " + std::to_string(footprint.outline_mm.rows()) +
-                                                    " points where the first one has " + std::to_string(vertex_count));
+                                                    " points, but the first outline has " +
+                                                    std::to_string(vertex_count) +
+                                                    ": give all outlines the same number");
         }
         outlines.push_back(std::move(footprint));
         if (!fields.unknown_keys().empty()) {
@@ -138,7 +145,7 @@ FootprintTable read_footprints(Field field, Json& notes) {
     Json pressed_notes = Json::array();
     table.dragged = read_outlines(fields.take("dragged"), vertex_count, dragged_notes);
     if (table.dragged.empty())
-        throw Error("footprint-invalid", "dragged must hold at least one outline", "footprints.dragged");
+        throw Error("footprint-invalid", "dragged must contain at least one outline", "footprints.dragged");
     if (auto pressed = fields.find("pressed")) {
         table.pressed = read_outlines(std::move(*pressed), vertex_count, pressed_notes);
     }

@@ -75,7 +75,9 @@ class ParseObserver {
             case Event::key:
                 levels_.back().key = parsed.get_ref<const std::string&>();
                 if (!levels_.back().keys.insert(levels_.back().key).second) {
-                    throw Error("key-twice", "the key " + levels_.back().key + " stands twice in one object", path());
+                    throw Error("key-twice",
+                                "the key " + levels_.back().key + " occurs twice in one object: remove one of them",
+                                path());
                 }
                 return true;
             case Event::object_end:
@@ -156,7 +158,7 @@ inline std::string line_and_column(const std::string& text, std::size_t byte) {
 /// Y".
 inline std::string parse_error_reason(const std::string& message) {
     const std::size_t dash = message.find(" - ");
-    std::string reason = dash == std::string::npos ? "it breaks off" : message.substr(dash + 3);
+    std::string reason = dash == std::string::npos ? "it is incomplete" : message.substr(dash + 3);
     return reason.substr(0, reason.find("; last read"));
 }
 
@@ -179,20 +181,21 @@ inline Document parse_versions(const std::string& text, const std::string& forma
                         parse_error_reason(fault.what()),
                     observer.path());
     } catch (const Json::out_of_range& fault) {  // for example 1e400
-        throw Error("not-finite", "the file holds a number that is too large to be finite", observer.path());
+        throw Error("not-finite", "the file contains a number that is too large", observer.path());
     }
     Fields fields(Field{std::move(document), ""});
     const Field found = fields.take("format");
     if (io::text(found) != format) {
         found.refuse("format-unknown",
-                     "the file calls itself " + found.value.dump() + ", where \"" + format + "\" is needed");
+                     "the format of the file is " + found.value.dump() + ", but must be \"" + format + "\"");
     }
     const Field version = fields.take("version");
     const double read = number(version);
     if (!(read >= 1.0 && read <= newest && read == std::floor(read))) {
         throw Error("version-unknown",
-                    "version " + version.value.dump() + " of " + format + " is not known; this program reads version" +
-                        (newest == 1 ? " 1" : "s 1 to " + std::to_string(newest)),
+                    "version " + version.value.dump() + " of " + format + " cannot be read, only " +
+                        (newest == 1 ? "version 1" : "versions 1 to " + std::to_string(newest)) +
+                        ": use a newer brushsvg, or write the file again",
                     version.path, read);
     }
     return {std::move(fields), static_cast<int>(read)};
@@ -216,7 +219,7 @@ inline Json parse_object(const std::string& text, const std::string& path, const
         throw Error("not-json", Field{nullptr, path}.name() + " must be the text of a JSON object", path);
     for (const auto& [key, value] : object.items()) {
         if (own_keys.count(key) > 0)
-            throw Error("key-twice", "the key " + key + " may not be among the unknown keys", path);
+            throw Error("key-twice", "the key " + key + " is not an unknown key: set it by its own argument", path);
     }
     return object;
 }

@@ -112,7 +112,7 @@ inline std::vector<double> numbers(const Field& field) {
 inline std::array<double, 2> pair(const Field& field) {
     const std::vector<double> values = numbers(field);
     if (values.size() != 2) {
-        field.refuse("wrong-type", field.name() + " must hold two numbers, not " + std::to_string(values.size()));
+        field.refuse("wrong-type", field.name() + " must contain two numbers, not " + std::to_string(values.size()));
     }
     return {values[0], values[1]};
 }
@@ -120,7 +120,7 @@ inline std::array<double, 2> pair(const Field& field) {
 /// Reads an interval [least, greatest].
 inline std::array<double, 2> interval(const Field& field) {
     const std::array<double, 2> ends = pair(field);
-    if (ends[0] > ends[1]) field.refuse("not-ascending", field.name() + " must name the smaller number first");
+    if (ends[0] > ends[1]) field.refuse("not-ascending", field.name() + " must contain the smaller number first");
     return ends;
 }
 
@@ -132,7 +132,7 @@ inline void require_coordinates(const Ring& ring, const std::string& path) {
         for (const double mm : {ring(i, 0), ring(i, 1)})
             if (!(std::abs(mm) <= kMaxFileCoordinateMm))
                 throw Error("geometry-out-of-range",
-                            "a coordinate of " + Json(mm).dump() + " mm is outside [-1e6, 1e6] mm",
+                            "a coordinate of " + Json(mm).dump() + " mm is outside the range [-1e6, 1e6] mm",
                             path + "[" + std::to_string(i) + "]", mm,
                             std::array<double, 2>{-kMaxFileCoordinateMm, kMaxFileCoordinateMm});
 }

@@ -21,7 +21,7 @@ void require_parallel(const PassMarks& pass, const std::string& path) {
         if (rows == pass.pose.size()) return;
         throw Error("sizes-differ",
                     std::string(key) + " of stroke " + pass.stroke + " has " + std::to_string(rows) +
-                        " rows where pose has " + std::to_string(pass.pose.size()),
+                        " rows, but pose has " + std::to_string(pass.pose.size()),
                     path + "." + key);
     };
     require("contact_mm", static_cast<std::size_t>(pass.contact_mm.rows()));
@@ -36,7 +36,7 @@ void require_within(const std::vector<double>& values, const std::string& path, 
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!(values[i] >= least && values[i] <= greatest))
             throw Error("out-of-range",
-                        "the number " + describe(values[i]) + " is outside [" + describe(least) + ", " +
+                        "the number " + describe(values[i]) + " is outside the range [" + describe(least) + ", " +
                             describe(greatest) + "]",
                         path + "[" + std::to_string(i) + "]", values[i], std::array<double, 2>{least, greatest});
 }
@@ -49,7 +49,7 @@ void require_lean(const PassMarks& pass, const std::string& path) {
         if (!(lean <= most + 1e-6))  // values are written with seven decimals
             throw Error("out-of-range",
                         "row " + std::to_string(i) + " of stroke " + pass.stroke + " leans by " + describe(lean) +
-                            " mm per mm, outside [0, " + describe(most) + "]",
+                            " mm per mm, outside the range [0, " + describe(most) + "]",
                         path + "[" + std::to_string(i) + "]", lean, std::array<double, 2>{0.0, most});
     }
 }

@@ -33,14 +33,15 @@ void require_valid_pass(const Pass& pass, const std::string& path, double slack_
         if (!pass.poses_mm.row(i).allFinite()) throw Error("not-finite", sentence("is not finite"), where(i));
         const double largest_mm = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
         if (largest_mm > kMaxCoordinateMm) {
-            throw Error("geometry-out-of-range",
-                        sentence("has a coordinate of " + describe(largest_mm) + " mm, outside [-1e6, 1e6] mm"),
-                        where(i), largest_mm, std::array<double, 2>{-kMaxCoordinateMm, kMaxCoordinateMm});
+            throw Error(
+                "geometry-out-of-range",
+                sentence("has a coordinate of " + describe(largest_mm) + " mm, outside the range [-1e6, 1e6] mm"),
+                where(i), largest_mm, std::array<double, 2>{-kMaxCoordinateMm, kMaxCoordinateMm});
         }
         const double z_mm = pass.poses_mm(i, 2);
         if (z_mm > slack_mm) {
             throw Error("above-paper",
-                        sentence("has z = " + describe(z_mm) + " mm; inside a pass z must be 0 or below"), where(i),
+                        sentence("has z = " + describe(z_mm) + " mm, but inside a pass z must be 0 or below"), where(i),
                         z_mm, std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
         }
     }
@@ -118,7 +119,7 @@ Pass read_pass(Field field, std::size_t index, const std::vector<PassRows>& tabl
     if (auto axes = fields.find("tool_axes")) {
         if (version < kTiltVersion)
             axes->refuse("version-unknown", "tool_axes of stroke " + pass.stroke.name() + " needs version 2 of " +
-                                                kFormat + "; the file says version 1");
+                                                kFormat + ", but the file has version 1");
         pass.tool_axes = tables[1].rows_of_pass<Poses>(index, *axes, "three numbers [x, y, z]");
     }
     if (auto arcs = fields.find("arcs"))

@@ -21,7 +21,7 @@ constexpr double kMaxNegativeAreaMm2 = 1e-6;     // mm^2: a piece may turn over 
 void require_finite(const Rings& rings) {
     for (const Ring& ring : rings)
         if (ring.rows() > 0 && !(ring.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMaxPaintedCoordinateMm))
-            throw Error("geometry-out-of-range", "a ring has a coordinate that is not finite, or beyond 1e7 mm");
+            throw Error("geometry-out-of-range", "a ring has a coordinate that is not finite or beyond 1e7 mm");
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ Coverage coverage_of_pieces(const Rings& convex, const Window& window, double px
     for (const Ring& piece : convex) {
         if (piece.rows() == 0) continue;
         if (const double mm2 = signed_area(piece); mm2 < -kMaxNegativeAreaMm2)
-            throw Error("outline-clockwise", "a piece runs clockwise: convex pieces go counter-clockwise", "", mm2);
+            throw Error("outline-clockwise", "a convex piece is clockwise: list its points counter-clockwise", "", mm2);
         raster.convex_pair(piece, piece);
     }
     return raster.coverage();

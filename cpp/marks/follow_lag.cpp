@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
+#include "base/format_text.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "marks/pass_walk.hpp"
@@ -29,7 +29,9 @@ struct RowMotion {
         for (Index i = 0; i + 1 < count(); ++i) {
             const double from = marks.pose[std::size_t(i)], to = marks.pose[std::size_t(i) + 1];
             if (!(from >= 0.0 && from <= to + kPoseRounding && to <= last))
-                throw Error("not-ascending", "rows of marks do not follow the poses of the pass", marks.stroke, to);
+                throw Error("not-ascending",
+                            "the rows of the marks do not belong to the poses of the pass: simulate this pass",
+                            marks.stroke, to);
             const Index pose = std::min(Index(from + kPoseRounding), pass.poses_mm.rows() - 2);
             while (arc != pass.arcs.end() && arc->last <= pose) ++arc;
             if (arc == pass.arcs.end() || arc->first > pose || from >= to || tcp(i) == tcp(i + 1)) continue;
@@ -92,16 +94,17 @@ class Follower {
 };
 
 void require_usable_rows(const Pass& pass, const PassMarks& marks, const LagLaw<double>& lag) {
-    refuse_tilted(pass, "another lag is followed with a brush held upright");
+    refuse_tilted(pass, "only passes of an upright brush can be followed with another lag");
     const std::size_t rows = marks.pose.size();
     if (std::size_t(marks.tcp_mm.rows()) != rows || marks.depth_mm.size() != rows)
-        throw Error("sizes-differ", "rows of marks are not parallel", marks.stroke);
+        throw Error("sizes-differ", "the columns of the marks differ in length, but each needs one entry per row",
+                    marks.stroke);
     const double hi = lag.pieces.back().hi;
     for (const double depth : marks.depth_mm) {
         if (depth <= hi + kDepthRoundingMm) continue;
-        char text[120];
-        std::snprintf(text, sizeof text, "depth %.3f mm is outside the range [0, %.1f] mm of the lag", depth, hi);
-        throw Error("depth-out-of-range", text, marks.stroke, depth, std::array<double, 2>{0.0, hi});
+        throw Error("depth-out-of-range",
+                    format_text("depth %.3f mm is outside the range [0, %.1f] mm of the lag", depth, hi), marks.stroke,
+                    depth, std::array<double, 2>{0.0, hi});
     }
 }
 

@@ -152,7 +152,7 @@ MarkOverlap mark_overlap(const std::vector<PassMarks>& painted, const std::vecto
 
 CommonArea common_area(const MarkOverlap& seen) {
     if (seen.target.rows() != seen.painted.rows() || seen.target.cols() != seen.painted.cols())
-        throw Error("sizes-differ", "paint and drawing are pictures of different sizes");
+        throw Error("sizes-differ", "the pictures of paint and drawing differ in size");
     const double mm2 = 1.0 / (seen.px_per_mm * seen.px_per_mm);
     double common = 0.0, together = 0.0;
     // a row's sum is exact enough in single precision
@@ -205,7 +205,10 @@ std::vector<CommonArea> common_areas(const std::vector<PassMarks>& painted, cons
     for (const auto& members : groups)
         for (const std::size_t k : members)
             if (k >= painted.size() || k >= target.size())
-                throw Error("out-of-range", "a group names a stroke that there is not", "", double(k));
+                throw Error("out-of-range",
+                            "a group contains stroke " + std::to_string(k) + ", but there are only " +
+                                std::to_string(std::min(painted.size(), target.size())) + " strokes, counted from 0",
+                            "", double(k));
     std::vector<CommonArea> found(groups.size());
     parallel_for(0, found.size(), [&](std::size_t g) {
         std::vector<PassMarks> marks;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/format_text.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "values/require_usable.hpp"
@@ -62,11 +63,14 @@ struct RowCollector {
 double narrow_pass(PassMarks& marks, const Paint& paint, const std::vector<double>& dips_mm, double before_mm) {
     require_usable(marks);
     if (std::size_t(marks.tcp_mm.rows()) != marks.pose.size())
-        throw Error("sizes-differ", "the marks do not say where the TCP was, as those of a file", marks.stroke);
+        throw Error("sizes-differ",
+                    "the marks have no TCP positions, because they come from a file: use marks of simulate()",
+                    marks.stroke);
     for (std::size_t k = 0; k < dips_mm.size(); ++k)
         if (!(dips_mm[k] >= 0.0) || (k > 0 && !(dips_mm[k] > dips_mm[k - 1])))
-            throw Error("not-ascending", "ways at which paint was fetched must ascend from 0", marks.stroke,
-                        dips_mm[k]);
+            throw Error("not-ascending",
+                        format_text("a dip is at %.6g mm, but the path lengths of dips must ascend from 0", dips_mm[k]),
+                        marks.stroke, dips_mm[k]);
     RowCollector rows{marks, {}, {}, {}, {}};
     std::size_t dip = 0;
     double way = 0.0, dipped_at = -before_mm;
@@ -100,8 +104,9 @@ double narrow_pass(PassMarks& marks, const Paint& paint, const std::vector<doubl
 void narrow(Marks& marks, const Paint& paint, const std::vector<std::vector<double>>& dips_mm) {
     check(paint);
     if (dips_mm.size() != marks.passes.size())
-        throw Error("sizes-differ", "there are dips for " + std::to_string(dips_mm.size()) + " passes, but " +
-                                        std::to_string(marks.passes.size()) + " passes");
+        throw Error("sizes-differ", "there are " + std::to_string(dips_mm.size()) + " lists of dips for " +
+                                        std::to_string(marks.passes.size()) +
+                                        " passes: give one list, maybe empty, for each pass");
     double way_mm = 0.0;
     for (std::size_t i = 0; i < marks.passes.size(); ++i)
         way_mm = narrow_pass(marks.passes[i], paint, dips_mm[i], way_mm);

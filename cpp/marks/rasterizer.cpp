@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "base/format_text.hpp"
 #include "base/parallel.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -25,9 +25,7 @@ constexpr Eigen::Index kPixelsPerPart = 1 << 18;  // size of a part of a picture
 
 std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm) {
     const auto refuse = [](const char* pattern, auto... numbers) {
-        char text[160];
-        std::snprintf(text, sizeof text, pattern, numbers...);
-        throw Error("picture-size", text);
+        throw Error("picture-size", format_text(pattern, numbers...));
     };
     if (!(px_per_mm >= kPxPerMmRange[0] && px_per_mm <= kPxPerMmRange[1]))
         refuse("the scale of the picture, %g px/mm, is outside the range [%g, %g] px/mm", px_per_mm, kPxPerMmRange[0],
@@ -37,7 +35,10 @@ std::array<Eigen::Index, 2> picture_size(const Window& window, double px_per_mm)
                kMaxPaintedCoordinateMm, kMaxPaintedCoordinateMm);
     const double w = std::ceil(window.width_mm * px_per_mm - 1e-9), h = std::ceil(window.height_mm * px_per_mm - 1e-9);
     if (!(w >= 1.0 && h >= 1.0 && w * h <= kMaxPixels))
-        refuse("the picture has %.10g x %.10g px, outside the range of 1 x 1 to %g px in all", w, h, kMaxPixels);
+        refuse(
+            "the picture would have %.10g x %.10g px, but must have at least 1 x 1 and at most %g in total: change the "
+            "window or the scale",
+            w, h, kMaxPixels);
     return {Eigen::Index(w), Eigen::Index(h)};
 }
 

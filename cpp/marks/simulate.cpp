@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "base/format_text.hpp"
 #include "base/tolerance.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -346,8 +346,8 @@ class Tracer {
         checkpoint();
         if (out_.pose.size() >= max_rows_)
             throw Error("tolerance-too-fine",
-                        "the mark of the pass takes more than " + std::to_string(max_rows_) +
-                            " rows: it is too large for the tolerance",
+                        "the mark of the pass needs more than " + std::to_string(max_rows_) +
+                            " rows: use a larger tolerance, or split the pass",
                         out_.stroke, tolerance_);
         out_.pose.push_back(pose_ + scale_ * t);
         tcp_.insert(tcp_.end(), {q.x(), q.y()});
@@ -384,18 +384,18 @@ void require_valid_poses(const Pass& pass, const Brush& brush, bool may_rise) {
                         pass.stroke);
         const double largest = pass.poses_mm.row(i).cwiseAbs().maxCoeff();
         if (largest > kMaxCoordinateMm) {
-            char text[120];
-            std::snprintf(text, sizeof text, "pose %ld is at %.3g mm, outside the range [-1e6, 1e6] mm", long(i),
-                          largest);
-            throw Error("geometry-out-of-range", text, pass.stroke, largest,
-                        std::array<double, 2>{-kMaxCoordinateMm, kMaxCoordinateMm});
+            throw Error(
+                "geometry-out-of-range",
+                format_text("pose %ld has a coordinate of %.3g mm, outside the range [-1e6, 1e6] mm", long(i), largest),
+                pass.stroke, largest, std::array<double, 2>{-kMaxCoordinateMm, kMaxCoordinateMm});
         }
         const double depth = -pass.poses_mm(i, 2);
         if (depth > brush.depth_range_mm[1] + 1e-9) {
-            char text[200];
-            std::snprintf(text, sizeof text, "depth %.3f mm of pose %ld is outside the range [%.1f, %.1f] mm of brush ",
-                          depth, long(i), brush.depth_range_mm[0], brush.depth_range_mm[1]);
-            throw Error("depth-out-of-range", text + brush.name, pass.stroke, depth, brush.depth_range_mm);
+            throw Error("depth-out-of-range",
+                        format_text("depth %.3f mm of pose %ld is outside the range [%.1f, %.1f] mm of brush ", depth,
+                                    long(i), brush.depth_range_mm[0], brush.depth_range_mm[1]) +
+                            brush.name,
+                        pass.stroke, depth, brush.depth_range_mm);
         }
     }
     const double lowest = pass.poses_mm.rows() > 0 ? pass.poses_mm.col(2).minCoeff() : 0.0;
@@ -403,22 +403,20 @@ void require_valid_poses(const Pass& pass, const Brush& brush, bool may_rise) {
     if (lowest <= 0.0 && !may_rise && pass.poses_mm.rows() > 0 &&
         pass.poses_mm.col(2).maxCoeff(&highest) > kMaxOnTheSpotMm) {
         const double z = pass.poses_mm(highest, 2);
-        char text[200];
-        std::snprintf(
-            text, sizeof text,
-            "pose %ld is %.3g mm above the paper; inside a pass z must be 0 or below. Begin another pass where "
-            "the brush is set down again",
-            long(highest), z);
-        throw Error("above-paper", text, pass.stroke, z,
-                    std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
+        throw Error("above-paper",
+                    format_text("pose %ld is %.3g mm above the paper, but inside a pass z must be 0 or below: begin a "
+                                "new pass where the brush is set down again",
+                                long(highest), z),
+                    pass.stroke, z, std::array<double, 2>{-std::numeric_limits<double>::infinity(), 0.0});
     }
     // all poses are above the paper: probably a wrong sign, because such a pass paints nothing
     if (lowest > 0.0) {
-        char text[200];
-        std::snprintf(text, sizeof text,
-                      "the brush never touches the paper: its lowest pose is %.3g mm above it; z is the negative depth",
-                      lowest);
-        throw Error("never-pressed", text, pass.stroke, lowest);
+        throw Error(
+            "never-pressed",
+            format_text("the brush never touches the paper, because its lowest pose is %.3g mm above it: set z to the "
+                        "negative depth",
+                        lowest),
+            pass.stroke, lowest);
     }
 }
 

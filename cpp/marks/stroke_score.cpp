@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/format_text.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/excess_turning.hpp"
@@ -77,9 +78,11 @@ double median_half_width(const MiddlePolyline& line) {
 WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
     const Index height = seen.target.rows(), width = seen.target.cols();
     if (height == 0 || width == 0 || seen.painted.rows() != height || seen.painted.cols() != width)
-        throw Error("sizes-differ", "paint and drawing are pictures of different sizes, or empty");
+        throw Error("sizes-differ", "the pictures of paint and drawing are empty or differ in size");
     if (!(size_mm * seen.px_per_mm >= 0.0 && size_mm * seen.px_per_mm <= 1e15))
-        throw Error("out-of-range", "the square in which the worst place is looked for has no size", "", size_mm);
+        throw Error("out-of-range",
+                    format_text("the size of the square is %.4g mm, but must be at least 0 and finite", size_mm), "",
+                    size_mm);
     const Index block = std::clamp(Index(std::lround(size_mm * seen.px_per_mm / kBlocksPerSquare)), Index(1),
                                    std::min(height, width));  // the remainder at the edges is paper
     const Index rows = height / block, columns = width / block;
@@ -119,7 +122,8 @@ WorstPlace worst_place(const MarkOverlap& seen, double size_mm) {
 double width_across(const Coverage& shares, const MarkOverlap& seen, const Vector2d& at_mm, const Vector2d& direction,
                     double reach_mm) {
     if (!at_mm.allFinite() || !direction.allFinite() || std::isnan(reach_mm) || !(seen.px_per_mm > 0.0))
-        throw Error("not-finite", "the place of a width or the picture's scale is not finite");
+        throw Error("not-finite",
+                    "the point, the direction, the reach or the scale of the picture is not a valid number");
     const double step_mm = 1.0 / seen.px_per_mm;
     const Vector2d across = step_mm * Vector2d(-direction.y(), direction.x());
     const auto share = [&](int k) { return share_at(shares, seen, at_mm + double(k) * across); };

@@ -3,20 +3,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format_text.hpp"
 #include "brushsvg/error.hpp"
 #include "brushsvg/student_t.hpp"
 
 namespace brushsvg {
 namespace {
-
-template <class... Numbers>
-std::string format(const char* pattern, Numbers... numbers) {
-    char text[256];
-    std::snprintf(text, sizeof text, pattern, numbers...);
-    return text;
-}
 
 constexpr double kMaxDepthMm = 1000.0;  // no brush is longer, and plans grow with the depth
 constexpr double kMaxLawValueMm = 1000.0;
@@ -80,9 +73,10 @@ void check_lag(const Brush& brush) {
             if (!(std::abs(e) <= kMaxInvisibleErrorMm))
                 throw Error(
                     "pen-off-centre",
-                    format("the lag is zero, so the mark has no heading, but at depth %.2f mm it is widest %.2f "
-                           "mm away from where it touches",
-                           d, e),
+                    format_text(
+                        "the lag is zero, but at depth %.2f mm the mark is widest %.3f mm from the contact, "
+                        "outside the range [-0.05, 0.05] mm: measure the lag, or set tip_to_widest equal to tip_gap",
+                        d, e),
                     "lag", e, std::array<double, 2>{-kMaxInvisibleErrorMm, kMaxInvisibleErrorMm});
         }
         return;
@@ -90,60 +84,84 @@ void check_lag(const Brush& brush) {
     // A brush passes smaller depths than its range has when it is set down and lifted.
     const LawMinimum worst = find_minimum(brush.lag, 0.0, hi);
     if (worst.value < 0.0)
-        throw Error("law-negative",
-                    format("the lag is %.3f mm at depth %.2f mm; it must not be negative between depths 0.00 and ",
-                           worst.value, worst.depth) +
-                        format("%.2f mm", hi),
-                    "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
+        throw Error(
+            "law-negative",
+            format_text(
+                "the lag is %.3f mm at depth %.2f mm, but must be at least 0 from depth 0 to %.2f mm: correct its "
+                "coefficients, or measure the lag near that depth and fit the law again",
+                worst.value, worst.depth, hi),
+            "lag", worst.value, std::array<double, 2>{0.0, INFINITY});
     // A lag of zero is only valid at depth 0, where the lever begins to grow.
     const LawMinimum inside = find_minimum(brush.lag, lo + 1e-3 * (hi - lo), hi);
     if (!(inside.value > 0.0))
-        throw Error("law-zero",
-                    format("the lag is zero at depth %.2f mm but not everywhere: a brush lags over its whole range, a "
-                           "rigid pen nowhere",
-                           inside.depth),
-                    "lag", 0.0, std::array<double, 2>{0.0, INFINITY});
+        throw Error(
+            "law-zero",
+            format_text(
+                "the lag is zero at depth %.2f mm but not at all depths: correct its coefficients so that the lag "
+                "is positive, or set all of them to 0 for a rigid pen",
+                inside.depth),
+            "lag", 0.0, std::array<double, 2>{0.0, INFINITY});
 }
 
 void check_half_width(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     double before = brush.half_width(lo);
     if (before < 0.0)
-        throw Error("law-negative",
-                    format("the half width is %.3f mm at depth %.2f mm; it must not be negative", before, lo),
-                    "half_width");
+        throw Error(
+            "law-negative",
+            format_text(
+                "the half width is %.3f mm at depth %.2f mm, but must be at least 0: correct its coefficients, or "
+                "begin depth_range_mm at a greater depth",
+                before, lo),
+            "half_width", before, std::array<double, 2>{0.0, INFINITY});
     constexpr int n = 1000;
     for (int i = 1; i <= n; ++i) {
         const double d = lo + (hi - lo) * i / n, now = brush.half_width(d);
         if (now < before - 1e-9)
-            throw Error("width-falls",
-                        format("the half width falls at depth %.2f mm; it must not fall as the brush is pressed", d),
-                        "half_width", d, brush.depth_range_mm);
+            throw Error(
+                "width-falls",
+                format_text(
+                    "the half width falls at depth %.2f mm, but a mark cannot get narrower as the brush is pressed: "
+                    "correct its coefficients, or end depth_range_mm before that depth",
+                    d),
+                "half_width", d, brush.depth_range_mm);
         before = now;
     }
-    if (!(before > 0.0)) throw Error("law-zero", "the half width is zero over the whole depth range", "half_width");
+    if (!(before > 0.0))
+        throw Error(
+            "law-zero",
+            format_text("the half width is zero at all depths from %.2f to %.2f mm: correct its coefficients", lo, hi),
+            "half_width");
 }
 
 void check_range(const Profile& law, double lo, double hi, const char* where) {
     for (int i = 0; i <= 100; ++i) {
         const double d = lo + (hi - lo) * i / 100, value = law(d);
         if (!(std::abs(value) <= kMaxLawValueMm))
-            throw Error("out-of-range",
-                        format("the law says %.4g mm at depth %.2f mm; no more than %.0f mm is taken for true", value,
-                               d, kMaxLawValueMm),
-                        where, value, std::array<double, 2>{-kMaxLawValueMm, kMaxLawValueMm});
+            throw Error(
+                "out-of-range",
+                format_text(
+                    "the law gives %.4g mm at depth %.2f mm, outside the range [-%.0f, %.0f] mm: check the units "
+                    "and the order of its coefficients, which multiply ascending powers of the depth in mm",
+                    value, d, kMaxLawValueMm, kMaxLawValueMm),
+                where, value, std::array<double, 2>{-kMaxLawValueMm, kMaxLawValueMm});
     }
     if (const auto& measured = law.calibrated_mm;
         measured && !((*measured)[0] < (*measured)[1] && (*measured)[0] < hi && (*measured)[1] > lo))
         throw Error(
             "out-of-range",
-            format("it was measured in [%.4g, %.4g] mm, which must rise and meet the depth range [%.4g, %.4g] mm",
-                   (*measured)[0], (*measured)[1], lo, hi),
+            format_text(
+                "calibrated_mm is [%.4g, %.4g] mm, but must ascend and overlap the depth range [%.4g, %.4g] mm: enter "
+                "the least and the greatest measured depth",
+                (*measured)[0], (*measured)[1], lo, hi),
             where);
-    const auto& half = law.half_interval_95;
-    if (std::any_of(half.begin(), half.end(), [](double value) { return !(value >= 0.0); }) ||
-        (law.rmse_mm && !(*law.rmse_mm >= 0.0)))
-        throw Error("out-of-range", "an interval or rmse_mm is negative", where);
+    const auto refuse_negative = [&](const char* key, double value) {
+        if (!(value >= 0.0))
+            throw Error("out-of-range", format_text("%s contains %.4g, but must be at least 0", key, value), where,
+                        value, std::array<double, 2>{0.0, INFINITY});
+    };
+    for (const double half : law.half_interval_95) refuse_negative("half_interval_95", half);
+    if (law.rmse_mm) refuse_negative("rmse_mm", *law.rmse_mm);
 }
 
 /// Throws Error unless the covariance is symmetric, positive semi-definite within rounding errors, and gives no law a
@@ -157,36 +175,48 @@ void check_covariance(const Brush& brush) {
         if (Eigen::Index(row.size()) != n)
             throw Error(
                 "covariance-invalid",
-                format("a row of covariance holds %.0f numbers, its columns %.0f", double(row.size()), double(n)),
+                format_text("row %.0f of the covariance has %.0f numbers, but there are %.0f rows: a covariance has "
+                            "as many columns as rows",
+                            double(i), double(row.size()), double(n)),
                 "covariance");
         c.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), n);
     }
-    if (!c.allFinite()) throw Error("not-finite", "a number is not finite", "covariance");
+    if (!c.allFinite()) throw Error("not-finite", "the covariance contains a number that is not finite", "covariance");
     const Eigen::VectorXd least = c.diagonal().cwiseMax(1e-24).cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd correlation = least.asDiagonal() * c * least.asDiagonal();
     for (Eigen::Index i = 0; i < n; ++i) {
         const std::string here = "covariance[" + std::to_string(i) + "]";
         if (correlation(i, i) < -kMaxCorrelationError)
-            throw Error("covariance-invalid", format("the variance %.4g must not be negative", c(i, i)),
-                        here + "[" + std::to_string(i) + "]", c(i, i), std::array<double, 2>{0.0, INFINITY});
+            throw Error(
+                "covariance-invalid",
+                format_text(
+                    "the variance is %.4g, but must be at least 0: compute the covariance again, or leave it out",
+                    c(i, i)),
+                here + "[" + std::to_string(i) + "]", c(i, i), std::array<double, 2>{0.0, INFINITY});
         for (Eigen::Index j = 0; j < i; ++j)
             if (!(std::abs(correlation(i, j) - correlation(j, i)) <= kMaxCorrelationError))
-                throw Error(
-                    "covariance-invalid",
-                    format("%.4g differs from %.4g on the other side: a covariance is symmetric", c(i, j), c(j, i)),
-                    here + "[" + std::to_string(j) + "]");
+                throw Error("covariance-invalid",
+                            format_text("the covariance is not symmetric, because %.4g differs from the mirrored "
+                                        "number %.4g: compute it again, or leave it out",
+                                        c(i, j), c(j, i)),
+                            here + "[" + std::to_string(j) + "]");
     }
     const Eigen::MatrixXd raised = correlation + kMaxCorrelationError * Eigen::MatrixXd::Identity(n, n);
     if (raised.llt().info() != Eigen::Success)
-        throw Error(
-            "covariance-invalid",
-            "some sum of the coefficients would have a negative variance: a covariance is positive semi-definite",
-            "covariance");
+        throw Error("covariance-invalid",
+                    "the covariance is not positive semi-definite, so some sum of the coefficients would have a "
+                    "negative variance: compute it again, or leave it out",
+                    "covariance");
+    Eigen::Index total = 0;
+    for (const auto& [law, where] : laws(brush)) total += Eigen::Index(law->coefficients.size());
+    if (total != n)
+        throw Error("covariance-invalid",
+                    format_text("the covariance must have %.0f rows, one per coefficient of the laws, not %.0f",
+                                double(total), double(n)),
+                    "covariance", double(n));
     Eigen::Index first = 0;
     for (const auto& [law, where] : laws(brush)) {
         const Eigen::Index count = Eigen::Index(law->coefficients.size());
-        if (first + count > n)
-            throw Error("covariance-invalid", "covariance must have one row per coefficient", "covariance");
         for (double depth : {brush.depth_range_mm[0], brush.depth_range_mm[1]}) {
             Eigen::VectorXd powers = Eigen::VectorXd::Ones(count);
             for (Eigen::Index i = 1; i < count; ++i) powers[i] = powers[i - 1] * depth;
@@ -194,15 +224,15 @@ void check_covariance(const Brush& brush) {
                 interval_factor_95(law->degrees_of_freedom) *
                 std::sqrt(std::max(0.0, powers.dot(c.block(first, first, count, count) * powers)));
             if (!(half_interval <= kMaxLawValueMm))
-                throw Error("out-of-range",
-                            format("by the covariance the law is known to +- %.3g mm at depth %.2f mm; no more than "
-                                   "%.0f mm is taken for true",
-                                   half_interval, depth, kMaxLawValueMm),
-                            where, half_interval, std::array<double, 2>{0.0, kMaxLawValueMm});
+                throw Error(
+                    "out-of-range",
+                    format_text("the covariance gives the law a 95 %% interval of +- %.3g mm at depth %.2f mm, but at "
+                                "most %.0f mm are allowed: compute it again, or leave it out",
+                                half_interval, depth, kMaxLawValueMm),
+                    where, half_interval, std::array<double, 2>{0.0, kMaxLawValueMm});
         }
         first += count;
     }
-    if (first != n) throw Error("covariance-invalid", "covariance must have one row per coefficient", "covariance");
 }
 
 bool crosses_itself(const Ring& p) {
@@ -222,62 +252,75 @@ bool crosses_itself(const Ring& p) {
 void check_shapes(const Brush& brush, const std::vector<Footprint>& shapes, const std::string& where) {
     double depth_before = 0.0;
     if (shapes.size() > kMaxOutlines)
-        throw Error(
-            "footprint-invalid",
-            format("there are %.0f outlines; at most %.0f are read", double(shapes.size()), double(kMaxOutlines)),
-            where);
+        throw Error("footprint-invalid",
+                    format_text("there are %.0f outlines, but at most %.0f are allowed: keep fewer depths",
+                                double(shapes.size()), double(kMaxOutlines)),
+                    where);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Footprint& shape = shapes[i];
         const std::string here = where + "[" + std::to_string(i) + "]";
         const double d = shape.depth_mm;
         if (!(d <= kMaxLawValueMm) || !(d > depth_before))
-            throw Error("not-ascending",
-                        format("depth %.3f mm is not greater than the one before, %.3f mm, and at most 1000 mm", d,
-                               depth_before),
-                        here, d);
+            throw Error(
+                "not-ascending",
+                format_text("depth %.3f mm is outside the range (%.3f, 1000] mm: sort the outlines by ascending depth",
+                            d, depth_before),
+                here, d);
         depth_before = d;
         if (!shape.outline_mm.allFinite())
             throw Error("not-finite", "the outline has a coordinate that is not finite", here);
         const double largest = shape.outline_mm.size() > 0 ? shape.outline_mm.cwiseAbs().maxCoeff() : 0.0;
         if (!(largest <= kMaxLawValueMm))
-            throw Error("out-of-range",
-                        format("the outline reaches %.4g mm from the tip; no brush is larger than %.0f mm", largest,
-                               kMaxLawValueMm),
-                        here, largest, std::array<double, 2>{0.0, kMaxLawValueMm});
+            throw Error(
+                "out-of-range",
+                format_text("the outline has a coordinate of %.4g mm, but at most %.0f mm are allowed: check its unit",
+                            largest, kMaxLawValueMm),
+                here, largest, std::array<double, 2>{0.0, kMaxLawValueMm});
         if (shape.outline_mm.rows() > kMaxVertices)
             throw Error("footprint-invalid",
-                        format("the outline has %.0f vertices; at most %.0f are read", double(shape.outline_mm.rows()),
-                               double(kMaxVertices)),
+                        format_text("the outline has %.0f vertices, but at most %.0f are allowed: simplify it",
+                                    double(shape.outline_mm.rows()), double(kMaxVertices)),
                         here);
         if (shape.outline_mm.rows() < 3)
-            throw Error("footprint-invalid", "the outline needs at least 3 vertices", here);
+            throw Error(
+                "footprint-invalid",
+                format_text("the outline has %.0f vertices, but needs at least 3", double(shape.outline_mm.rows())),
+                here);
         if (shape.outline_mm.rows() != brush.footprints.vertex_count())
-            throw Error("footprint-invalid",
-                        format("the outline has %.0f vertices where the first one has %.0f; all depths need the same",
-                               double(shape.outline_mm.rows()), double(brush.footprints.vertex_count())),
-                        here);
+            throw Error(
+                "footprint-invalid",
+                format_text(
+                    "the outline has %.0f vertices, but the first outline has %.0f: give all outlines the same number",
+                    double(shape.outline_mm.rows()), double(brush.footprints.vertex_count())),
+                here);
         if (shape.outline_mm.row(0).norm() > 1e-9)
-            throw Error("footprint-invalid", "the outline's first vertex is not the tip at (0, 0)", here);
+            throw Error(
+                "footprint-invalid",
+                format_text("the outline begins at (%.4g, %.4g) mm, but must begin at the tip, (0, 0): move its origin "
+                            "to the tip and list the tip first",
+                            shape.outline_mm(0, 0), shape.outline_mm(0, 1)),
+                here);
         if (!(signed_area(shape.outline_mm) > 0.0))
-            throw Error("footprint-invalid", "the outline does not run counter-clockwise", here);
-        if (crosses_itself(shape.outline_mm)) throw Error("footprint-invalid", "the outline crosses itself", here);
+            throw Error("footprint-invalid", "the outline is clockwise: list its vertices counter-clockwise", here);
+        if (crosses_itself(shape.outline_mm))
+            throw Error("footprint-invalid", "the outline crosses itself: list its vertices in order along the edge",
+                        here);
         if (d > brush.depth_range_mm[1]) continue;
         const WidestSection seen = widest_section(shape.outline_mm);
         // Several sections may be equally wide. The law must match one of them.
         const double x_law = brush.tip_to_widest(d), h_law = brush.half_width(d);
         if (std::abs(seen.half_width_mm - h_law) > kMaxLawOutlineDifferenceMm)
-            throw Error(
-                "footprint-against-law",
-                format("at depth %.2f mm the outline is %.2f mm wide on each side but half_width says %.2f mm; they "
-                       "must agree to 0.5 mm",
-                       d, seen.half_width_mm, h_law),
-                here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
+            throw Error("footprint-against-law",
+                        format_text("at depth %.2f mm the outline has a half width of %.2f mm, but the law half_width "
+                                    "gives %.2f mm: correct one of them, they may differ by 0.5 mm at most",
+                                    d, seen.half_width_mm, h_law),
+                        here, seen.half_width_mm, std::array<double, 2>{h_law - 0.5, h_law + 0.5});
         if (std::abs(seen.from_tip_mm - x_law) > kMaxLawOutlineDifferenceMm)
             throw Error(
                 "footprint-against-law",
-                format("at depth %.2f mm the outline is widest %.2f mm from the tip but tip_to_widest says %.2f mm; "
-                       "they must agree to 0.5 mm",
-                       d, seen.from_tip_mm, x_law),
+                format_text("at depth %.2f mm the outline is widest %.2f mm from the tip, but the law "
+                            "tip_to_widest gives %.2f mm: correct one of them, they may differ by 0.5 mm at most",
+                            d, seen.from_tip_mm, x_law),
                 here, seen.from_tip_mm, std::array<double, 2>{x_law - 0.5, x_law + 0.5});
     }
 }
@@ -303,16 +346,17 @@ double Brush::depth_for_half_width(double half_width_mm, const std::string& wher
     const auto [narrow, wide] = half_width_range_mm();
     const double rounding = 1e-9 * wide;  // of a width after conversion from text and units
     if (!(half_width_mm >= narrow - rounding && half_width_mm <= wide + rounding))
-        throw Error("width-out-of-reach",
-                    format("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
-                           2.0 * wide) +
-                        " that brush " + name + " can paint: " +
-                        (half_width_mm > narrow
-                             ? format("draw it narrower, scale the drawing to %.2f, or make the line a filled shape",
-                                      std::floor(100.0 * wide / half_width_mm) / 100.0)
-                             : std::string("draw it wider")) +
-                        ", or take another brush",
-                    where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
+        throw Error(
+            "width-out-of-reach",
+            format_text("width %.3f mm is outside the range [%.3f, %.3f] mm", 2.0 * half_width_mm, 2.0 * narrow,
+                        2.0 * wide) +
+                " that brush " + name + " can paint: " +
+                (half_width_mm > narrow
+                     ? format_text("draw it narrower, scale the drawing to %.2f, or make the line a filled shape",
+                                   std::floor(100.0 * wide / half_width_mm) / 100.0)
+                     : std::string("draw it wider")) +
+                ", or use another brush",
+            where, 2.0 * half_width_mm, std::array<double, 2>{2.0 * narrow, 2.0 * wide});
     half_width_mm = std::max(half_width_mm, kMinWidthShare * wide);
     double a = depth_range_mm[0], b = depth_range_mm[1];
     // At depth 0 a brush only touches the paper, and a program that goes no deeper paints nothing.
@@ -334,7 +378,7 @@ void require_known_kind(const Brush& brush) {
         for (const char* kind : kBrushKinds) known += (known.empty() ? "" : ", ") + std::string(kind);
         throw Error("choice-unknown",
                     "brushes of kind " + brush.kind.substr(0, 40) + " are not simulated (known: " + known +
-                        "). Use round if its footprint is the same in every direction",
+                        "): use round if the footprint is the same in every direction",
                     "kind");
     }
 }
@@ -343,39 +387,46 @@ void check(const Brush& brush) {
     const auto [lo, hi] = brush.depth_range_mm;
     if (brush.name.empty() ||
         std::any_of(brush.name.begin(), brush.name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
-        throw Error("name-invalid", "the name must be one line of text", "name");
+        throw Error("name-invalid", "the name must be one line of text, not empty and without control characters",
+                    "name");
     require_known_kind(brush);
     if (!(std::isfinite(lo) && std::isfinite(hi) && lo >= 0.0 && hi > lo && hi <= kMaxDepthMm))
-        throw Error("out-of-range",
-                    format("the depth range [%.4g, %.4g] mm must rise within [0, %.0f] mm", lo, hi, kMaxDepthMm),
-                    "depth_range_mm");
+        throw Error(
+            "out-of-range",
+            format_text("the depth range is [%.4g, %.4g] mm, but must be two ascending depths within [0, %.0f] mm", lo,
+                        hi, kMaxDepthMm),
+            "depth_range_mm");
     for (const auto& [profile, where] : laws(brush)) {
         require_law_degree(profile->coefficients, where);
         for (double c : profile->coefficients)
-            if (!std::isfinite(c)) throw Error("not-finite", "a coefficient is not finite", where);
+            if (!std::isfinite(c)) throw Error("not-finite", "the law has a coefficient that is not finite", where);
         check_range(*profile, lo, hi, where);
     }
     check_covariance(brush);
     if (brush.paint) check(*brush.paint);
     check_lag(brush);
     check_half_width(brush);
-    if (brush.footprints.dragged.empty()) throw Error("footprint-invalid", "there is no outline", "footprints.dragged");
+    if (brush.footprints.dragged.empty())
+        throw Error("footprint-invalid", "there is no outline, but at least one is needed", "footprints.dragged");
     check_shapes(brush, brush.footprints.dragged, "footprints.dragged");
     check_shapes(brush, brush.footprints.pressed, "footprints.pressed");
     if (!(brush.max_speed_mm_s >= kSpeedRangeMmS[0] && brush.max_speed_mm_s <= kSpeedRangeMmS[1]))
         throw Error("out-of-range",
-                    format("the speed limit %.3g mm/s is outside the range [%.2f, %.0f] mm/s", brush.max_speed_mm_s,
-                           kSpeedRangeMmS[0], kSpeedRangeMmS[1]),
+                    format_text("the speed limit %.3g mm/s is outside the range [%.2f, %.0f] mm/s",
+                                brush.max_speed_mm_s, kSpeedRangeMmS[0], kSpeedRangeMmS[1]),
                     "max_speed_mm_s", brush.max_speed_mm_s, kSpeedRangeMmS);
     const double paints = brush.paint_depth_mm;
     if (!brush.width_follows_depth() && !(paints > 0.0))
-        throw Error("out-of-range",
-                    format("the painting depth %.2f mm must be greater than 0, for the width does not follow the depth",
-                           paints),
-                    "paint_depth_mm", paints, brush.depth_range_mm);
+        throw Error(
+            "out-of-range",
+            format_text(
+                "the painting depth is %.2f mm, but must be greater than 0, because the width does not depend on the "
+                "depth: set paint_depth_mm to a depth within [%.2f, %.2f] mm",
+                paints, lo, hi),
+            "paint_depth_mm", paints, brush.depth_range_mm);
     if (!(paints == 0.0 || (paints >= lo && paints <= hi)))
         throw Error("out-of-range",
-                    format("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", paints, lo, hi),
+                    format_text("the painting depth %.2f mm is outside the range [%.2f, %.2f] mm", paints, lo, hi),
                     "paint_depth_mm", paints, brush.depth_range_mm);
 }
 
@@ -385,10 +436,11 @@ std::vector<Warning> remarks(const Brush& brush) {
     for (const auto& [profile, where] : laws(brush)) {
         if (profile->assumed) out.push_back(Warning{"law-assumed", where, "the law is assumed, not measured"});
         if (profile->calibrated_mm && ((*profile->calibrated_mm)[0] > lo || (*profile->calibrated_mm)[1] < hi))
-            out.push_back(Warning{"depth-not-measured", where,
-                                  format("the law was measured between depths %.2f and %.2f mm, the brush may be used ",
-                                         (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1]) +
-                                      format("from %.2f to %.2f mm", lo, hi)});
+            out.push_back(Warning{
+                "depth-not-measured", where,
+                format_text("the law was measured from depth %.2f to %.2f mm, but the brush may be used from %.2f "
+                            "to %.2f mm",
+                            (*profile->calibrated_mm)[0], (*profile->calibrated_mm)[1], lo, hi)});
     }
     if (brush.paint && brush.paint->assumed)
         out.push_back(Warning{"law-assumed", "paint", "the law is assumed, not measured"});
@@ -402,45 +454,49 @@ std::vector<Warning> remarks(const Brush& brush) {
         if (!falls)
             out.push_back(
                 Warning{"pressed-on-the-spot", "lag",
-                        "lag over depth rises somewhere: a landing that presses while running would drag the patch, "
-                        "so the brush is pressed down on the spot before it runs"});
+                        "the lag divided by the depth rises at some depths, so a landing in motion would drag the "
+                        "patch: the brush is pressed down in place before it moves"});
         if (!gap)
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
-                                  "the centre of friction is outside the footprint at some depths"});
+                                  "the tip gap is negative at some depths, so the centre of friction is outside the "
+                                  "footprint: measure the tip gap again"});
         const Decrease fall = find_greatest_decrease(brush.lag, lo, hi);
         if (fall.mm > kMaxInvisibleErrorMm)
-            out.push_back(
-                Warning{"law-falls", "lag",
-                        format("the lag falls by %.2f mm from depth %.2f ", fall.mm, fall.from_mm) +
-                            format("to %.2f mm: bristles that are pressed deeper usually trail farther", fall.to_mm)});
+            out.push_back(Warning{
+                "law-falls", "lag",
+                format_text("the lag falls by %.2f mm from depth %.2f to %.2f mm, but bristles that are pressed deeper "
+                            "usually trail further: measure the lag again at these depths",
+                            fall.mm, fall.from_mm, fall.to_mm)});
         for (const Footprint& shape : brush.footprints.dragged) {
             if (shape.outline_mm.rows() == 0) continue;
             const double front = shape.outline_mm.col(0).maxCoeff(), contact = brush.tip_gap(shape.depth_mm);
             if (!(shape.depth_mm <= hi && contact > front + kMaxInvisibleErrorMm)) continue;
             out.push_back(Warning{"contact-outside-footprint", "tip_gap",
-                                  format("at depth %.2f mm the centre of friction is %.2f mm from the tip, "
-                                         "beyond the footprint, which is %.2f mm long",
-                                         shape.depth_mm, contact, front)});
+                                  format_text("at depth %.2f mm the centre of friction is %.2f mm from the tip, "
+                                              "beyond the footprint, which is %.2f mm long: measure the tip gap again",
+                                              shape.depth_mm, contact, front)});
             break;
         }
     }
     for (const auto& [profile, where] : laws(brush)) {
         const double largest = std::max(std::abs((*profile)(lo)), std::abs((*profile)(hi)));
         if (profile->rmse_mm && *profile->rmse_mm > kMaxRmseShare * largest)
-            out.push_back(
-                Warning{"law-scatters", where,
-                        format("what was measured scatters by %.2f mm about a law of at most %.2f mm: measure "
-                               "again, or more often",
-                               *profile->rmse_mm, largest)});
+            out.push_back(Warning{
+                "law-scatters", where,
+                format_text("the measurements scatter by %.2f mm around a law of at most %.2f mm: measure again, or "
+                            "take more measurements",
+                            *profile->rmse_mm, largest)});
     }
     if (!brush.width_follows_depth())
-        out.push_back(Warning{"widths-ignored", "half_width",
-                              format("the width does not depend on depth: drawn widths are ignored and every stroke is "
-                                     "%.2f mm wide",
-                                     2.0 * brush.half_width(hi))});
+        out.push_back(
+            Warning{"widths-ignored", "half_width",
+                    format_text("the width does not depend on depth: drawn widths are ignored and every stroke is "
+                                "%.2f mm wide",
+                                2.0 * brush.half_width(hi))});
     if (brush.footprints.pressed.empty())
-        out.push_back(Warning{"footprint-assumed", "footprints.pressed",
-                              "no outline for a brush pressed straight down: the dragged one is used"});
+        out.push_back(
+            Warning{"footprint-assumed", "footprints.pressed",
+                    "there is no outline of the brush pressed straight down: the dragged one is used instead"});
     return out;
 }
 

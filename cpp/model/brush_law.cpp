@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format_text.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg {
@@ -26,10 +26,9 @@ double Profile::at(double depth_mm) const {
         // A brush passes smaller depths than its range has when it is set down and lifted.
         const double deepest = (*depth_range_mm)[1];
         if (!(depth_mm >= -kDepthRoundingMm && depth_mm <= deepest + kDepthRoundingMm)) {
-            char text[160];
-            std::snprintf(text, sizeof text, "depth %.4g mm is outside the range [0, %.4g] mm of the brush", depth_mm,
-                          deepest);
-            throw Error("depth-out-of-range", text, "", depth_mm, std::array<double, 2>{0.0, deepest});
+            throw Error("depth-out-of-range",
+                        format_text("depth %.4g mm is outside the range [0, %.4g] mm of the brush", depth_mm, deepest),
+                        "", depth_mm, std::array<double, 2>{0.0, deepest});
         }
         depth_mm = std::clamp(depth_mm, 0.0, deepest);
     }
@@ -51,7 +50,10 @@ std::vector<double> real_roots(const std::vector<double>& coefficients, double l
     while (!c.empty() && c.back() == 0.0) c.pop_back();
     if (c.size() < 2) return {};
     if (c.size() > kMaxTerms)
-        throw Error("law-terms", "a polynomial of more than 64 terms is not solved", "", double(c.size()));
+        throw Error("law-terms",
+                    "the polynomial has " + std::to_string(c.size()) +
+                        " coefficients, but roots are found of at most " + std::to_string(kMaxTerms),
+                    "", double(c.size()));
     // A polynomial is monotonic between the roots of its derivative.
     std::vector<double> slope(c.size() - 1);
     for (std::size_t i = 1; i < c.size(); ++i) slope[i - 1] = double(i) * c[i];

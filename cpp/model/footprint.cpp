@@ -12,7 +12,7 @@ namespace {
 void add_blend(const std::vector<Footprint>& shapes, double depth, double weight, Ring& sum) {
     const auto needed = [&](const Footprint& shape) -> const Ring& {
         if (shape.outline_mm.rows() != sum.rows())
-            throw Error("footprint-invalid", "all outlines of a footprint need as many vertices as the first one");
+            throw Error("footprint-invalid", "all outlines of a footprint must have the same number of vertices");
         return shape.outline_mm;
     };
     const auto above = std::lower_bound(shapes.begin(), shapes.end(), depth,

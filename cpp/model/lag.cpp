@@ -44,7 +44,7 @@ double derivative_bound(std::vector<double> c, int order, double lo, double hi) 
 }  // namespace
 
 LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign) {
-    if (pieces.empty()) throw Error("law-terms", "a law without pieces says nothing: the depth range is empty");
+    if (pieces.empty()) throw Error("law-terms", "the law has no pieces, because its depth range is empty");
     LagLaw<double> law;
     law.rigid = true;
     for (const PolynomialPiece& from : pieces) {
@@ -52,7 +52,7 @@ LagLaw<double> make_law(const std::vector<PolynomialPiece>& pieces, double sign)
         while (c.size() > 1 && c.back() == 0.0) c.pop_back();
         if (c.empty()) c.push_back(0.0);
         for (double& x : c) {
-            if (!std::isfinite(x)) throw Error("not-finite", "a coefficient of a law is not finite", "", x);
+            if (!std::isfinite(x)) throw Error("not-finite", "the law has a coefficient that is not finite", "", x);
             x *= sign;
         }
         require_law_degree(c, "");

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/format_text.hpp"
+#include "base/within.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg {
@@ -12,12 +14,6 @@ namespace {
 constexpr std::array<double, 2> kNarrowingRangePerM{0.0, 20.0};
 constexpr std::array<double, 2> kLoadLengthRangeMm{1.0, 1e6};  // same range as a cell's reload.every_mm
 constexpr double kMaxCorrelationError = 1e-4;  // error of a correlation when a covariance is rounded to five digits
-
-void require_within(double value, const std::array<double, 2>& range, const char* key, const char* in_words) {
-    if (!(value >= range[0] && value <= range[1]))
-        throw Error("out-of-range", std::string(key) + " must be within " + in_words, std::string("paint.") + key,
-                    value, range);
-}
 
 void check_covariance(const Paint& paint) {
     const auto& c = paint.covariance;
@@ -29,18 +25,28 @@ void check_covariance(const Paint& paint) {
     bool square = c.size() == n;
     for (const std::vector<double>& row : c) square = square && row.size() == n;
     if (!square)
-        refuse("covariance must have " + std::to_string(n) + " rows of as many numbers: one for narrows_per_m" +
-               (n == 2 ? ", one for lasts_mm" : ""));
+        refuse(n == 2 ? "covariance must have 2 rows of 2 numbers, for narrows_per_m and lasts_mm"
+                      : "covariance must have 1 row of 1 number, for narrows_per_m");
     for (const std::vector<double>& row : c)
         for (const double value : row)
-            if (!std::isfinite(value)) throw Error("not-finite", "a number is not finite", "paint.covariance");
+            if (!std::isfinite(value))
+                throw Error("not-finite", "the covariance contains a number that is not finite", "paint.covariance");
     for (std::size_t i = 0; i < n; ++i)
-        if (c[i][i] < 0.0) refuse("a variance must not be negative");
+        if (c[i][i] < 0.0)
+            refuse(format_text(
+                "the variance is %.4g, but must be at least 0: compute the covariance again, or leave it out",
+                c[i][i]));
     if (n == 1) return;
     const double most = std::sqrt(c[0][0]) * std::sqrt(c[1][1]);
-    if (std::abs(c[0][1] - c[1][0]) > kMaxCorrelationError * most) refuse("a covariance is symmetric");
+    if (std::abs(c[0][1] - c[1][0]) > kMaxCorrelationError * most)
+        refuse(format_text(
+            "the covariance is not symmetric, because %.4g differs from the mirrored number %.4g: compute it again, "
+            "or leave it out",
+            c[0][1], c[1][0]));
     if (std::abs(c[0][1]) > (1.0 + kMaxCorrelationError) * most)
-        refuse("some sum of the numbers would have a negative variance: a covariance is positive semi-definite");
+        refuse(
+            "the covariance is not positive semi-definite, so some sum of the two numbers would have a negative "
+            "variance: compute it again, or leave it out");
 }
 
 }  // namespace
@@ -53,14 +59,18 @@ double Paint::path_to_share_mm(double share) const {
 }
 
 void check(const Paint& paint) {
-    require_within(paint.narrows_per_m, kNarrowingRangePerM, "narrows_per_m", "[0, 20] per metre");
-    if (paint.lasts_mm) require_within(*paint.lasts_mm, kLoadLengthRangeMm, "lasts_mm", "[1, 1e6] mm");
+    require_within(paint.narrows_per_m, kNarrowingRangePerM, "narrows_per_m", "paint.narrows_per_m");
+    if (paint.lasts_mm) require_within(*paint.lasts_mm, kLoadLengthRangeMm, "lasts_mm", "paint.lasts_mm");
     if (const auto& measured = paint.calibrated_mm;
         measured &&
         !((*measured)[0] >= 0.0 && (*measured)[0] < (*measured)[1] && (*measured)[1] <= kLoadLengthRangeMm[1]))
-        throw Error("out-of-range", "the ways that were measured must rise within [0, 1e6] mm", "paint.calibrated_mm");
+        throw Error(
+            "out-of-range",
+            format_text("calibrated_mm is [%.4g, %.4g] mm, but must be two ascending lengths within [0, 1e6] mm",
+                        (*measured)[0], (*measured)[1]),
+            "paint.calibrated_mm");
     if (paint.degrees_of_freedom)
-        require_within(*paint.degrees_of_freedom, {1.0, 1e9}, "degrees_of_freedom", "[1, 1e9]");
+        require_within(*paint.degrees_of_freedom, {1.0, 1e9}, "degrees_of_freedom", "paint.degrees_of_freedom");
     check_covariance(paint);
 }
 

@@ -72,8 +72,8 @@ void require(double value, std::array<double, 2> range, const std::string& what,
              const std::string& where) {
     if (value >= range[0] && value <= range[1]) return;
     throw Error("out-of-range",
-                what + ", " + format_text("%.4g ", value) + unit +
-                    format_text(", is outside the range [%.4g, %.4g] ", range[0], range[1]) + unit,
+                what + " is " + format_text("%.4g ", value) + unit +
+                    format_text(", outside the range [%.4g, %.4g] ", range[0], range[1]) + unit,
                 where, value, range);
 }
 
@@ -86,7 +86,8 @@ void require_inside(const Pass& pass, const FlatCell& cell, const std::array<dou
                     axis == 0 ? "x of the tool" : "y of the tool", "mm", where);
     };
     for (Index i = 0; i < pass.poses_mm.rows(); ++i) {
-        if (!pass.poses_mm.row(i).allFinite()) throw Error("not-finite", "a pose is not a finite number", where);
+        if (!pass.poses_mm.row(i).allFinite())
+            throw Error("not-finite", "a pose has a coordinate that is not finite", where);
         require(pass.poses_mm(i, 2), {cell.lowest_mm, 0.0}, "z of the tool while it paints", "mm", where);
         require_place_inside(pass.poses_mm.row(i).head<2>().transpose());
     }
@@ -120,21 +121,24 @@ void require_valid_plan(const Plan& plan, const Brush& brush, const FlatCell& ce
                                       {cell.travel_mm_s, "travel_mm_s"}})
         require(speed, {kMinSpeedMmS, 1e5}, "the speed", "mm/s", name);
     require(cell.acceleration_mm_s2, {kMinSpeedMmS, 1e6}, "the acceleration", "mm/s^2", "acceleration_mm_s2");
-    if (cell.name.empty()) throw Error("name-invalid", "the machine needs a name: that of its cell", "name");
+    if (cell.name.empty()) throw Error("name-invalid", "the machine has no name: use the name of its cell", "name");
     if (plan.brush != brush.name)
-        throw Error("options-contradict", "the plan was made for brush " + plan.brush + ", not for " + brush.name);
-    if (plan.passes.empty()) throw Error("nothing-to-paint", "there is nothing to paint");
+        throw Error("options-contradict", "the plan was made for brush " + plan.brush + ", not for " + brush.name +
+                                              ": use that brush, or make a new plan");
+    if (plan.passes.empty()) throw Error("nothing-to-paint", "the plan has no passes, so there is nothing to paint");
     for (const Pass& pass : plan.passes) {
         const std::string where = pass.stroke.name();
         if (pass.poses_mm.rows() == 0) throw Error("pass-empty", "the pass has no poses", where);
-        refuse_tilted(pass, "a machine of three axes holds the brush upright");
+        refuse_tilted(pass, "a machine with three axes holds the brush upright");
         require_inside(pass, cell, plan.sheet_mm);
         const double deepest_mm = -pass.poses_mm.col(2).minCoeff();
         require(deepest_mm, {0.0, brush.depth_range_mm[1]}, "the depth", "mm", where);
         if (!(deepest_mm >= 1.0 / kUnitsPerMm))
-            throw Error("never-pressed", "the brush is never pressed to the paper: nothing would be painted", where);
-        require(pass.speed_mm_s, {kMinSpeedMmS, std::min(cell.paint_mm_s, brush.max_speed_mm_s)},
-                "the speed of painting", "mm/s", where);
+            throw Error("never-pressed",
+                        "the pass never presses the brush onto the paper, so nothing would be painted: lower its poses",
+                        where);
+        require(pass.speed_mm_s, {kMinSpeedMmS, std::min(cell.paint_mm_s, brush.max_speed_mm_s)}, "the painting speed",
+                "mm/s", where);
     }
 }
 

@@ -53,7 +53,8 @@ Outline::Outline(const Rings& rings) {
         for (Index i = 0; i < ring.rows(); ++i) {
             const Vector2d p = kUnitsPerMm * ring.row(i).transpose();
             if (!(p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < 2e9))
-                throw Error("geometry-out-of-range", "a ring reaches beyond 20 m");
+                throw Error("geometry-out-of-range",
+                            "a ring has a coordinate beyond 20 m or not finite: check its unit");
             const Vector2i point(int(std::lround(p.x())), int(std::lround(p.y())));
             if (points.empty() || points.back() != point) points.push_back(point);
         }

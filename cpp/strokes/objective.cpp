@@ -21,7 +21,7 @@ void check(const ObjectiveWeights& weights) {
 Detail parse_detail(const std::string& name) {
     for (const auto& [known, value] : kDetailNames)
         if (name == known) return value;
-    throw Error("choice-unknown", "detail is draft, normal or fine, not \"" + name + "\"");
+    throw Error("choice-unknown", "detail must be draft, normal or fine, not \"" + name + "\"");
 }
 
 ObjectiveWeights weights_for(Detail detail) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/format_text.hpp"
 #include "base/tolerance.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -199,7 +200,7 @@ void select_knots(const std::vector<WidthKnot>& all, std::size_t first, std::siz
 
 FittedLine fit_cubics(const WideLine& line, double tolerance_mm, bool closed) {
     if (line.rows() > 0 && !(line.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
-        throw Error("geometry-out-of-range", "the line has a number that is not finite, or beyond 1e6 mm");
+        throw Error("geometry-out-of-range", "the line has a number that is not finite or beyond 1e6 mm");
     require_tolerance(tolerance_mm);
     FittedLine result;
     Points points;
@@ -243,19 +244,15 @@ WideLine require_line(const StrokeId& id, const WideLine& points) {
     for (Index i = 0; i < points.rows(); ++i) {
         const std::string which = "point " + std::to_string(i);
         if (!(points.row(i).head<2>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= 1e6))
-            throw Error("geometry-out-of-range", which + " is not finite, or beyond 1e6 mm", id);
+            throw Error("geometry-out-of-range", which + " has a coordinate that is not finite or beyond 1e6 mm", id);
         const double width = 2.0 * points(i, 2);
         if (!(width > 0.0 && width <= 1e6))
-            throw Error(
-                "out-of-range",
-                "the width at " + which + ", " + std::to_string(width) + " mm, is outside the range (0, 1e6] mm", id,
-                width, std::array<double, 2>{0.0, 1e6});
+            throw Error("out-of-range",
+                        which + format_text(" has a width of %.4g mm, outside the range (0, 1e6] mm", width), id, width,
+                        std::array<double, 2>{0.0, 1e6});
         if (n == 0 || points.row(i).head<2>() != line.row(n - 1).head<2>()) line.row(n++) = points.row(i);
     }
-    if (n < 2)
-        throw Error("stroke-empty",
-                    "a stroke needs two points that differ, and there are " + std::to_string(points.rows()) + " points",
-                    id);
+    if (n < 2) throw Error("stroke-empty", "a stroke needs at least 2 different points, not " + std::to_string(n), id);
     return line.topRows(n);
 }
 

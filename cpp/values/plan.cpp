@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/format_text.hpp"
 #include "brushsvg/error.hpp"
 
 namespace brushsvg {
@@ -20,13 +20,6 @@ constexpr double kPi = 3.14159265358979323846;
 
 constexpr double kMaxSheetSideMm = 1e6;  // same limit as for files and strokes
 
-template <class... Numbers>
-std::string format_text(const char* format, Numbers... numbers) {
-    char text[200];
-    std::snprintf(text, sizeof text, format, numbers...);
-    return text;
-}
-
 double tilt_deg(const Eigen::RowVector3d& axis) { return std::atan2(axis.head<2>().norm(), axis.z()) * 180.0 / kPi; }
 
 }  // namespace
@@ -35,7 +28,7 @@ void check_sheet(const std::array<double, 2>& sheet_mm) {
     for (const double side_mm : sheet_mm) {
         if (side_mm > 0.0 && side_mm <= kMaxSheetSideMm) continue;
         throw Error("out-of-range",
-                    format_text("both sides of the sheet must be within (0, 1e6] mm, not be %g", side_mm), "sheet_mm",
+                    format_text("both sides of the sheet must be within (0, 1e6] mm, not %g mm", side_mm), "sheet_mm",
                     side_mm, std::array<double, 2>{0.0, kMaxSheetSideMm});
     }
 }
@@ -53,13 +46,16 @@ void check_arc(const Pass& pass, std::size_t k, const std::string& where) {
     };
     const long long first = arc.first, last = arc.last, poses = pass.poses_mm.rows();
     if (first < 0 || last >= poses)
-        refuse(format_text("names poses %lld to %lld, where the stroke has 0 to %lld", first, last, poses - 1));
-    if (first >= last) refuse(format_text("runs from pose %lld to pose %lld, not to a later one", first, last));
+        refuse(format_text("goes from pose %lld to pose %lld, but the stroke has poses 0 to %lld", first, last,
+                           poses - 1));
+    if (first >= last)
+        refuse(format_text("goes from pose %lld to pose %lld, but must end at a later pose", first, last));
     if (k > 0 && first < pass.arcs[k - 1].last)
-        refuse(format_text("begins at pose %lld, before the arc ahead of it ends at pose %lld", first,
+        refuse(format_text("begins at pose %lld, but the arc before it ends at pose %lld", first,
                            static_cast<long long>(pass.arcs[k - 1].last)));
     if (arc.direction != 1 && arc.direction != -1)
-        refuse(format_text("has the direction %d, not 1 (counter-clockwise) or -1", arc.direction));
+        refuse(
+            format_text("has the direction %d, but must have 1 (counter-clockwise) or -1 (clockwise)", arc.direction));
     const auto pose = [&](Eigen::Index i) -> Vector2d { return pass.poses_mm.row(i).head<2>().transpose(); };
     const double radius_mm = (pose(first) - arc.centre_mm).norm();
     if (!(radius_mm >= kArcRadiusRangeMm[0] && radius_mm <= kArcRadiusRangeMm[1]))
@@ -70,16 +66,18 @@ void check_arc(const Pass& pass, std::size_t k, const std::string& where) {
         const long long at = i;
         const double off_mm = (pose(i) - arc.centre_mm).norm() - radius_mm;
         if (!(std::abs(off_mm) <= kMaxCircleErrorMm))
-            refuse(format_text("has pose %lld %.6g mm off its circle of radius %.6g mm", at, off_mm, radius_mm), off_mm,
-                   std::array<double, 2>{-kMaxCircleErrorMm, kMaxCircleErrorMm});
+            refuse(
+                format_text("has pose %lld at %.6g mm from its circle of radius %.6g mm, outside the range [%g, %g] mm",
+                            at, off_mm, radius_mm, -kMaxCircleErrorMm, kMaxCircleErrorMm),
+                off_mm, std::array<double, 2>{-kMaxCircleErrorMm, kMaxCircleErrorMm});
         const double rise_mm = pass.poses_mm(i, 2) - pass.poses_mm(first, 2);
         if (!(std::abs(rise_mm) <= kMaxArcDepthDifferenceMm))
-            refuse(format_text("has z = %.6g mm at pose %lld and %.6g mm at pose %lld; an arc has one depth",
+            refuse(format_text("has z = %.6g mm at pose %lld but %.6g mm at pose %lld: give all its poses one depth",
                                pass.poses_mm(first, 2), first, pass.poses_mm(i, 2), at),
                    rise_mm);
         const double turn_rad = arc.direction * turn_between(arc, pose(i - 1), pose(i));
         if (!(turn_rad > 0.0) || turn_rad > std::acos(-1.0) - kHalfTurnMarginRad)
-            refuse(format_text("does not go %s from pose %lld to pose %lld by less than 180 degrees",
+            refuse(format_text("must go %s from pose %lld to pose %lld, by less than 180 degrees",
                                arc.direction > 0 ? "counter-clockwise" : "clockwise", at - 1, at));
     }
 }
@@ -90,11 +88,11 @@ void check_tool_axes(const Pass& pass, const std::string& where) {
     const std::string stroke = "stroke " + pass.stroke.name();
     if (axes.rows() != pass.poses_mm.rows())
         throw Error("sizes-differ",
-                    "tool_axes of " + stroke + " has " + std::to_string(axes.rows()) + " rows where poses_mm has " +
-                        std::to_string(pass.poses_mm.rows()),
+                    "tool_axes of " + stroke + " has " + std::to_string(axes.rows()) + " rows, but poses_mm has " +
+                        std::to_string(pass.poses_mm.rows()) + ": give one axis for each pose",
                     where);
     if (!pass.arcs.empty())
-        throw Error("arc-invalid", stroke + " has tool_axes and arcs: a tilted brush makes straight moves", where);
+        throw Error("arc-invalid", stroke + " has tool_axes and arcs: replace the arcs by straight moves", where);
     for (Eigen::Index i = 0; i < axes.rows(); ++i) {
         const std::string row = "row " + std::to_string(i) + " of tool_axes of " + stroke;
         const double length = axes.row(i).norm();
@@ -121,7 +119,7 @@ void refuse_tilted(const Pass& pass, const std::string& upright) {
     if (!is_tilted(pass)) return;
     double most = 0.0;
     for (const auto& axis : pass.tool_axes.rowwise()) most = std::max(most, tilt_deg(axis));
-    throw Error("tilt-unsupported", upright + format_text(", and this stroke tilts it by up to %.4g degrees", most),
+    throw Error("tilt-unsupported", upright + format_text(", but this stroke tilts it by up to %.4g degrees", most),
                 pass.stroke, most, std::array<double, 2>{0.0, 0.0});
 }
 

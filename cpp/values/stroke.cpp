@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "base/format_text.hpp"
 #include "base/tolerance.hpp"
 #include "brushsvg/checkpoint.hpp"
 #include "brushsvg/error.hpp"
@@ -32,8 +32,8 @@ constexpr double kNewtonTolerance = 1e-6;
 void require_cubic(const Cubics& c, Index i) {
     if (i < 0 || i >= c.rows())
         throw Error("out-of-range",
-                    "the middle line has no cubic " + std::to_string(i) + " of " + std::to_string(c.rows()), "",
-                    double(i));
+                    "the middle line has " + std::to_string(c.rows()) + " cubics, but no cubic " + std::to_string(i),
+                    "", double(i));
 }
 
 Vector2d control(const Cubics& c, Index i, int k) { return c.row(i).segment<2>(2 * k).transpose(); }
@@ -161,28 +161,28 @@ void check(const Stroke& stroke) {
         throw Error("not-finite", "the middle line has a coordinate that is not finite", stroke.id);
     const double largest = stroke.middle_mm.cwiseAbs().maxCoeff();
     if (largest > 1e6)
-        throw Error("geometry-out-of-range", "the middle line reaches beyond 1e6 mm", stroke.id, largest,
+        throw Error("geometry-out-of-range", "the middle line has a coordinate beyond 1e6 mm", stroke.id, largest,
                     std::array<double, 2>{-1e6, 1e6});
     const Eigen::Index last = stroke.middle_mm.rows() - 1;
     for (Eigen::Index i = stroke.closed ? 0 : 1; i <= last; ++i) {
         const Eigen::Index before = i > 0 ? i - 1 : last;
         const double gap_mm = (stroke.middle_mm.row(i).head<2>() - stroke.middle_mm.row(before).tail<2>()).norm();
         if (gap_mm <= kMaxGapMm) continue;
-        char away[32];
-        std::snprintf(away, sizeof away, "%.3g mm", gap_mm);
         throw Error("geometry-out-of-range",
-                    "cubic " + std::to_string(i) + " of the middle line begins " + away + " away from where cubic " +
-                        std::to_string(before) + " ends: a stroke is one line",
+                    "cubic " + std::to_string(i) +
+                        format_text(" of the middle line begins %.3g mm from the end of cubic ", gap_mm) +
+                        std::to_string(before) + ": join them, or make two strokes",
                     stroke.id, gap_mm, std::array<double, 2>{0.0, kMaxGapMm});
     }
     if (stroke.half_width.empty()) throw Error("stroke-empty", "the stroke has no width", stroke.id);
     double before = -1.0;
     for (const WidthKnot& knot : stroke.half_width) {
         if (!(std::abs(knot.at) <= 1e6) || !(knot.half_width_mm >= 0.0 && knot.half_width_mm <= 1e6))
-            throw Error("out-of-range", "a width along the stroke is negative, not finite or beyond 1e6 mm", stroke.id,
-                        knot.half_width_mm);
+            throw Error("out-of-range", "the stroke has a half width that is negative, not finite or beyond 1e6 mm",
+                        stroke.id, knot.half_width_mm);
         if (knot.at < before)
-            throw Error("not-ascending", "the widths along the stroke are not in ascending order", stroke.id, knot.at);
+            throw Error("not-ascending", "the places of the half widths along the stroke are not in ascending order",
+                        stroke.id, knot.at);
         before = knot.at;
     }
     for (const Ring& ring : stroke.target_mm)

@@ -40,7 +40,7 @@ def _once(pairs: list[tuple[str, object]]) -> dict:
     if len(found) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise Error("the key stands twice", twice, code="key-twice")
+        raise Error("the key occurs twice: remove one of them", twice, code="key-twice")
     return found
 
 

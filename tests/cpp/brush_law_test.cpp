@@ -47,7 +47,7 @@ TEST_CASE("a law of a brush refuses depths that the brush cannot have") {
         }
 }
 
-TEST_CASE("a law has 1 to 11 coefficients wherever it is used") {
+TEST_CASE("a law needs 1 to 11 coefficients in check and in simulate") {
     Pass pass;
     pass.poses_mm.resize(2, 3);
     pass.poses_mm << 0, 0, -1, 20, 0, -1;

@@ -40,7 +40,7 @@ TEST_CASE("impossible paint is refused with its key") {
     CHECK(!changed([](Paint&) {}));
     CHECK(agrees(changed([](Paint& p) { p.narrows_per_m = -0.1; }), "out-of-range", "paint.narrows_per_m"));
     CHECK(agrees(changed([](Paint& p) { p.narrows_per_m = NAN; }), "out-of-range", "paint.narrows_per_m", {"[0, 20]"}));
-    CHECK(agrees(changed([](Paint& p) { p.lasts_mm = 0.0; }), "out-of-range", "paint.lasts_mm", {"[1, 1e6]"}));
+    CHECK(agrees(changed([](Paint& p) { p.lasts_mm = 0.0; }), "out-of-range", "paint.lasts_mm", {"[1, 1e+06]"}));
     CHECK(agrees(changed([](Paint& p) { p.calibrated_mm = {{9.0, 3.0}}; }), "out-of-range", "paint.calibrated_mm"));
     CHECK(agrees(changed([](Paint& p) { p.degrees_of_freedom = 0.5; }), "out-of-range", "paint.degrees_of_freedom"));
     CHECK(agrees(changed([](Paint& p) { p.lasts_mm.reset(); }), "covariance-invalid", "paint.covariance", {"1"}));

@@ -3,10 +3,10 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 
+#include "base/format_text.hpp"
 #include "base/within.hpp"
 #include "brushsvg/error.hpp"
 
@@ -48,12 +48,13 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
                                         " angles; each distance needs its angles");
     if (!(series.alpha0 > 0.0 && series.alpha0 <= kMaxAlpha0Rad)) {
         const double degrees = series.alpha0 * 180.0 / M_PI;
-        char text[200];
-        std::snprintf(text, sizeof text,
-                      "the first angle, %g degrees, is outside the range (0, 95]: beyond it the patch rests at first; "
-                      "let the series begin at a reading within it, and count s from there",
-                      degrees);
-        throw Error("out-of-range", text, "alpha0", degrees, std::array<double, 2>{0.0, 95.0});
+        throw Error(
+            "out-of-range",
+            format_text(
+                "the first angle is %g degrees, outside the range (0, 95] degrees, in which the patch moves from the "
+                "start: leave out the readings before the first one in this range, and measure s from there",
+                degrees),
+            "alpha0", degrees, std::array<double, 2>{0.0, 95.0});
     }
     FromAngles out{0, 0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), 0};
     std::vector<std::size_t> used;
@@ -68,7 +69,8 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     }
     if (used.empty())
         throw Error("measurement-missing",
-                    "no reading can be used: the angle must fall from the first one towards 0 as the brush is dragged");
+                    "no reading can be used, because no angle is between 0 and the first angle: measure while the "
+                    "brush is dragged");
     const auto log_cot_half = [](double a) { return -std::log(std::tan(0.5 * a)); };
     const Eigen::Index m = Eigen::Index(used.size());
     VectorXd s(m), f(m);
@@ -88,8 +90,12 @@ FromAngles from_angles(const AngleSeries& series, Lines lines) {
     for (Eigen::Index i = 0; i < m; ++i) {
         const double a1 = series.alpha[used[i]], beta = series.beta[used[i]];
         if (!(beta > 0.0 && beta < M_PI))
-            throw Error("out-of-range", "the direction of the tip's displacement must be between 0 and 180 degrees",
-                        "beta", beta * 180.0 / M_PI);
+            throw Error(
+                "out-of-range",
+                format_text(
+                    "the direction of the tip's displacement is %.4g degrees, outside the range (0, 180) degrees",
+                    beta * 180.0 / M_PI),
+                "beta", beta * 180.0 / M_PI, std::array<double, 2>{0.0, 180.0});
         integral[i] = out.lag_mm * (std::cos(a1) - std::cos(series.alpha0) +
                                     (std::sin(series.alpha0) - std::sin(a1)) / std::tan(beta));
     }

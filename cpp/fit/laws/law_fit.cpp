@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "base/format_text.hpp"
 #include "base/within.hpp"
 #include "bernstein.hpp"
 #include "brushsvg/checkpoint.hpp"
@@ -311,19 +312,25 @@ void require_fittable_values(const std::vector<double>& depth, const std::vector
                         std::to_string(kMaxLawDegree) + "]",
                     "degree", double(shape.degree), std::array<double, 2>{0.0, double(kMaxLawDegree)});
     if (shape.degree == 0 && shape.through_zero)
-        throw Error("law-terms", "a law of degree 0 through zero has nothing to fit");
+        throw Error("law-terms",
+                    "a law of degree 0 that is 0 at depth 0 has no coefficient to fit: use degree 1 or more");
     for (const double end : shape.range_mm)
         require_within(end, {-kMaxMagnitude, kMaxMagnitude}, "an end of the depths", "range_mm");
     if (!(shape.range_mm[0] < shape.range_mm[1]))
-        throw Error("not-ascending", "the range of depths must rise", "range_mm");
+        throw Error("not-ascending",
+                    format_text("range_mm is [%.4g, %.4g] mm, but must ascend", shape.range_mm[0], shape.range_mm[1]),
+                    "range_mm");
     require_within(shape.range_mm[1] - shape.range_mm[0], {1.0 / kMaxMagnitude, 2.0 * kMaxMagnitude},
                    "the length of the range of depths", "range_mm");
     require_within(shape.smoothing, {0.0, kMaxMagnitude}, "the smoothing", "smoothing");
     if (shape.floor != -std::numeric_limits<double>::infinity())
         require_within(shape.floor, {-kMaxMagnitude, kMaxMagnitude}, "the floor", "floor");
     if (std::isfinite(shape.floor) && (shape.positive || shape.rising || shape.smoothing > 0.0))
-        throw Error("options-contradict", "a law with a floor cannot be held to a shape as well");
-    if (depth.empty() && shape.smoothing > 0.0) throw Error("measurement-missing", "there is no value to fit a law to");
+        throw Error(
+            "options-contradict",
+            "a law with a floor cannot also be constrained or smoothed: leave out the floor, or the other options");
+    if (depth.empty() && shape.smoothing > 0.0)
+        throw Error("measurement-missing", "there are no values to fit a law to");
     if (shape.smoothing > 0.0) return;  // the smoothing determines what the data leave open
     const std::size_t terms = std::size_t(shape.degree) + (shape.through_zero ? 0 : 1);
     std::set<double> different(depth.begin(), depth.end());
@@ -331,8 +338,8 @@ void require_fittable_values(const std::vector<double>& depth, const std::vector
     if (different.size() < terms)
         throw Error("depths-too-few",
                     "a law of degree " + std::to_string(shape.degree) + " needs values at " + std::to_string(terms) +
-                        " different depths" + (shape.through_zero ? " other than 0" : "") + ", there are " +
-                        std::to_string(different.size()) + ": measure at more depths, or ask for a lower degree",
+                        " different depths" + (shape.through_zero ? " other than 0" : "") + ", but there are " +
+                        std::to_string(different.size()) + ": measure at more depths, or use a lower degree",
                     "", double(different.size()));
 }
 

@@ -87,21 +87,17 @@ std::vector<std::string> describe_open_unknowns(const MarkProblem& fit) {
         std::string unknown_name = shares[0].second;
         const bool two = shares[1].first > 0.15;
         if (sd_along(placed_information, open.direction) < 0.5 * kMaxMeasuredSd)
-            add_sentence(
-                unknown_name +
-                " and the displacement of each mark cannot be separated by these strokes: add curved ones, corners "
-                "or reversals");
+            add_sentence("these strokes cannot separate " + unknown_name +
+                         " from the displacement of each mark: add curved strokes, corners or reversals");
         else if (two)
-            add_sentence(
-                unknown_name + " and " + shares[1].second +
-                " cannot be separated by these strokes: paint at more depths, with corners and reversals at each");
+            add_sentence("these strokes cannot separate " + unknown_name + " from " + shares[1].second +
+                         ": paint at more depths, with corners and reversals at each");
         else if (unknown_name == "lag" && at.lag > 1)
-            add_sentence("how the lag changes with depth is left open: paint curved strokes at more depths");
-        else
             add_sentence(
-                unknown_name +
-                " is left open by these strokes: add corners, reversals and ends that are lifted on the spot, at "
-                "more depths");
+                "these strokes do not show how the lag changes with depth: paint curved strokes at more depths");
+        else
+            add_sentence("these strokes do not determine " + unknown_name +
+                         ": add corners, reversals and ends that are lifted in place, at more depths");
     }
     return out;
 }

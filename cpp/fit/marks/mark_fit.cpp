@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "base/format_text.hpp"
 #include "base/within.hpp"
 #include "brushsvg/error.hpp"
 #include "identifiability.hpp"
@@ -77,18 +78,19 @@ void require_valid_law_prior(const MarkOptions& options) {
 }
 
 void require_fittable_marks(const std::vector<PaintedMark>& marks, const MarkOptions& options) {
-    if (marks.empty()) throw Error("measurement-missing", "there is no painted mark");
+    if (marks.empty()) throw Error("measurement-missing", "there are no painted marks");
     for (const auto& [terms, name] :
          {std::pair{options.lag_terms, "lag"}, std::pair{options.tip_gap_terms, "tip_gap"},
           std::pair{options.half_width_terms, "half_width"}, std::pair{options.widest_terms, "widest_terms"},
           std::pair{options.front_terms, "front_terms"}})
         if (terms < 1 || terms > 4)
-            throw Error("law-terms", std::to_string(terms) + " numbers are outside the range [1, 4] for a law", name);
+            throw Error("law-terms", "the law has " + std::to_string(terms) + " coefficients, outside the range [1, 4]",
+                        name);
     require_valid_options(options);
     require_valid_law_prior(options);
     double way = 0.0, around = 0.0;
     for (const PaintedMark& mark : marks) {
-        if (mark.poses_mm.rows() < 1) throw Error("pass-empty", "the stroke needs poses", mark.stroke);
+        if (mark.poses_mm.rows() < 1) throw Error("pass-empty", "the stroke has no poses", mark.stroke);
         for (const double mm : mark.poses_mm.reshaped())
             require_within(mm, {-kMaxCoordinateMm, kMaxCoordinateMm}, "a coordinate of a pose", mark.stroke);
         Pass pass;
@@ -97,10 +99,13 @@ void require_fittable_marks(const std::vector<PaintedMark>& marks, const MarkOpt
         pass.stroke = mark.stroke;
         for (std::size_t k = 0; k < mark.arcs.size(); ++k) check_arc(pass, k, mark.stroke);
         if (mark.outline_mm.empty())
-            throw Error("mark-empty", "the mark has no outline: leave out what was not painted", mark.stroke);
+            throw Error("mark-empty", "the mark has no outline: leave out strokes that were not painted", mark.stroke);
         double area = 0.0;
         for (const Ring& ring : mark.outline_mm) {
-            if (ring.rows() < 3) throw Error("geometry-damaged", "an outline needs three points or more", mark.stroke);
+            if (ring.rows() < 3)
+                throw Error("geometry-damaged",
+                            "an outline has " + std::to_string(ring.rows()) + " points, but needs at least 3",
+                            mark.stroke);
             for (const double mm : ring.reshaped())
                 require_within(mm, {-kMaxCoordinateMm, kMaxCoordinateMm}, "a coordinate of an outline", mark.stroke);
             area += signed_area(ring);
@@ -108,11 +113,14 @@ void require_fittable_marks(const std::vector<PaintedMark>& marks, const MarkOpt
         }
         if (area < 0.0)
             throw Error("outline-clockwise",
-                        "the outlines run round less than nothing: outer ones go counter-clockwise", mark.stroke, area);
+                        "the outlines are clockwise: list outer outlines counter-clockwise and holes clockwise",
+                        mark.stroke, area);
         const double deepest = -mark.poses_mm.col(2).minCoeff();
         if (deepest > options.deepest_mm + 1e-9)
-            throw Error("depth-out-of-range", "a pose is deeper than the range of the laws", mark.stroke, deepest,
-                        std::array<double, 2>{0.0, options.deepest_mm});
+            throw Error("depth-out-of-range",
+                        format_text("a pose has a depth of %.3f mm, outside the range [0, %.3f] mm of the laws",
+                                    deepest, options.deepest_mm),
+                        mark.stroke, deepest, std::array<double, 2>{0.0, options.deepest_mm});
         const Index moves = mark.poses_mm.rows() - 1;
         way += double(moves) + (mark.poses_mm.bottomRows(moves) - mark.poses_mm.topRows(moves)).rowwise().norm().sum() /
                                    kMaxPlaceSpacingMm;
@@ -139,7 +147,7 @@ void require_brushlike_marks(const std::vector<PaintedMark>& marks, const MarkFi
 
 /// Sets up the expected fit for edges with the given noise, whose autocorrelation is exp(-s / length).
 void predict_uncertainty(MarkProblem& at, const std::optional<MarkLaws>& from, const MarkOptions& options) {
-    if (!from) throw Error("options-contradict", "to say what to expect takes a brush to start from");
+    if (!from) throw Error("options-contradict", "noise_mm needs a brush to start from");
     at.start_at(*from);
     at.shared[at.model.layout().widest()] = from->widest_per_half;
     at.shared[at.model.layout().front()] = from->front_per_half;
@@ -241,7 +249,7 @@ MarkFit fit_marks(const std::vector<PaintedMark>& marks, const std::optional<Mar
     MarkProblem fit(marks, options);
     Index points = 0;
     for (Index i = 0; i < fit.model.marks(); ++i) points += fit.model.points(i);
-    if (points == 0) throw Error("mark-empty", "there are only specks, no mark");
+    if (points == 0) throw Error("mark-empty", "the outlines are too small to compare: check that they are in mm");
     MarkFit out;
     SolveResult solved;
     if (options.noise_mm)

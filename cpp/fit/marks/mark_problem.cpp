@@ -175,7 +175,7 @@ void MarkProblem::require_prediction() const {
     for (Index i = 0; i < all.size(); ++i)
         if (!std::isfinite(all[i]))
             throw Error("fit-failed",
-                        "the brush to start from paints no mark along this stroke. Start from another brush, or leave "
+                        "the brush to start from paints no mark along this stroke: start from another brush, or leave "
                         "this stroke out",
                         model.stroke(i));
 }

@@ -12,7 +12,7 @@ namespace brushsvg::fit {
 /// predict nothing, or finds a brush whose edges are far from the marks. All these cases throw this error.
 inline Error no_brush_error(const std::string& stroke) {
     return Error("fit-failed",
-                 "no brush was found that paints this mark along its stroke. Check that it is the mark of this stroke, "
+                 "no brush was found that paints this mark along its stroke: check that it is the mark of this stroke, "
                  "that its outline is in mm, and that the stroke touches the paper",
                  stroke);
 }

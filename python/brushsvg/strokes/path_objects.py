@@ -172,7 +172,7 @@ def _need_short_list(path, id: str, levels: int = 3) -> int:
             if count > _core.MAX_ENTRIES:
                 break
     if count > _core.MAX_ENTRIES:
-        sentence = f"a list of {count} entries is longer than any that is read, {_core.MAX_ENTRIES}"
+        sentence = f"a list has {count} entries, but at most {_core.MAX_ENTRIES} are allowed"
         raise Error(sentence, where=id, value=count, range=(0, _core.MAX_ENTRIES), code="list-too-long")
     return count
 

@@ -344,8 +344,8 @@ class _LawFitter:
         half = half_interval_mm(fit.covariance, np.array([depths.mean()]), fit.law.degrees_of_freedom)[0]
         if law in ("lag", "tip_gap") and fit.held and mean < -half:
             sentence = (
-                f"the {law} is {mean:.3g} mm, as a mean of {len(points)} values minus the other lengths; it cannot be "
-                "negative"
+                f"the {law} is {mean:.3g} mm, as a mean of {len(points)} values minus the other lengths, but cannot be "
+                "negative: check the signs and units of these values and of the other lengths"
             )
             raise Error(sentence, points[0].where, mean, code="law-negative")
 
