@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from brushsvg.machine.arm.follow_joints import joint_rates
 from brushsvg.machine.arm.inverse_kinematics import flange_rates, joint_frames_of, joints_of
-from brushsvg.machine.arm.joint_problems import joint_rates
 from brushsvg.machine.cells.cell_file import find_cell
 from brushsvg.machine.frames import frame_of_pose
 

@@ -17,8 +17,8 @@ from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.machine import preflight
 from brushsvg.machine.arm import place
+from brushsvg.machine.arm.follow_joints import flange_at, follow, joint_rates, lowest_joint_mm
 from brushsvg.machine.arm.inverse_kinematics import joint_frames_of, joints_of
-from brushsvg.machine.arm.joint_problems import flange_at, follow, joint_rates, lowest_joint_mm
 from brushsvg.machine.cells.cell import Paper, robot_from_paper
 from brushsvg.machine.cells.cell_file import find_cell, write_cell
 from brushsvg.machine.frames import transform_points

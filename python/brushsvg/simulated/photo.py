@@ -11,7 +11,7 @@ from ..calibration.chart.page import bar_rings, label_box, marker_rings
 from ..comparison.job_page import JobPage
 from ..errors import Error
 from .camera import BLUE, INK, Camera, Sheet, corners_seen, encoded, exposed
-from .painting import PaintedStroke
+from .paint_with_errors import PaintedStroke
 from .studio import Lens, Studio
 
 NOTICE = "SIMULATED PHOTOGRAPH, painted by no machine (brushsvg simulate-photo)"

@@ -25,7 +25,7 @@ from ..jobs.conversion import make_choices
 from ..jobs.options import load_brush, make_options
 from ..jobs.preparation import preparation
 from ..machine.paint_reload import fetched_mm
-from .painting import lower_paper, simulate_painted_strokes
+from .paint_with_errors import lower_paper, simulate_painted_strokes
 from .photo import simulated_photo
 from .studio import random_studio, read_studio, write_studio
 

@@ -18,7 +18,7 @@ from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
 from ...machine.workspace_limits import ROUNDING_MM, check_painting_speed
 from ...model.library import brush_names, find_brush, mistyped_keys
-from ...planning.paint_running_out import press_deeper
+from ...planning.press_deeper import press_deeper
 from ...planning.refinement import refine_where_better
 from ...read import layout
 from ...read.design import Design, Notice

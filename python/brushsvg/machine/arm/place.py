@@ -11,8 +11,8 @@ from ...errors import Notice
 from ..cells.cell import Arm, Cell
 from ..frames import frame_of_pose, rotation, rotation_deg, transform_points
 from ..moves import Program
+from .follow_joints import far_from_singular, flange_at, follow, lowest_joint_mm, outermost_places, within_limits
 from .inverse_kinematics import JointSolver, joint_frames_of, joints_of
-from .joint_problems import far_from_singular, flange_at, follow, lowest_joint_mm, outermost_places, within_limits
 
 TRIED_SHIFTS_MM = (10, 20, 40, 60, 80, 100, 125, 150, 175, 200, 250, 300, 350, 400, 500, 600)
 SHIFT_DIRECTIONS = 16

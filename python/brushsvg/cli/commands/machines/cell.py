@@ -60,7 +60,7 @@ def cell_check(args) -> None:
 
 def cell_place(args) -> None:
     from ....machine.arm import place
-    from ....machine.arm.joint_problems import follow
+    from ....machine.arm.follow_joints import follow
     from ....machine.job_program import find_moves_out_of_limits
     from ....machine.setup_programs import make_sheet_program
     from ....show.table_picture import table_picture

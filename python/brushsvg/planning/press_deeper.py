@@ -1,4 +1,4 @@
-"""Wider targets for strokes as paint runs out.
+"""Press deeper as paint runs out: wider targets for strokes.
 
 With them, the marks come out as wide as drawn.
 """
