@@ -221,7 +221,7 @@ def _drop(*keys):
         (_set("kind", to="flat"), "kind", "choice-unknown flat"),
         (_set("paint", to={}), "paint.narrows_per_m", "key-missing"),
         (_set("paint", to={"narrows_per_m": 30}), "paint.narrows_per_m", "out-of-range 0 20"),
-        (_set("paint", to={"narrows_per_m": 0.3, "lasts_mm": 0}), "paint.lasts_mm", "out-of-range 1 1e6"),
+        (_set("paint", to={"narrows_per_m": 0.3, "lasts_mm": 0}), "paint.lasts_mm", "out-of-range 1 1e+06"),
         (
             _set("paint", to={"narrows_per_m": 0.3, "covariance": [[1, 0], [0, 1]]}),
             "paint.covariance",

@@ -162,7 +162,7 @@ def test_a_long_zigzag_keeps_its_teeth():
         (np.ma.masked_equal([(5, 5), (9, 8), (9, 9)], 8), 3, "geometry-out-of-range 1"),
         ([(5, 5), (9, 9)], np.ma.masked_equal([3, 4], 4), "out-of-range 1"),
         ([(5, 5), (9, 9)], [3, 3, 3], "sizes-differ 2 3"),
-        ([(5, 5), (9, 9)], np.array([[3], [3]]), "sizes-differ 'one row' 2 widths.ravel"),
+        ([(5, 5), (9, 9)], np.array([[3], [3]]), "sizes-differ 1 2 widths.ravel"),
     ],
 )
 def test_points_that_form_no_stroke_are_refused(points, width, expected):
