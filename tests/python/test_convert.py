@@ -1,4 +1,4 @@
-"""`convert` writes the files of each language."""
+"""`convert` finds the best constant lag and writes the files of each language."""
 
 import re
 from dataclasses import replace
@@ -9,11 +9,16 @@ from diagnostics import refused
 
 from brushsvg import _core
 from brushsvg.cli import main
-from brushsvg.jobs.preparation import preparation
+from brushsvg.jobs import prediction
+from brushsvg.jobs.options import Options
+from brushsvg.jobs.preparation import constant_lag, preparation
 from brushsvg.jobs.prepared_drawing import order_nearest_first
 from brushsvg.machine import job_program, moves, writer
 from brushsvg.machine.cells.cell_file import SHIPPED, find_cell
+from brushsvg.model.library import find_brush
 from brushsvg.planning import painting_order
+from brushsvg.reporting.report_text import format_overlap
+from brushsvg.show.evaluation import figures, report
 
 TWO_DEPTHS = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="70mm" viewBox="0 0 120 70">
 <g fill="none" stroke="#000"><path id="thin" d="M20 50 C40 10 60 10 90 40" stroke-width="1.6"/>
@@ -25,6 +30,44 @@ def drawing(tmp_path):
     path = tmp_path / "two.svg"
     path.write_text(TWO_DEPTHS)
     return path
+
+
+def total(work):
+    return figures.measure_figures(figures.PaintedPlan(work.plan, prediction.predict(work), work.brush, work.strokes))[
+        1
+    ]
+
+
+def test_the_best_constant_lag_has_the_smallest_error(drawing):
+    best = constant_lag.find_best_constant_lag(preparation.prepare(drawing))
+    assert best.options.compensation == "constant"
+    assert 3 < best.options.lag_mm < 12
+    assert best.options.lag_mm % 0.25 == 0
+    there = total(best).overlap
+    for lag_mm in (0.0, best.options.lag_mm - 1, best.options.lag_mm + 1, 13.0):
+        options = Options(compensation="constant", lag_mm=lag_mm)
+        assert total(preparation.prepare(drawing, options)).overlap < there
+    again = preparation.prepare(drawing, best.options)
+    assert [p.poses_mm.tolist() for p in again.plan.passes] == [p.poses_mm.tolist() for p in best.plan.passes]
+    assert len(best.tracking_errors) == 2
+
+
+def test_the_best_constant_lag_of_a_pen_is_zero(drawing):
+    work = preparation.prepare(drawing, Options(brush=find_brush("rigid")))
+    assert constant_lag.find_best_constant_lag(work).options.lag_mm == 0
+
+
+def test_the_comparison_is_a_table(drawing):
+    works = {how: preparation.prepare(drawing, Options(compensation=how)) for how in ("none", "closed")}
+    totals = {how: total(work) for how, work in works.items()}
+    lines = report.comparison_text(list(totals.items())).splitlines()
+    assert len(re.split("  +", lines[2])) == 4
+    assert len({len(line) for line in lines[2:]}) == 1
+    for line, (how, row) in zip(lines[4:], totals.items(), strict=True):
+        name, overlap, *errors_mm = line.split()
+        assert (name, overlap) == (how, format_overlap(row.overlap))
+        expected = (row.centre_mean_mm, row.centre_largest_mm)
+        assert [float(error_mm) for error_mm in errors_mm] == pytest.approx(expected, abs=5.1e-4)
 
 
 def test_a_program_is_written_in_the_language_of_its_cell(drawing):

@@ -20,7 +20,7 @@ from brushsvg.cli.arguments.parser import command_parser
 from brushsvg.errors import Notice
 from brushsvg.show.evaluation.figures import Figures, Group, Worst
 from brushsvg.show.evaluation.places import Place
-from brushsvg.show.evaluation.report import Report, to_text
+from brushsvg.show.evaluation.report import Report, comparison_text, to_text
 
 WORDING = Path(__file__).parents[1] / "golden" / "wording.txt"
 TITLE = "==== "
@@ -89,6 +89,7 @@ def reports() -> Iterator[tuple[str, str]]:
     yield "a report with details", to_text(made, details=True)
     made = Report("", "round-6", "", None, (row,), row, 5.0, groups=(Group(("line", "dab"), 0.9),))
     yield "a report of strokes that touch", to_text(made, details=True)
+    yield "compensations compared", comparison_text([("none", row), ("closed", row)])
 
 
 def typed() -> Iterator[tuple[str, str]]:

@@ -253,6 +253,20 @@ def _confidence_words(confidence: PlanConfidence | None, is_tilted: bool) -> lis
     ]
 
 
+def comparison_text(rows: list[tuple[str, Figures]]) -> str:
+    """Return a table of several ways to paint the same drawing. rows: (compensation, total figures)."""
+    lines = _ruled_table(
+        [
+            ("compensation", [how for how, _ in rows]),
+            ("overlap", [_format_overlap(total.overlap) for _, total in rows]),
+            ("centre mean", [_format_figure(total.centre_mean_mm, 3) for _, total in rows]),
+            ("largest", [_format_figure(total.centre_largest_mm, 3) for _, total in rows]),
+        ]
+    )
+    heading = "Compensations compared; distances of the widest point from the middle line in mm:"
+    return "\n".join([heading, "", *lines, ""])
+
+
 def brushes_json(title: str, suits) -> str:
     """Return several other_brushes.BrushRating as JSON, in their order. Overlaps are rounded to 1e-6."""
     rows = [_round_floats(asdict(suit)) for suit in suits]
