@@ -16,7 +16,7 @@ from .move_extents import make_paths
 from .moves import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .realised.distortion import commanded_mm, in_lines_mm
 from .stroke_moves import approach_mm_s, point_above, safe_point_above
-from .workspace_limits import commanded_touching_mm_s, find_broken_limits, find_vessels_near_travel, touching_mm_s
+from .workspace_limits import find_broken_limits, find_vessels_near_travel, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to see where the tip is
 TEST_SPEED_MM_S = 15.0
@@ -209,7 +209,7 @@ def make_height_program(brush, cell: Cell, sheet_mm, highest_mm: float, lowest_m
             f"height {highest_mm:g} mm is outside the range [{lowest_mm:g}, {safe_mm - 0.5:g}] mm below safe height",
             code="height-out-of-range",
         )
-    speed = min(commanded_touching_mm_s(brush, cell), TEST_SPEED_MM_S)
+    speed = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     if speed < (min_mm_s := LEAST_SPEED_MM_S.get(cell.language, 0.0)):
         raise Error(
             f"speed {speed:.4g} mm/s of brush {brush.name} is outside the range [{min_mm_s:g}, {TEST_SPEED_MM_S:g}] "
@@ -238,7 +238,7 @@ def slow_below_mm(highest_mm: float, cell: Cell) -> float:
 
 def _stroke_moves(ends, height_mm: float, clearance_mm: float, brush, cell: Cell) -> tuple[Move, ...]:
     """Make the moves of a stroke between two ends (x, y) [mm] at one height."""
-    speed_mm_s = min(commanded_touching_mm_s(brush, cell), TEST_SPEED_MM_S)
+    speed_mm_s = min(touching_mm_s(brush, cell), TEST_SPEED_MM_S)
     press_mm_s = min(cell.speeds.press_mm_s, speed_mm_s)
     path = in_lines_mm(np.vstack([point_above(end, height_mm) for end in ends]), cell.machine)
     commanded = commanded_mm(path, cell.machine)
