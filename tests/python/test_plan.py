@@ -66,7 +66,7 @@ def test_the_simulator_refuses_an_invalid_arc():
     a_pass = _core.Pass("V", [[0, 0, -1], [10, 0, -1], [20, 10, -1]], arcs=[_core.Arc(1, 2, (10, 11), 1)])
     with refused("arc-invalid 'arc 0' 2", "V") as caught:
         _core.simulate(plan_of(a_pass), find_brush("round-6"))
-    assert re.search(r" at -0\.95\d* mm from its circle", caught.value.sentence)
+    assert re.search(r" -0\.95\d* mm", caught.value.sentence)
 
 
 def test_appending_to_a_list_of_the_plan_raises():
