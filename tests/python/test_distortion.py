@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from diagnostics import refused
+from diagnostics import agrees, refused
 from programs import LANGUAGES, RUNNABLE, call
 from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import cKDTree
@@ -17,6 +17,7 @@ from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell import Machine, Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
 from brushsvg.machine.realised.arc_chords import with_chords
+from brushsvg.machine.workspace_limits import check_painting_speed
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
 from brushsvg.verify.readback import read_program
@@ -214,6 +215,15 @@ def test_the_tip_of_a_distorted_machine_keeps_the_speed_limit(machine):
     stretch = np.hypot(np.diff(true_x), np.diff(true_y)) / np.hypot(np.diff(x), np.diff(y))
     assert stretch.max() > 1.01
     assert stretch.max() * float(feed) / 60 <= brush.max_speed_mm_s
+
+
+def test_a_limit_that_the_language_cannot_command_is_refused():
+    """HP-GL has whole cm/s: a tip that may have 10 mm/s had 10.6."""
+    brush, plotter = find_brush("round-6"), find_cell("hpgl-plotter")
+    slow = replace(plotter, speeds=replace(plotter.speeds, paint_mm_s=10.0))
+    assert check_painting_speed(10.0, brush, slow) == []
+    (notice,) = check_painting_speed(10.0, brush, replace(slow, machine=Machine(scale=(1.06, 1.0))))
+    assert agrees(notice, "speed-out-of-range 9.434 10")
 
 
 def test_limits_are_checked_at_commanded_positions(desk):

@@ -87,9 +87,16 @@ def check_painting_speed(speed_mm_s: float, brush, cell: Cell | None) -> list[No
         min_mm_s, max_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SPEED_MM_S), touching_mm_s(brush, cell)
         if speed_mm_s < min_mm_s or max_mm_s < brush.max_speed_mm_s:
             owner = f"cell {cell.name}"
-    if min_mm_s <= speed_mm_s <= max_mm_s:
-        return []
     least = np.format_float_positional(min_mm_s, trim="-")
+    if min_mm_s <= speed_mm_s <= max_mm_s:
+        if cell is None or (most_mm_s := commanded_touching_mm_s(brush, cell)) >= min_mm_s:
+            return []
+        sentence = (
+            f"the machine of cell {cell.name} goes too far, so its limit while painting is {most_mm_s:.4g} mm/s, "
+            f"outside the range [{least}, {max_mm_s:g}] mm/s that its language can command"
+        )
+        advice = "use a higher paint_mm_s in the cell or a faster brush, or correct the scale of the machine itself"
+        return [Notice("", sentence, code="speed-out-of-range", advice=advice)]
     sentence = f"speed {speed_mm_s:.4g} mm/s is outside the range [{least}, {max_mm_s:g}] mm/s of {owner}"
     return [Notice("", sentence, code="speed-out-of-range")]
 
