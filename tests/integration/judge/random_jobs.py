@@ -175,7 +175,7 @@ def apart(way: Way, exact: Way, cell, has_circles: bool) -> list[str]:
     for number, both in enumerate(touches, 1):
         for touch, line in zip(both, lines[::-1], strict=True):
             points = shapely.points(touch[:, :2])
-            if not shapely.dwithin(points, line, near_mm).all():
+            if not shapely.dwithin(line, points, near_mm).all():
                 far_mm = shapely.distance(points, line).max()
                 return [f"touch {number} is {far_mm:.4g} mm from where it is without backlash"]
     return []

@@ -31,11 +31,12 @@ class JointSolver:
     """An arm with a function that finds its joint angles.
 
     solutions: maps a flange pose (4, 4) [mm, robot's frame] to all joint angles (k, 6) [rad, each in (-pi, pi]] that
-        put the flange there. k is 0 if there are none. Joint limits are not checked.
+        put the flange there. k is 0 if there are none. Joint limits are not checked. With at_singularities=False, a
+        pose exactly at a singularity may have none, and a pose out of reach is answered 30 times sooner.
     """
 
     arm: Arm
-    solutions: Callable[[np.ndarray], np.ndarray]
+    solutions: Callable[..., np.ndarray]
 
 
 def is_installed() -> bool:
@@ -114,7 +115,7 @@ def _fixed_frames(arm: Arm) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-def _solver_of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
+def _solver_of_links(arm: Arm, ssik) -> Callable[..., np.ndarray]:
     a, alpha, d, theta = np.array(arm.dh).T
     manipulator = ssik.Manipulator.from_dh(np.radians(alpha), a * M_PER_MM, d * M_PER_MM)
     base, _, flange = _fixed_frames(arm)
@@ -122,7 +123,7 @@ def _solver_of_links(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
     return _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.radians(theta))
 
 
-def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
+def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[..., np.ndarray]:
     """Return the solver of an arm that ssik provides.
 
     Its base frame may be turned about z by half a turn, and its flange frame may be turned in any way.
@@ -140,7 +141,9 @@ def _solver_of_prebuilt(arm: Arm, ssik) -> Callable[[np.ndarray], np.ndarray]:
         if np.abs(ssik_from_robot @ our_flanges @ ssik_flange_offset - ssik_flanges).max() < MAX_PREBUILT_DIFFERENCE_MM:
             solve_roughly = _make_solver(manipulator.solve, ssik_from_robot, ssik_flange_offset, np.zeros(len(arm.dh)))
             # Two steps are enough for differently rounded links, except near a singularity.
-            return lambda flange: refine_angles(arm, solve_roughly(flange), flange, MAX_NEWTON_STEP_RAD)[0]
+            return lambda flange, at_singularities=True: refine_angles(
+                arm, solve_roughly(flange, at_singularities), flange, MAX_NEWTON_STEP_RAD
+            )[0]
     sentence = f"the links of arm {arm.name} are not those of ssik's {arm.prebuilt!r}"
     raise Error(sentence, where="arm.prebuilt", code="cell-arm", advice="correct the links, or leave prebuilt out")
 
@@ -179,10 +182,9 @@ def refine_angles(
 
 
 def _make_solver(solve, ssik_from_robot: np.ndarray, ssik_flange_offset: np.ndarray, theta: np.ndarray):
-    def solutions(flange: np.ndarray) -> np.ndarray:
-        solutions_found = solve(
-            _scale_origin(ssik_from_robot @ flange @ ssik_flange_offset, M_PER_MM), respect_limits=False
-        )
+    def solutions(flange: np.ndarray, at_singularities: bool = True) -> np.ndarray:
+        target = _scale_origin(ssik_from_robot @ flange @ ssik_flange_offset, M_PER_MM)
+        solutions_found = solve(target, respect_limits=False, allow_rescue=at_singularities)
         angles = np.array([solution.q for solution in solutions_found]).reshape(-1, len(theta)) - theta
         return np.pi - (np.pi - angles) % (2 * np.pi)
 

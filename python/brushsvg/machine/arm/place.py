@@ -119,7 +119,7 @@ def _tried_places(program: Program, outermost: np.ndarray):
 
 
 def _can_reach(joints: JointSolver, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> bool:
-    angles = joints.solutions(flange_at(cell, frame, robot_mm))
+    angles = joints.solutions(flange_at(cell, frame, robot_mm), at_singularities=False)
     is_allowed = within_limits(joints.arm, angles) & _is_above_table(joints.arm, angles, frame)
     return bool((is_allowed & far_from_singular(joints.arm, angles, robot_mm)).any())
 
@@ -175,7 +175,7 @@ def rate_table(cell: Cell, frame: np.ndarray, joints: JointSolver) -> ReachTable
 
 
 def _rate_place(joints: JointSolver, cell: Cell, frame: np.ndarray, robot_mm: np.ndarray) -> int:
-    angles = joints.solutions(flange_at(cell, frame, robot_mm))
+    angles = joints.solutions(flange_at(cell, frame, robot_mm), at_singularities=False)
     angles = angles[_is_above_table(joints.arm, angles, frame)]
     if not len(angles):
         return UNREACHED
