@@ -7,8 +7,8 @@ from pathlib import PurePosixPath
 from fault import Fault
 
 PARTS = {
-    "workspace limits": ("machine/workspace_limits.py", "machine/realised/tilt.py", "machine/preflight.py"),
-    "move extents": ("machine/move_extents.py", "machine/realised/corner_blending.py"),
+    "move extents": ("machine/limits/move_extents.py", "machine/realised/corner_blending.py"),
+    "workspace limits": ("machine/limits/*.py", "machine/realised/tilt.py", "machine/preflight.py"),
     "check": ("verify/*.py", "jobs/checking.py"),
     "posts": ("machine/posts/*.py", "machine/writer.py", "cpp/posts/*.cpp"),
     "readback": ("verify/readback/*.py",),
@@ -17,7 +17,7 @@ PARTS = {
         "comparison/next_corrections.py",
         "comparison/attribution/corrected_cell.py",
     ),
-    "paint loads": ("machine/paint_reload.py", "cpp/inverse/paint_loads.cpp"),
+    "paint loads": ("machine/paint_reload.py", "machine/dry_brush.py", "cpp/inverse/paint_loads.cpp"),
 }
 
 

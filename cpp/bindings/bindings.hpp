@@ -24,7 +24,7 @@ void bind_stroke(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_marks(py::module_& m);
 void bind_lag(py::module_& m);
-void bind_bristle(py::module_& m);
+void bind_bristle_deflection(py::module_& m);
 void bind_simulate(py::module_& m);
 void bind_region(py::module_& m);
 void bind_medial_axis(py::module_& m);

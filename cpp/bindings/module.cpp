@@ -57,7 +57,7 @@ Lengths are in mm, angles in radians, coordinates in the paper frame.)";
     bind_plan(m);
     bind_marks(m);
     bind_lag(m);
-    bind_bristle(m);
+    bind_bristle_deflection(m);
     bind_simulate(m);
     bind_region(m);
     bind_medial_axis(m);

@@ -16,8 +16,8 @@ from brushsvg.jobs.preparation import preparation
 from brushsvg.machine import preflight, writer
 from brushsvg.machine.cells.cell import Machine, Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.limits.speeds import check_painting_speed
 from brushsvg.machine.realised.arc_chords import with_chords
-from brushsvg.machine.workspace_limits import check_painting_speed
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
 from brushsvg.verify.readback import read_program

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from brushsvg.machine.cells.cell import Blending
 from brushsvg.machine.frames import frame_of_pose, transform_points
-from brushsvg.machine.move_extents import (
+from brushsvg.machine.limits.move_extents import (
     distances_from_origin,
     find_place_inside,
     make_paths,

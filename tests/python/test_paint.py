@@ -18,18 +18,10 @@ from brushsvg.machine import writer
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_check import report_unusual_values
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
+from brushsvg.machine.dry_brush import report_dry_brush, report_long_strokes, report_missing_paint
 from brushsvg.machine.job_program import make_checked_program
 from brushsvg.machine.moves import Wait
-from brushsvg.machine.paint_reload import (
-    dips_mm,
-    list_station_visits,
-    load_length_mm,
-    painted_mm,
-    report_dry_brush,
-    report_long_strokes,
-    report_missing_paint,
-    split_into_loads,
-)
+from brushsvg.machine.paint_reload import dips_mm, list_station_visits, load_length_mm, painted_mm, split_into_loads
 from brushsvg.machine.preflight import check_job
 from brushsvg.machine.station_moves import make_visit
 from brushsvg.model.library import find_brush

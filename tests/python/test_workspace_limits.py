@@ -14,12 +14,12 @@ from programs import call, forbidden
 from brushsvg import _core
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
-from brushsvg.machine import workspace_limits as limits
 from brushsvg.machine.cells.cell import Reload, Station
 from brushsvg.machine.cells.cell_file import find_cell, parse_cell, write_cell
-from brushsvg.machine.move_extents import make_paths
+from brushsvg.machine.limits import move_extents
+from brushsvg.machine.limits.move_extents import make_paths
+from brushsvg.machine.limits.workspace import find_broken_limits, find_limits_broken_between
 from brushsvg.machine.setup_programs import make_border_program, make_height_program
-from brushsvg.machine.workspace_limits import find_broken_limits, find_limits_broken_between
 from brushsvg.model.library import find_brush
 
 BRUSH = find_brush("round-6")
@@ -322,7 +322,7 @@ def test_path_checks_do_not_depend_on_grouping(monkeypatch, at_once):
 
     The strokes are on both sides of the robot, and some paths between them go through it.
     """
-    monkeypatch.setattr(limits, "MAX_MOVES_AT_ONCE", at_once)
+    monkeypatch.setattr(move_extents, "MAX_MOVES_AT_ONCE", at_once)
     sides = [30.0, 40.0, 500.0, 540.0, 50.0, 520.0]
     passes = [
         _core.Pass(f"s{k}", np.array([(x, 100, 0), (x + 20, 100, -2)], dtype=float), 20.0) for k, x in enumerate(sides)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "brushsvg/bristle.hpp"
+#include "brushsvg/bristle_deflection.hpp"
 #include "brushsvg/brush.hpp"
 #include "brushsvg/brush_law.hpp"
 #include "brushsvg/checkpoint.hpp"

@@ -197,4 +197,4 @@ LagState<T> touch_down(const Vec2<T>& tcp) {
 
 }  // namespace brushsvg
 
-#include "brushsvg/lag_impl.hpp"
+#include "brushsvg/taut_and_loose.hpp"

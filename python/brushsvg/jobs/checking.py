@@ -20,9 +20,11 @@ from ..files import read_bytes
 from ..machine import preflight
 from ..machine.cells.cell import Cell
 from ..machine.cells.cell_file import cell_names
+from ..machine.dry_brush import report_dry_brush
 from ..machine.job_program import find_moves_out_of_arm
+from ..machine.limits.paint_on_sheet import job_bounds_mm
 from ..machine.moves import duration_s
-from ..machine.paint_reload import report_dry_brush, split_into_loads
+from ..machine.paint_reload import split_into_loads
 from ..machine.posts import GCODE, POSTS
 from ..machine.setup_programs import round_outwards
 from ..machine.writer import called_programs, list_arm_notices, parted_post, report_renamed
@@ -415,7 +417,7 @@ def _check_setup_program(program: _OwnProgram, chosen: Choices, stage, warn: War
 def _compare_border(header, work: PreparedDrawing, stage) -> list[Notice]:
     """Return a notice if a run in the air does not go around the paint."""
     marks = prediction.predict(work, outlines=False, stage=stage)
-    needed_mm, commanded_mm = round_outwards(preflight.job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
+    needed_mm, commanded_mm = round_outwards(job_bounds_mm(work.plan, marks, work.brush)), header.border_mm
     if (
         max(abs(commanded - needed) for commanded, needed in zip(commanded_mm, needed_mm, strict=True))
         <= MAX_BORDER_DIFFERENCE_MM

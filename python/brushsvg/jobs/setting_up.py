@@ -17,6 +17,7 @@ from ..files import write_files
 from ..machine import header_lines, preflight, setup_programs, writer
 from ..machine.cells.cell import Cell
 from ..machine.job_program import Job
+from ..machine.limits.paint_on_sheet import job_bounds_mm
 from ..machine.moves import Program, duration_s
 from ..machine.paint_reload import split_into_loads
 from ..machine.posts import Post
@@ -160,7 +161,7 @@ def make_border(
         walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, job, work.walk(cell, job), is_drawing)
         warn(file, [*work.notices, *(replace(problem, refused=True) for problem in walk.problems)])
         suffix, post = _find_post(path, cell)
-        around_mm = setup_programs.round_outwards(preflight.job_bounds_mm(plan, marks, brush))
+        around_mm = setup_programs.round_outwards(job_bounds_mm(plan, marks, brush))
         program = setup_programs.make_border_program(around_mm, brush, cell, plan.sheet_mm, job.z_offset_mm)
         title = f"border of {work.title or 'untitled'}"
         notes = outputs.header_lines(work)

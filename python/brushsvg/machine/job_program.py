@@ -15,6 +15,9 @@ from .arm.place import find_unreachable
 from .cells.cell import Cell, Station, robot_from_paper, value_mm
 from .cells.language_limits import MAX_PROGRAM_LINES, MAX_PROGRAM_POINTS
 from .frames import transform_points
+from .limits.speeds import commanded_touching_mm_s
+from .limits.vessels import find_strokes_in_vessels, find_vessels_near_travel
+from .limits.workspace import broken_limits, check_first_rise, find_astray_sections
 from .moves import Move, Program, Section, rise_height_mm, set_programmed_speeds
 from .paint_reload import PlanInLoads, list_station_visits
 from .posts import POSTS
@@ -23,14 +26,6 @@ from .realised.rounding import Written, as_written
 from .station_moves import make_visit, names_of_stations
 from .stroke_moves import make_stroke_moves
 from .tool_axes import axes_of
-from .workspace_limits import (
-    broken_limits,
-    check_first_rise,
-    commanded_touching_mm_s,
-    find_astray_sections,
-    find_strokes_in_vessels,
-    find_vessels_near_travel,
-)
 
 
 @dataclass(frozen=True)

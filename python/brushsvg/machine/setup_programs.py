@@ -12,11 +12,13 @@ from ..errors import Error, Notice
 from .cells.cell import Cell, reason_for_no_waiting, robot_from_paper
 from .cells.language_limits import LEAST_SPEED_MM_S
 from .job_program import find_moves_out_of_arm, find_moves_out_of_limits
-from .move_extents import make_paths
+from .limits.move_extents import make_paths
+from .limits.speeds import touching_mm_s
+from .limits.vessels import find_vessels_near_travel
+from .limits.workspace import find_broken_limits
 from .moves import Move, Program, Section, Wait, rise_height_mm, set_programmed_speeds
 from .realised.distortion import commanded_mm, in_lines_mm
 from .stroke_moves import approach_mm_s, point_above, safe_point_above
-from .workspace_limits import find_broken_limits, find_vessels_near_travel, touching_mm_s
 
 CORNER_WAIT_S = 0.5  # long enough to see where the tip is
 TEST_SPEED_MM_S = 15.0

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from .cells.cell import Cell, Station, shorten_visit
+from .limits.speeds import touching_mm_s
 from .moves import Move, Section, Wait
 from .posts.text import make_unique_names
 from .stroke_moves import approach_mm_s, point_above, safe_point_above
-from .workspace_limits import touching_mm_s
 
 
 def names_of_stations(cell: Cell) -> dict[Station, str]:

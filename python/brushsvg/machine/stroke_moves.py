@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from .cells.cell import Cell
+from .limits.speeds import commanded_touching_mm_s
 from .moves import Arc, Move
 from .realised.corner_blending import MAX_BLEND_TURN_RAD, blend_radii_and_angles, find_vertical_steps
 from .realised.distortion import commanded_heights_mm, commanded_mm, true_mm
 from .realised.rounding import Written
 from .realised.tilt import limit_turning_speed
 from .tool_axes import tilts_deg
-from .workspace_limits import commanded_touching_mm_s
 
 STRAIGHT_SEGMENT, VERTICAL_SEGMENT = -1, -2  # kinds of segments that are not part of an arc
 

@@ -14,6 +14,7 @@ from .arm.inverse_kinematics import is_installed
 from .cells.cell import Cell
 from .cells.cell_check import OF_EXAMPLE
 from .cells.cell_file import cell_names, find_cell, parse_cell, write_cell
+from .dry_brush import report_dry_brush, report_long_strokes, report_missing_paint
 from .header_lines import header_of
 from .job_program import (
     WHOLE_JOB,
@@ -25,14 +26,7 @@ from .job_program import (
     unchecked_program,
 )
 from .moves import Program, duration_s, program_in_robot_frame
-from .paint_reload import (
-    PlanInLoads,
-    list_station_visits,
-    report_dry_brush,
-    report_long_strokes,
-    report_missing_paint,
-    split_into_loads,
-)
+from .paint_reload import PlanInLoads, list_station_visits, split_into_loads
 from .pen_changes import report_single_pen
 from .posts import POSTS, Post
 from .preflight import DEFAULT_TOLERANCE_MM, as_exact_as, check_job, report_other_brush

@@ -17,7 +17,7 @@ from ..machine.realised.distortion import commanded_mm, in_lines_mm
 from ..machine.realised.pass_on_path import move_pass_to_path
 from ..machine.realised.passes import as_run
 from ..model.perturbed import with_factors
-from .studio import Studio
+from .studio_errors import Studio
 
 HEIGHT_MARGIN_MM = 0.02  # more than tilt and scale add to a change of height
 

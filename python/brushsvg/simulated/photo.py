@@ -12,7 +12,7 @@ from ..comparison.job_page import JobPage
 from ..errors import Error
 from .camera import BLUE, INK, Camera, Sheet, corners_seen, encoded, exposed
 from .paint_with_errors import PaintedStroke
-from .studio import Lens, Studio
+from .studio_errors import Lens, Studio
 
 NOTICE = "SIMULATED PHOTOGRAPH, painted by no machine (brushsvg simulate-photo)"
 # Limits of the texels on the whole sheet and per mm. Below the minimum per mm, the sheet's edges would be blurred.

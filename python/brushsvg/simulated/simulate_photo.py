@@ -27,7 +27,7 @@ from ..jobs.preparation import preparation
 from ..machine.paint_reload import fetched_mm
 from .paint_with_errors import lower_paper, simulate_painted_strokes
 from .photo import simulated_photo
-from .studio import random_studio, read_studio, write_studio
+from .studio_errors import random_studio, read_studio, write_studio
 
 if TYPE_CHECKING:
     from ..jobs.preparation.preparation import Source

@@ -14,10 +14,11 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cells.cell import Cell, robot_from_paper
 from ..machine.cells.cell_file import find_cell
-from ..machine.move_extents import make_paths as straight_extents
+from ..machine.limits.move_extents import ROUNDING_MM
+from ..machine.limits.move_extents import make_paths as straight_extents
+from ..machine.limits.paint_on_sheet import find_paint_off_sheet
+from ..machine.limits.workspace import broken_limits, find_broken_limits
 from ..machine.posts.gcode_servo import height_at
-from ..machine.preflight import find_paint_off_sheet
-from ..machine.workspace_limits import ROUNDING_MM, broken_limits, find_broken_limits
 from ..read.gcode.pen import pen_kind, read_pen
 from ..read.gcode.toolpaths import CHORD_MM, Way, ways_and_end
 

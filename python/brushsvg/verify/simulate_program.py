@@ -16,25 +16,20 @@ from .. import _core
 from ..errors import Error, Notice
 from ..machine.cells.cell import MOST_TILT_DEG, Blending, Cell, least_move_mm, robot_from_paper, unit_mm, value_mm
 from ..machine.frames import is_upright, transform_points
-from ..machine.move_extents import make_paths
+from ..machine.limits.move_extents import make_paths
+from ..machine.limits.paint_on_sheet import find_paint_off_sheet
+from ..machine.limits.speeds import touching_mm_s
+from ..machine.limits.vessels import find_vessels_entered, find_vessels_near_travel
+from ..machine.limits.workspace import broken_limits, check_first_rise, find_broken_limits, find_limits_broken_between
 from ..machine.pen_changes import may_pause, pen
 from ..machine.posts.text import NAMED, spelled
-from ..machine.preflight import as_run, find_paint_off_sheet
+from ..machine.preflight import as_run
 from ..machine.realised.arc_chords import OFF_MM
 from ..machine.realised.corner_blending import blend_radii
 from ..machine.realised.distortion import commanded_pass, is_similar, true_mm, true_pass
 from ..machine.setup_programs import slow_below_mm
 from ..machine.station_moves import names_of_stations
 from ..machine.tool_axes import tilts_deg
-from ..machine.workspace_limits import (
-    broken_limits,
-    check_first_rise,
-    find_broken_limits,
-    find_limits_broken_between,
-    find_vessels_entered,
-    find_vessels_near_travel,
-    touching_mm_s,
-)
 from .readback import Readback, ReadSection, Step
 
 MAX_ROUNDING_LIFT_MM = 2e-3  # height by which the rounding of a program may lift a pose off the paper

@@ -428,7 +428,7 @@ TOML_WORDS = (
 
 
 def _read_studio(data: bytes) -> None:
-    from brushsvg.simulated.studio import read_studio, write_studio
+    from brushsvg.simulated.studio_errors import read_studio, write_studio
 
     studio = read_studio(data)
     require(
@@ -438,7 +438,7 @@ def _read_studio(data: bytes) -> None:
 
 
 def _studio_seeds() -> Iterator[bytes]:
-    from brushsvg.simulated.studio import Studio, random_studio, write_studio
+    from brushsvg.simulated.studio_errors import Studio, random_studio, write_studio
 
     yield write_studio(Studio()).encode()
     yield write_studio(random_studio(3, (100.0, 100.0))).encode()

@@ -13,9 +13,11 @@ from ...jobs.preparation import preparation
 from ...jobs.prepared_drawing import PreparedDrawing
 from ...machine import preflight
 from ...machine.cells.cell import Cell
+from ...machine.dry_brush import report_long_strokes
 from ...machine.job_program import CheckedProgram
+from ...machine.limits.paint_on_sheet import find_paint_off_sheet
 from ...machine.moves import duration_s
-from ...machine.paint_reload import PlanInLoads, list_station_visits, report_long_strokes, split_into_loads
+from ...machine.paint_reload import PlanInLoads, list_station_visits, split_into_loads
 from ..console import refuse_errors, stage, warn
 from .options import make_options
 
@@ -93,7 +95,7 @@ def prepare_and_simulate(
             walk = preflight.check_job(loads, brush, marks, cell, tolerance_mm, walk=known_walk, of_drawing=is_drawing)
         forbidden = [replace(problem, refused=True) for problem in walk.problems] if walk else []
         sheet_mm = work.plan.sheet_mm
-        off_sheet_notices = preflight.find_paint_off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []
+        off_sheet_notices = find_paint_off_sheet(marks, brush, sheet_mm, is_drawing) if tilt_notices else []
         warnings = [*work.notices, *forbidden, *off_sheet_notices, *tilt_notices]
         warnings += report_long_strokes(loads, brush, cell) if at_loads else []
     warn(chosen.input, warnings)

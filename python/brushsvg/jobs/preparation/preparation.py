@@ -14,9 +14,10 @@ from ... import _core, read
 from ...comparison.corrections import apply_corrections
 from ...errors import Error
 from ...machine.job_program import Job
+from ...machine.limits.move_extents import ROUNDING_MM
+from ...machine.limits.speeds import check_painting_speed
 from ...machine.paint_reload import fetched_mm, split_into_loads
 from ...machine.preflight import check_job, report_other_brush
-from ...machine.workspace_limits import ROUNDING_MM, check_painting_speed
 from ...model.library import brush_names, find_brush, mistyped_keys
 from ...planning.press_deeper import press_deeper
 from ...planning.refinement import refine_where_better

@@ -11,10 +11,10 @@ import numpy as np
 
 from ...errors import Error, Notice
 from ..frames import normal_tilt_deg, rotation, transform_points
-from ..move_extents import distances_from_origin, make_paths
+from ..limits.move_extents import distances_from_origin, make_paths
+from ..limits.workspace import find_broken_limits
 from ..posts import POSTS
 from ..realised.smooth_field import max_field_slope
-from ..workspace_limits import find_broken_limits
 from .cell import (
     DEFAULT_FANUC_CONFIGURATION,
     MIN_WALL_TILT_DEG,

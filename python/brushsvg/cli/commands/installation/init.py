@@ -113,7 +113,7 @@ def _read_paper(text: str, _folder: str) -> str | None:
 def _check_speed(speed_mm_s: float | None, brush: str | None, cell: str | None, folder: str) -> float | None:
     """Return the speed; raise Error beyond the limits of brush or cell, which are as in the project file."""
     if speed_mm_s is not None:
-        from ....machine.workspace_limits import check_painting_speed
+        from ....machine.limits.speeds import check_painting_speed
 
         for notice in check_painting_speed(
             speed_mm_s,

@@ -1,4 +1,4 @@
-#include "brushsvg/bristle.hpp"
+#include "brushsvg/bristle_deflection.hpp"
 
 #include <doctest/doctest.h>
 

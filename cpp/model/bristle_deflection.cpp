@@ -1,4 +1,4 @@
-#include "brushsvg/bristle.hpp"
+#include "brushsvg/bristle_deflection.hpp"
 
 #include <Eigen/LU>
 #include <cmath>

@@ -2,35 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Notice
-from .cells.cell import Cell
-from .cells.language_limits import LEAST_SPEED_MM_S
-from .move_extents import Ways, distances_from_origin, find_place_inside, make_paths, measure_bounds, paths_in_frame
-from .moves import Move, Section
-from .realised.backlash import half_mm
-from .realised.distortion import max_true_per_commanded
-from .realised.tilt import check_tilt_limits as tilted_too_far
-
-ROUNDING_MM = 1e-6  # slack for the rounding of numbers
-MIN_SPEED_MM_S = 1e-6  # below this speed, durations would be meaningless
-
-
-def touching_mm_s(brush, cell: Cell) -> float:
-    """Return the highest speed [mm/s] of the brush's tip on the paper."""
-    return min(cell.speeds.paint_mm_s, brush.max_speed_mm_s)
-
-
-def commanded_touching_mm_s(brush, cell: Cell) -> float:
-    """Return the highest commanded speed [mm/s] at which the tip keeps its limit.
-
-    A machine that goes too far for each mm is also faster than commanded.
-    """
-    return touching_mm_s(brush, cell) / max_true_per_commanded(cell.machine)
+from ...errors import Notice
+from ..cells.cell import Cell
+from ..moves import Section
+from ..realised.backlash import half_mm
+from ..realised.tilt import check_tilt_limits as tilted_too_far
+from .move_extents import (
+    ROUNDING_MM,
+    Ways,
+    distances_from_origin,
+    find_place_inside,
+    group_sections,
+    make_paths,
+    measure_bounds,
+    paths_in_frame,
+    paths_of_moves,
+)
+from .paint_on_sheet import distances_beyond_edges
+from .speeds import check_painting_speed
+from .vessels import find_stations_on_sheet
 
 
 def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) -> list[Notice]:
@@ -63,42 +58,7 @@ def broken_limits(passes, sheet_mm, brush, cell: Cell, least_mm: float = 0.0) ->
                 notices += _check_pen_height(poses, cell)
         notices += check_painting_speed(a_pass.speed_mm_s, brush, cell)
         problems += [replace(notice, where=a_pass.stroke) for notice in notices]
-    for station in cell.stations:
-        if station.by_hand:
-            continue  # the tool stays at the safe height
-        width, height = sheet_mm
-        on_sheet = (0.0, 0.0, -1.0), (width, height, 1.0)
-        path = [(*point[:2], 0.0) for point in (station.place_mm, *station.wipe_mm)]
-        (x, y), r = station.place_mm, station.stir_mm
-        stirred = [((x + r, y, 0.0), (x + r, y, 0.0), (x, y, 1))] if r else []
-        if find_place_inside(make_paths([[point] for point in path], stirred), *on_sheet) is not None:
-            sentence = f"its place is on the sheet of {width:g} x {height:g} mm"
-            problems.append(Notice(station.name, sentence, code="station-on-sheet"))
-        elif find_place_inside(make_paths([path]), *on_sheet) is not None:
-            sentence = f"its wipe goes over the sheet of {width:g} x {height:g} mm"
-            problems.append(Notice(station.name, sentence, code="station-on-sheet"))
-    return problems
-
-
-def check_painting_speed(speed_mm_s: float, brush, cell: Cell | None) -> list[Notice]:
-    """Report a speed outside the limits of the brush and the cell, with the one whose limit it breaks."""
-    min_mm_s, max_mm_s, owner = MIN_SPEED_MM_S, brush.max_speed_mm_s, f"brush {brush.name}"
-    if cell is not None:
-        min_mm_s, max_mm_s = LEAST_SPEED_MM_S.get(cell.language, MIN_SPEED_MM_S), touching_mm_s(brush, cell)
-        if speed_mm_s < min_mm_s or max_mm_s < brush.max_speed_mm_s:
-            owner = f"cell {cell.name}"
-    least = np.format_float_positional(min_mm_s, trim="-")
-    if min_mm_s <= speed_mm_s <= max_mm_s:
-        if cell is None or (most_mm_s := commanded_touching_mm_s(brush, cell)) >= min_mm_s:
-            return []
-        sentence = (
-            f"the machine of cell {cell.name} goes too far, so its limit while painting is {most_mm_s:.4g} mm/s, "
-            f"outside the range [{least}, {max_mm_s:g}] mm/s that its language can command"
-        )
-        advice = "use a higher paint_mm_s in the cell or a faster brush, or correct the scale of the machine itself"
-        return [Notice("", sentence, code="speed-out-of-range", advice=advice)]
-    sentence = f"speed {speed_mm_s:.4g} mm/s is outside the range [{least}, {max_mm_s:g}] mm/s of {owner}"
-    return [Notice("", sentence, code="speed-out-of-range")]
+    return problems + find_stations_on_sheet(cell, sheet_mm)
 
 
 def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: Cell, sheet_mm=None) -> list[Notice]:
@@ -111,107 +71,22 @@ def find_astray_sections(sections: Iterable[Section], frame: np.ndarray, cell: C
     """
     problems: list[Notice] = []
     here = None
-    for group in _group_sections(section for section in sections if section.moves):
+    for group in group_sections(section for section in sections if section.moves):
         # Most sections keep every limit, so the whole group is checked first, including the moves between sections.
         moves = [move for section in group for move in section.moves]
-        if find_broken_limits(_paths_of_moves(moves, here), frame, cell, sheet_mm):
+        if find_broken_limits(paths_of_moves(moves, here), frame, cell, sheet_mm):
             problems += _find_in_each_section(group, here, frame, cell, sheet_mm)
         here = moves[-1].points_mm[-1]
     return list(dict.fromkeys(problems))
-
-
-def find_strokes_in_vessels(strokes: Iterable[Section], cell: Cell) -> list[Notice]:
-    """Report vessels that strokes enter below the rim. Each notice names the stroke."""
-    notices = []
-    for group in _group_sections(section for section in strokes if section.moves):
-        # Most strokes enter no vessel, so the whole group is checked first.
-        if find_vessels_entered(_paths_of_moves([move for section in group for move in section.moves], None), cell):
-            for section in group:
-                entered = find_vessels_entered(_paths_of_moves(section.moves, None), cell)
-                notices += [replace(notice, where=section.name) for notice in entered]
-    return notices
-
-
-def find_vessels_entered(moves: Ways, cell: Cell, slack_mm: float = ROUNDING_MM) -> list[Notice]:
-    """Report vessels that moves in the paper's frame enter below the rim. The notices name no stroke yet.
-
-    A vessel counts as the square about its circle.
-    """
-    notices = []
-    for vessel in (station for station in cell.stations if not station.by_hand):
-        reach_mm = np.full(2, max(vessel.radius_mm, vessel.stir_mm) - slack_mm)
-        low, high = np.array(vessel.place_mm) - reach_mm, np.array(vessel.place_mm) + reach_mm
-        place = find_place_inside(moves, (*low, -np.inf), (*high, vessel.rim_mm - slack_mm))
-        if place is not None:
-            where = ", ".join(f"{axis} {value:.1f}" for axis, value in zip("xyz", place, strict=True))
-            sentence = (
-                f"the tool goes through {where} mm, in the vessel {vessel.name!r} of cell {cell.name}, which is "
-                f"{vessel.radius_mm:g} mm in radius and has its rim at {vessel.rim_mm:g} mm"
-            )
-            advice = "place it further from the sheet, or correct its radius_mm"
-            notices.append(Notice("", sentence, code="vessel-entered", about=vessel.name, advice=advice))
-    return notices
-
-
-def find_vessels_near_travel(cell: Cell, z_offset_mm: float) -> list[Notice]:
-    """Report vessels that the tool does not clear at the safe height of lower paper.
-
-    A program lowers the visits to stations together with its strokes, but a vessel on the table stays where it is.
-
-    z_offset_mm: how much higher the paper is than the cell says. Higher paper also raises the safe height.
-    """
-    top_mm = cell.heights.safe_mm + z_offset_mm - cell.heights.clearance_mm
-    return [
-        Notice(
-            station.name,
-            f"rim_mm {station.rim_mm:g} is above {top_mm:g} mm, clearance_mm below the safe height with --z-offset "
-            f"{z_offset_mm:g}: a vessel on the table does not move down with the paper",
-            code="cell-station",
-            advice="raise safe_mm of the cell, or teach the paper again",
-        )
-        for station in (cell.stations if z_offset_mm < 0 else ())
-        if not station.by_hand and station.rim_mm > top_mm + ROUNDING_MM
-    ]
-
-
-MAX_MOVES_AT_ONCE = 10_000  # more moves need more memory, fewer moves are slower
-
-
-def _group_sections(sections: Iterable[Section]) -> Iterator[list[Section]]:
-    group, moves = [], 0
-    for section in sections:
-        group.append(section)
-        moves += sum(len(move.points_mm) for move in section.moves)
-        if moves >= MAX_MOVES_AT_ONCE:
-            yield group
-            group, moves = [], 0
-    if group:
-        yield group
 
 
 def _find_in_each_section(sections, here, frame: np.ndarray, cell: Cell, sheet_mm) -> Iterator[Notice]:
     for section in sections:
         moves = section.moves
         notices = [] if here is None else find_limits_broken_between(here, moves[0].points_mm[0], frame, cell)
-        notices += find_broken_limits(_paths_of_moves(moves, None), frame, cell, sheet_mm)
+        notices += find_broken_limits(paths_of_moves(moves, None), frame, cell, sheet_mm)
         yield from (replace(notice, where=section.name) for notice in notices)
         here = moves[-1].points_mm[-1]
-
-
-def _paths_of_moves(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
-    """Return the paths of moves.
-
-    They begin at the tool's place, or at the first point if that is not known. Circles are also included as chords.
-    """
-    paths = [move.points_mm for move in moves]
-    points = np.vstack(paths if here is None else [here, *paths])
-    ends = np.cumsum([len(path) for path in paths]) + (here is not None)
-    circles = [
-        (points[last - len(move.points_mm) - 1], points[last - 1], (*move.arc.centre_mm, move.arc.turn))
-        for move, last in zip(moves, ends.tolist(), strict=True)
-        if move.arc is not None and last > len(move.points_mm)
-    ]
-    return make_paths([points], circles)
 
 
 def find_limits_broken_between(
@@ -373,13 +248,3 @@ def _outside_text(value: float, low: float, high: float) -> str:
         if not low <= float(f"{value:.{decimals}f}") <= high:
             break
     return f"{value:.{decimals}f}"
-
-
-def distances_beyond_edges(bounds_mm, sheet_mm) -> dict[str, float]:
-    """Return how far [mm] bounds reach beyond each edge of the sheet.
-
-    bounds_mm: left, bottom, right and top. The distances are negative inside the sheet.
-    """
-    left, bottom, right, top = bounds_mm
-    width, height = sheet_mm
-    return {"left": -left, "right": right - width, "lower": -bottom, "upper": top - height}

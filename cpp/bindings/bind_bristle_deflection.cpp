@@ -1,8 +1,8 @@
 #include "bindings.hpp"
-#include "brushsvg/bristle.hpp"
+#include "brushsvg/bristle_deflection.hpp"
 #include "brushsvg/error.hpp"
 
-void bind_bristle(py::module_& m) {
+void bind_bristle_deflection(py::module_& m) {
     using namespace brushsvg;
     m.def(
         "bristle_coefficients",

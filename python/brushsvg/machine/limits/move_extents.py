@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from ..moves import Move, Section
+
+ROUNDING_MM = 1e-6  # slack for the rounding of numbers
+MAX_MOVES_AT_ONCE = 10_000  # more moves need more memory, fewer moves are slower
 
 
 @dataclass(frozen=True)
@@ -152,3 +158,32 @@ def _harmonic_range(spoke: np.ndarray, across: np.ndarray, sweep_rad: np.ndarray
     least = np.where((phase + np.pi) % (2 * np.pi) <= sweep_rad, -amplitude, np.minimum(spoke, end))
     greatest = np.where(phase % (2 * np.pi) <= sweep_rad, amplitude, np.maximum(spoke, end))
     return least, greatest
+
+
+def group_sections(sections: Iterable[Section]) -> Iterator[list[Section]]:
+    """Yield groups of sections, each with about MAX_MOVES_AT_ONCE moves."""
+    group, moves = [], 0
+    for section in sections:
+        group.append(section)
+        moves += sum(len(move.points_mm) for move in section.moves)
+        if moves >= MAX_MOVES_AT_ONCE:
+            yield group
+            group, moves = [], 0
+    if group:
+        yield group
+
+
+def paths_of_moves(moves: Sequence[Move], here: np.ndarray | None) -> Ways:
+    """Return the paths of moves.
+
+    They begin at the tool's place, or at the first point if that is not known. Circles are also included as chords.
+    """
+    paths = [move.points_mm for move in moves]
+    points = np.vstack(paths if here is None else [here, *paths])
+    ends = np.cumsum([len(path) for path in paths]) + (here is not None)
+    circles = [
+        (points[last - len(move.points_mm) - 1], points[last - 1], (*move.arc.centre_mm, move.arc.turn))
+        for move, last in zip(moves, ends.tolist(), strict=True)
+        if move.arc is not None and last > len(move.points_mm)
+    ]
+    return make_paths([points], circles)
