@@ -15,7 +15,7 @@ from svg_text import read
 from brushsvg import _core, find_brush
 from brushsvg.calibration.numbers.from_widths import new_brush
 from brushsvg.strokes.contour_fill import find_contour_passes
-from brushsvg.strokes.contour_rings import Line
+from brushsvg.strokes.contour_rings import Line, offset_along
 from brushsvg.strokes.extraction import strokes
 from brushsvg.strokes.fillings import find_wide_shapes
 from brushsvg.strokes.skeleton import shape_to_strokes
@@ -371,3 +371,14 @@ def test_slits_between_parts_of_a_shape_are_not_edges(brush):
     corners = [len(shapely.LinearRing(ring).simplify(0.02).coords) - 1 for ring in filling.rings]
     assert corners == [10]
     assert region(filling.rings).symmetric_difference(region(parts)).area < 0.1
+
+
+def test_edges_that_all_but_touch_have_rings():
+    """The mitre of this shape's core crosses itself, which the intersection of areas refuses."""
+    hole = [(35.24, 32.36), (35.12, 31.04), (41.06, 25.87)]
+    shape = shapely.Polygon([(43.39, 19.37), (26.94, 20.23), (29.86, 34.07), (42.89, 35.33), (45.8, 32.66)], [hole])
+    half_mm = 1.08
+    rings = offset_along(shape, half_mm)
+    away_mm = shapely.distance(shapely.points(np.vstack(rings)), shape.boundary)
+    assert len(rings) == 2
+    assert away_mm == pytest.approx(half_mm, abs=0.01)

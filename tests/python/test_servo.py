@@ -15,10 +15,11 @@ from test_gcode import TWO, text_of
 from brushsvg import _core, write_plan
 from brushsvg.jobs.options import Options
 from brushsvg.jobs.preparation.preparation import prepare
-from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station
+from brushsvg.machine.cells.cell import Machine, Reload, Servo, Station, is_too_steep_for_servo
 from brushsvg.machine.cells.cell_file import cell_names, find_cell, parse_cell, write_cell
 from brushsvg.machine.job_program import Job
 from brushsvg.machine.posts.gcode_servo import grbl_servo, servo_values_at
+from brushsvg.machine.realised.rounding import as_written
 from brushsvg.machine.setup_programs import make_border_program
 from brushsvg.model.library import find_brush
 from brushsvg.verify import simulate_program
@@ -384,3 +385,19 @@ def test_shipped_tables_reach_the_safe_height_over_thicker_paper(name):
     plan = _core.Plan("round-6", "", (100, 60), [_core.Pass("s", poses, 9.0)])
     for z_offset in (-1.0, 0.3, 2.0):
         assert list(program(plan, find_brush("round-6"), cell, (), Job(z_offset)).sections())
+
+
+@pytest.mark.parametrize("name", ["axidraw-ebb", "grbl-servo"])
+def test_rounding_leaves_no_steep_path(name):
+    """Places of a steep path that are less than a move apart stay a lift on the spot, followed by a level path."""
+    cell, random, written_ways = find_cell(name), np.random.default_rng(5), 0
+    for _ in range(400):
+        ways_mm = random.uniform(-1, 1, (8, 2)) * random.choice([0.01, 0.03, 0.1], (8, 1))
+        heights_mm = np.r_[0.0, -5.0, -5.0 + np.cumsum(random.uniform(0.05, 1.0, 7))]
+        poses = np.column_stack([40 + np.cumsum([(0, 0), *ways_mm], axis=0), np.minimum(heights_mm, 0.0)])
+        written = as_written(_core.Pass("s", poses, 20.0), cell, np.eye(4))
+        ways = np.diff(written.poses_mm, axis=0)
+        steep = is_too_steep_for_servo(ways, 20.0, cell, are_rounded=True)
+        assert not steep.any(), (poses[:-1][:3], ways[steep])
+        written_ways += len(ways)
+    assert written_ways > 2000

@@ -73,9 +73,9 @@ def cut_rings(rings: list[list[np.ndarray]], half: float) -> list[Line]:
 
 def _offset_shape(shape, by_mm: float, hair_mm: float) -> list[np.ndarray]:
     """Return a shape's rings moved inward, without hairs; outer ones counter-clockwise from the upper left."""
-    without_hairs = shape.buffer(-by_mm - hair_mm, quad_segs=_QUARTER_EDGES).buffer(
-        1.01 * hair_mm, join_style="mitre", mitre_limit=10
-    )
+    core = shape.buffer(-by_mm - hair_mm, quad_segs=_QUARTER_EDGES)
+    # The edges of a mitre may cross where two edges all but touch.
+    without_hairs = shapely.make_valid(core.buffer(1.01 * hair_mm, join_style="mitre", mitre_limit=10))
     moved = shape.buffer(-by_mm, quad_segs=_QUARTER_EDGES).intersection(without_hairs).simplify(0.003)
     return [
         np.array(ring.coords)

@@ -77,7 +77,7 @@ def _find_shapes_with_strokes(strokes: list, wider: list[int]) -> list[tuple]:
 def _without_slits(shape):
     """Return a shape without the slits between the parts of its strokes. Rings would run round the slits."""
     closed = shape.buffer(_MAX_HALF_SLIT_MM, join_style="mitre").buffer(-_MAX_HALF_SLIT_MM, join_style="mitre")
-    return closed if closed.geom_type == "Polygon" else shape
+    return closed if closed.geom_type == "Polygon" and closed.is_valid else shape
 
 
 def _find_shape_of_strokes(shapes, strokes: list) -> list[int]:

@@ -86,13 +86,22 @@ def as_written(a_pass, cell: Cell, frame: np.ndarray, was_read: bool = False) ->
             _core.Arc(*np.searchsorted(kept, (arc.first, arc.last)).tolist(), arc.centre_mm, arc.direction)
             for arc in arcs
         ]
-    poses = poses[kept]
-    commanded_mm = exact[kept]
+    exact, poses = exact[kept], poses[kept]
     if cell.servo:
         held_rows = _servo_rows(poses[:, :2], least_mm)
-        poses[:, :2], commanded_mm[:, :2] = poses[held_rows, :2], commanded_mm[held_rows, :2]
+        poses[:, :2], exact[:, :2] = poses[held_rows, :2], exact[held_rows, :2]
+        # Rounding may have made a lift on the spot a short steep path.
+        steep = is_too_steep_for_servo(np.diff(poses, axis=0), a_pass.speed_mm_s, cell, was_read)
+        on_arcs = [row for arc in arcs for row in range(arc.first, arc.last)]
+        rows = np.setdiff1d(np.flatnonzero(steep), on_arcs)
+        exact, poses = _insert_lifts(exact, rows), _insert_lifts(poses, rows)
+        arcs = [
+            _core.Arc(*(np.searchsorted(rows, ends) + ends).tolist(), arc.centre_mm, arc.direction)
+            for arc in arcs
+            for ends in [np.array([arc.first, arc.last])]
+        ]
     axes = axes_of(a_pass)  # a pass with axes has no arcs
-    return Written(commanded_mm, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
+    return Written(exact, poses, arcs, sideways_mm, axes if axes is None else axes[kept])
 
 
 def _at_servo_values(poses: np.ndarray, servo: Servo) -> np.ndarray:
@@ -120,11 +129,18 @@ def lift_on_steep_paths(a_pass, cell: Cell, was_read: bool = False):
     if not len(find_steep_rows(poses)):
         return a_pass
     poses = np.asarray(with_chords(a_pass).poses_mm, dtype=float)
-    rows, ways = find_steep_rows(poses), np.diff(poses, axis=0)
-    presses = ways[rows, 2] < 0
+    return move_pass_to_path(a_pass, _insert_lifts(poses, find_steep_rows(poses)), [])
+
+
+def _insert_lifts(poses: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Divide the paths that begin at rows into a lift or press on the spot and a level path.
+
+    The brush is pressed before the level path, and lifted after it.
+    """
+    presses = poses[rows + 1, 2] < poses[rows, 2]
     places = np.where(presses[:, None], poses[rows, :2], poses[rows + 1, :2])
     heights = np.where(presses, poses[rows + 1, 2], poses[rows, 2])
-    return move_pass_to_path(a_pass, np.insert(poses, rows + 1, np.column_stack([places, heights]), axis=0), [])
+    return np.insert(poses, rows + 1, np.column_stack([places, heights]), axis=0)
 
 
 def _servo_rows(places: np.ndarray, least_mm: float) -> np.ndarray:
