@@ -15,9 +15,10 @@
 #include "inverse/closed_form.hpp"
 #include "inverse/ends/end_styles.hpp"
 #include "marks/coverage_contours.hpp"
-#include "strokes/candidates.hpp"
 #include "strokes/canvas.hpp"
-#include "strokes/variants.hpp"
+#include "strokes/cut_at_bends.hpp"
+#include "strokes/lines_into_bare_areas.hpp"
+#include "strokes/stroke_variants.hpp"
 
 namespace brushsvg {
 namespace {

@@ -19,7 +19,7 @@ from ..photo.edges import StrokeBox, paint_seen, printed_pixels
 from ..photo.flatten import Flat, flatten
 from ..photo.markers import Printed, View, find_view
 from ..photo.photo import read_photo, refuse_twice
-from ..photo.whole_page import refuse_cropped, refuse_unsure
+from ..photo.photo_checks import refuse_cropped, refuse_unsure
 from .corrections import MIN_MARKS
 from .job_page import JobPage, box_ring
 from .placing import NOWHERE, Canvas, Placed, grow_rings, locate_mark

@@ -12,7 +12,7 @@ from .timeline import Timeline
 
 PAGE_FOLDER = Path(__file__).parents[1] / "data" / "page"
 # Joined to one script in this order.
-SCRIPTS = ("rows.js", "footprint.js", "layers.js", "drawing.js", "controls.js")
+SCRIPTS = ("rows.js", "footprint.js", "canvases.js", "paint_and_tool.js", "controls.js")
 # Numbers are written as integers. Fine units are ms, mrad, and um for outlines; coarse units are 0.01 mm for lengths
 # and percent for the pull.
 FINE_PER_UNIT, COARSE_PER_UNIT = 1000, 100

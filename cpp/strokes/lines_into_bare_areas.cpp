@@ -1,4 +1,4 @@
-#include "strokes/candidates.hpp"
+#include "strokes/lines_into_bare_areas.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
