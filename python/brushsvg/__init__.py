@@ -48,6 +48,7 @@ if TYPE_CHECKING:  # the names that the table below imports at run time
     from .jobs.comparing import PaintedJob, compare
     from .jobs.conversion import Conversion, convert
     from .jobs.json_files import read_marks, read_plan
+    from .jobs.placing import PaperPlacement, place_paper
     from .jobs.project import Project, find_project, read_project
     from .jobs.setting_up import SetupProgram, setup_border, setup_first_run, setup_height
     from .machine.cells.cell import Cell
@@ -88,6 +89,7 @@ _HOME = {  # the module of each name; other names are in _core
         "jobs.conversion": "Conversion convert",
         "jobs.batch.run": "Batch batch",
         "jobs.project": "Project find_project read_project",
+        "jobs.placing": "PaperPlacement place_paper",
         "jobs.setting_up": "SetupProgram setup_border setup_first_run setup_height",
         "jobs.json_files": "read_marks read_plan",
         "machine.writer": "write_program",
@@ -118,6 +120,7 @@ __all__ = [
     "Marks",
     "Paint",
     "PaintedJob",
+    "PaperPlacement",
     "Pass",
     "Plan",
     "Profile",
@@ -153,6 +156,7 @@ __all__ = [
     "overlap",
     "path_from_pass",
     "path_from_stroke",
+    "place_paper",
     "read_cell",
     "read_drawing",
     "read_marks",

@@ -13,6 +13,7 @@ from diagnostics import agrees, gives, in_json, is_reported
 from sampling import sample
 from test_arm import DESCRIBED, about, placed
 
+import brushsvg
 from brushsvg import _core
 from brushsvg.cli import main
 from brushsvg.machine import preflight
@@ -214,6 +215,10 @@ def test_place_reports_workable_paper_positions_and_draws_the_table(tmp_path, ca
     paper = replace(cell.paper, origin_mm=tuple(map(float, numbers)))
     near.write_text(write_cell(replace(cell, paper=paper)))
     assert in_json(capsys, "cell", "place", near, drawing)[0] == 0
+    by_python = brushsvg.place_paper(str(far), drawing, tmp_path / "by-python.svg")
+    assert by_python.cell.paper.origin_mm == pytest.approx(paper.origin_mm, abs=1e-3)
+    assert [notice.code for notice in by_python.problems] == [notice.code for _, notice in reported]
+    assert (tmp_path / "by-python.svg").read_text() == picture.read_text() == by_python.picture
     status, _, reported = in_json(capsys, "cell", "place", "linuxcnc-3axis")
     assert status == 1 and is_reported(reported, "arm-missing")
 

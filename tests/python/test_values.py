@@ -310,6 +310,7 @@ VALUES_OF = {
         brushsvg.convert(read(f'<path id="a" d="M30 {y}h20" fill="none" stroke="red" stroke-width="2"/>'))
         for y in (30, 31)
     ],
+    "PaperPlacement": lambda _: [brushsvg.place_paper(each, sheet=(60.0, 50.0)) for each in ("ur3e", "ur5e")],
     "SetupProgram": lambda _: [brushsvg.setup_height("grbl-3axis", lowest=each) for each in (-1.0, -0.5)],
     "SimulatedPhoto": lambda _: [brushsvg.SimulatedPhoto(b"", "", count) for count in (1, 2)],
     "Check": lambda folder: [checked(folder, 30), checked(folder, 31)],

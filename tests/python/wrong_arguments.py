@@ -249,6 +249,7 @@ ARGUMENTS = {
     "Chart": [],
     "Conversion": [],
     "SetupProgram": [],
+    "PaperPlacement": [],
     "SimulatedPhoto": [],
     "Check": [],
     "BrushCalibration": [],
@@ -348,6 +349,11 @@ ARGUMENTS = {
     "overlap": [rings, rings],
     "path_from_pass": [lambda: [each for made in plans() for each in made.passes], [None, *NUMBERS]],
     "path_from_stroke": [some_strokes, [None, *NUMBERS]],
+    "place_paper": [
+        lambda: ["ur3e", "linuxcnc-3axis", *NAMES, *cells()],
+        lambda: [None, FOLDER / "d.svg", *designs(), *plans(), *PATHS],
+        [None, FOLDER / "p.svg", *PATHS],
+    ],
     "read_project": [
         [FOLDER / "shared" / "brushsvg.toml", *PATHS, FOLDER / "broken.toml", FOLDER / "huge.toml", *TEXTS]
     ],

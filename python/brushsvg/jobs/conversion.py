@@ -145,12 +145,8 @@ def convert(
     """
     chosen = make_choices(drawing, choices)
     extras = {"picture": picture, "report": report, "page": page}
-    paths = {name: os.fspath(path) for name, path in extras.items() if _is_path_given(path, name)}
+    paths = {name: path for name, given in extras.items() if (path := check_output_path(name, given)) is not None}
     out = os.fspath(out) if _is_path_given(out, "out") else None
-    for name, path in paths.items():
-        if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
-            sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
-            raise Error(sentence, name, code="program-format")
     refuse_file_used_twice(chosen, [out, *paths.values()])
     require_type(formats, (tuple, list), "a list of extensions", "formats")
     for extension in formats:
@@ -200,6 +196,17 @@ def make_choices(drawing, choices: Mapping) -> Choices:
     chosen = check_choices(Choices(input=drawing, **choices))
     refuse_ends_without_effect(chosen)
     return chosen
+
+
+def check_output_path(name: str, path: str | os.PathLike[str] | None) -> str | None:
+    """Return the path of an output in OUTPUT_SUFFIXES, or None if there is none. Raises Error for a wrong extension."""
+    if not _is_path_given(path, name):
+        return None
+    path = os.fspath(path)
+    if suffix_of(path) not in OUTPUT_SUFFIXES[name]:
+        sentence = f"{name} {path[:80]!r} does not end in {' or '.join(OUTPUT_SUFFIXES[name])}"
+        raise Error(sentence, name, code="program-format")
+    return path
 
 
 def _is_path_given(path, name: str) -> bool:

@@ -93,7 +93,7 @@ def setup_first_run(
 
     Raises Error if the machine cannot wait for a person, or would leave the workspace or the sheet.
     """
-    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=DEFAULT_SHEET_MM if sheet is None else sheet))
+    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=sheet))
     return _write(chosen, out, lambda path, warn: make_first_run(chosen, path, warn))
 
 
@@ -117,7 +117,7 @@ def setup_height(
 
     Raises Error if the strokes do not fit on the sheet, or go deeper than the brush or the machine allows.
     """
-    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=DEFAULT_SHEET_MM if sheet is None else sheet))
+    chosen = check_choices(Choices(cell=cell, brush=brush, sheet=sheet))
     heights_mm = (
         need_number(highest, "highest [mm]", *HEIGHT_RANGE_MM),
         need_number(lowest, "lowest [mm]", *HEIGHT_RANGE_MM),
@@ -178,14 +178,14 @@ def make_first_run(chosen: Choices, path: str | None, warn: Warn = lambda file, 
 
     chosen: cell, brush and sheet.
     """
-    cell, brush = _load_cell_and_brush(chosen)
+    cell, brush, sheet_mm = _load_cell_and_brush(chosen)
     suffix, post = _find_post(path, cell)
     with name_file_in_errors(cell.name):
-        program = setup_programs.make_first_run_program(brush, cell, chosen.sheet, *DEFAULT_HEIGHTS_MM)
-        header = header_lines.first_header(brush.name, chosen.sheet, DEFAULT_HEIGHTS_MM, program)
+        program = setup_programs.make_first_run_program(brush, cell, sheet_mm, *DEFAULT_HEIGHTS_MM)
+        header = header_lines.first_header(brush.name, sheet_mm, DEFAULT_HEIGHTS_MM, program)
         text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, writer.list_cell_notices(cell))
-    warn(cell.name, setup_programs.report_missing_air_run(cell, chosen.sheet))
+    warn(cell.name, setup_programs.report_missing_air_run(cell, sheet_mm))
     count = len(setup_programs.stroke_heights_mm(*DEFAULT_HEIGHTS_MM)) + 1
     return SetupProgram(text, duration_s(program), count)
 
@@ -197,19 +197,20 @@ def make_height(
 
     chosen: cell, brush and sheet.
     """
-    cell, brush = _load_cell_and_brush(chosen)
+    cell, brush, sheet_mm = _load_cell_and_brush(chosen)
     suffix, post = _find_post(path, cell)
     with name_file_in_errors(cell.name):
-        program = setup_programs.make_height_program(brush, cell, chosen.sheet, *heights_mm)
-        header = header_lines.height_header(brush.name, chosen.sheet, heights_mm, program)
+        program = setup_programs.make_height_program(brush, cell, sheet_mm, *heights_mm)
+        header = header_lines.height_header(brush.name, sheet_mm, heights_mm, program)
         text = _text_of(post, program, header, path, suffix, warn)
     warn(cell.name, writer.list_cell_notices(cell))
     return SetupProgram(text, duration_s(program), len(setup_programs.stroke_heights_mm(*heights_mm)))
 
 
-def _load_cell_and_brush(chosen: Choices) -> tuple[Cell, _core.Brush]:
+def _load_cell_and_brush(chosen: Choices) -> tuple[Cell, _core.Brush, tuple[float, float]]:
+    """Return the cell, the brush and the size of the sheet [mm], the default ones where nothing was chosen."""
     cell = preflight.as_exact_as(load_cell(chosen.cell), preflight.DEFAULT_TOLERANCE_MM)
-    return cell, load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH)
+    return cell, load_brush(chosen.brush) or find_brush(DEFAULT_BRUSH), chosen.sheet or DEFAULT_SHEET_MM
 
 
 def _find_post(path: str | None, cell: Cell) -> tuple[str, Post]:

@@ -20,7 +20,7 @@ def _add_first_run(commands) -> None:
     first.add_argument("input", metavar="NAME", help="a shipped cell, or a cell.toml")
     flags.add_output(first, flags.PROGRAM_HELP)
     first.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
-    first.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
+    first.add_argument("--sheet", metavar="WxH", type=values.sheet, help="default: 200x100")
     flags.add_explain(first, None)
     flags.add_write_options(first)
     first.set_defaults(run="first_run_file", parser=first, check=_check_first_run)
@@ -51,7 +51,7 @@ def _add_height(commands) -> None:
     flags.add_output(height, flags.PROGRAM_HELP)
     height.add_argument("--brush", metavar="NAME|FILE", help="default: round-6")
     height.add_argument("--cell", metavar="NAME|FILE", help="the machine; default: linuxcnc-3axis")
-    height.add_argument("--sheet", metavar="WxH", type=values.sheet, default=(200.0, 100.0), help="default: 200x100")
+    height.add_argument("--sheet", metavar="WxH", type=values.sheet, help="default: 200x100")
     height.add_argument(
         "--from",
         metavar="MM",
